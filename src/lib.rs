@@ -1,1 +1,14 @@
-//! x
+//! Plica animates still pictures from the keyboard: folding textures, edited as numbers in a terminal.
+//!
+//! # Code map
+//!
+//! A module names only what stands to its left (tests/house.rs holds the rule):
+//!
+//! base < layers < scene < files < render < export < ops < preview < tui < cli < main
+
+pub mod base;
+pub mod cli;
+pub mod layers;
+pub mod ops;
+pub mod render;
+pub mod scene;

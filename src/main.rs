@@ -1,1 +1,7 @@
-fn main() {}
+//! The binary: see `plica::cli`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    plica::cli::main()
+}

@@ -1,0 +1,217 @@
+//! Pictures: 2-D arrays, colour spaces and bilinear reads. Pictures are kept as linear, premultiplied RGBA in `f32`, so
+//! that filtering and compositing need no conversion; sRGB is met only where a file is read or written.
+
+use std::sync::LazyLock;
+
+/// A 2-D array, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid<T> {
+    width: usize,
+    height: usize,
+    cells: Vec<T>,
+}
+
+impl<T> Grid<T> {
+    /// Wraps `cells`, row by row; their number is `width` times `height`.
+    pub fn from_cells(width: usize, height: usize, cells: Vec<T>) -> Self {
+        assert_eq!(cells.len(), width * height, "cells of a {width} x {height} grid");
+        Grid { width, height, cells }
+    }
+
+    /// Columns.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The cells, row by row.
+    pub fn cells(&self) -> &[T] {
+        &self.cells
+    }
+
+    /// The cells, row by row, to be changed.
+    pub fn cells_mut(&mut self) -> &mut [T] {
+        &mut self.cells
+    }
+
+    /// One row.
+    pub fn row(&self, y: usize) -> &[T] {
+        &self.cells[y * self.width..][..self.width]
+    }
+
+    /// The cell in column `x`, row `y`.
+    pub fn get(&self, x: usize, y: usize) -> &T {
+        &self.row(y)[x]
+    }
+}
+
+impl<T: Clone> Grid<T> {
+    /// A grid with `value` in every cell.
+    pub fn filled(width: usize, height: usize, value: T) -> Self {
+        Grid { width, height, cells: vec![value; width * height] }
+    }
+}
+
+/// One colour: linear light, premultiplied by its alpha.
+pub type Rgba = [f32; 4];
+
+/// A picture in linear, premultiplied RGBA.
+pub type Picture = Grid<Rgba>;
+
+/// A finished frame: sRGB, straight alpha, 8 bits a channel.
+pub type Frame = Grid<[u8; 4]>;
+
+/// `over` laid on `under` (Porter and Duff), both premultiplied.
+pub fn over(over: Rgba, under: Rgba) -> Rgba {
+    let rest = 1.0 - over[3];
+    std::array::from_fn(|i| over[i] + under[i] * rest)
+}
+
+/// What a read beyond a picture's edge gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// The nearest pixel of the edge.
+    Clamp,
+    /// Nothing: transparent.
+    Transparent,
+}
+
+impl Picture {
+    /// The bilinear read at image coordinates (x, y); the centre of pixel (i, j) is (i + 0.5, j + 0.5).
+    pub fn read(&self, x: f64, y: f64, beyond: Beyond) -> Rgba {
+        let (gx, gy) = (x - 0.5, y - 0.5);
+        let (fx, fy) = (gx.floor(), gy.floor());
+        let (wx, wy) = ((gx - fx) as f32, (gy - fy) as f32);
+        let (ix, iy) = (fx as i64, fy as i64);
+        let [a, b] = [self.texel(ix, iy, beyond), self.texel(ix.saturating_add(1), iy, beyond)];
+        let iy = iy.saturating_add(1);
+        let [c, d] = [self.texel(ix, iy, beyond), self.texel(ix.saturating_add(1), iy, beyond)];
+        std::array::from_fn(|i| {
+            let top = a[i] + (b[i] - a[i]) * wx;
+            let bottom = c[i] + (d[i] - c[i]) * wx;
+            top + (bottom - top) * wy
+        })
+    }
+
+    fn texel(&self, x: i64, y: i64, beyond: Beyond) -> Rgba {
+        let (w, h) = (self.width as i64, self.height as i64);
+        if beyond == Beyond::Transparent && (x < 0 || y < 0 || x >= w || y >= h) {
+            return [0.0; 4];
+        }
+        self.cells[y.clamp(0, h - 1) as usize * self.width + x.clamp(0, w - 1) as usize]
+    }
+
+    /// Encodes to sRGB with straight alpha.
+    pub fn to_frame(&self) -> Frame {
+        Grid { width: self.width, height: self.height, cells: self.cells.iter().map(|&c| encode(c)).collect() }
+    }
+}
+
+impl Frame {
+    /// Decodes sRGB with straight alpha.
+    pub fn to_picture(&self) -> Picture {
+        Grid { width: self.width, height: self.height, cells: self.cells.iter().map(|&c| decode(c)).collect() }
+    }
+}
+
+/// sRGB code value in 0 to 1 to linear light (IEC 61966-2-1).
+pub fn linear_from_srgb(code: f64) -> f64 {
+    if code <= 0.04045 { code / 12.92 } else { crate::base::maths::pow((code + 0.055) / 1.055, 2.4) }
+}
+
+/// 8-bit sRGB with straight alpha to linear, premultiplied.
+pub fn decode([r, g, b, a]: [u8; 4]) -> Rgba {
+    let alpha = f32::from(a) / 255.0;
+    let linear = |code: u8| LINEAR[usize::from(code)] * alpha;
+    [linear(r), linear(g), linear(b), alpha]
+}
+
+/// Linear, premultiplied to 8-bit sRGB with straight alpha; each channel is rounded to the nearest code.
+pub fn encode([r, g, b, a]: Rgba) -> [u8; 4] {
+    if a <= 0.0 {
+        return [0; 4];
+    }
+    let [r, g, b] = if a == 1.0 { [r, g, b] } else { [r / a, g / a, b / a] };
+    [srgb_code(r), srgb_code(g), srgb_code(b), (a.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
+}
+
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|code| linear_from_srgb(code as f64 / 255.0) as f32));
+
+/// Where, in linear light, each code begins, and a first guess for each of `STARTS` equal steps of linear light: the
+/// exact rounding without a power function.
+static CODES: LazyLock<([f32; 257], Vec<u8>)> = LazyLock::new(|| {
+    let begins: [f32; 257] = std::array::from_fn(|code| match code {
+        0 => f32::NEG_INFINITY,
+        256 => f32::INFINITY,
+        _ => linear_from_srgb((code as f64 - 0.5) / 255.0) as f32,
+    });
+    let guess = |step: usize| {
+        let light = step as f32 / STARTS as f32;
+        (begins.partition_point(|&b| b <= light) - 1) as u8
+    };
+    (begins, (0..=STARTS).map(guess).collect())
+});
+
+const STARTS: usize = 4096;
+
+fn srgb_code(light: f32) -> u8 {
+    let (begins, starts) = &*CODES;
+    let light = if light > 0.0 { light.min(1.0) } else { 0.0 }; // a NaN becomes 0
+    let mut code = starts[(light * STARTS as f32) as usize];
+    while begins[usize::from(code) + 1] <= light {
+        code += 1;
+    }
+    code
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_round_trips() {
+        for code in 0..=255u8 {
+            assert_eq!(encode(decode([code, code, code, 255])), [code, code, code, 255]);
+            let [r, .., a] = encode(decode([code, 0, 0, 128]));
+            assert_eq!((r, a), (code, 128));
+        }
+    }
+
+    #[test]
+    fn encoding_rounds_to_the_nearest_code() {
+        for i in 0..=20000 {
+            let light = i as f64 / 20000.0;
+            let srgb = if light <= 0.0031308 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+            let error = (f64::from(srgb_code(light as f32)) - srgb * 255.0).abs();
+            assert!(error <= 0.5005, "{light}: {error}");
+        }
+    }
+
+    #[test]
+    fn odd_light_is_clamped() {
+        for (light, code) in [(-1.0, 0), (2.0, 255), (f32::NAN, 0), (f32::INFINITY, 255)] {
+            assert_eq!(srgb_code(light), code, "{light}");
+        }
+    }
+
+    #[test]
+    fn a_read_at_a_centre_is_the_pixel() {
+        let mut p = Picture::filled(3, 2, [0.0; 4]);
+        p.cells_mut()[4] = [1.0, 0.5, 0.25, 1.0];
+        assert_eq!(p.read(1.5, 1.5, Beyond::Clamp), [1.0, 0.5, 0.25, 1.0]);
+        assert_eq!(p.read(1.0, 1.5, Beyond::Clamp)[0], 0.5);
+        assert_eq!(p.read(1.5, 9.0, Beyond::Clamp)[0], 1.0);
+        assert_eq!(p.read(1.5, 9.0, Beyond::Transparent), [0.0; 4]);
+        assert_eq!(p.read(1.5, 2.0, Beyond::Transparent)[0], 0.5);
+    }
+
+    #[test]
+    fn over_is_porter_duff() {
+        assert_eq!(over([0.5, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 1.0]), [0.5, 0.5, 0.0, 1.0]);
+    }
+}

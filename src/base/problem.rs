@@ -1,0 +1,67 @@
+//! A [`Problem`] is something wrong *in* a scene. All problems are found at once, each with its place, and none of them
+//! ever stops editing.
+
+use std::fmt;
+
+/// How bad a [`Problem`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Worth knowing; the scene renders.
+    Warning,
+    /// The scene cannot be rendered until this is mended.
+    Error,
+}
+
+/// Something wrong in a scene: where, what, and how to mend it.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Problem {
+    /// How bad it is.
+    pub severity: Severity,
+    /// JSON pointer into the document (RFC 6901), empty for the whole of it.
+    pub path: String,
+    /// What was found and what was expected, one sentence without a full stop.
+    pub message: String,
+    /// How to mend it, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hint: Option<String>,
+}
+
+impl Problem {
+    /// A problem that stops rendering.
+    pub fn error(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Problem { severity: Severity::Error, path: path.into(), message: message.into(), hint: None }
+    }
+
+    /// A problem that only deserves a word.
+    pub fn warning(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Problem { severity: Severity::Warning, ..Problem::error(path, message) }
+    }
+
+    /// Adds how to mend it.
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// The same problem seen from further out: `prefix` goes before the path.
+    pub fn under(mut self, prefix: &str) -> Self {
+        self.path.insert_str(0, prefix);
+        self
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let path = if self.path.is_empty() { "/" } else { &self.path };
+        let kind = match self.severity {
+            Severity::Warning => "warning: ",
+            Severity::Error => "",
+        };
+        write!(f, "{path}: {kind}{}", self.message)?;
+        match &self.hint {
+            Some(hint) => write!(f, " ({hint})"),
+            None => Ok(()),
+        }
+    }
+}

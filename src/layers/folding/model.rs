@@ -1,0 +1,77 @@
+//! The picture layer and its zones as they stand in the document. Doc comments become the help of forms and schema.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{fold::Fold, interpolation::Interpolation, outline::Outline, position::Position, tools::Tool};
+use crate::layers::Xy;
+
+/// A still picture whose motion zones fold over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PictureLayer {
+    /// Unique among the layers.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// Name of the picture, one of the scene's images.
+    #[schemars(extend("reference" = "images"))]
+    pub image: String,
+    /// Motion zones, shown in this order: later over earlier.
+    #[serde(default)]
+    pub zones: Vec<Zone>,
+}
+
+/// A part of the picture that moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Zone {
+    /// Unique among the layer's zones.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// The pixels that move: those whose centre is inside.
+    pub outline: Outline,
+    /// What gives the jump vectors: anchors and dense transforms, in this order.
+    #[serde(default)]
+    pub motion: Vec<Tool>,
+    /// How anchors spread to the pixels between them.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+    /// Where along its jump path a sampler is at each local time.
+    #[serde(default)]
+    pub position: Position,
+    /// Where one part slides over another; none: every sampler is active.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fold: Option<Fold>,
+    /// The picture that samplers read; none: the layer's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampler: Option<Sampler>,
+    /// Passes in one timeline; negative runs backwards.
+    #[serde(default = "one")]
+    #[schemars(extend("unit" = "passes"))]
+    pub speed: f64,
+    /// Temporal shift: how far the zone is ahead.
+    #[serde(default)]
+    #[schemars(extend("unit" = "timelines"))]
+    pub shift: f64,
+    /// Width of the rim inside the outline over which jump vectors fade to zero.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1000000.0), extend("unit" = "px"))]
+    pub feather: f64,
+}
+
+/// The picture that samplers read instead of the layer's own; transparent beyond its edge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sampler {
+    /// Name of the picture, one of the scene's images.
+    #[schemars(extend("reference" = "images"))]
+    pub image: String,
+    /// Added to where every sampler reads.
+    #[serde(default)]
+    #[schemars(extend("unit" = "px"))]
+    pub offset: Xy,
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,40 @@
+//! One folder a technique, the same file names in each. [`Layer`] is the only list of them.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::base::pixels::{Grid, Picture};
+
+pub mod folding;
+pub mod timeline;
+
+/// A position or vector in image pixels, [x, y], x right and y down.
+pub type Xy = [f64; 2];
+
+/// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Layer {
+    /// A still picture whose motion zones fold over time.
+    Picture(folding::model::PictureLayer),
+}
+
+impl Layer {
+    /// The layer's name, unique in its scene.
+    pub fn name(&self) -> &str {
+        match self {
+            Layer::Picture(picture) => &picture.name,
+        }
+    }
+}
+
+/// What a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.
+#[derive(Clone, Debug, Default)]
+pub struct Materials {
+    /// Pictures by their name in the scene's images.
+    pub pictures: BTreeMap<String, Arc<Picture>>,
+    /// Sampled vector fields by their path in the scene, in pixels.
+    pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
+}

@@ -1,0 +1,82 @@
+//! One file a subcommand: its arguments and its function, used by the command line and by the editor's `:`.
+//! [`Command`] is the only list of them.
+
+use std::io::{IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::base::error::{Error, Result};
+
+pub mod schema;
+
+/// What `plica` can be asked to do.
+#[derive(clap::Subcommand)]
+pub enum Command {
+    /// Print the JSON Schema of a scene
+    Schema(schema::Args),
+}
+
+impl Command {
+    /// Does it.
+    pub fn run(self, context: &mut Context) -> Result<()> {
+        match self {
+            Command::Schema(args) => schema::run(args, context),
+        }
+    }
+}
+
+/// What a subcommand is given besides its arguments: where data and messages go, and the wish to stop.
+pub struct Context {
+    /// Data: standard output, or a buffer in the editor and in tests.
+    pub out: Box<dyn Write + Send>,
+    /// Messages and progress: standard error, or the editor's status line.
+    pub messages: Box<dyn Progress>,
+    /// Set by a signal or by Esc; long work looks at it between frames and files and ends with [`Error::Interrupted`].
+    pub cancel: Arc<AtomicBool>,
+}
+
+/// Where messages and the progress of long work go.
+pub trait Progress: Send {
+    /// One line for the person.
+    fn say(&mut self, line: &str);
+    /// `done` of `total` steps of `what`; called often, shown as often as it makes sense.
+    fn step(&mut self, what: &str, done: u64, total: u64);
+}
+
+impl Context {
+    /// The command line's own: standard output and standard error.
+    pub fn process(cancel: Arc<AtomicBool>) -> Self {
+        let messages = Box::new(Stderr { tty: std::io::stderr().is_terminal(), shown: None });
+        Context { out: Box::new(std::io::stdout()), messages, cancel }
+    }
+
+    /// Ends the work with [`Error::Interrupted`] once cancelled.
+    pub fn check_cancelled(&self) -> Result<()> {
+        if self.cancel.load(Ordering::Relaxed) { Err(Error::Interrupted) } else { Ok(()) }
+    }
+
+    /// Writes `text` and a line end to where data goes.
+    pub fn print(&mut self, text: impl std::fmt::Display) -> Result<()> {
+        writeln!(self.out, "{text}").map_err(|e| Error::at("standard output", e))
+    }
+}
+
+/// Messages on standard error; progress there only where a person looks.
+struct Stderr {
+    tty: bool,
+    shown: Option<std::time::Instant>,
+}
+
+impl Progress for Stderr {
+    fn say(&mut self, line: &str) {
+        eprintln!("{line}");
+    }
+
+    fn step(&mut self, what: &str, done: u64, total: u64) {
+        let due = self.shown.is_none_or(|at| at.elapsed().as_millis() >= 100);
+        if self.tty && (due || done == total) {
+            self.shown = Some(std::time::Instant::now());
+            eprint!("\r\x1b[K{what} {done}/{total}{}", if done == total { "\n" } else { "" });
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! The document: a scene is a value, and so is an edit.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::layers::{Layer, timeline::Timeline};
+
+/// The version of the document that this program writes.
+pub const VERSION: u32 = 1;
+
+/// A scene: what `NAME.plica.json` holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Version of the document format.
+    pub plica: u32,
+    /// What the scene is called.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub title: String,
+    /// Length, frame rate and what follows the end.
+    #[serde(default)]
+    pub timeline: Timeline,
+    /// The pictures, by name.
+    #[serde(default)]
+    pub images: BTreeMap<String, Image>,
+    /// The layers, composed in this order: later over earlier.
+    #[serde(default)]
+    pub layers: Vec<Layer>,
+}
+
+/// A picture of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Image {
+    /// The file, relative to the scene.
+    #[schemars(length(min = 1))]
+    pub path: String,
+}
