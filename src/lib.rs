@@ -4,11 +4,12 @@
 //!
 //! A module names only what stands to its left (tests/house.rs holds the rule):
 //!
-//! base < layers < scene < files < render < export < ops < preview < tui < cli < main
+//! base < layers < scene < files < render < export < preview < ops < tui < cli < main
 
 pub mod base;
 pub mod cli;
 pub mod layers;
 pub mod ops;
+pub mod preview;
 pub mod render;
 pub mod scene;

@@ -1,0 +1,62 @@
+//! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
+
+use std::sync::Arc;
+
+use crate::scene::Scene;
+
+/// What reaches a window, from the editor that has the scene open or from the file.
+#[derive(Clone, Debug)]
+pub enum Update {
+    /// The scene to show from now on. A window answers it with [`Reply::Shown`]; until then further edits are joined.
+    Scene {
+        /// The scene.
+        scene: Arc<Scene>,
+        /// Its revision in the editor; counted by loads where the file is followed.
+        revision: u64,
+    },
+    /// JSON pointer of what is selected in the editor (`/layers/0/zones/2/motion/1`).
+    Selection(Option<String>),
+    /// Whether the animation runs, and the scene's time, in seconds.
+    Transport {
+        /// Runs on from `time`.
+        playing: bool,
+        /// Scene time, in seconds.
+        time: f64,
+    },
+    /// An overlay or zoom command, by its name in the key table.
+    View(String),
+    /// One line for the person: the link was lost, the file cannot be read, ...
+    Notice(String),
+    /// The editor wants the window gone.
+    Closed,
+}
+
+/// What a window tells its editor; goes nowhere where a file is followed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// The scene of this revision is synthesised and shown.
+    Shown {
+        /// As in [`Update::Scene`].
+        revision: u64,
+        /// What the synthesis took, in milliseconds.
+        synth_ms: f64,
+    },
+    /// How the window is doing.
+    Report {
+        /// Frames a second.
+        fps: f64,
+        /// The graphics adapter's name.
+        adapter: String,
+        /// One line for the editor's status, empty where all is well.
+        notice: String,
+    },
+    /// The pointer stands here, in pixels of the picture.
+    Pointer {
+        /// From the left edge.
+        x: f64,
+        /// From the top edge.
+        y: f64,
+    },
+    /// A request by command name, from a key pressed in the window; only the editor edits.
+    Command(String),
+}
