@@ -1,7 +1,9 @@
 //! Facts about numbers and pictures. Knows no scene.
 
 pub mod error;
+pub mod expression;
 pub mod geometry;
+pub mod keys;
 pub mod maths;
 pub mod pixels;
 pub mod problem;

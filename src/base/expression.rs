@@ -1,0 +1,346 @@
+//! The arithmetic of number entries: `5` and `-18` are values, `+=3` and `*1.1` change the old value, everything else is
+//! computed over named variables. A parser of our own: it is small, its limits are ours, and it evaluates as it reads.
+//!
+//! Angles are degrees, as they are everywhere in a scene.
+
+use super::maths;
+
+/// The longest expression, in bytes.
+pub const LIMIT_BYTES: usize = 4096;
+/// The deepest nesting of parentheses, functions and signs.
+pub const LIMIT_DEPTH: usize = 64;
+
+/// What an expression may name; `v` is the old value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variables<'a>(pub &'a [(&'a str, f64)]);
+
+impl Variables<'_> {
+    fn get(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
+    }
+
+    fn names(&self) -> String {
+        self.0.iter().map(|&(name, _)| name).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Why an expression has no value.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("column {column}: {what}")]
+pub struct Mistake {
+    /// Where, counted in characters from 1.
+    pub column: usize,
+    /// What was found there.
+    pub what: String,
+}
+
+/// A function of an expression: name, number of arguments (`None`: one or more), what it does.
+struct Function {
+    name: &'static str,
+    arguments: Option<usize>,
+    apply: fn(&[f64]) -> f64,
+}
+
+const FUNCTIONS: &[Function] = &[
+    Function { name: "sqrt", arguments: Some(1), apply: |x| x[0].sqrt() },
+    Function { name: "abs", arguments: Some(1), apply: |x| x[0].abs() },
+    Function { name: "sin", arguments: Some(1), apply: |x| maths::sin(x[0].to_radians()) },
+    Function { name: "cos", arguments: Some(1), apply: |x| maths::cos(x[0].to_radians()) },
+    Function {
+        name: "tan",
+        arguments: Some(1),
+        apply: |x| maths::sin(x[0].to_radians()) / maths::cos(x[0].to_radians()),
+    },
+    Function { name: "asin", arguments: Some(1), apply: |x| 90.0 - maths::acos(x[0]).to_degrees() },
+    Function { name: "acos", arguments: Some(1), apply: |x| maths::acos(x[0]).to_degrees() },
+    Function { name: "atan", arguments: Some(1), apply: |x| maths::atan2(x[0], 1.0).to_degrees() },
+    Function { name: "atan2", arguments: Some(2), apply: |x| maths::atan2(x[0], x[1]).to_degrees() },
+    Function { name: "exp", arguments: Some(1), apply: |x| maths::exp(x[0]) },
+    Function { name: "ln", arguments: Some(1), apply: |x| maths::ln(x[0]) },
+    Function { name: "floor", arguments: Some(1), apply: |x| x[0].floor() },
+    Function { name: "ceil", arguments: Some(1), apply: |x| x[0].ceil() },
+    Function { name: "round", arguments: Some(1), apply: |x| x[0].round() },
+    Function { name: "min", arguments: None, apply: |x| x.iter().copied().fold(f64::INFINITY, f64::min) },
+    Function { name: "max", arguments: None, apply: |x| x.iter().copied().fold(f64::NEG_INFINITY, f64::max) },
+];
+
+/// The names of all functions, for help.
+pub fn functions() -> impl Iterator<Item = &'static str> {
+    FUNCTIONS.iter().map(|f| f.name)
+}
+
+/// Whether `text` changes the old value (`+=3`, `*1.1`) instead of giving a new one.
+pub fn is_relative(text: &str) -> bool {
+    relative(text.trim()).is_some()
+}
+
+/// The value of an entry. `variables` holds the old value as `v`. The result is finite.
+pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
+    if text.len() > LIMIT_BYTES {
+        return Err(Mistake { column: LIMIT_BYTES + 1, what: format!("longer than {LIMIT_BYTES} bytes") });
+    }
+    let trimmed = text.trim();
+    let start = text.len() - text.trim_start().len();
+    let (operator, skip) = match relative(trimmed) {
+        Some((operator, skip)) => (Some(operator), skip),
+        None => (None, usize::from(trimmed.starts_with('='))),
+    };
+    let mut parser = Parser { text, at: start + skip, depth: 0, variables };
+    let right = parser.sum()?;
+    parser.space();
+    if let Some(found) = parser.peek() {
+        return Err(parser.mistake(format!("expected an operator, found `{found}`")));
+    }
+    let old = variables.get("v").unwrap_or(0.0);
+    let value = match operator {
+        Some('+') => old + right,
+        Some('-') => old - right,
+        Some('*') => old * right,
+        Some(_) => old / right,
+        None => right,
+    };
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Mistake { column: 1, what: "the result is not a finite number".into() })
+    }
+}
+
+/// The operator of a relative entry and how many bytes it takes.
+fn relative(text: &str) -> Option<(char, usize)> {
+    let operator = text.chars().next().filter(|c| "+-*/".contains(*c))?;
+    match (operator, text[1..].starts_with('=')) {
+        (_, true) => Some((operator, 2)),
+        ('*' | '/', false) => Some((operator, 1)),
+        _ => None,
+    }
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+    variables: &'a Variables<'a>,
+}
+
+impl Parser<'_> {
+    fn mistake(&self, what: impl Into<String>) -> Mistake {
+        Mistake { column: self.text[..self.at].chars().count() + 1, what: what.into() }
+    }
+
+    fn rest(&self) -> &str {
+        &self.text[self.at..]
+    }
+
+    fn peek(&self) -> Option<char> {
+        self.rest().chars().next()
+    }
+
+    fn space(&mut self) {
+        self.at = self.text.len() - self.rest().trim_start().len();
+    }
+
+    fn take(&mut self, wanted: char) -> bool {
+        self.space();
+        let found = self.peek() == Some(wanted);
+        if found {
+            self.at += wanted.len_utf8();
+        }
+        found
+    }
+
+    /// Takes the longest run of characters that `wanted` accepts.
+    fn run(&mut self, wanted: impl Fn(char) -> bool) -> String {
+        let end = self.rest().find(|c| !wanted(c)).unwrap_or(self.rest().len());
+        let taken = self.rest()[..end].to_string();
+        self.at += end;
+        taken
+    }
+
+    fn sum(&mut self) -> Result<f64, Mistake> {
+        let mut value = self.product()?;
+        loop {
+            if self.take('+') {
+                value += self.product()?;
+            } else if self.take('-') {
+                value -= self.product()?;
+            } else {
+                return Ok(value);
+            }
+        }
+    }
+
+    fn product(&mut self) -> Result<f64, Mistake> {
+        let mut value = self.signed()?;
+        loop {
+            if self.take('*') {
+                value *= self.signed()?;
+            } else if self.take('/') {
+                value /= self.signed()?;
+            } else if self.take('%') {
+                value %= self.signed()?;
+            } else {
+                return Ok(value);
+            }
+        }
+    }
+
+    /// A sign binds looser than a power: -2^2 is -4.
+    fn signed(&mut self) -> Result<f64, Mistake> {
+        self.depth += 1;
+        if self.depth > LIMIT_DEPTH {
+            return Err(self.mistake(format!("nested deeper than {LIMIT_DEPTH}")));
+        }
+        let value = if self.take('-') {
+            -self.signed()?
+        } else if self.take('+') {
+            self.signed()?
+        } else {
+            let base = self.atom()?;
+            if self.take('^') { maths::pow(base, self.signed()?) } else { base }
+        };
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    fn atom(&mut self) -> Result<f64, Mistake> {
+        if self.take('(') {
+            let value = self.sum()?;
+            return if self.take(')') { Ok(value) } else { Err(self.mistake("expected `)`")) };
+        }
+        match self.peek() {
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() => self.name(),
+            Some(c) => Err(self.mistake(format!("expected a number, found `{c}`"))),
+            None => Err(self.mistake("expected a number, found the end")),
+        }
+    }
+
+    fn number(&mut self) -> Result<f64, Mistake> {
+        let start = self.at;
+        self.run(|c| c.is_ascii_digit() || c == '.');
+        let rest = self.rest().as_bytes();
+        let sign = usize::from(matches!(rest.get(1), Some(b'+' | b'-')));
+        if matches!(rest.first(), Some(b'e' | b'E')) && rest.get(1 + sign).is_some_and(u8::is_ascii_digit) {
+            self.at += 1 + sign;
+            self.run(|c| c.is_ascii_digit());
+        }
+        let text = &self.text[start..self.at];
+        let value = text.parse().map_err(|_| format!("`{text}` is not a number"));
+        value.map_err(|what| Mistake { column: self.text[..start].chars().count() + 1, what })
+    }
+
+    fn name(&mut self) -> Result<f64, Mistake> {
+        let before = Mistake { what: String::new(), ..self.mistake("") };
+        let name = self.run(|c| c.is_alphanumeric() || c == '_');
+        if let Some(value) = self.variables.get(&name) {
+            return Ok(value);
+        }
+        if name == "pi" {
+            return Ok(std::f64::consts::PI);
+        }
+        match FUNCTIONS.iter().find(|f| f.name == name) {
+            Some(function) => self.call(function),
+            None => Err(Mistake {
+                what: format!("`{name}` is not known here (known: {}, pi, sqrt and the like)", self.variables.names()),
+                ..before
+            }),
+        }
+    }
+
+    fn call(&mut self, function: &Function) -> Result<f64, Mistake> {
+        if !self.take('(') {
+            return Err(self.mistake(format!("expected `(` after {}", function.name)));
+        }
+        let mut arguments = vec![self.sum()?];
+        while self.take(',') {
+            arguments.push(self.sum()?);
+        }
+        if !self.take(')') {
+            return Err(self.mistake("expected `,` or `)`"));
+        }
+        match function.arguments {
+            Some(n) if n != arguments.len() => {
+                Err(self.mistake(format!("{} takes {n} numbers, found {}", function.name, arguments.len())))
+            }
+            _ => Ok((function.apply)(&arguments)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const VARIABLES: Variables = Variables(&[("v", 10.0), ("x", 3.0), ("w", 1280.0), ("r", 2.0), ("i", 0.0)]);
+
+    #[test]
+    fn entries_and_their_values() {
+        for (text, value) in [
+            ("5", 5.0),
+            (" -18 ", -18.0),
+            ("+5", 5.0),
+            (".5", 0.5),
+            ("1e-3", 0.001),
+            ("+=3", 13.0),
+            ("-= 3", 7.0),
+            ("*=1.5", 15.0),
+            ("/=4", 2.5),
+            ("*0.5", 5.0),
+            ("/2+3", 2.0),
+            ("=w/2", 640.0),
+            ("w/2", 640.0),
+            ("1280/2", 640.0),
+            ("v+1", 11.0),
+            ("-x", -3.0),
+            ("-2^2", -4.0),
+            ("2^3^2", 512.0),
+            ("2*(1+2)", 6.0),
+            ("7%4", 3.0),
+            ("2^-1", 0.5),
+            ("sqrt(2)*r", 2.0 * std::f64::consts::SQRT_2),
+            ("min(3, x-1, 9)", 2.0),
+            ("round(sin(30)*100)", 50.0),
+            ("2*pi", std::f64::consts::TAU),
+        ] {
+            assert_eq!(evaluate(text, &VARIABLES), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn mistakes_tell_their_place() {
+        for (text, column, part) in [
+            ("", 1, "found the end"),
+            ("5 5", 3, "operator"),
+            ("2*q", 3, "`q` is not known"),
+            ("(1", 3, "`)`"),
+            ("1.2.3", 1, "not a number"),
+            ("sqrt(1,2)", 10, "takes 1"),
+            ("sqrt", 5, "expected `(`"),
+            ("1/0", 1, "finite"),
+            ("sqrt(-1)", 1, "finite"),
+            ("5é", 2, "operator"),
+            ("é+", 1, "not known"),
+        ] {
+            let mistake = evaluate(text, &VARIABLES).unwrap_err();
+            assert!(mistake.column == column && mistake.what.contains(part), "{text}: {mistake}");
+        }
+    }
+
+    #[test]
+    fn absurd_input_is_refused() {
+        for text in ["(".repeat(4000), "-".repeat(4000), "2^".repeat(2000), "1".repeat(5000), "sqrt(".repeat(800)] {
+            assert!(evaluate(&text, &VARIABLES).is_err());
+        }
+        assert!(evaluate(&format!("{}1{}", "(".repeat(60), ")".repeat(60)), &VARIABLES).is_ok());
+    }
+
+    #[test]
+    fn relative_entries_are_told_apart() {
+        for (text, expected) in
+            [("*2", true), ("+=1", true), ("-=1", true), ("-1", false), ("+1", false), ("v*2", false)]
+        {
+            assert_eq!(is_relative(text), expected, "{text}");
+        }
+    }
+}
