@@ -4,7 +4,7 @@
 use std::fmt;
 
 /// How bad a [`Problem`] is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// Worth knowing; the scene renders.
@@ -14,7 +14,7 @@ pub enum Severity {
 }
 
 /// Something wrong in a scene: where, what, and how to mend it.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Problem {
     /// How bad it is.
     pub severity: Severity,
@@ -23,7 +23,7 @@ pub struct Problem {
     /// What was found and what was expected, one sentence without a full stop.
     pub message: String,
     /// How to mend it, where that is known.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
 }
 

@@ -1,5 +1,7 @@
 //! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
 
+pub mod message;
+
 use std::sync::Arc;
 
 use crate::scene::Scene;
