@@ -1,5 +1,7 @@
 //! Layers over one another: synthesis of a scene, and its frames on the CPU (the reference) and the GPU.
 
+pub mod overlay;
+
 use crate::layers::folding;
 
 /// What a frame of a scene needs except the time.
