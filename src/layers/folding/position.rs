@@ -3,6 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::base::maths::{TAU, cos, exp, expm1, sin};
+use crate::layers::timeline::Wrap;
+
 /// A position function: where along its jump path a sampler is at each local time τ. 0 is its own pixel, 1 the end.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "function", rename_all = "kebab-case", deny_unknown_fields)]
@@ -143,4 +146,262 @@ fn three() -> f64 {
 }
 fn ten() -> f64 {
     10.0
+}
+
+/// A zone's clock: scene time to s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clock {
+    /// s = p(τ).
+    pub position: Position,
+    /// Passes in one timeline.
+    pub speed: f64,
+    /// Temporal shift in timelines.
+    pub shift: f64,
+    /// What follows the end.
+    pub wrap: Wrap,
+}
+
+impl Clock {
+    /// Local time τ in [0, 1] at `scene_time`.
+    pub fn tau(&self, scene_time: f64) -> f64 {
+        self.wrap.wrap(self.speed * (scene_time + self.shift))
+    }
+
+    /// The place s along the jump path at `scene_time`.
+    pub fn s(&self, scene_time: f64) -> f64 {
+        self.position.eval(self.tau(scene_time))
+    }
+}
+
+impl Position {
+    /// s at local time `tau` in [0, 1].
+    pub fn eval(&self, tau: f64) -> f64 {
+        match self {
+            Position::Linear => tau,
+            Position::Exponential { rate } => expm1(rate * tau) / expm1(*rate),
+            Position::ExponentialInverse { rate } => expm1(-rate * tau) / expm1(-rate),
+            Position::Sigmoid { rate } => {
+                let (low, high) = (logistic(-rate / 2.0), logistic(rate / 2.0));
+                (logistic(rate * (tau - 0.5)) - low) / (high - low)
+            }
+            Position::Sine { cycles, phase, amplitude, offset } => {
+                offset + amplitude * sin(TAU * (cycles * tau + phase))
+            }
+            Position::Cosine { cycles, phase, amplitude, offset } => {
+                offset + amplitude * (1.0 - cos(TAU * (cycles * tau + phase))) / 2.0
+            }
+            Position::CubicBezier { x1, y1, x2, y2 } => cubic_bezier([*x1, *y1], [*x2, *y2], tau),
+            Position::Keyframes { points, between } => keyframes(points, *between, tau),
+            Position::Piecewise { segments } => piecewise(segments, tau),
+        }
+    }
+
+    /// The smallest and the largest s over all τ in [0, 1].
+    pub fn range(&self) -> (f64, f64) {
+        match self {
+            Position::Linear
+            | Position::Exponential { .. }
+            | Position::ExponentialInverse { .. }
+            | Position::Sigmoid { .. } => (0.0, 1.0),
+            Position::Sine { cycles, phase, .. } => self.over(turning_points(*cycles, *phase, 0.25)),
+            Position::Cosine { cycles, phase, .. } => self.over(turning_points(*cycles, *phase, 0.0)),
+            // A cubic lies within the hull of its control points.
+            Position::CubicBezier { y1, y2, .. } => (y1.min(*y2).min(0.0), y1.max(*y2).max(1.0)),
+            Position::Keyframes { points, .. } => hull(points.iter().map(|p| p[1])),
+            Position::Piecewise { segments } => hull(segments.iter().flat_map(|segment| {
+                let (low, high) = segment.ease.range();
+                [segment.at(low), segment.at(high)]
+            })),
+        }
+    }
+
+    /// The range over both ends and the given inner places.
+    fn over(&self, turning: Vec<f64>) -> (f64, f64) {
+        hull(turning.into_iter().chain([0.0, 1.0]).map(|tau| self.eval(tau)))
+    }
+}
+
+impl Segment {
+    /// s where the easing is at `eased`.
+    fn at(&self, eased: f64) -> f64 {
+        self.from + (self.to - self.from) * eased
+    }
+}
+
+fn hull(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)))
+}
+
+/// The τ inside (0, 1) where cycles τ + phase is `first` or a half cycle more, as many as make a difference.
+fn turning_points(cycles: f64, phase: f64, first: f64) -> Vec<f64> {
+    if cycles == 0.0 {
+        return Vec::new();
+    }
+    let (low, high) = (phase.min(phase + cycles), phase.max(phase + cycles));
+    let start = ((low - first) * 2.0).ceil();
+    let turns = (0..2).map(|i| first + (start + f64::from(i)) / 2.0).filter(|turn| *turn <= high);
+    turns.map(|turn| ((turn - phase) / cycles).clamp(0.0, 1.0)).collect()
+}
+
+fn logistic(x: f64) -> f64 {
+    1.0 / (1.0 + exp(-x))
+}
+
+/// CSS easing: y where x(u) = tau. x is monotone, so halving always finds it.
+fn cubic_bezier([x1, y1]: [f64; 2], [x2, y2]: [f64; 2], tau: f64) -> f64 {
+    let at = |p1: f64, p2: f64, u: f64| {
+        let v = 1.0 - u;
+        3.0 * v * v * u * p1 + 3.0 * v * u * u * p2 + u * u * u
+    };
+    if tau <= 0.0 || tau >= 1.0 {
+        return tau.clamp(0.0, 1.0);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = (low + high) / 2.0;
+        if at(x1, x2, middle) < tau { low = middle } else { high = middle }
+    }
+    at(y1, y2, (low + high) / 2.0)
+}
+
+fn keyframes(points: &[[f64; 2]], between: Between, tau: f64) -> f64 {
+    let after = points.partition_point(|p| p[0] <= tau);
+    let (Some(i), true) = (after.checked_sub(1), after < points.len()) else {
+        let end = if after == 0 { points.first() } else { points.last() };
+        return end.map_or(0.0, |p| p[1]);
+    };
+    let ([t0, s0], [t1, s1]) = (points[i], points[after]);
+    let u = (tau - t0) / (t1 - t0);
+    match between {
+        Between::Step => s0,
+        Between::Linear => s0 + (s1 - s0) * u,
+        Between::Smooth => {
+            let h = t1 - t0;
+            let (m0, m1) = (slope(points, i) * h, slope(points, after) * h);
+            let (u2, u3) = (u * u, u * u * u);
+            s0 * (2.0 * u3 - 3.0 * u2 + 1.0) + m0 * (u3 - 2.0 * u2 + u) + s1 * (3.0 * u2 - 2.0 * u3) + m1 * (u3 - u2)
+        }
+    }
+}
+
+/// The slope of the smooth curve at point `i` (Fritsch and Carlson's monotone choice).
+fn slope(points: &[[f64; 2]], i: usize) -> f64 {
+    let width = |k: usize| points[k + 1][0] - points[k][0];
+    let secant = |k: usize| (points[k + 1][1] - points[k][1]) / width(k);
+    if i == 0 {
+        return secant(0);
+    }
+    if i + 1 == points.len() {
+        return secant(i - 1);
+    }
+    let (d0, d1) = (secant(i - 1), secant(i));
+    if d0 == 0.0 || d1 == 0.0 || (d0 < 0.0) != (d1 < 0.0) {
+        return 0.0;
+    }
+    let (h0, h1) = (width(i - 1), width(i));
+    let (w1, w2) = (2.0 * h1 + h0, h1 + 2.0 * h0);
+    (w1 + w2) / (w1 / d0 + w2 / d1)
+}
+
+fn piecewise(segments: &[Segment], tau: f64) -> f64 {
+    let i = segments.partition_point(|segment| segment.until < tau).min(segments.len().saturating_sub(1));
+    let Some(segment) = segments.get(i) else { return 0.0 };
+    let start = if i == 0 { 0.0 } else { segments[i - 1].until };
+    let length = segment.until - start;
+    let local = if length > 0.0 { ((tau - start) / length).clamp(0.0, 1.0) } else { 1.0 };
+    segment.at(segment.ease.eval(local))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(json: &str) -> Position {
+        serde_json::from_str(json).unwrap()
+    }
+
+    /// Every function with its default and with odd parameters.
+    fn all() -> Vec<Position> {
+        [
+            r#"{"function":"linear"}"#,
+            r#"{"function":"exponential"}"#,
+            r#"{"function":"exponential","rate":-40}"#,
+            r#"{"function":"exponential","rate":500}"#,
+            r#"{"function":"exponential-inverse"}"#,
+            r#"{"function":"sigmoid"}"#,
+            r#"{"function":"sigmoid","rate":-300}"#,
+            r#"{"function":"sine"}"#,
+            r#"{"function":"sine","cycles":-1.3,"phase":0.2,"amplitude":-2,"offset":0.3}"#,
+            r#"{"function":"sine","cycles":0.05,"phase":0.6}"#,
+            r#"{"function":"cosine"}"#,
+            r#"{"function":"cosine","cycles":2.4,"phase":-0.1,"amplitude":0.5,"offset":1}"#,
+            r#"{"function":"cubic-bezier","x1":0.25,"y1":0.1,"x2":0.25,"y2":1.4}"#,
+            r#"{"function":"cubic-bezier","x1":1,"y1":0,"x2":0,"y2":1}"#,
+            r#"{"function":"keyframes","points":[[0.1,0.5],[0.4,1.5],[0.8,-0.25]]}"#,
+            r#"{"function":"keyframes","points":[[0,0],[0.3,0.2],[0.5,0.9],[1,1]],"between":"smooth"}"#,
+            r#"{"function":"keyframes","points":[[0.5,2]],"between":"step"}"#,
+            r#"{"function":"piecewise","segments":[{"until":0.4,"from":0,"to":1.2,"ease":{"function":"sigmoid"}},{"until":1,"from":0.5,"to":-1,"ease":{"function":"sine"}}]}"#,
+        ]
+        .into_iter()
+        .map(parse)
+        .collect()
+    }
+
+    #[test]
+    fn every_function_is_finite_and_in_its_range_and_round_trips() {
+        for position in all() {
+            let (low, high) = position.range();
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            for i in 0..=5000 {
+                let s = position.eval(f64::from(i) / 5000.0);
+                assert!(s.is_finite(), "{position:?} at {i}");
+                (least, most) = (least.min(s), most.max(s));
+            }
+            assert!(low - 1e-12 <= least && most <= high + 1e-12, "{position:?}: {least} {most} in {low} {high}");
+            if !matches!(position, Position::CubicBezier { .. }) {
+                assert!(least - low < 1e-3 && high - most < 1e-3, "{position:?}: {least} {most} fill {low} {high}");
+            }
+            assert_eq!(parse(&serde_json::to_string(&position).unwrap()), position);
+        }
+    }
+
+    #[test]
+    fn functions_have_the_values_of_their_formulae() {
+        for (json, tau, s) in [
+            (r#"{"function":"exponential","rate":2}"#, 0.5, (1f64.exp() - 1.0) / (2f64.exp() - 1.0)),
+            (r#"{"function":"exponential-inverse","rate":2}"#, 0.5, (1.0 - (-1f64).exp()) / (1.0 - (-2f64).exp())),
+            (r#"{"function":"sigmoid"}"#, 0.5, 0.5),
+            (r#"{"function":"sigmoid"}"#, 1.0, 1.0),
+            (r#"{"function":"sine"}"#, 0.5, 1.0),
+            (r#"{"function":"sine","cycles":1,"phase":0.25}"#, 0.5, -1.0),
+            (r#"{"function":"cosine"}"#, 0.5, 1.0),
+            (r#"{"function":"cosine"}"#, 0.25, 0.5),
+            (r#"{"function":"cubic-bezier","x1":0.42,"y1":0,"x2":0.58,"y2":1}"#, 0.5, 0.5),
+            (r#"{"function":"cubic-bezier","x1":0.25,"y1":0.1,"x2":0.25,"y2":1}"#, 0.5, 0.802403387),
+            (r#"{"function":"keyframes","points":[[0.2,1],[0.6,3]]}"#, 0.4, 2.0),
+            (r#"{"function":"keyframes","points":[[0.2,1],[0.6,3]]}"#, 0.1, 1.0),
+            (r#"{"function":"keyframes","points":[[0.2,1],[0.6,3]]}"#, 0.9, 3.0),
+            (r#"{"function":"keyframes","points":[[0,1],[0.5,3],[1,4]],"between":"step"}"#, 0.5, 3.0),
+            (r#"{"function":"keyframes","points":[[0,0],[0.5,1],[1,0]],"between":"smooth"}"#, 0.25, 0.625),
+            (
+                r#"{"function":"piecewise","segments":[{"until":0.5,"from":0,"to":1},{"until":1,"from":5,"to":6}]}"#,
+                0.5,
+                1.0,
+            ),
+            (
+                r#"{"function":"piecewise","segments":[{"until":0.5,"from":0,"to":1},{"until":1,"from":5,"to":6}]}"#,
+                0.75,
+                5.5,
+            ),
+        ] {
+            let found = parse(json).eval(tau);
+            assert!((found - s).abs() < 1e-8, "{json} at {tau}: {found}, not {s}");
+        }
+    }
+
+    #[test]
+    fn a_clock_wraps_before_it_evaluates() {
+        let clock = Clock { position: Position::Linear, speed: -1.0, shift: 0.25, wrap: Wrap::Repeat };
+        assert_eq!(clock.s(0.25), 0.5);
+    }
 }

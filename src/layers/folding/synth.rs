@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
-use super::position::Position;
+use super::position::Clock;
 use crate::base::pixels::{Beyond, Grid, Picture};
-use crate::layers::timeline::Wrap;
 
 /// What a frame of a picture layer needs except the time.
 #[derive(Clone, Debug)]
@@ -43,19 +42,6 @@ pub struct Source {
     pub beyond: Beyond,
     /// Whether the read is laid over what is beneath (a named image or a mask) or takes its place (the layer's own).
     pub over: bool,
-}
-
-/// A zone's clock: scene time to s.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Clock {
-    /// s = p(τ).
-    pub position: Position,
-    /// Passes in one timeline.
-    pub speed: f64,
-    /// Temporal shift in timelines.
-    pub shift: f64,
-    /// What follows the end.
-    pub wrap: Wrap,
 }
 
 /// A fold rule by regions (folding.md, section 3); a mask needs none, it is a [`Source`].
