@@ -1,7 +1,18 @@
-//! How anchors spread to the pixels between them (folding.md, section 4).
+//! How anchors spread to the pixels between them (folding.md, section 4). A new method is one variant here and one file
+//! beside this one.
+//!
+//! Fields are evaluated in runs of neighbouring pixels of a row: the anchors go in the outer loop and the pixels in the
+//! inner one, which the compiler vectorises without changing the order of any pixel's sum.
 
+use kurbo::Vec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::anchors::Anchor;
+
+mod inverse_distance;
+mod rigid;
+mod thin_plate;
 
 /// How the jump vectors of a zone's anchors spread over its pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -52,3 +63,116 @@ impl Default for Interpolation {
 fn two() -> f64 {
     2.0
 }
+
+/// Pixels in the longest [`Run`].
+pub const RUN: usize = 64;
+
+/// Nearer than this to an anchor, in pixels, a pixel takes that anchor's vector.
+const AT_ANCHOR_PX: f64 = 1e-6;
+
+/// A run of neighbouring pixels of a row, and where in them the field is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// Column and row of the first pixel.
+    pub pixel: (u32, u32),
+    /// The place in each pixel, from its top-left corner; (0.5, 0.5) is the centre.
+    pub place: Vec2,
+    /// Number of pixels, at most [`RUN`].
+    pub len: usize,
+}
+
+impl Run {
+    /// Image coordinate x of place `k`.
+    pub fn x(&self, k: usize) -> f64 {
+        f64::from(self.pixel.0) + k as f64 + self.place.x
+    }
+
+    /// Image coordinate y of all places.
+    pub fn y(&self) -> f64 {
+        f64::from(self.pixel.1) + self.place.y
+    }
+
+    /// Squared distance from `anchor` to the nearest place of the run.
+    fn reach2(&self, anchor: &Anchor) -> f64 {
+        let dx = (self.x(0) - anchor.at.x).max(anchor.at.x - self.x(self.len - 1)).max(0.0);
+        let dy = self.y() - anchor.at.y;
+        dx * dx + dy * dy
+    }
+}
+
+/// Jump vectors of a run, x and y apart.
+pub struct Jumps {
+    /// x in pixels.
+    pub x: [f64; RUN],
+    /// y in pixels.
+    pub y: [f64; RUN],
+}
+
+impl Default for Jumps {
+    fn default() -> Self {
+        Jumps { x: [0.0; RUN], y: [0.0; RUN] }
+    }
+}
+
+/// The anchors of a zone, made ready to be interpolated.
+pub struct Interpolator {
+    anchors: Vec<Anchor>,
+    method: Method,
+}
+
+enum Method {
+    Shepard { power: f64 },
+    Modified(inverse_distance::Modified),
+    ThinPlate(thin_plate::Plate),
+    Rigid,
+}
+
+impl Interpolator {
+    /// Makes `anchors` ready; for a thin plate this solves its equations.
+    pub fn new(interpolation: &Interpolation, anchors: Vec<Anchor>) -> Self {
+        use inverse_distance::Modified;
+        let method = match *interpolation {
+            Interpolation::Shepard { power } => Method::Shepard { power },
+            Interpolation::ModifiedShepard { radius } => Method::Modified(Modified { radius, ring: None }),
+            Interpolation::ModifiedShepardRandom { radius, ring, seed } => {
+                Method::Modified(Modified { radius, ring: Some((ring, seed)) })
+            }
+            Interpolation::ThinPlate { smoothing } => match thin_plate::Plate::solve(&anchors, smoothing) {
+                Some(plate) => Method::ThinPlate(plate),
+                None => Method::Shepard { power: two() },
+            },
+            Interpolation::Rigid {} => Method::Rigid,
+        };
+        Interpolator { anchors, method }
+    }
+
+    /// Writes the interpolated jump vectors of `run` to the beginning of `out`; (0, 0) without anchors.
+    pub fn run(&self, run: &Run, out: &mut Jumps) {
+        match &self.method {
+            _ if self.anchors.is_empty() => *out = Jumps::default(),
+            Method::Shepard { power } => inverse_distance::shepard(&self.anchors, *power, run, out),
+            Method::Modified(modified) => modified.run(&self.anchors, run, out),
+            Method::ThinPlate(plate) => return plate.run(run, out),
+            Method::Rigid => rigid::run(&self.anchors, run, out),
+        }
+        self.take_anchors_at(run, out);
+    }
+
+    /// Pixels at an anchor take its vector, the first such anchor's.
+    fn take_anchors_at(&self, run: &Run, out: &mut Jumps) {
+        for anchor in self.anchors.iter().rev() {
+            let dy = run.y() - anchor.at.y;
+            let k = (anchor.at.x - run.x(0)).round();
+            if dy.abs() < AT_ANCHOR_PX && k >= 0.0 && k < run.len as f64 {
+                let k = k as usize;
+                let dx = run.x(k) - anchor.at.x;
+                if dx * dx + dy * dy < AT_ANCHOR_PX * AT_ANCHOR_PX {
+                    (out.x[k], out.y[k]) = (anchor.jump.x, anchor.jump.y);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
