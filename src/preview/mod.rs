@@ -4,6 +4,8 @@ pub mod message;
 
 use std::sync::Arc;
 
+pub mod keys;
+
 use crate::scene::Scene;
 
 /// What reaches a window, from the editor that has the scene open or from the file.
