@@ -44,3 +44,76 @@ impl Fold {
         }
     }
 }
+
+/// A fold rule by regions (folding.md, section 3). A mask needs none: it is only another source to read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Inside a region a sampler waits at the edge where it entered.
+    Cover,
+    /// Still inside a region.
+    Return,
+    /// Still outside every region.
+    FlyOver,
+}
+
+impl Rule {
+    /// The effective place e(s) of an active sampler, none where it is still. `inside` tells whether the init-position
+    /// is in a region; `crossings` are the places where that changes on the side of s, from 0 outwards. On a crossing
+    /// itself the state nearer to 0 still holds.
+    pub fn effective(self, inside: bool, crossings: &[f64], s: f64) -> Option<f64> {
+        let crossed = crossings.iter().take_while(|c| c.abs() < s.abs()).count();
+        let inside = inside ^ (crossed % 2 == 1);
+        match (self, inside) {
+            (Rule::Cover, false) | (Rule::Return, false) | (Rule::FlyOver, true) => Some(s),
+            (Rule::Return, true) | (Rule::FlyOver, false) => None,
+            (Rule::Cover, true) => crossed.checked_sub(1).map(|last| crossings[last]),
+        }
+    }
+}
+
+impl Fold {
+    /// The rule by regions; none under a mask.
+    pub fn rule(&self) -> Option<Rule> {
+        match self {
+            Fold::Cover { .. } => Some(Rule::Cover),
+            Fold::Return { .. } => Some(Rule::Return),
+            Fold::FlyOver { .. } => Some(Rule::FlyOver),
+            Fold::Mask { .. } => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_follow_the_table() {
+        let (none, some) = (None, Some);
+        for (rule, inside, crossings, s, effective) in [
+            (Rule::Cover, false, &[0.4, 0.8][..], 0.3, some(0.3)),
+            (Rule::Cover, false, &[0.4, 0.8], 0.4, some(0.4)),
+            (Rule::Cover, false, &[0.4, 0.8], 0.6, some(0.4)),
+            (Rule::Cover, false, &[0.4, 0.8], 0.8, some(0.4)),
+            (Rule::Cover, false, &[0.4, 0.8], 0.9, some(0.9)),
+            (Rule::Cover, true, &[0.5], 0.5, none),
+            (Rule::Cover, true, &[0.5], 0.6, some(0.6)),
+            (Rule::Cover, true, &[0.5, 0.7], 0.9, some(0.7)),
+            (Rule::Cover, true, &[], 0.9, none),
+            (Rule::Cover, false, &[-0.4], -0.6, some(-0.4)),
+            (Rule::Cover, true, &[-0.4], -0.4, none),
+            (Rule::Return, false, &[0.4, 0.8], 0.4, some(0.4)),
+            (Rule::Return, false, &[0.4, 0.8], 0.6, none),
+            (Rule::Return, false, &[0.4, 0.8], 0.9, some(0.9)),
+            (Rule::FlyOver, false, &[0.4, 0.8], 0.4, none),
+            (Rule::FlyOver, false, &[0.4, 0.8], 0.8, some(0.8)),
+            (Rule::FlyOver, false, &[0.4, 0.8], 0.9, none),
+            (Rule::FlyOver, true, &[], -2.0, some(-2.0)),
+            (Rule::Cover, true, &[0.0, 0.5], 0.7, some(0.5)),
+            (Rule::Return, true, &[0.0], 0.0, none),
+            (Rule::Return, true, &[0.0], 0.1, some(0.1)),
+        ] {
+            assert_eq!(rule.effective(inside, crossings, s), effective, "{rule:?} {inside} {crossings:?} {s}");
+        }
+    }
+}

@@ -7,5 +7,6 @@ pub mod interpolation;
 pub mod model;
 pub mod outline;
 pub mod position;
+pub mod regions;
 pub mod synth;
 pub mod tools;

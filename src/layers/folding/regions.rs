@@ -1,0 +1,192 @@
+//! Where jump paths meet the fold regions. A region's membership along a path changes at the sides that the path
+//! crosses; the regions count as their union (folding.md, section 3).
+
+use kurbo::{Point, Rect, Vec2};
+
+use super::outline::Outline;
+use crate::base::geometry::Polygon;
+
+/// Crossings nearer to each other than this, as a share of the path, are one place: regions that share a side leave no
+/// gap between them.
+const SAME: f64 = 1e-9;
+
+/// The fold regions of a zone.
+pub struct Regions {
+    polygons: Vec<Polygon>,
+}
+
+/// Where one path meets the union of the regions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Crossings {
+    /// Whether the init-position itself is in a region (s = 0).
+    pub inside: bool,
+    /// The places s >= 0 at which that changes, ascending.
+    pub ahead: Vec<f64>,
+    /// The places s <= 0 at which it changes, descending.
+    pub behind: Vec<f64>,
+}
+
+/// A side that a run of paths may cross, and the region it belongs to.
+pub struct Side {
+    region: usize,
+    from: Point,
+    to: Point,
+}
+
+impl Regions {
+    /// The regions as polygons.
+    pub fn new(outlines: &[Outline]) -> Self {
+        Regions { polygons: outlines.iter().map(Outline::polygon).collect() }
+    }
+
+    /// The sides that can meet paths within `bounds`; most runs of pixels have none.
+    pub fn sides_within(&self, bounds: Rect) -> Vec<Side> {
+        let bounds = bounds.inflate(1e-6, 1e-6);
+        let meets = |from: Point, to: Point| {
+            from.x.min(to.x) <= bounds.x1
+                && from.x.max(to.x) >= bounds.x0
+                && from.y.min(to.y) <= bounds.y1
+                && from.y.max(to.y) >= bounds.y0
+        };
+        let of_region = |(region, polygon): (usize, &Polygon)| {
+            let sides = polygon.sides().filter(|(from, to)| meets(*from, *to));
+            sides.map(|(from, to)| Side { region, from, to }).collect::<Vec<_>>()
+        };
+        self.polygons.iter().enumerate().flat_map(of_region).collect()
+    }
+
+    /// Which regions hold each of the `len` places from `first` on, one pixel apart: one list of flags a region.
+    pub fn memberships(&self, first: Point, len: usize) -> Vec<Vec<bool>> {
+        let mut xs = Vec::new();
+        let row = |polygon: &Polygon| {
+            polygon.row_crossings(first.y, &mut xs);
+            (0..len).map(|k| xs.partition_point(|&x| x <= first.x + k as f64) % 2 == 1).collect()
+        };
+        self.polygons.iter().map(row).collect()
+    }
+
+    /// Where the path from `q` along `jump` meets the union, over `low..=high` in s. `sides` holds at least those that
+    /// the path can cross, `member` tells which regions hold `q`.
+    pub fn crossings(
+        &self,
+        q: Point,
+        jump: Vec2,
+        (low, high): (f64, f64),
+        sides: &[Side],
+        member: &[bool],
+    ) -> Crossings {
+        let inside = member.iter().any(|&m| m);
+        if sides.is_empty() || jump == Vec2::ZERO {
+            return Crossings { inside, ..Crossings::default() };
+        }
+        let mut events: Vec<(f64, usize)> = sides
+            .iter()
+            .filter_map(|side| crossing(side, q, jump).map(|s| (s, side.region)))
+            .filter(|(s, _)| *s >= low - SAME && *s <= high + SAME)
+            .collect();
+        events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let first_ahead = events.partition_point(|(s, _)| *s < -SAME);
+        let first_beyond = events.partition_point(|(s, _)| *s <= SAME);
+        let at_init = first_ahead < first_beyond;
+        let start = |sign: f64| if at_init { self.member_beside(q, jump, sign) } else { member.to_vec() };
+        let ahead = events[first_beyond..].iter().copied();
+        let behind = events[..first_ahead].iter().rev().copied();
+        Crossings {
+            inside,
+            ahead: changes(inside, start(1.0), ahead).into_iter().filter(|s| *s <= high).collect(),
+            behind: changes(inside, start(-1.0), behind).into_iter().filter(|s| *s >= low).collect(),
+        }
+    }
+
+    /// Which regions hold the places just beside an init-position that lies on a side itself: by the parity of the
+    /// crossings further on.
+    fn member_beside(&self, q: Point, jump: Vec2, sign: f64) -> Vec<bool> {
+        let parity = |polygon: &Polygon| {
+            let mut all = Vec::new();
+            polygon.line_crossings(q, jump, &mut all);
+            all.iter().filter(|s| **s * sign > SAME).count() % 2 == 1
+        };
+        self.polygons.iter().map(parity).collect()
+    }
+}
+
+/// The s where the line from `q` along `jump` crosses a side; a vertex counts with one of its two sides.
+fn crossing(side: &Side, q: Point, jump: Vec2) -> Option<f64> {
+    let (from, to) = (jump.cross(side.from - q), jump.cross(side.to - q));
+    ((from > 0.0) != (to > 0.0)).then(|| {
+        let p = side.from + (side.to - side.from) * (from / (from - to));
+        (p - q).dot(jump) / jump.hypot2()
+    })
+}
+
+/// Walks away from s = 0 through `events` (places, and the region that changes there) and lists where the union
+/// changes. `member` tells which regions hold the places just beside s = 0.
+fn changes(inside: bool, mut member: Vec<bool>, events: impl Iterator<Item = (f64, usize)>) -> Vec<f64> {
+    let mut found = Vec::new();
+    let mut before = inside;
+    let mut place = 0.0f64;
+    for (s, region) in events {
+        if (s - place).abs() > SAME {
+            let now = member.iter().any(|&m| m);
+            if now != before {
+                found.push(place);
+            }
+            (before, place) = (now, s);
+        }
+        member[region] = !member[region];
+    }
+    if member.iter().any(|&m| m) != before {
+        found.push(place);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x: f64, y: f64, size: f64) -> Outline {
+        Outline::Rectangle { x, y, width: size, height: size }
+    }
+
+    fn find(regions: &[Outline], q: (f64, f64), jump: (f64, f64), range: (f64, f64)) -> (bool, Vec<f64>, Vec<f64>) {
+        let regions = Regions::new(regions);
+        let (q, jump) = (Point::from(q), Vec2::from(jump));
+        let bounds = Rect::from_points(q + jump * range.0, q + jump * range.1);
+        let sides = regions.sides_within(bounds);
+        let member: Vec<bool> = regions.memberships(q, 1).iter().map(|m| m[0]).collect();
+        let found = regions.crossings(q, jump, range, &sides, &member);
+        (found.inside, found.ahead, found.behind)
+    }
+
+    #[test]
+    fn paths_meet_regions() {
+        let one = [square(10.0, 0.0, 10.0)];
+        let touching = [square(10.0, 0.0, 10.0), square(20.0, 0.0, 10.0)];
+        let overlapping = [square(10.0, 0.0, 10.0), square(15.0, -5.0, 10.0)];
+        for (regions, q, jump, range, expected) in [
+            (&one[..], (0.0, 5.0), (40.0, 0.0), (0.0, 1.0), (false, vec![0.25, 0.5], vec![])),
+            (&one, (0.0, 5.0), (16.0, 0.0), (0.0, 1.0), (false, vec![0.625], vec![])),
+            (&one, (0.0, 5.0), (16.0, 0.0), (0.0, 2.0), (false, vec![0.625, 1.25], vec![])),
+            (&one, (15.0, 5.0), (10.0, 0.0), (-1.0, 1.0), (true, vec![0.5], vec![-0.5])),
+            (&one, (15.0, 5.0), (0.0, 0.0), (-1.0, 1.0), (true, vec![], vec![])),
+            (&one, (0.0, 5.0), (0.0, 9.0), (0.0, 1.0), (false, vec![], vec![])),
+            (&touching, (0.0, 5.0), (40.0, 0.0), (0.0, 1.0), (false, vec![0.25, 0.75], vec![])),
+            (&overlapping, (0.0, 2.5), (50.0, 0.0), (0.0, 1.0), (false, vec![0.2, 0.5], vec![])),
+            // on a left edge, which is in: leaving to the left, staying to the right
+            (&one, (10.0, 5.0), (-10.0, 0.0), (-0.5, 1.0), (true, vec![0.0], vec![])),
+            (&one, (10.0, 5.0), (10.0, 0.0), (-0.5, 0.5), (true, vec![], vec![0.0])),
+            // on a right edge, which is out
+            (&one, (20.0, 5.0), (-20.0, 0.0), (0.0, 1.0), (false, vec![0.0, 0.5], vec![])),
+            // through two corners of a diamond-wise path
+            (&one, (0.0, -10.0), (40.0, 40.0), (0.0, 1.0), (false, vec![0.25, 0.5], vec![])),
+        ] {
+            let found = find(regions, q, jump, range);
+            let near = |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+            assert!(
+                found.0 == expected.0 && near(&found.1, &expected.1) && near(&found.2, &expected.2),
+                "{q:?} {jump:?}: {found:?}, not {expected:?}"
+            );
+        }
+    }
+}
