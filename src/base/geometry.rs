@@ -93,8 +93,7 @@ impl Polygon {
 
     /// Distance from `q` to the nearest side, in pixels.
     pub fn distance(&self, q: Point) -> f64 {
-        let nearest = self.sides().map(|(a, b)| distance2_to_segment(q, a, b)).fold(f64::INFINITY, f64::min);
-        nearest.sqrt()
+        distance(q, self.sides())
     }
 
     /// Length of all sides, in pixels.
@@ -113,6 +112,12 @@ impl Polygon {
             }
         }
     }
+}
+
+/// Distance from `q` to the nearest of some sides, in pixels; infinite without any.
+pub fn distance(q: Point, sides: impl IntoIterator<Item = (Point, Point)>) -> f64 {
+    let nearest = sides.into_iter().map(|(a, b)| distance2_to_segment(q, a, b)).fold(f64::INFINITY, f64::min);
+    nearest.sqrt()
 }
 
 /// Where the horizontal line at `y` crosses the side, by the half-open rule.

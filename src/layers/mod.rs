@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::base::pixels::{Grid, Picture};
+use crate::base::problem::Problem;
 
 pub mod folding;
 pub mod timeline;
@@ -37,4 +38,15 @@ pub struct Materials {
     pub pictures: BTreeMap<String, Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
+}
+
+impl Materials {
+    /// The picture of that name.
+    ///
+    /// # Errors
+    /// It is not there; `path` tells where it is named.
+    pub fn picture(&self, name: &str, path: &str) -> Result<Arc<Picture>, Problem> {
+        let missing = || Problem::error(path, format!("the picture \"{name}\" is not there"));
+        self.pictures.get(name).cloned().ok_or_else(missing)
+    }
 }

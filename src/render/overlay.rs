@@ -6,9 +6,9 @@ use kurbo::{Point, Vec2};
 
 use super::{LayerSynth, Synth};
 use crate::layers::Layer;
+use crate::layers::folding::field::Field;
 use crate::layers::folding::model::{PictureLayer, Zone};
 use crate::layers::folding::outline::{Node, bezier, point, vector};
-use crate::layers::folding::synth::Field;
 use crate::layers::folding::tools::Tool;
 use crate::scene::Scene;
 

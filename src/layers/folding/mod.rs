@@ -2,11 +2,17 @@
 //! through the picture as time passes; thresholds along the path let one part slide over another.
 
 pub mod anchors;
+pub mod field;
 pub mod fold;
+pub mod frame;
 pub mod interpolation;
 pub mod model;
 pub mod outline;
 pub mod position;
+pub mod probe;
 pub mod regions;
 pub mod synth;
 pub mod tools;
+
+#[cfg(test)]
+mod tests;

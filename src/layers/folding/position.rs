@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::model::Zone;
 use crate::base::maths::{TAU, cos, exp, expm1, sin};
 use crate::layers::timeline::Wrap;
 
@@ -162,6 +163,11 @@ pub struct Clock {
 }
 
 impl Clock {
+    /// The clock of a zone.
+    pub fn of(zone: &Zone, wrap: Wrap) -> Self {
+        Clock { position: zone.position.clone(), speed: zone.speed, shift: zone.shift, wrap }
+    }
+
     /// Local time τ in [0, 1] at `scene_time`.
     pub fn tau(&self, scene_time: f64) -> f64 {
         self.wrap.wrap(self.speed * (scene_time + self.shift))

@@ -4,8 +4,14 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
+use super::field::{Field, Inputs};
+use super::fold::Fold;
+use super::model::{PictureLayer, Zone};
+use super::outline::vector;
 use super::position::Clock;
-use crate::base::pixels::{Beyond, Grid, Picture};
+use crate::base::pixels::{Beyond, Picture};
+use crate::base::problem::Problem;
+use crate::layers::{Materials, timeline::Wrap};
 
 /// What a frame of a picture layer needs except the time.
 #[derive(Clone, Debug)]
@@ -29,6 +35,7 @@ pub struct ZoneSynth {
     pub source: Source,
     /// When they read it.
     pub clock: Clock,
+    inputs: Inputs,
 }
 
 /// What the samplers of a zone read, and how it is laid on what is beneath.
@@ -44,57 +51,64 @@ pub struct Source {
     pub over: bool,
 }
 
-/// A fold rule by regions (folding.md, section 3); a mask needs none, it is a [`Source`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
-    /// Inside a region a sampler waits at the edge where it entered.
-    Cover,
-    /// Still inside a region.
-    Return,
-    /// Still outside every region.
-    FlyOver,
-}
+/// The centre of a pixel, from its top-left corner.
+pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
 
-/// The pixels of a zone: membership, jump vectors, thresholds. Covers the outline's bounding box within the picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Field {
-    /// Column of the box's first pixel in the picture.
-    pub x0: usize,
-    /// Row of the box's first pixel in the picture.
-    pub y0: usize,
-    /// Which pixels of the box belong to the zone.
-    pub inside: Grid<bool>,
-    /// Jump vectors in pixels; zero outside the zone.
-    pub jumps: Grid<[f32; 2]>,
-    /// Where paths meet the fold regions; none without regions.
-    pub folds: Option<Folds>,
-}
-
-/// Where the paths of a zone's pixels meet the fold regions, over all s that the position function takes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Folds {
-    /// What the regions do.
-    pub rule: Rule,
-    /// Whether each pixel of the box is itself in a region (s = 0).
-    pub inside: Grid<bool>,
-    /// For pixel i of the box (row by row), `ahead[starts[i]..starts[i + 1]]` are its crossings with s >= 0, ascending.
-    pub ahead: Ragged,
-    /// The same for s <= 0, descending.
-    pub behind: Ragged,
-}
-
-/// A list of numbers for every pixel of a box, row by row.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Ragged {
-    /// Where each pixel's numbers begin; one more than there are pixels.
-    pub starts: Vec<u32>,
-    /// The numbers.
-    pub values: Vec<f64>,
-}
-
-impl Ragged {
-    /// The numbers of pixel `i`.
-    pub fn of(&self, i: usize) -> &[f64] {
-        &self.values[self.starts[i] as usize..self.starts[i + 1] as usize]
+/// Makes a layer ready to be shown at any time. Fields of `previous` whose inputs are equal are taken over. `place` is
+/// the place in each pixel that is looked at: [`CENTRE`], or another for supersampling.
+///
+/// # Errors
+/// A picture that the layer names is not among the materials; the problem's path is relative to the layer.
+pub fn synth(
+    layer: &PictureLayer,
+    wrap: Wrap,
+    materials: &Materials,
+    place: Vec2,
+    previous: Option<&Synth>,
+) -> Result<Synth, Problem> {
+    let picture = materials.picture(&layer.image, "/image")?;
+    let size = (picture.width(), picture.height());
+    let mut zones = Vec::with_capacity(layer.zones.len());
+    for (index, zone) in layer.zones.iter().enumerate() {
+        let source = source(zone, index, &picture, materials)?;
+        let inputs = Inputs::new(zone, size, place);
+        let known =
+            previous.into_iter().flat_map(|p| &p.zones).find(|known| known.inputs == inputs && !reads_file(zone));
+        let field = match known {
+            Some(known) => Some(known.field.clone()),
+            None => Field::new(zone, &inputs, materials),
+        };
+        zones.extend(field.map(|field| ZoneSynth {
+            name: zone.name.clone(),
+            index,
+            field,
+            source,
+            clock: Clock::of(zone, wrap),
+            inputs,
+        }));
     }
+    Ok(Synth { picture, zones })
+}
+
+/// Whether the zone's field depends on more than its inputs: the content of a file.
+fn reads_file(zone: &Zone) -> bool {
+    zone.motion.iter().any(|tool| matches!(tool, super::tools::Tool::Field { .. }))
+}
+
+/// What the samplers of zone `index` read; `own` is the layer's picture.
+///
+/// # Errors
+/// A picture that the zone names is not among the materials; the problem's path is relative to the layer.
+pub fn source(zone: &Zone, index: usize, own: &Arc<Picture>, materials: &Materials) -> Result<Source, Problem> {
+    if let Some(Fold::Mask { image }) = &zone.fold {
+        let picture = materials.picture(image, &format!("/zones/{index}/fold/image"))?;
+        return Ok(Source { picture, offset: Vec2::ZERO, beyond: Beyond::Clamp, over: true });
+    }
+    Ok(match &zone.sampler {
+        None => Source { picture: own.clone(), offset: Vec2::ZERO, beyond: Beyond::Clamp, over: false },
+        Some(sampler) => {
+            let picture = materials.picture(&sampler.image, &format!("/zones/{index}/sampler/image"))?;
+            Source { picture, offset: vector(sampler.offset), beyond: Beyond::Transparent, over: true }
+        }
+    })
 }

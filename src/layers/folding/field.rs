@@ -1,0 +1,237 @@
+//! The pixels of a zone: membership, jump vectors and thresholds, row by row on all cores. Each pixel's sums are made in
+//! one order, so that the bytes do not depend on the number of threads.
+
+use std::sync::Arc;
+
+use kurbo::{Point, Rect, Vec2};
+use rayon::prelude::*;
+
+use super::anchors::{Dense, anchors, dense};
+use super::fold::{Fold, Rule};
+use super::interpolation::{Interpolation, Interpolator, Jumps, RUN, Run};
+use super::model::Zone;
+use super::outline::Outline;
+use super::regions::{Crossings, Regions};
+use super::tools::Tool;
+use crate::base::geometry::{Polygon, distance};
+use crate::base::maths::smoothstep;
+use crate::base::pixels::Grid;
+use crate::layers::Materials;
+
+/// The pixels of a zone: membership, jump vectors, thresholds. Covers the outline's bounding box within the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Column of the box's first pixel in the picture.
+    pub x0: usize,
+    /// Row of the box's first pixel in the picture.
+    pub y0: usize,
+    /// Which pixels of the box belong to the zone.
+    pub inside: Grid<bool>,
+    /// Jump vectors in pixels; zero outside the zone.
+    pub jumps: Grid<[f32; 2]>,
+    /// Where paths meet the fold regions; none without regions.
+    pub folds: Option<Folds>,
+}
+
+/// Where the paths of a zone's pixels meet the fold regions, over all s that the position function takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Folds {
+    /// What the regions do.
+    pub rule: Rule,
+    /// Whether each pixel of the box is itself in a region (s = 0).
+    pub inside: Grid<bool>,
+    /// Each pixel's crossings with s >= 0, ascending.
+    pub ahead: Ragged,
+    /// Each pixel's crossings with s <= 0, descending.
+    pub behind: Ragged,
+}
+
+/// A list of numbers for every pixel of a box, row by row: pixel i has `values[starts[i]..starts[i + 1]]`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ragged {
+    /// Where each pixel's numbers begin; one more than there are pixels.
+    pub starts: Vec<u32>,
+    /// The numbers.
+    pub values: Vec<f64>,
+}
+
+impl Ragged {
+    /// The numbers of pixel `i`.
+    pub fn of(&self, i: usize) -> &[f64] {
+        &self.values[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+
+    fn collect<'a>(lists: impl Iterator<Item = &'a [f64]>) -> Self {
+        let mut ragged = Ragged { starts: vec![0], values: Vec::new() };
+        for list in lists {
+            ragged.values.extend_from_slice(list);
+            ragged.starts.push(ragged.values.len() as u32);
+        }
+        ragged
+    }
+}
+
+impl Folds {
+    /// The effective place e(s) of pixel `i` of the box, none where it is still.
+    pub fn effective(&self, i: usize, s: f64) -> Option<f64> {
+        let crossings = if s < 0.0 { self.behind.of(i) } else { self.ahead.of(i) };
+        self.rule.effective(self.inside.cells()[i], crossings, s)
+    }
+}
+
+/// All that a field depends on; equal inputs make equal fields.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Inputs {
+    outline: Outline,
+    motion: Vec<Tool>,
+    interpolation: Interpolation,
+    feather: f64,
+    fold: Option<Fold>,
+    /// The smallest and largest s for which crossings are wanted.
+    range: (f64, f64),
+    /// Width and height of the layer's picture.
+    size: (usize, usize),
+    /// The place in each pixel that is looked at, from its top-left corner.
+    place: Vec2,
+}
+
+impl Inputs {
+    /// What the field of `zone` depends on, on a picture of `size`, for a `place` in each pixel; (0.5, 0.5) is the centre.
+    pub fn new(zone: &Zone, size: (usize, usize), place: Vec2) -> Self {
+        let (low, high) = zone.position.range();
+        Inputs {
+            outline: zone.outline.clone(),
+            motion: zone.motion.clone(),
+            interpolation: zone.interpolation.clone(),
+            feather: zone.feather,
+            fold: zone.fold.clone().filter(|fold| fold.rule().is_some()),
+            range: (low.min(0.0), high.max(1.0)),
+            size,
+            place,
+        }
+    }
+}
+
+/// A zone made ready to be asked for any of its pixels.
+pub struct Prepared {
+    outline: Polygon,
+    interpolator: Interpolator,
+    dense: Vec<Dense>,
+    feather: f64,
+    fold: Option<(Rule, Regions)>,
+    range: (f64, f64),
+    place: Vec2,
+}
+
+/// One pixel of a zone, in double precision.
+#[derive(Clone, Debug, Default)]
+pub struct Pixel {
+    /// Whether it belongs to the zone; nothing else is known where not.
+    pub inside: bool,
+    /// Jump vector in pixels.
+    pub jump: Vec2,
+    /// Where its path meets the fold regions.
+    pub crossings: Crossings,
+}
+
+impl Prepared {
+    /// Makes a zone ready: anchors, the equations of its interpolation, outlines as polygons.
+    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Self {
+        Prepared {
+            outline: zone.outline.polygon(),
+            interpolator: Interpolator::new(&zone.interpolation, anchors(zone)),
+            dense: dense(zone, materials),
+            feather: zone.feather,
+            fold: zone.fold.as_ref().and_then(|fold| Some((fold.rule()?, Regions::new(fold.regions())))),
+            range: inputs.range,
+            place: inputs.place,
+        }
+    }
+
+    /// The pixels of row `y`, from column `x0` on.
+    pub fn row(&self, x0: usize, y: usize, width: usize) -> Vec<Pixel> {
+        let mut crossings = Vec::new();
+        self.outline.row_crossings(y as f64 + self.place.y, &mut crossings);
+        let inside = |x: usize| crossings.partition_point(|&c| c <= x as f64 + self.place.x) % 2 == 1;
+        let mut pixels: Vec<Pixel> =
+            (x0..x0 + width).map(|x| Pixel { inside: inside(x), ..Pixel::default() }).collect();
+        for (i, run) in pixels.chunks_mut(RUN).enumerate() {
+            let (Some(first), Some(last)) = (run.iter().position(|p| p.inside), run.iter().rposition(|p| p.inside))
+            else {
+                continue;
+            };
+            let pixel = ((x0 + i * RUN + first) as u32, y as u32);
+            self.fill(&Run { pixel, place: self.place, len: last - first + 1 }, &mut run[first..=last]);
+        }
+        pixels
+    }
+
+    /// Jump vectors and crossings of a run.
+    fn fill(&self, run: &Run, pixels: &mut [Pixel]) {
+        let mut jumps = Jumps::default();
+        self.interpolator.run(run, &mut jumps);
+        let q = |k: usize| Point::new(run.x(k), run.y());
+        let feather = self.feather_of(Rect::from_points(q(0), q(run.len - 1)));
+        let mut reach: Option<Rect> = None;
+        for (k, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.inside) {
+            let interpolated = Vec2::new(jumps.x[k], jumps.y[k]);
+            pixel.jump = self.dense.iter().fold(interpolated, |sum, dense| sum + dense.at(q(k))) * feather(q(k));
+            let path = Rect::from_points(q(k) + pixel.jump * self.range.0, q(k) + pixel.jump * self.range.1);
+            reach = Some(reach.map_or(path, |reach| reach.union(path)));
+        }
+        let (Some((_, regions)), Some(reach)) = (&self.fold, reach) else { return };
+        let sides = regions.sides_within(reach);
+        let members = regions.memberships(q(0), run.len);
+        let mut member = vec![false; members.len()];
+        for (k, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.inside) {
+            member.iter_mut().zip(&members).for_each(|(one, all)| *one = all[k]);
+            pixel.crossings = regions.crossings(q(k), pixel.jump, self.range, &sides, &member);
+        }
+    }
+
+    /// The feather weight within `bounds`: only the outline's sides near it are looked at.
+    fn feather_of(&self, bounds: Rect) -> impl Fn(Point) -> f64 {
+        let near = bounds.inflate(self.feather, self.feather);
+        let meets = |a: Point, b: Point| near.overlaps(Rect::from_points(a, b).inflate(1e-9, 1e-9));
+        let sides: Vec<(Point, Point)> =
+            if self.feather > 0.0 { self.outline.sides().filter(|(a, b)| meets(*a, *b)).collect() } else { Vec::new() };
+        let feather = self.feather;
+        move |q| if sides.is_empty() { 1.0 } else { smoothstep(0.0, feather, distance(q, sides.iter().copied())) }
+    }
+}
+
+impl Field {
+    /// The field of `zone`; none where no pixel of the picture is in its bounding box.
+    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Option<Arc<Field>> {
+        let prepared = Prepared::new(zone, inputs, materials);
+        let (x0, y0, width, height) = pixel_box(prepared.outline.bounds(), inputs.size)?;
+        let rows: Vec<Vec<Pixel>> = (y0..y0 + height).into_par_iter().map(|y| prepared.row(x0, y, width)).collect();
+        let pixels = || rows.iter().flatten();
+        let grid_of = |cells| Grid::from_cells(width, height, cells);
+        let jump = |pixel: &Pixel| [pixel.jump.x as f32, pixel.jump.y as f32];
+        Some(Arc::new(Field {
+            x0,
+            y0,
+            inside: grid_of(pixels().map(|p| p.inside).collect()),
+            jumps: Grid::from_cells(width, height, pixels().map(jump).collect()),
+            folds: prepared.fold.as_ref().map(|(rule, _)| Folds {
+                rule: *rule,
+                inside: grid_of(pixels().map(|p| p.crossings.inside).collect()),
+                ahead: Ragged::collect(pixels().map(|p| p.crossings.ahead.as_slice())),
+                behind: Ragged::collect(pixels().map(|p| p.crossings.behind.as_slice())),
+            }),
+        }))
+    }
+}
+
+/// The pixels that `bounds` touches in a picture: first column and row, width, height.
+fn pixel_box(bounds: Rect, (width, height): (usize, usize)) -> Option<(usize, usize, usize, usize)> {
+    let clip = |low: f64, high: f64, n: usize| {
+        let first = low.floor().clamp(0.0, n as f64) as usize;
+        let end = high.ceil().clamp(0.0, n as f64) as usize;
+        (end > first).then(|| (first, end - first))
+    };
+    let (x0, w) = clip(bounds.x0, bounds.x1, width)?;
+    let (y0, h) = clip(bounds.y0, bounds.y1, height)?;
+    Some((x0, y0, w, h))
+}

@@ -1,0 +1,54 @@
+//! A frame of a picture layer on the CPU: the reference. frame.wgsl has the same names and shape.
+
+use kurbo::{Point, Vec2};
+
+use super::field::Field;
+use super::synth::{Source, Synth, ZoneSynth};
+use crate::base::pixels::{Rgba, over};
+
+/// Writes row `y` of the layer at scene time `time` to `out`.
+pub fn row(synth: &Synth, time: f64, y: usize, out: &mut [Rgba]) {
+    out.copy_from_slice(synth.picture.row(y));
+    for zone in &synth.zones {
+        let field = &*zone.field;
+        if (field.y0..field.y0 + field.inside.height()).contains(&y) {
+            zone_row(zone, zone.clock.s(time), y, &mut out[field.x0..field.x0 + field.inside.width()]);
+        }
+    }
+}
+
+/// Shows one zone over what lies beneath, in the part of row `y` that its box covers.
+fn zone_row(zone: &ZoneSynth, s: f64, y: usize, beneath: &mut [Rgba]) {
+    let field = &*zone.field;
+    let first = (y - field.y0) * field.inside.width();
+    for (column, still) in beneath.iter_mut().enumerate() {
+        let i = first + column;
+        if field.inside.cells()[i]
+            && let Some(e) = effective(field, i, s)
+        {
+            let q = Point::new((field.x0 + column) as f64 + 0.5, y as f64 + 0.5);
+            *still = shown(&zone.source, q, jump(field, i) * e, *still);
+        }
+    }
+}
+
+/// e(s) of pixel `i` of the box, none where its sampler is not active.
+pub fn effective(field: &Field, i: usize, s: f64) -> Option<f64> {
+    match &field.folds {
+        None => Some(s),
+        Some(folds) => folds.effective(i, s),
+    }
+}
+
+/// The jump vector of pixel `i` of the box, in pixels.
+fn jump(field: &Field, i: usize) -> Vec2 {
+    let [x, y] = field.jumps.cells()[i];
+    Vec2::new(x.into(), y.into())
+}
+
+/// What pixel `q` shows when its sampler is `moved` away from it.
+fn shown(source: &Source, q: Point, moved: Vec2, still: Rgba) -> Rgba {
+    let x = q + source.offset + moved;
+    let moving = source.picture.read(x.x, x.y, source.beyond);
+    if source.over { over(moving, still) } else { moving }
+}

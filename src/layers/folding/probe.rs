@@ -1,0 +1,78 @@
+//! What one pixel does, and why: the answer to `plica probe`, in double precision, by the same code as the frame.
+
+use kurbo::{Point, Vec2};
+
+use super::field::{Inputs, Pixel, Prepared};
+use super::model::{PictureLayer, Zone};
+use super::position::Clock;
+use super::synth::{CENTRE, source};
+use crate::base::problem::Problem;
+use crate::layers::{Materials, timeline::Wrap};
+
+/// What one pixel of a zone does at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// The last zone in the list that contains the pixel.
+    pub zone: String,
+    /// Jump vector in pixels.
+    pub jump: Vec2,
+    /// The places s in (0, 1] at which the path meets the fold regions.
+    pub thresholds: Vec<f64>,
+    /// Local time.
+    pub tau: f64,
+    /// Place along the path.
+    pub s: f64,
+    /// Effective place: s without a fold; 0 where `cover` is still.
+    pub e: f64,
+    /// Whether the sampler is active.
+    pub active: bool,
+    /// Where it reads (or would read), in pixels of the sampler image.
+    pub read: Point,
+}
+
+/// What the pixel in column `x`, row `y` of the layer does at `time`; none outside every zone.
+///
+/// # Errors
+/// As [`super::synth::synth`].
+pub fn probe(
+    layer: &PictureLayer,
+    wrap: Wrap,
+    materials: &Materials,
+    (x, y): (usize, usize),
+    time: f64,
+) -> Result<Option<Probe>, Problem> {
+    let own = materials.picture(&layer.image, "/image")?;
+    for (index, zone) in layer.zones.iter().enumerate().rev() {
+        let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
+        let pixel = Prepared::new(zone, &inputs, materials).row(x, y, 1).pop().unwrap_or_default();
+        if pixel.inside {
+            let source = source(zone, index, &own, materials)?;
+            let clock = Clock::of(zone, wrap);
+            let q = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            return Ok(Some(at(zone, &pixel, &clock, q + source.offset, time)));
+        }
+    }
+    Ok(None)
+}
+
+fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Probe {
+    let s = clock.s(time);
+    let crossings = if s < 0.0 { &pixel.crossings.behind } else { &pixel.crossings.ahead };
+    let rule = zone.fold.as_ref().and_then(|fold| fold.rule());
+    let effective = match rule {
+        None => Some(s),
+        Some(rule) => rule.effective(pixel.crossings.inside, crossings, s),
+    };
+    let still = if rule == Some(super::fold::Rule::Cover) { 0.0 } else { s };
+    let e = effective.unwrap_or(still);
+    Probe {
+        zone: zone.name.clone(),
+        jump: pixel.jump,
+        thresholds: pixel.crossings.ahead.iter().copied().filter(|c| *c > 0.0 && *c <= 1.0).collect(),
+        tau: clock.tau(time),
+        s,
+        e,
+        active: effective.is_some(),
+        read: origin + pixel.jump * e,
+    }
+}

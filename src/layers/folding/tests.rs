@@ -1,0 +1,124 @@
+//! The slice as a whole: fields, frames and probes of small layers.
+
+use std::sync::Arc;
+
+use kurbo::Vec2;
+
+use super::model::PictureLayer;
+use super::{frame, probe, synth};
+use crate::base::pixels::{Grid, Picture, Rgba};
+use crate::layers::{Materials, timeline::Wrap};
+
+/// A picture whose red tells the column and whose green the row.
+fn ramp(width: usize, height: usize) -> Picture {
+    let cell = |i: usize| [(i % width) as f32 / 100.0, (i / width) as f32 / 100.0, 0.0, 1.0];
+    Grid::from_cells(width, height, (0..width * height).map(cell).collect())
+}
+
+fn materials() -> Materials {
+    let mut materials = Materials::default();
+    materials.pictures.insert("ramp".into(), Arc::new(ramp(40, 30)));
+    let mut mask = ramp(40, 30);
+    mask.cells_mut().iter_mut().enumerate().filter(|(i, _)| i % 40 >= 20).for_each(|(_, c)| *c = [0.0; 4]);
+    materials.pictures.insert("mask".into(), Arc::new(mask));
+    materials.pictures.insert("dot".into(), Arc::new(Picture::filled(1, 1, [0.5, 0.5, 0.5, 0.5])));
+    materials
+}
+
+fn layer(zones: &str) -> PictureLayer {
+    serde_json::from_str(&format!(r#"{{"name":"l","image":"ramp","zones":[{zones}]}}"#)).unwrap()
+}
+
+/// A zone over columns 5 to 24 and rows 5 to 14 that moves by `jump`, with more fields.
+fn zone(jump: &str, more: &str) -> String {
+    format!(
+        r#"{{"name":"z","outline":{{"kind":"rectangle","x":5,"y":5,"width":20,"height":10}},
+            "motion":[{{"tool":"translate","by":{jump}}}]{more}}}"#
+    )
+}
+
+fn shown(layer: &PictureLayer, time: f64, (x, y): (usize, usize)) -> Rgba {
+    let synth = synth::synth(layer, Wrap::Once, &materials(), synth::CENTRE, None).unwrap();
+    let mut row = vec![[0.0; 4]; 40];
+    frame::row(&synth, time, y, &mut row);
+    row[x]
+}
+
+#[test]
+fn pixels_show_what_their_samplers_read() {
+    let cover = r#","fold":{"rule":"cover","regions":[{"kind":"rectangle","x":20,"y":0,"width":10,"height":30}]}"#;
+    let fly = r#","fold":{"rule":"fly-over","regions":[{"kind":"rectangle","x":20,"y":0,"width":10,"height":30}]}"#;
+    let mask = r#","fold":{"rule":"mask","image":"mask"}"#;
+    let dot = r#","sampler":{"image":"dot","offset":[-10,-10]}"#;
+    for (zone, time, pixel, red) in [
+        (zone("[8,0]", ""), 0.0, (10, 10), 0.10),
+        (zone("[8,0]", ""), 0.5, (10, 10), 0.14),
+        (zone("[8,0]", ""), 1.0, (24, 10), 0.32),
+        (zone("[8,0]", ""), 1.0, (25, 10), 0.25),  // the right edge is out
+        (zone("[80,0]", ""), 1.0, (10, 10), 0.39), // clamps
+        (zone("[8,0]", r#","feather":2"#), 1.0, (5, 10), 0.05 + 0.08 * 0.15625),
+        (zone("[8,0]", r#","speed":0.5"#), 1.0, (10, 10), 0.14),
+        (zone("[8,0]", cover), 1.0, (10, 10), 0.18),
+        (zone("[8,0]", cover), 1.0, (16, 10), 0.195), // waits at the edge, x = 20
+        (zone("[8,0]", cover), 1.0, (21, 10), 0.21),  // never leaves the region: still
+        (zone("[8,0]", fly), 1.0, (10, 10), 0.10),
+        (zone("[8,0]", fly), 1.0, (16, 10), 0.24),
+        (zone("[8,0]", mask), 1.0, (10, 10), 0.18),
+        (zone("[8,0]", mask), 1.0, (16, 10), 0.16), // over alpha 0: its own colour
+        (zone("[0,0]", dot), 1.0, (10, 10), 0.5 + 0.05),
+        (zone("[0,0]", dot), 1.0, (12, 10), 0.12), // beyond the sampler image
+    ] {
+        let found = shown(&layer(&zone), time, pixel)[0];
+        assert!((f64::from(found) - red).abs() < 1e-6, "{zone} at {time}, {pixel:?}: {found}, not {red}");
+    }
+}
+
+#[test]
+fn later_zones_lie_over_earlier_ones_and_read_the_picture_itself() {
+    let both = format!("{},{}", zone("[8,0]", ""), zone("[4,0]", "").replace(r#""z""#, r#""y""#));
+    assert_eq!(shown(&layer(&both), 1.0, (10, 10))[0], 0.14);
+}
+
+#[test]
+fn a_probe_tells_what_the_frame_shows() {
+    let cover = r#","fold":{"rule":"cover","regions":[{"kind":"rectangle","x":20,"y":0,"width":10,"height":30}]}"#;
+    let layer = layer(&zone("[8,0]", cover));
+    let probe = probe::probe(&layer, Wrap::Once, &materials(), (16, 10), 0.75).unwrap().unwrap();
+    assert_eq!((probe.zone.as_str(), probe.jump, probe.active), ("z", Vec2::new(8.0, 0.0), true));
+    assert_eq!((probe.tau, probe.s, probe.e), (0.75, 0.75, 0.4375));
+    assert_eq!((probe.thresholds, probe.read), (vec![0.4375], (20.0, 10.5).into()));
+    assert_eq!(probe::probe(&layer, Wrap::Once, &materials(), (30, 10), 0.75).unwrap(), None);
+}
+
+#[test]
+fn unchanged_zones_are_taken_over() {
+    let make = |more: &str, before: Option<&synth::Synth>| {
+        let both = format!("{},{}", zone("[8,0]", ""), zone("[4,0]", more));
+        synth::synth(&layer(&both), Wrap::Repeat, &materials(), synth::CENTRE, before).unwrap()
+    };
+    let before = make("", None);
+    let after = make(r#","feather":3"#, Some(&before));
+    assert!(Arc::ptr_eq(&before.zones[0].field, &after.zones[0].field));
+    assert!(!Arc::ptr_eq(&before.zones[1].field, &after.zones[1].field));
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let zone = r#"{"name":"z","outline":{"kind":"ellipse","center":[20,15],"radii":[18,13]},
+        "motion":[{"tool":"point","at":[9,9],"jump":[3,4]},{"tool":"still-border","spacing":2}],
+        "interpolation":{"method":"modified-shepard-random","radius":30,"ring":12},"feather":3,
+        "fold":{"rule":"return","regions":[{"kind":"ellipse","center":[22,15],"radii":[6,5]}]}}"#;
+    let field = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let synth = || synth::synth(&layer(zone), Wrap::Repeat, &materials(), synth::CENTRE, None).unwrap();
+        pool.install(synth).zones[0].field.clone()
+    };
+    assert_eq!(field(1), field(5));
+}
+
+#[test]
+fn a_missing_picture_is_a_problem_with_its_place() {
+    let zone = zone("[1,1]", r#","sampler":{"image":"gone"}"#);
+    let problem = synth::synth(&layer(&zone), Wrap::Repeat, &materials(), synth::CENTRE, None).unwrap_err();
+    assert_eq!(problem.path, "/zones/0/sampler/image");
+}

@@ -1,0 +1,55 @@
+//! Frames on the CPU: the reference that the GPU agrees with. Rows are made on all cores; a pixel's value does not depend
+//! on which.
+
+use rayon::prelude::*;
+
+use super::{LayerSynth, Synth};
+use crate::base::pixels::{Frame, Grid, Picture, Rgba, encode, over};
+use crate::layers::folding;
+
+/// The frame at `scene_time` in linear, premultiplied RGBA.
+pub fn linear(synth: &Synth, scene_time: f64) -> Picture {
+    let (width, height) = synth.size;
+    let mut picture = Picture::filled(width, height, [0.0; 4]);
+    picture.cells_mut().par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+        for layer in &synth.layers {
+            lay(layer, scene_time, y, row);
+        }
+    });
+    picture
+}
+
+/// The mean of the frames of several samples of each pixel, in linear light.
+pub fn mean(samples: &[Synth], scene_time: f64) -> Picture {
+    let mut frames = samples.iter().map(|synth| linear(synth, scene_time));
+    let Some(mut sum) = frames.next() else { return Picture::filled(0, 0, [0.0; 4]) };
+    let share = 1.0 / samples.len() as f32;
+    for frame in frames {
+        let add = |sum: &mut Rgba, more: &Rgba| *sum = std::array::from_fn(|i| sum[i] + more[i]);
+        sum.cells_mut().par_iter_mut().zip(frame.cells().par_iter()).for_each(|(sum, more)| add(sum, more));
+    }
+    sum.cells_mut().par_iter_mut().for_each(|colour| *colour = colour.map(|c| c * share));
+    sum
+}
+
+/// The finished frame at `scene_time`: sRGB, straight alpha, 8 bits a channel.
+pub fn frame(synth: &Synth, scene_time: f64) -> Frame {
+    finish(&linear(synth, scene_time))
+}
+
+/// Encodes a linear frame.
+pub fn finish(picture: &Picture) -> Frame {
+    let cells = picture.cells().par_iter().map(|&colour| encode(colour)).collect();
+    Grid::from_cells(picture.width(), picture.height(), cells)
+}
+
+/// Lays row `y` of a layer over what is there.
+fn lay(layer: &LayerSynth, scene_time: f64, y: usize, row: &mut [Rgba]) {
+    let LayerSynth::Picture(synth) = layer;
+    if y >= synth.picture.height() {
+        return;
+    }
+    let mut own = vec![[0.0; 4]; synth.picture.width()];
+    folding::frame::row(synth, scene_time, y, &mut own);
+    row.iter_mut().zip(own).for_each(|(beneath, colour)| *beneath = over(colour, *beneath));
+}
