@@ -7,3 +7,4 @@ pub mod keys;
 pub mod maths;
 pub mod pixels;
 pub mod problem;
+pub mod system;

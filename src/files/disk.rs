@@ -1,0 +1,112 @@
+//! The operations that what is durable is made of, one function each. A test can make the n-th of them fail or kill the
+//! process there, where no tracer may do it from outside (tests/durability.rs).
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crate::base::system;
+
+/// What happens at an operation that a test chose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It fails.
+    Error,
+    /// The process ends there; a write is half done.
+    Kill,
+}
+
+static DONE: AtomicU64 = AtomicU64::new(0);
+static FAULTY: AtomicU64 = AtomicU64::new(u64::MAX);
+static KILLS: AtomicBool = AtomicBool::new(false);
+
+/// For tests: the `n`-th operation from now, counted from 0, meets `fault`.
+pub fn inject(n: u64, fault: Fault) {
+    KILLS.store(fault == Fault::Kill, Ordering::SeqCst);
+    FAULTY.store(operations() + n, Ordering::SeqCst);
+}
+
+/// For tests: how many operations this process has begun.
+pub fn operations() -> u64 {
+    DONE.load(Ordering::SeqCst)
+}
+
+/// Makes a file that must not be there yet; others may read it as the process's umask says, or nobody.
+pub fn create_new(path: &Path, private: bool) -> io::Result<File> {
+    operation(None)?;
+    let mode = if private { 0o600 } else { 0o666 };
+    OpenOptions::new().read(true).write(true).create_new(true).mode(mode).open(path)
+}
+
+/// Opens a file of ours to read and write, made with mode 0600 where missing. A link is refused.
+pub fn open_private(path: &Path) -> io::Result<File> {
+    operation(None)?;
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false).mode(0o600).custom_flags(system::no_follow());
+    options.open(path)
+}
+
+/// Writes all of `bytes` where the file stands.
+pub fn write(file: &mut File, bytes: &[u8]) -> io::Result<()> {
+    operation(Some((file, bytes)))?;
+    file.write_all(bytes)
+}
+
+/// Cuts the file off.
+pub fn truncate(file: &File, length: u64) -> io::Result<()> {
+    operation(None)?;
+    file.set_len(length)
+}
+
+/// Brings the file and its attributes to the disk. After a failure its pages may be lost for good: write a new file.
+pub fn sync(file: &File) -> io::Result<()> {
+    operation(None)?;
+    file.sync_all()
+}
+
+/// Brings the file's content to the disk; as [`sync`].
+pub fn sync_data(file: &File) -> io::Result<()> {
+    operation(None)?;
+    file.sync_data()
+}
+
+/// Puts `from` in the place of `to`, at once.
+pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
+    operation(None)?;
+    std::fs::rename(from, to)
+}
+
+/// Brings the names in the folder of `path` to the disk.
+pub fn sync_folder_of(path: &Path) -> io::Result<()> {
+    operation(None)?;
+    File::open(folder_of(path))?.sync_all()
+}
+
+/// Takes the file away.
+pub fn remove(path: &Path) -> io::Result<()> {
+    operation(None)?;
+    std::fs::remove_file(path)
+}
+
+/// The folder that `path` lies in.
+pub fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn operation(written: Option<(&mut File, &[u8])>) -> io::Result<()> {
+    if DONE.fetch_add(1, Ordering::SeqCst) != FAULTY.load(Ordering::SeqCst) {
+        return Ok(());
+    }
+    if KILLS.load(Ordering::SeqCst) {
+        if let Some((file, bytes)) = written {
+            file.write_all(&bytes[..bytes.len() / 2])?;
+        }
+        std::process::abort();
+    }
+    Err(io::Error::other("injected fault"))
+}

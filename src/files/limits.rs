@@ -1,0 +1,177 @@
+//! How much a file may take, checked before memory is: one table of names, defaults and help, for the checks and for
+//! `--limit NAME=VALUE`.
+
+use crate::base::error::{Error, Result};
+
+/// Limits on what is read. The defaults fit every sane file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Pixels of a picture: width times height.
+    pub pixels: u64,
+    /// Width and height of a picture, each.
+    pub side: u64,
+    /// Bytes that decoding one picture may take.
+    pub memory: u64,
+    /// Bytes of a scene file.
+    pub scene: u64,
+    /// Depth of a scene's JSON.
+    pub depth: u64,
+    /// Anchors of a scene.
+    pub anchors: u64,
+    /// Points of a scene's outlines.
+    pub points: u64,
+    /// Bytes of an expression.
+    pub expression: u64,
+    /// Depth of an expression.
+    pub expression_depth: u64,
+    /// Frames of an animation.
+    pub frames: u64,
+    /// Bytes of a message between editor and window.
+    pub message: u64,
+    /// Bytes pasted at once.
+    pub paste: u64,
+}
+
+/// A row of the table.
+#[derive(Debug)]
+pub struct Limit {
+    /// What `--limit` calls it.
+    pub name: &'static str,
+    /// What it limits.
+    pub help: &'static str,
+    /// What it is unless set.
+    pub default: u64,
+    of: fn(&mut Limits) -> &mut u64,
+}
+
+const MIB: u64 = 1 << 20;
+
+/// Every limit.
+pub const TABLE: [Limit; 12] = [
+    limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
+    limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
+    limit("memory", "bytes that decoding one picture may take", 2048 * MIB, |l| &mut l.memory),
+    limit("scene", "bytes of a scene file", 64 * MIB, |l| &mut l.scene),
+    limit("depth", "depth of a scene's JSON", 64, |l| &mut l.depth),
+    limit("anchors", "anchors of a scene", 1_000_000, |l| &mut l.anchors),
+    limit("points", "points of a scene's outlines", 1_000_000, |l| &mut l.points),
+    limit("expression", "bytes of an expression", 4096, |l| &mut l.expression),
+    limit("expression-depth", "depth of an expression", 64, |l| &mut l.expression_depth),
+    limit("frames", "frames of an animation", 100_000, |l| &mut l.frames),
+    limit("message", "bytes of a message between editor and window", 64 * MIB, |l| &mut l.message),
+    limit("paste", "bytes pasted at once", 16 * MIB, |l| &mut l.paste),
+];
+
+const fn limit(name: &'static str, help: &'static str, default: u64, of: fn(&mut Limits) -> &mut u64) -> Limit {
+    Limit { name, help, default, of }
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        let mut limits = Limits {
+            pixels: 0,
+            side: 0,
+            memory: 0,
+            scene: 0,
+            depth: 0,
+            anchors: 0,
+            points: 0,
+            expression: 0,
+            expression_depth: 0,
+            frames: 0,
+            message: 0,
+            paste: 0,
+        };
+        for row in &TABLE {
+            *(row.of)(&mut limits) = row.default;
+        }
+        limits
+    }
+}
+
+impl Limits {
+    /// Sets one limit from `NAME=VALUE`; the value may end in K, M or G (2^10, 2^20, 2^30).
+    ///
+    /// # Errors
+    /// An unknown name lists the known ones; a value that is no whole number says so.
+    pub fn set(&mut self, setting: &str) -> Result<()> {
+        let (name, value) = setting
+            .split_once('=')
+            .ok_or_else(|| Error::Usage(format!("--limit {setting}: write it as NAME=VALUE, as pixels=1000000")))?;
+        let row = TABLE.iter().find(|row| row.name == name).ok_or_else(|| unknown(name))?;
+        *(row.of)(self) = parse(value).ok_or_else(|| {
+            Error::Usage(format!("--limit {setting}: a whole number was expected, as 1000000 or 64M, not \"{value}\""))
+        })?;
+        Ok(())
+    }
+
+    /// The limits that a command line sets, over the defaults.
+    ///
+    /// # Errors
+    /// As [`Limits::set`].
+    pub fn from_settings(settings: &[String]) -> Result<Self> {
+        let mut limits = Limits::default();
+        settings.iter().try_for_each(|setting| limits.set(setting))?;
+        Ok(limits)
+    }
+}
+
+fn unknown(name: &str) -> Error {
+    let known: Vec<_> = TABLE.iter().map(|row| row.name).collect();
+    Error::Usage(format!("--limit {name}: no such limit; there are {}", known.join(", ")))
+}
+
+fn parse(value: &str) -> Option<u64> {
+    let (digits, unit) = match value.char_indices().last()? {
+        (end, 'K' | 'k') => (&value[..end], 1 << 10),
+        (end, 'M' | 'm') => (&value[..end], 1 << 20),
+        (end, 'G' | 'g') => (&value[..end], 1 << 30),
+        _ => (value, 1),
+    };
+    digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse::<u64>().ok()?.checked_mul(unit))?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_limit_can_be_set_alone() {
+        for row in &TABLE {
+            let mut limits = Limits::from_settings(&[format!("{}=7", row.name)]).unwrap();
+            assert_eq!(*(row.of)(&mut limits), 7);
+            *(row.of)(&mut limits) = row.default;
+            assert_eq!(limits, Limits::default(), "{}: two rows share a field", row.name);
+            assert!(row.default > 0 && !row.help.is_empty());
+        }
+    }
+
+    #[test]
+    fn values_are_whole_numbers_with_a_unit() {
+        for (value, parsed) in [
+            ("0", Some(0)),
+            ("64", Some(64)),
+            ("2K", Some(2048)),
+            ("3m", Some(3 << 20)),
+            ("1G", Some(1 << 30)),
+            ("", None),
+            ("M", None),
+            ("-1", None),
+            ("+1", None),
+            ("1.5", None),
+            ("18446744073709551616", None),
+            ("18446744073709551615G", None),
+        ] {
+            assert_eq!(parse(value), parsed, "{value}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_setting_says_what_is_right() {
+        for (setting, part) in [("pixel=1", "pixels, side, memory"), ("pixels", "NAME=VALUE"), ("side=x", "\"x\"")] {
+            let error = Limits::default().set(setting).unwrap_err();
+            assert!(error.to_string().contains(part), "{error}");
+            assert_eq!(error.exit_status(), 2);
+        }
+    }
+}

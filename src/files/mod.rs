@@ -1,0 +1,18 @@
+//! The only file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
+//! elsewhere.
+
+pub mod disk;
+pub mod limits;
+pub mod write;
+
+pub use limits::Limits;
+pub use write::write_atomic;
+
+/// What a person allows a scene to do and to take.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// How much a file may take.
+    pub limits: Limits,
+    /// Whether paths in a scene may leave its folder.
+    pub allow_outside: bool,
+}
