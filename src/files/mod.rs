@@ -2,7 +2,10 @@
 //! elsewhere.
 
 pub mod disk;
+pub mod fields;
 pub mod limits;
+pub mod paths;
+pub mod picture;
 pub mod write;
 
 pub use limits::Limits;

@@ -1,0 +1,106 @@
+//! Paths that a scene names: they stay beneath its folder unless a person allows otherwise, and are regular files.
+
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileTypeExt;
+use std::path::{Path, PathBuf};
+
+use super::{Options, disk};
+use crate::base::error::{Error, Result};
+use crate::base::system::beneath;
+
+/// Where a path written in a scene points: relative to the scene's folder.
+pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
+    disk::folder_of(scene_path).join(path)
+}
+
+/// Opens a file that the scene at `scene_path` names by `path`.
+///
+/// # Errors
+/// When the path leads out of the scene's folder and [`Options::allow_outside`] is not set; when there is no such file;
+/// when it is a folder, a device, a FIFO or a socket.
+pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
+    let opened = if options.allow_outside {
+        beneath::open_anywhere(&beside(scene_path, path))
+    } else {
+        beneath::open(disk::folder_of(scene_path), Path::new(path))
+    };
+    let file = File::from(opened.map_err(|error| explain(path, error))?);
+    regular(file, path)
+}
+
+/// Opens a file that a person named.
+///
+/// # Errors
+/// When there is no such file, or it is a folder, a device, a FIFO or a socket.
+pub fn open_named(path: &Path) -> Result<File> {
+    let place = path.display().to_string();
+    let opened = beneath::open_anywhere(path).map_err(|error| explain(&place, error))?;
+    regular(File::from(opened), &place)
+}
+
+fn regular(file: File, place: &str) -> Result<File> {
+    let kind = file.metadata().map_err(|error| Error::at(place, error))?.file_type();
+    let kinds = [
+        (kind.is_dir(), "a folder"),
+        (kind.is_fifo(), "a FIFO"),
+        (kind.is_char_device() || kind.is_block_device(), "a device"),
+        (kind.is_socket(), "a socket"),
+    ];
+    match kinds.iter().find(|(is, _)| *is) {
+        None => Ok(file),
+        Some((_, name)) => Err(Error::at(place, format!("is {name}, not a file")).cure("name a regular file")),
+    }
+}
+
+fn explain(place: &str, error: io::Error) -> Error {
+    match error.kind() {
+        io::ErrorKind::CrossesDevices => Error::at(place, "leads out of the scene's folder")
+            .cure("copy the file beside the scene, or give --allow-outside"),
+        io::ErrorKind::NotFound => Error::at(place, "there is no such file"),
+        _ => Error::at(place, format!("cannot be opened: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn what_a_scene_may_name() {
+        let outer = tempfile::tempdir().unwrap();
+        let root = outer.path().join("root");
+        std::fs::create_dir_all(root.join("sub")).unwrap();
+        std::fs::write(root.join("sub/cat.png"), "").unwrap();
+        std::fs::write(outer.path().join("dog.png"), "").unwrap();
+        symlink("../dog.png", root.join("link.png")).unwrap();
+        rustix::fs::mknodat(rustix::fs::CWD, root.join("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RUSR, 0)
+            .unwrap();
+        let outside = outer.path().join("dog.png");
+        let scene = root.join("scene.plica.json");
+        // Path, part of the refusal without and with --allow-outside.
+        for (path, beneath, anywhere) in [
+            ("sub/cat.png", None, None),
+            ("../dog.png", Some("--allow-outside"), None),
+            ("link.png", Some("--allow-outside"), None),
+            (outside.to_str().unwrap(), Some("--allow-outside"), None),
+            ("/dev/zero", Some("--allow-outside"), Some("a device")),
+            ("sub", Some("a folder"), Some("a folder")),
+            ("fifo", Some("a FIFO"), Some("a FIFO")),
+            ("no.png", Some("no such file"), Some("no such file")),
+            ("a\0b", Some("cannot be opened"), Some("cannot be opened")),
+            ("", Some("no such file"), Some("a folder")),
+        ] {
+            for (allow_outside, refusal) in [(false, beneath), (true, anywhere)] {
+                let options = Options { allow_outside, ..Options::default() };
+                let error = open(&scene, path, &options).err().map(|e| e.to_string());
+                match refusal {
+                    None => assert_eq!(error, None, "{path}"),
+                    Some(part) => assert!(error.as_ref().unwrap().contains(part), "{path}: {error:?}"),
+                }
+            }
+        }
+        assert_eq!(beside(Path::new("scene.plica.json"), "cat.png"), Path::new("./cat.png"));
+    }
+}
