@@ -7,6 +7,8 @@ use crate::layers::{Layer, Materials, folding};
 use crate::scene::Scene;
 
 pub mod cpu;
+#[cfg(feature = "window")]
+pub mod gpu;
 pub mod overlay;
 
 /// What a frame of a scene needs except the time.

@@ -12,6 +12,7 @@ pub mod position;
 pub mod probe;
 pub mod regions;
 pub mod synth;
+pub mod texels;
 pub mod tools;
 
 #[cfg(test)]

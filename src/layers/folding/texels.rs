@@ -1,0 +1,105 @@
+//! What `frame.wgsl` reads: a zone's field packed into texels. Crossings stand as distances from s = 0 in one long list,
+//! every pixel's part ended by a number that no s reaches, so that the shader needs neither counts nor a second loop.
+
+use super::field::{Field, Folds, Ragged};
+use super::fold::Rule;
+use crate::base::pixels::Grid;
+
+/// The shader of a zone.
+pub const SHADER: &str = include_str!("frame.wgsl");
+
+/// Columns of [`Texels::crossings`].
+pub const COLUMNS: usize = 4096;
+
+const MEMBER: u32 = 1 << 31;
+const INSIDE: u32 = 1 << 30;
+const NO_CROSSING: f32 = f32::MAX;
+
+/// A field as textures.
+pub struct Texels {
+    /// A texel a pixel of the box: bits of J.x and J.y, index of the first crossing ahead, the same behind with flags.
+    pub pixels: Grid<[u32; 4]>,
+    /// Every list of crossings, in rows of [`COLUMNS`].
+    pub crossings: Grid<f32>,
+}
+
+/// The number by which the shader knows a rule.
+pub fn rule_number(folds: Option<&Folds>) -> u32 {
+    match folds.map(|f| f.rule) {
+        None => 0,
+        Some(Rule::Cover) => 1,
+        Some(Rule::Return) => 2,
+        Some(Rule::FlyOver) => 3,
+    }
+}
+
+impl Texels {
+    /// Packs a field.
+    pub fn pack(field: &Field) -> Texels {
+        let mut lists = Lists { values: vec![NO_CROSSING] };
+        let pixel = |i: usize| {
+            let [x, y] = field.jumps.cells()[i].map(f32::to_bits);
+            let member = if field.inside.cells()[i] { MEMBER } else { 0 };
+            let Some(folds) = field.folds.as_ref().filter(|_| member != 0) else { return [x, y, 0, member] };
+            let inside = if folds.inside.cells()[i] { INSIDE } else { 0 };
+            [x, y, lists.add(&folds.ahead, i), lists.add(&folds.behind, i) | member | inside]
+        };
+        let pixels = (0..field.jumps.cells().len()).map(pixel).collect();
+        Texels {
+            pixels: Grid::from_cells(field.jumps.width(), field.jumps.height(), pixels),
+            crossings: lists.into_grid(),
+        }
+    }
+}
+
+/// All lists behind one another. Index 0 is the empty list.
+struct Lists {
+    values: Vec<f32>,
+}
+
+impl Lists {
+    fn add(&mut self, ragged: &Ragged, i: usize) -> u32 {
+        let list = ragged.of(i);
+        if list.is_empty() {
+            return 0;
+        }
+        let first = self.values.len();
+        self.values.extend(list.iter().map(|&s| s.abs() as f32));
+        self.values.push(NO_CROSSING);
+        first as u32
+    }
+
+    fn into_grid(mut self) -> Grid<f32> {
+        let rows = self.values.len().div_ceil(COLUMNS);
+        self.values.resize(rows * COLUMNS, NO_CROSSING);
+        Grid::from_cells(COLUMNS, rows, self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_end_and_the_empty_ones_share_one() {
+        let field = Field {
+            x0: 0,
+            y0: 0,
+            inside: Grid::from_cells(3, 1, vec![true, true, false]),
+            jumps: Grid::filled(3, 1, [1.0, 0.0]),
+            folds: Some(Folds {
+                rule: Rule::Cover,
+                inside: Grid::from_cells(3, 1, vec![false, true, true]),
+                ahead: Ragged { starts: vec![0, 2, 2, 3], values: vec![0.25, 0.5, 9.0] },
+                behind: Ragged { starts: vec![0, 0, 1, 1], values: vec![-0.75] },
+            }),
+        };
+        let texels = Texels::pack(&field);
+        assert_eq!(
+            &texels.crossings.row(0)[..7],
+            [NO_CROSSING, 0.25, 0.5, NO_CROSSING, 0.75, NO_CROSSING, NO_CROSSING]
+        );
+        let lists: Vec<_> = texels.pixels.cells().iter().map(|t| [t[2], t[3]]).collect();
+        assert_eq!(lists, [[1, MEMBER], [0, 4 | MEMBER | INSIDE], [0, 0]]);
+    }
+}

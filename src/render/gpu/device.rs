@@ -1,0 +1,119 @@
+//! The one owner of the device. Finding no adapter, losing the device and every error of the driver are answers, never
+//! panics: errors are kept and handed to whoever asked for the work.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use crate::base::error::{Error, Result};
+
+/// What an error of the GPU is named by, and what helps where it fails.
+const PLACE: &str = "GPU";
+const CURE: &str = "frames can be rendered without a GPU: leave out --gpu";
+
+/// A device and its queue.
+pub struct Device {
+    /// The device.
+    pub raw: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// The adapter it was opened on.
+    pub adapter: wgpu::Adapter,
+    lost: Arc<AtomicBool>,
+    uncaught: Arc<Mutex<Option<String>>>,
+}
+
+impl Device {
+    /// The fastest device, one that can show on `surface` where that is given. Vulkan first, OpenGL where there is none.
+    pub fn open(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Device> {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: surface,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|e| failed(format!("no adapter was found: {}", first_line(&e))))?;
+        let own = adapter.limits();
+        let limits = wgpu::Limits { max_buffer_size: own.max_buffer_size, ..wgpu::Limits::downlevel_defaults() }
+            .using_resolution(own);
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("plica"),
+            required_limits: limits,
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            ..Default::default()
+        };
+        let (raw, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| failed(format!("{} gave no device: {}", adapter.get_info().name, first_line(&e))))?;
+        let device = Device { raw, queue, adapter, lost: Arc::default(), uncaught: Arc::default() };
+        device.listen();
+        Ok(device)
+    }
+
+    fn listen(&self) {
+        let lost = self.lost.clone();
+        self.raw.set_device_lost_callback(move |_, _| lost.store(true, Ordering::Release));
+        let uncaught = self.uncaught.clone();
+        self.raw.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut kept) = uncaught.lock() {
+                kept.get_or_insert_with(|| first_line(&error));
+            }
+        }));
+    }
+
+    /// Whether the device is gone: a new one is needed.
+    pub fn is_lost(&self) -> bool {
+        self.lost.load(Ordering::Acquire)
+    }
+
+    /// The adapter's name, for people.
+    pub fn name(&self) -> String {
+        self.adapter.get_info().name
+    }
+
+    /// Largest side of a picture.
+    pub fn max_side(&self) -> usize {
+        self.raw.limits().max_texture_dimension_2d as usize
+    }
+
+    /// Does `work`; an error that it caused on the device becomes its result.
+    pub fn checked<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
+        let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
+        let done = work();
+        let validation = pollster::block_on(validation.pop());
+        let memory = pollster::block_on(memory.pop());
+        match memory.or(validation) {
+            Some(error) => Err(failed(first_line(&error))),
+            None => Ok(done),
+        }
+    }
+
+    /// The first error that no check caught since the last call.
+    pub fn take_uncaught(&self) -> Result<()> {
+        match self.uncaught.lock().ok().and_then(|mut kept| kept.take()) {
+            Some(error) => Err(failed(error)),
+            None => Ok(()),
+        }
+    }
+
+    /// Waits until everything that was submitted is done.
+    pub fn wait(&self) -> Result<()> {
+        self.raw.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(failed)
+    }
+}
+
+/// The libraries that lead to adapters; opened at run time, so nothing is missing where none is there.
+pub fn instance(display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wgpu::Instance {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    descriptor.display = display;
+    wgpu::Instance::new(descriptor)
+}
+
+/// An error of the GPU.
+pub fn failed(what: impl std::fmt::Display) -> Error {
+    Error::at(PLACE, what).cure(CURE)
+}
+
+fn first_line(error: &dyn std::fmt::Display) -> String {
+    error.to_string().lines().next().unwrap_or_default().trim().to_owned()
+}

@@ -1,0 +1,113 @@
+//! Frames drawn by the GPU: the same pictures as `render::cpu`, at display rate. The only module besides the window that
+//! names wgpu; it owns the device and makes a new one where the old is lost.
+
+use std::sync::mpsc;
+
+use crate::base::error::Result;
+use crate::base::pixels::{Frame, Grid};
+use crate::render::Synth;
+
+pub mod device;
+mod draw;
+mod textures;
+
+use device::{Device, failed};
+pub use draw::FRAME;
+
+/// A GPU that draws frames.
+pub struct Gpu {
+    instance: wgpu::Instance,
+    parts: Parts,
+}
+
+/// What is lost with a device.
+struct Parts {
+    device: Device,
+    painter: draw::Painter,
+    textures: textures::Textures,
+}
+
+impl Parts {
+    fn open(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Parts> {
+        let device = Device::open(instance, surface)?;
+        let painter = draw::Painter::new(&device)?;
+        Ok(Parts { device, painter, textures: Default::default() })
+    }
+}
+
+impl Gpu {
+    /// The fastest GPU of the machine, without a window. An error says that there is none.
+    pub fn new() -> Result<Gpu> {
+        Gpu::open(device::instance(None), None)
+    }
+
+    /// A GPU of `instance` that can show on `surface` where that is given.
+    pub fn open(instance: wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Gpu> {
+        let parts = Parts::open(&instance, surface)?;
+        Ok(Gpu { instance, parts })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.parts.device
+    }
+
+    /// Opens a new device in place of a lost one; everything made with the old one is gone.
+    pub fn reopen(&mut self, surface: Option<&wgpu::Surface<'_>>) -> Result<()> {
+        self.parts = Parts::open(&self.instance, surface)?;
+        Ok(())
+    }
+
+    /// Draws the frame at `scene_time` in [0, 1] into a texture: linear, premultiplied, [`FRAME`].
+    pub fn texture(&mut self, synth: &Synth, scene_time: f64) -> Result<wgpu::Texture> {
+        let Parts { device, painter, textures } = &mut self.parts;
+        painter.frame(device, textures, synth, scene_time)
+    }
+
+    /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once.
+    pub fn frame(&mut self, synth: &Synth, scene_time: f64) -> Result<Frame> {
+        let frame = self.frame_once(synth, scene_time);
+        if !self.parts.device.is_lost() {
+            return frame;
+        }
+        self.reopen(None)?;
+        self.frame_once(synth, scene_time)
+    }
+
+    fn frame_once(&mut self, synth: &Synth, scene_time: f64) -> Result<Frame> {
+        let frame = self.texture(synth, scene_time)?;
+        let encoded = self.parts.painter.encode(&self.parts.device, &frame)?;
+        let read = read_back(&self.parts.device, &encoded);
+        self.parts.device.take_uncaught()?;
+        read
+    }
+}
+
+/// The texels of an encoded frame. Rows of a copy are aligned to 256 bytes.
+fn read_back(device: &Device, texture: &wgpu::Texture) -> Result<Frame> {
+    let (width, height) = (texture.width() as usize, texture.height() as usize);
+    let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let buffer = device.checked(|| {
+        let buffer = device.raw.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: (stride * height) as u64,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = device.raw.create_command_encoder(&Default::default());
+        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(stride as u32), ..Default::default() };
+        let into = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
+        device.queue.submit([encoder.finish()]);
+        buffer
+    })?;
+    let (done, mapped) = mpsc::channel();
+    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+        let _ = done.send(result); // the receiver is gone only where the wait failed
+    });
+    device.wait()?;
+    mapped.try_recv().map_err(failed)?.map_err(failed)?;
+    let bytes = buffer.slice(..).get_mapped_range().map_err(failed)?;
+    let rows = bytes.chunks_exact(stride).flat_map(|row| bytemuck::cast_slice::<u8, [u8; 4]>(&row[..width * 4]));
+    Ok(Grid::from_cells(width, height, rows.copied().collect()))
+}

@@ -1,0 +1,176 @@
+//! The GPU shows what the CPU shows: every pixel within 2/255, but for at most 0.1 % on silhouette edges, where single
+//! precision may fall on the other side. Runs on Mesa's software driver as well. Where there is no adapter the reason is
+//! printed; in CI that is a failure.
+#![cfg(feature = "window")]
+
+use std::sync::Arc;
+
+use plica::base::pixels::{Frame, Grid, Picture, decode};
+use plica::layers::Materials;
+use plica::render::{self, Synth, cpu, gpu::Gpu};
+use serde_json::{Value, json};
+
+/// Times on frames and between them; s goes below 0 and above 1.
+const TIMES: [f64; 6] = [0.0, 0.13, 0.25, 0.5, 0.77, 1.0];
+
+fn gpu() -> Option<Gpu> {
+    match Gpu::new() {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var_os("CI").is_some() => panic!("in CI there has to be an adapter: {error}"),
+        Err(error) => {
+            println!("not run: {error}");
+            None
+        }
+    }
+}
+
+/// A picture of smooth waves with some hard edges; `alpha` leaves parts of it transparent.
+fn waves(width: usize, height: usize, seed: usize, alpha: bool) -> Arc<Picture> {
+    let cells = (0..width * height).map(|i| {
+        let (x, y) = (i % width + seed * 7, i / width + seed * 13);
+        let wave = |period: usize| (127.0 + 127.0 * ((x * 3 + y * seed) as f64 / period as f64).sin()) as u8;
+        let opacity = if alpha { (((x / 5 + y / 7) % 4) * 85) as u8 } else { 255 };
+        decode([wave(17), if (x / 9 + y / 6) % 2 == 0 { 230 } else { 20 }, wave(29), opacity])
+    });
+    Arc::new(Grid::from_cells(width, height, cells.collect()))
+}
+
+fn materials() -> Materials {
+    let pictures = [
+        ("own", waves(96, 64, 1, false)),
+        ("clear", waves(96, 64, 2, true)),
+        ("other", waves(50, 40, 3, true)),
+        ("mask", waves(96, 64, 4, true)),
+    ];
+    Materials { pictures: pictures.map(|(name, picture)| (name.to_owned(), picture)).into(), ..Materials::default() }
+}
+
+fn with(mut a: Value, b: &Value) -> Value {
+    a.as_object_mut().unwrap().extend(b.as_object().unwrap().clone());
+    a
+}
+
+fn zone(name: &str, extra: Value) -> Value {
+    let zone = json!({
+        "name": name,
+        "outline": {"kind": "ellipse", "center": [48, 30], "radii": [37, 25]},
+        "motion": [
+            {"tool": "point", "at": [30, 20], "jump": [11, 6.5]},
+            {"tool": "point", "at": [60, 40], "jump": [-9, 14]},
+            {"tool": "still-border", "spacing": 9}],
+        "position": {"function": "sine", "cycles": 1, "amplitude": 1.7, "offset": 0.2}
+    });
+    with(zone, &extra)
+}
+
+fn layer(name: &str, image: &str, zones: &[Value]) -> Value {
+    json!({"kind": "picture", "name": name, "image": image, "zones": zones})
+}
+
+fn fold(rule: &str) -> Value {
+    json!({"fold": {"rule": rule, "regions": [
+        {"kind": "ellipse", "center": [40, 28], "radii": [9, 7]},
+        {"kind": "polygon", "points": [[55, 20], [66, 24], [58, 44], [50, 38]]}]}})
+}
+
+fn synth(layers: &[Value]) -> Synth {
+    let scene = serde_json::from_value(json!({"plica": 1, "layers": layers})).unwrap();
+    render::synth(&scene, &materials(), None).unwrap()
+}
+
+/// Every rule, source and composition.
+fn scenes() -> Vec<(&'static str, Synth)> {
+    let other = json!({"sampler": {"image": "other", "offset": [-20.25, -11.5]}});
+    let mask = json!({"fold": {"rule": "mask", "image": "mask"}});
+    let corner = json!({"outline": {"kind": "rectangle", "x": -8.5, "y": -3, "width": 60, "height": 44.5}});
+    let own = |zone_fields: Value| synth(&[layer("a", "own", &[zone("z", zone_fields)])]);
+    let clear = |zone_fields: Value| synth(&[layer("a", "clear", &[zone("z", zone_fields)])]);
+    let two_zones = [zone("y", fold("cover")), zone("z", with(corner.clone(), &other))];
+    let three_layers = [
+        layer("a", "own", &[zone("y", fold("return"))]),
+        layer("b", "other", &[zone("z", corner.clone())]),
+        layer("c", "clear", &[zone("z", fold("cover"))]),
+    ];
+    vec![
+        ("no zone", synth(&[layer("a", "own", &[])])),
+        ("no fold", own(json!({}))),
+        ("cover", own(fold("cover"))),
+        ("return", own(fold("return"))),
+        ("fly-over", own(fold("fly-over"))),
+        ("mask", own(mask.clone())),
+        ("mask, transparent picture", clear(mask)),
+        ("sampler image", own(other.clone())),
+        ("sampler image and cover", own(with(fold("cover"), &other))),
+        ("sampler image and fly-over", clear(with(fold("fly-over"), &other))),
+        ("zone over the corner", own(with(fold("return"), &corner))),
+        ("zones over one another", synth(&[layer("a", "clear", &two_zones)])),
+        ("layers over one another", synth(&three_layers)),
+    ]
+}
+
+/// The largest difference of any channel, and the share of pixels that differ by more than 2.
+fn difference(a: &Frame, b: &Frame) -> (u8, f64) {
+    assert_eq!((a.width(), a.height()), (b.width(), b.height()));
+    let of = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|i| a[i].abs_diff(b[i])).max().unwrap();
+    let all: Vec<u8> = a.cells().iter().zip(b.cells()).map(of).collect();
+    let more = all.iter().filter(|&&d| d > 2).count();
+    (all.iter().copied().max().unwrap_or(0), more as f64 / all.len() as f64)
+}
+
+fn check(gpu: &mut Gpu, name: &str, synth: &Synth) {
+    for time in TIMES {
+        let (largest, share) = difference(&gpu.frame(synth, time).unwrap(), &cpu::frame(synth, time));
+        println!("{name} at {time}: {:.3} % differ, by up to {largest}", share * 100.0);
+        assert!(share <= 0.001, "{name} at {time}: {:.3} % differ, by up to {largest}", share * 100.0);
+    }
+}
+
+#[test]
+fn the_gpu_shows_what_the_cpu_shows() {
+    let Some(mut gpu) = gpu() else { return };
+    for (name, synth) in scenes() {
+        check(&mut gpu, name, &synth);
+    }
+}
+
+#[test]
+fn the_scenes_move() {
+    for (name, synth) in scenes().iter().skip(1) {
+        let (_, share) = difference(&cpu::frame(synth, 0.0), &cpu::frame(synth, 0.25));
+        assert!(share > 0.05, "{name}: {share}");
+    }
+}
+
+#[test]
+fn a_lost_device_is_replaced() {
+    let Some(mut gpu) = gpu() else { return };
+    let (_, synth) = &scenes()[2];
+    let before = gpu.frame(synth, 0.3).unwrap();
+    gpu.device().raw.destroy();
+    assert_eq!(gpu.frame(synth, 0.3).unwrap(), before);
+}
+
+#[test]
+fn what_is_too_large_is_refused_with_the_way_out() {
+    let Some(mut gpu) = gpu() else { return };
+    let side = gpu.device().max_side() + 1;
+    let wide = Arc::new(Picture::filled(side, 1, [0.0; 4]));
+    let materials = Materials { pictures: [("own".to_owned(), wide)].into(), ..Materials::default() };
+    let scene = serde_json::from_value(json!({"plica": 1, "layers": [layer("a", "own", &[])]})).unwrap();
+    let synth = render::synth(&scene, &materials, None).unwrap();
+    let error = gpu.frame(&synth, 0.0).unwrap_err().to_string();
+    assert!(error.contains(&side.to_string()) && error.contains("--gpu"), "{error}");
+}
+
+#[test]
+fn every_shader_is_valid() {
+    use wgpu::naga::{front::wgsl, valid};
+    for (name, source) in [
+        ("frame.wgsl", include_str!("../src/layers/folding/frame.wgsl")),
+        ("compose.wgsl", include_str!("../src/render/gpu/compose.wgsl")),
+    ] {
+        let module = wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));
+        let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty());
+        validator.validate(&module).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));
+    }
+}
