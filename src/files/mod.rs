@@ -1,9 +1,11 @@
 //! The only file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
 //! elsewhere.
 
+mod counts;
 pub mod disk;
 pub mod fields;
 pub mod limits;
+pub mod materials;
 pub mod paths;
 pub mod picture;
 pub mod write;

@@ -1,0 +1,254 @@
+//! What a scene names, loaded: pictures and vector fields, in parallel. A cache keeps what did not change, and the last
+//! good version of what cannot be read just now.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::fields::{self, VectorField};
+use super::{Limits, Options, paths, picture};
+use crate::base::error::{Error, Result};
+use crate::base::pixels::Picture;
+use crate::base::problem::Problem;
+use crate::layers::folding::tools::Tool;
+use crate::layers::{Layer, Materials};
+use crate::scene::Scene;
+
+/// What was loaded before, by path; for as long as a scene names it.
+#[derive(Debug, Default)]
+pub struct Cache {
+    pictures: Store<Picture>,
+    fields: Store<VectorField>,
+}
+
+type Store<T> = HashMap<PathBuf, (Stamp, Arc<T>)>;
+
+/// A file's identity and version; another program cannot change the file and keep it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Stamp([i128; 5]);
+
+impl Stamp {
+    fn of(file: &File) -> std::io::Result<Self> {
+        let found = file.metadata()?;
+        let nanos = |secs: i64, nanos: i64| i128::from(secs) * 1_000_000_000 + i128::from(nanos);
+        Ok(Stamp([
+            i128::from(found.dev()),
+            i128::from(found.ino()),
+            i128::from(found.len()),
+            nanos(found.mtime(), found.mtime_nsec()),
+            nanos(found.ctime(), found.ctime_nsec()),
+        ]))
+    }
+}
+
+/// Loads all that `scene` names; what did not change since comes from `cache`.
+///
+/// # Errors
+/// Every file that cannot be loaded, as a problem at the path of the scene that names it.
+pub fn load(
+    scene_path: &Path,
+    scene: &Scene,
+    options: &Options,
+    cache: &mut Cache,
+) -> std::result::Result<Materials, Vec<Problem>> {
+    let (materials, problems) = gather(scene_path, scene, options, cache);
+    if problems.is_empty() { Ok(materials) } else { Err(problems) }
+}
+
+/// As [`load`], for an editor that goes on: what can be loaded, and the problems. In the place of a file that cannot be
+/// read just now stands its last good version, where the cache has one.
+pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Materials, Vec<Problem>) {
+    let sources = Sources { scene_path, options };
+    let mut problems = Vec::new();
+    let pictures = sources.load(&named_pictures(scene), picture::decode, &mut cache.pictures, &mut problems);
+    let fields = sources.load(&named_fields(scene), fields::decode, &mut cache.fields, &mut problems);
+    (Materials { pictures, fields }, problems)
+}
+
+/// Width and height of every picture that `scene` names, from the headers alone, and what cannot be read.
+pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<String, (usize, usize)>, Vec<Problem>) {
+    let measure = |named: &Named| {
+        let file = paths::open(scene_path, named.path, options)?;
+        picture::header(file, named.path, &options.limits)
+    };
+    let mut sizes = BTreeMap::new();
+    let mut problems = Vec::new();
+    for named in named_pictures(scene) {
+        match measure(&named) {
+            Ok(size) => drop(sizes.insert(named.key.to_owned(), size)),
+            Err(error) => problems.push(problem(&named, error)),
+        }
+    }
+    (sizes, problems)
+}
+
+/// The files that `scene` names, to be watched.
+pub fn files(scene_path: &Path, scene: &Scene) -> Vec<PathBuf> {
+    let named = named_pictures(scene).into_iter().chain(named_fields(scene));
+    named.map(|named| paths::beside(scene_path, named.path)).collect()
+}
+
+/// A file that a scene names.
+struct Named<'a> {
+    /// What [`Materials`] calls it.
+    key: &'a str,
+    /// The path as written.
+    path: &'a str,
+    /// Where it is written: a JSON pointer.
+    at: String,
+}
+
+fn named_pictures(scene: &Scene) -> Vec<Named<'_>> {
+    let escaped = |name: &str| name.replace('~', "~0").replace('/', "~1");
+    let named = scene.images.iter();
+    named.map(|(key, image)| Named { key, path: &image.path, at: format!("/images/{}/path", escaped(key)) }).collect()
+}
+
+fn named_fields(scene: &Scene) -> Vec<Named<'_>> {
+    let mut found = Vec::new();
+    for (l, layer) in scene.layers.iter().enumerate() {
+        let Layer::Picture(layer) = layer;
+        for (z, zone) in layer.zones.iter().enumerate() {
+            for (m, tool) in zone.motion.iter().enumerate() {
+                if let Tool::Field { path, .. } = tool {
+                    found.push(Named { key: path, path, at: format!("/layers/{l}/zones/{z}/motion/{m}/path") });
+                }
+            }
+        }
+    }
+    found
+}
+
+struct Sources<'a> {
+    scene_path: &'a Path,
+    options: &'a Options,
+}
+
+impl Sources<'_> {
+    fn load<T: Send + Sync>(
+        &self,
+        named: &[Named],
+        decode: impl Fn(File, &str, &Limits) -> Result<T> + Sync,
+        store: &mut Store<T>,
+        problems: &mut Vec<Problem>,
+    ) -> BTreeMap<String, Arc<T>> {
+        // One decoding a file, however often it is named.
+        let files: BTreeMap<PathBuf, &str> =
+            named.iter().map(|named| (paths::beside(self.scene_path, named.path), named.path)).collect();
+        let loaded: HashMap<PathBuf, Result<(Stamp, Arc<T>)>> = files
+            .into_par_iter()
+            .map(|(file, path)| {
+                let loaded = self.load_one(path, &decode, store.get(&file));
+                (file, loaded)
+            })
+            .collect();
+        let mut kept = Store::new();
+        let mut materials = BTreeMap::new();
+        for named in named {
+            let file = paths::beside(self.scene_path, named.path);
+            let entry = match &loaded[&file] {
+                Ok(entry) => Some(entry.clone()),
+                Err(error) => {
+                    problems.push(problem(named, error));
+                    store.get(&file).cloned()
+                }
+            };
+            if let Some(entry) = entry {
+                materials.insert(named.key.to_owned(), entry.1.clone());
+                kept.insert(file, entry);
+            }
+        }
+        *store = kept;
+        materials
+    }
+
+    fn load_one<T>(
+        &self,
+        path: &str,
+        decode: impl Fn(File, &str, &Limits) -> Result<T>,
+        old: Option<&(Stamp, Arc<T>)>,
+    ) -> Result<(Stamp, Arc<T>)> {
+        let file = paths::open(self.scene_path, path, self.options)?;
+        let stamp = Stamp::of(&file).map_err(|error| Error::at(path, error))?;
+        match old {
+            Some(old) if old.0 == stamp => Ok(old.clone()),
+            _ => Ok((stamp, Arc::new(decode(file, path, &self.options.limits)?))),
+        }
+    }
+}
+
+fn problem(named: &Named, error: impl std::borrow::Borrow<Error>) -> Problem {
+    match error.borrow() {
+        Error::Failed { place, what, cure } => {
+            let problem = Problem::error(&named.at, format!("{place}: {what}"));
+            cure.iter().fold(problem, |problem, cure| problem.hint(cure))
+        }
+        other => Problem::error(&named.at, other.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{DynamicImage, ImageBuffer, Luma};
+
+    fn scene(images: &[(&str, &str)], field: Option<&str>) -> Scene {
+        let images: serde_json::Map<_, _> =
+            images.iter().map(|(name, path)| (name.to_string(), serde_json::json!({ "path": path }))).collect();
+        let motion: Vec<_> = field.iter().map(|path| serde_json::json!({ "tool": "field", "path": path })).collect();
+        let outline = serde_json::json!({ "kind": "rectangle", "x": 0, "y": 0, "width": 1, "height": 1 });
+        serde_json::from_value(serde_json::json!({ "plica": 1, "images": images, "layers": [{
+            "kind": "picture", "name": "l", "image": "a",
+            "zones": [{ "name": "z", "outline": outline, "motion": motion }]
+        }] }))
+        .unwrap()
+    }
+
+    fn paint(folder: &Path, name: &str, width: u32) {
+        let image: DynamicImage = ImageBuffer::from_pixel(width, 1, Luma([9u8])).into();
+        image.save(folder.join(name)).unwrap();
+    }
+
+    #[test]
+    fn what_did_not_change_is_not_loaded_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.plica.json");
+        paint(folder.path(), "a.png", 2);
+        paint(folder.path(), "b.png", 3);
+        let scene = scene(&[("a", "a.png"), ("b", "b.png"), ("again", "a.png")], None);
+        let mut cache = Cache::default();
+        let options = Options::default();
+        let first = load(&path, &scene, &options, &mut cache).unwrap();
+        assert!(Arc::ptr_eq(&first.pictures["a"], &first.pictures["again"]));
+        paint(folder.path(), "b.png", 4);
+        let second = load(&path, &scene, &options, &mut cache).unwrap();
+        assert!(Arc::ptr_eq(&first.pictures["a"], &second.pictures["a"]));
+        assert_eq!(second.pictures["b"].width(), 4);
+        std::fs::write(folder.path().join("b.png"), "half a pict").unwrap();
+        for _ in 0..2 {
+            let (third, problems) = gather(&path, &scene, &options, &mut cache);
+            assert!(Arc::ptr_eq(&third.pictures["b"], &second.pictures["b"]), "the last good one");
+            assert_eq!(problems.iter().map(|p| p.path.as_str()).collect::<Vec<_>>(), ["/images/b/path"]);
+        }
+        assert_eq!(files(&path, &scene).len(), 3);
+    }
+
+    #[test]
+    fn every_problem_has_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.plica.json");
+        paint(folder.path(), "good.png", 2);
+        let scene = scene(&[("a", "missing.png"), ("b/c~d", "../out.png"), ("good", "good.png")], Some("v.flo"));
+        let problems = load(&path, &scene, &Options::default(), &mut Cache::default()).unwrap_err();
+        let found: Vec<_> = problems.iter().map(|p| p.path.as_str()).collect();
+        assert_eq!(found, ["/images/a/path", "/images/b~1c~0d/path", "/layers/0/zones/0/motion/0/path"]);
+        assert!(problems[1].hint.as_ref().unwrap().contains("--allow-outside"));
+        let (sizes, problems) = sizes(&path, &scene, &Options::default());
+        assert_eq!(sizes, BTreeMap::from([("good".to_owned(), (2, 1))]));
+        assert_eq!(problems.len(), 2);
+    }
+}
