@@ -1,0 +1,26 @@
+//! The pictures of the demo scenes, by the file they are committed as.
+
+use kit::Canvas;
+
+mod beach;
+mod cat;
+mod chest;
+mod eye;
+mod kit;
+mod noise;
+mod road;
+mod skin;
+mod wound;
+
+/// File, from the project's root, and what draws it.
+pub const PICTURES: &[(&str, fn() -> Canvas)] = &[
+    ("profiles/blink/eye.png", eye::eye),
+    ("profiles/blink/lashes.png", eye::lashes),
+    ("profiles/waves/beach.png", beach::beach),
+    ("profiles/wound/arm.png", wound::wound),
+    ("profiles/pecs/chest.png", chest::chest),
+    ("profiles/car/road.png", road::road),
+    ("profiles/car/car.png", road::car),
+    ("profiles/car/light.png", road::light),
+    ("profiles/cat/cat.png", cat::cat),
+];
