@@ -65,3 +65,27 @@ impl fmt::Display for Problem {
         }
     }
 }
+
+/// `did you mean "this"?` where one is near, else all there are.
+pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
+    let scored = known.clone().map(|name| (strsim::normalized_damerau_levenshtein(word, name), name));
+    let best = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(if best.0 >= 0.5 { format!("did you mean {}?", quoted(best.1)) } else { there_are(known) })
+}
+
+/// All the names there are, or the first twenty.
+pub fn there_are<'a>(known: impl Iterator<Item = &'a str>) -> String {
+    let mut names: Vec<_> = known.take(21).map(quoted).collect();
+    if names.len() > 20 {
+        names[20] = "…".into();
+    }
+    format!("there are {}", names.join(", "))
+}
+
+/// `text` in quotes, with control characters escaped, and not longer than a line bears.
+pub fn quoted(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let short: String = text.chars().take(LONGEST).collect();
+    let more = if short.len() < text.len() { "…" } else { "" };
+    format!("{:?}", short + more)
+}

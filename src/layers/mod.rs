@@ -2,17 +2,23 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
+use kurbo::Rect;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::base::pixels::{Grid, Picture};
 use crate::base::problem::Problem;
 
+pub mod check;
 pub mod folding;
 pub mod timeline;
 
 /// A position or vector in image pixels, [x, y], x right and y down.
 pub type Xy = [f64; 2];
+
+/// Width and height of pictures in pixels, by their names in the scene's images.
+pub type Sizes = BTreeMap<String, (usize, usize)>;
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,6 +35,44 @@ impl Layer {
             Layer::Picture(picture) => &picture.name,
         }
     }
+
+    /// Every problem of the layer by itself; paths are relative to it.
+    pub fn check(&self) -> Vec<Problem> {
+        match self {
+            Layer::Picture(picture) => folding::check::check(picture),
+        }
+    }
+
+    /// What the sizes of the scene's pictures say about the layer; paths are relative to it.
+    pub fn check_images(&self, sizes: &Sizes) -> Vec<Problem> {
+        match self {
+            Layer::Picture(picture) => folding::check::check_images(picture, sizes),
+        }
+    }
+
+    /// The images that the layer names, each with its pointer relative to the layer.
+    pub fn images(&self) -> Vec<(String, &str)> {
+        match self {
+            Layer::Picture(picture) => folding::check::images(picture),
+        }
+    }
+
+    /// The place in the layer's picture that something new at `path` (relative to the layer) belongs to.
+    pub fn bounds(&self, path: &str) -> Rect {
+        match self {
+            Layer::Picture(picture) => folding::starts::bounds(picture, path),
+        }
+    }
+}
+
+/// What the field `field` of a new `variant` starts as, where the schema has no default and zeros will not do.
+pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
+    folding::starts::start(variant, field, bounds)
+}
+
+/// A new item of a list before item `index`, and the index it gets, where it depends on its neighbours.
+pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
+    folding::starts::item(variant, list, items, index)
 }
 
 /// What a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.

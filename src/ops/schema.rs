@@ -9,6 +9,5 @@ pub struct Args {}
 
 /// Prints it.
 pub fn run(_: Args, context: &mut Context) -> Result<()> {
-    let schema = schemars::schema_for!(crate::scene::Scene);
-    context.print(serde_json::to_string_pretty(&schema).unwrap_or_default())
+    context.print(format_args!("{:#}", crate::scene::schema::json_schema()))
 }

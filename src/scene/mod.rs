@@ -7,6 +7,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::layers::{Layer, timeline::Timeline};
 
+pub mod address;
+pub mod build;
+pub mod check;
+mod document;
+pub mod edit;
+#[cfg(test)]
+mod edit_tests;
+pub mod field;
+pub mod history;
+pub mod json;
+pub mod migrate;
+pub mod pointer;
+pub mod schema;
+mod shape;
+
+pub use document::Document;
+pub use edit::Edit;
+pub use history::History;
+
 /// The version of the document that this program writes.
 pub const VERSION: u32 = 1;
 

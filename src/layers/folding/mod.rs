@@ -2,6 +2,7 @@
 //! through the picture as time passes; thresholds along the path let one part slide over another.
 
 pub mod anchors;
+pub mod check;
 pub mod field;
 pub mod fold;
 pub mod frame;
@@ -11,6 +12,7 @@ pub mod outline;
 pub mod position;
 pub mod probe;
 pub mod regions;
+pub mod starts;
 pub mod synth;
 pub mod texels;
 pub mod tools;

@@ -1,0 +1,58 @@
+//! Rules that every technique's check shares: names, paths of files, lists that ascend.
+
+use std::collections::HashMap;
+
+use crate::base::problem::{Problem, quoted};
+
+/// Names of siblings, each with its pointer: not empty, without control characters, none twice.
+pub fn names<'a>(siblings: impl Iterator<Item = (String, &'a str)>) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let mut first: HashMap<&str, String> = HashMap::new();
+    for (path, name) in siblings {
+        if let Some(earlier) = first.get(name) {
+            let message = format!("the name {} is taken", quoted(name));
+            problems.push(Problem::error(&path, message).hint(format!("{earlier} has it; names are unique")));
+        }
+        problems.extend(plain_text(name, &path));
+        first.entry(name).or_insert(path);
+    }
+    problems
+}
+
+/// A name is not empty and has no control characters.
+pub fn plain_text(text: &str, path: &str) -> Option<Problem> {
+    if text.trim().is_empty() {
+        Some(Problem::error(path, "a name is empty"))
+    } else if text.chars().any(char::is_control) {
+        Some(Problem::error(path, format!("{} holds a control character", quoted(text))))
+    } else {
+        None
+    }
+}
+
+/// The path of a file, by its look alone: relative, and not upwards.
+pub fn file_path(text: &str, path: &str) -> Option<Problem> {
+    let upwards = text.split(['/', '\\']).any(|part| part == "..");
+    let what = if text.chars().any(char::is_control) {
+        "holds a control character"
+    } else if std::path::Path::new(text).is_absolute() || text.starts_with(['/', '\\']) || text.get(1..2) == Some(":") {
+        "is an absolute path"
+    } else if upwards {
+        "leads out of the scene's folder"
+    } else {
+        return None;
+    };
+    let hint = "paths are relative to the scene; copy the file beside it";
+    Some(Problem::error(path, format!("{} {what}", quoted(text))).hint(hint))
+}
+
+/// Numbers that must ascend strictly; `path(i)` is where number i stands.
+pub fn ascending(what: &str, numbers: impl Iterator<Item = f64>, path: impl Fn(usize) -> String) -> Vec<Problem> {
+    let numbers: Vec<f64> = numbers.collect();
+    let pairs = numbers.windows(2).enumerate().filter(|(_, pair)| pair[1] <= pair[0]);
+    pairs
+        .map(|(i, pair)| {
+            Problem::error(path(i + 1), format!("{what} must ascend: {} does not come after {}", pair[1], pair[0]))
+        })
+        .collect()
+}

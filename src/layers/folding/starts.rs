@@ -1,0 +1,137 @@
+//! What something new in a picture layer starts as, where the schema has no default: an outline where the old one was,
+//! an anchor in the middle of its zone, a keyframe between its neighbours.
+
+use kurbo::{Point, Rect};
+use serde_json::{Value, json};
+
+use super::model::PictureLayer;
+
+/// What stands for a zone where there is none yet.
+const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
+
+/// The place in the picture that something new at `path` (relative to the layer) belongs to: the outline itself, else
+/// the outline of its zone, else what all zones cover; what is new in a list of zones or regions takes the middle of it.
+pub fn bounds(layer: &PictureLayer, path: &str) -> Rect {
+    let mut tokens = path.split('/').skip(1);
+    let mut index_after = |list: &str| (tokens.next() == Some(list)).then(|| tokens.next()?.parse::<usize>().ok());
+    let all = || layer.zones.iter().map(|zone| zone.outline.polygon().bounds()).reduce(|a, b| a.union(b));
+    let zone = match index_after("zones") {
+        Some(Some(zone)) => layer.zones.get(zone),
+        _ => None,
+    };
+    let Some(zone) = zone else { return middle(all().unwrap_or(NOWHERE)) };
+    let whole = zone.outline.polygon().bounds();
+    if tokens.next() != Some("fold") {
+        return whole;
+    }
+    let region = tokens.nth(1).and_then(|region| region.parse::<usize>().ok());
+    let region = region.and_then(|region| zone.fold.as_ref()?.regions().get(region));
+    region.map_or(middle(whole), |region| region.polygon().bounds())
+}
+
+/// The middle half of a rectangle, in whole pixels where it is large enough.
+fn middle(r: Rect) -> Rect {
+    let half = r.inset((-r.width() / 4.0, -r.height() / 4.0));
+    if half.width().min(half.height()) >= 4.0 { half.round() } else { half }
+}
+
+/// The field `field` of a new `variant` (an outline's kind, a tool, a method, a function); none where zeros will do.
+pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
+    let (c, w, h) = (bounds.center(), bounds.width(), bounds.height());
+    let [tl, tr, br, bl] = corners(bounds);
+    Some(match (variant, field) {
+        ("rectangle", "x") => json!(neat(bounds.x0)),
+        ("rectangle", "y") => json!(neat(bounds.y0)),
+        ("rectangle", "width") => json!(neat(w)),
+        ("rectangle", "height") => json!(neat(h)),
+        ("ellipse", "radii") => json!([neat(w / 2.0), neat(h / 2.0)]),
+        ("polygon", "points") => json!([tl, tr, br, bl]),
+        ("path", "nodes") => json!([{ "at": tl }, { "at": tr }, { "at": br }, { "at": bl }]),
+        ("curve", "samples") => json!(9),
+        ("curve", "nodes") => {
+            json!([{ "at": pair(c.x - w / 4.0, c.y) }, { "at": pair(c.x + w / 4.0, c.y) }])
+        }
+        ("curve", "jumps") => json!([{ "along": 0, "jump": [0, 0] }]),
+        ("lasso", "vertices") => {
+            let inner = corners(middle(bounds));
+            Value::from(inner.map(|at| json!({ "from": at, "to": at })).to_vec())
+        }
+        ("scale", "factor") => json!([1, 1]),
+        ("affine", "matrix") => json!([[1, 0, 0], [0, 1, 0]]),
+        ("still-border", "spacing") => json!(8),
+        ("field", "path") => json!("field.flo"),
+        ("modified-shepard" | "modified-shepard-random", "radius") => json!(neat((w.max(h) / 2.0).max(1.0))),
+        ("modified-shepard-random", "ring") => json!(neat((w.max(h) / 8.0).max(0.25))),
+        ("cubic-bezier", "x1" | "x2") => json!(0.25),
+        ("cubic-bezier", "y1") => json!(0.1),
+        ("cubic-bezier", "y2") => json!(1),
+        ("keyframes", "points") => json!([[0, 0], [1, 1]]),
+        ("piecewise", "segments") => json!([{ "until": 1, "from": 0, "to": 1 }]),
+        (_, "at" | "center") => pair(c.x, c.y),
+        _ => return None,
+    })
+}
+
+/// A new item of the list `list` of a `variant`, to stand before item `index`, and the index it gets; none where an item
+/// does not depend on its neighbours.
+pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
+    let (closed, ascending) = match (variant, list) {
+        ("polygon" | "path" | "lasso", "points" | "nodes" | "vertices") => (true, None),
+        ("curve", "nodes") => (false, None),
+        ("curve", "jumps") => (false, Some("/along")),
+        ("keyframes", "points") => (false, Some("/0")),
+        ("piecewise", "segments") => (false, Some("/until")),
+        _ => return None,
+    };
+    let last = items.last()?;
+    match ascending {
+        None => {
+            let before = index.checked_sub(1).map_or(if closed { last } else { &items[0] }, |i| &items[i]);
+            let after = items.get(index).unwrap_or(if closed { &items[0] } else { last });
+            Some((index, between(before, after)))
+        }
+        Some(key) => {
+            let at = |i: usize| items[i].pointer(key).and_then(Value::as_f64).unwrap_or(0.0);
+            let full = at(items.len() - 1) >= 1.0;
+            let index = if full { index.min(items.len() - 1) } else { index };
+            let low = if index == 0 { at(0).min(0.0) } else { at(index - 1) };
+            let high = if index == items.len() { 1.0 } else { at(index) };
+            let mut item = items.get(index).unwrap_or(last).clone();
+            if let Some(from) = item.get("from").cloned() {
+                item["to"] = from;
+            }
+            *item.pointer_mut(key)? = json!(neat((low + high) / 2.0));
+            Some((index, item))
+        }
+    }
+}
+
+/// Half way between two values of the same build, number by number; handles of curves are left out.
+fn between(a: &Value, b: &Value) -> Value {
+    match (a, b) {
+        (Value::Number(x), Value::Number(y)) => {
+            json!(neat((x.as_f64().unwrap_or(0.0) + y.as_f64().unwrap_or(0.0)) / 2.0))
+        }
+        (Value::Array(a), Value::Array(b)) => a.iter().zip(b).map(|(a, b)| between(a, b)).collect(),
+        (Value::Object(a), Value::Object(b)) => {
+            let both = a.iter().filter(|(key, _)| !matches!(key.as_str(), "in" | "out"));
+            Value::Object(both.filter_map(|(key, a)| Some((key.clone(), between(a, b.get(key)?)))).collect())
+        }
+        (a, _) => a.clone(),
+    }
+}
+
+fn corners(r: Rect) -> [Value; 4] {
+    let corner = |p: Point| pair(p.x, p.y);
+    [r.origin(), Point::new(r.x1, r.y0), Point::new(r.x1, r.y1), Point::new(r.x0, r.y1)].map(corner)
+}
+
+fn pair(x: f64, y: f64) -> Value {
+    json!([neat(x), neat(y)])
+}
+
+/// A number as a person would write it: no more than three decimals, and none where it is whole.
+fn neat(x: f64) -> Value {
+    let x = (x * 1000.0).round() / 1000.0;
+    if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) }
+}

@@ -1,0 +1,144 @@
+//! Addresses for people: `layers.face.zones."left eye".interpolation.radius`, with names, quotes and indices from 0; or
+//! a JSON pointer. Both ways, along the schema, so that what is not written yet has its address too.
+
+use serde_json::Value;
+
+use super::field::name_of;
+use super::schema::{Body, Place};
+use super::{Document, pointer};
+use crate::base::error::{Error, Result};
+use crate::base::problem::{nearest, quoted};
+
+/// The JSON pointer of an address. Errors name what is unknown, and the nearest that is known.
+pub fn resolve(document: &Document, address: &str) -> Result<String> {
+    if address.is_empty() || address.starts_with('/') {
+        let tokens = pointer::tokens(address).map(|text| Token { text, quoted: false });
+        return follow(document, address, tokens.collect());
+    }
+    follow(document, address, split(address)?)
+}
+
+/// The address of a JSON pointer: names where there are any. What leads nowhere stays as it is.
+pub fn address(document: &Document, pointer: &str) -> String {
+    let mut place = Place::root(document.json());
+    let mut address = String::new();
+    for token in pointer::tokens(pointer) {
+        let Some(below) = place.step(&token) else { return pointer.to_owned() };
+        let in_list = matches!(place.shape.body(), Body::List(..));
+        let name = if in_list { name_of(below.value) } else { None };
+        address.push_str(if address.is_empty() { "" } else { "." });
+        match name {
+            Some(name) => address.push_str(&spelled(&name, true)),
+            None => address.push_str(&spelled(&token, false)),
+        }
+        place = below;
+    }
+    address
+}
+
+/// A name as it stands in an address: in quotes where it must be.
+fn spelled(name: &str, in_list: bool) -> String {
+    let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_+".contains(c));
+    if plain && !(in_list && name.starts_with(|c: char| c.is_ascii_digit())) {
+        return name.to_owned();
+    }
+    format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// One step of an address.
+struct Token {
+    text: String,
+    quoted: bool,
+}
+
+/// Splits at dots outside quotes; in quotes a backslash takes the next character as it is.
+fn split(address: &str) -> Result<Vec<Token>> {
+    let mut tokens = vec![Token { text: String::new(), quoted: false }];
+    let mut inside = false;
+    let mut chars = address.chars();
+    while let Some(c) = chars.next() {
+        let token = tokens.last_mut().expect("there is always a last token");
+        match c {
+            '"' => {
+                inside = !inside;
+                token.quoted = true;
+            }
+            '\\' if inside => token.text.extend(chars.next()),
+            '.' if !inside => tokens.push(Token { text: String::new(), quoted: false }),
+            c => token.text.push(c),
+        }
+    }
+    if inside {
+        return Err(Error::at(address, "a quote is not closed"));
+    }
+    Ok(tokens)
+}
+
+fn follow(document: &Document, address: &str, tokens: Vec<Token>) -> Result<String> {
+    let mut place = Place::root(document.json());
+    let mut path = String::new();
+    for token in tokens {
+        let key = key(place, &token);
+        let Some(below) = key.as_deref().and_then(|key| place.step(key)) else {
+            return Err(unknown(document, address, &path, place, &token.text));
+        };
+        pointer::push(&mut path, key.as_deref().unwrap_or_default());
+        place = below;
+    }
+    Ok(path)
+}
+
+/// The token of the pointer that a step of an address means.
+fn key(place: Place, token: &Token) -> Option<String> {
+    match place.shape.body() {
+        Body::List(..) => {
+            let items = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
+            let named = || items.iter().position(|item| name_of(Some(item)).as_deref() == Some(token.text.as_str()));
+            let counted = || Some(token.text.as_str()).filter(|&text| text == "-" || within(text, items.len()));
+            let index = if token.quoted { None } else { counted().map(str::to_owned) };
+            index.or_else(|| named().map(|index| index.to_string()))
+        }
+        Body::Numbers(count) => {
+            let named = (0..count).find(|&i| place.shape.column(i) == Some(&token.text));
+            Some(named.map_or_else(|| token.text.clone(), |index| index.to_string()))
+        }
+        _ => Some(token.text.clone()),
+    }
+}
+
+fn within(text: &str, count: usize) -> bool {
+    pointer::index(text).is_some_and(|index| index < count)
+}
+
+fn unknown(document: &Document, address: &str, path: &str, place: Place, token: &str) -> Error {
+    let names = names_below(place);
+    let inside = if path.is_empty() { "a scene".into() } else { self::address(document, path) };
+    let what = match place.shape.body() {
+        Body::List(..) if names.is_empty() => format!("{inside} is empty"),
+        Body::List(..) => format!("there is no {} in {inside}", quoted(token)),
+        Body::Object | Body::Tagged(_) | Body::Numbers(_) => format!("there is no field {} in {inside}", quoted(token)),
+        _ => format!("{inside} has no parts"),
+    };
+    let error = Error::at(address, what);
+    match nearest(token, names.iter().map(String::as_str)) {
+        Some(hint) => error.cure(hint),
+        None => error,
+    }
+}
+
+/// What could have been meant below a place.
+fn names_below(place: Place) -> Vec<String> {
+    match place.shape.body() {
+        Body::List(..) => {
+            let items = place.value.and_then(Value::as_array).into_iter().flatten().enumerate();
+            items.map(|(i, item)| name_of(Some(item)).unwrap_or_else(|| i.to_string())).collect()
+        }
+        Body::Numbers(count) => {
+            (0..count).map(|i| place.shape.column(i).map_or_else(|| i.to_string(), str::to_owned)).collect()
+        }
+        Body::Map(_) => {
+            place.value.and_then(Value::as_object).into_iter().flat_map(|map| map.keys().cloned()).collect()
+        }
+        _ => place.shape.properties(place.value).into_iter().map(|(name, _)| name.to_owned()).collect(),
+    }
+}

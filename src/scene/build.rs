@@ -1,0 +1,200 @@
+//! The edits that people ask for: set, insert, duplicate, move, rename. They make what must be there around the new
+//! value: parents that were only defaults, the fields that a new kind of thing needs.
+
+use kurbo::Rect;
+use serde_json::{Map, Value, json};
+
+use super::edit::Edit;
+use super::schema::{Body, Place, Shape};
+use super::{Document, field, pointer, shape};
+use crate::layers;
+
+impl Edit {
+    /// Writes `value` at `path`. Missing parents are made from their defaults; `null` takes an optional thing away; a new
+    /// tag (another kind of outline, another method) takes the new kind's defaults and keeps the fields that both have.
+    pub fn set(document: &Document, path: &str, value: Value) -> Edit {
+        let json = document.json();
+        let Some(place) = Place::of(json, path) else { return Edit::add(path, value) };
+        if value.is_null() && place.shape.allows_null() {
+            return if place.set { Edit::remove(path) } else { Edit::default() };
+        }
+        if let (Some((parent, last)), Some(name)) = (pointer::split(path), value.as_str())
+            && let Some(holder) = Place::of(json, parent)
+            && matches!(holder.shape.body(), Body::Tagged(tag) if tag == last)
+            && let Some(variant) = holder.shape.variant(name)
+        {
+            let fresh = Fresh::at(document, parent);
+            return write(document, parent, fresh.converted(variant, name, holder.value));
+        }
+        write(document, path, value)
+    }
+
+    /// Adds `item` to the list at `list`, before the one at `index` (or at the end).
+    pub fn insert(document: &Document, list: &str, index: usize, item: Value) -> Edit {
+        if document.json().pointer(list).is_some_and(Value::is_array) {
+            Edit::add(&pointer::join(list, index), item)
+        } else {
+            write(document, list, json!([item]))
+        }
+    }
+
+    /// Adds a new item with sensible values to the list at `list`, before the one at `index` or as near to it as an
+    /// ascending list allows; and the pointer it gets. None where there is no such list.
+    pub fn insert_new(document: &Document, list: &str, index: usize) -> Option<(Edit, String)> {
+        let (index, item) = new_item(document, list, index)?;
+        Some((Edit::insert(document, list, index, item), pointer::join(list, index)))
+    }
+
+    /// Adds a copy of the item at `path` after it, under a name of its own; and the pointer it gets. None where `path` is
+    /// no item of a list.
+    pub fn duplicate(document: &Document, path: &str) -> Option<(Edit, String)> {
+        let (list, last) = pointer::split(path)?;
+        let items = document.json().pointer(list)?.as_array()?;
+        let index = pointer::index(&last)?;
+        let mut copy = items.get(index)?.clone();
+        if let Some(name) = field::name_of(Some(&copy)) {
+            copy["name"] = unique(&name, items).into();
+        }
+        let to = pointer::join(list, index + 1);
+        Some((Edit::add(&to, copy), to))
+    }
+
+    /// Moves the item at `path` to `index` of its list; and the pointer it gets. None where either is no item of a list.
+    pub fn move_item(document: &Document, path: &str, index: usize) -> Option<(Edit, String)> {
+        let (list, last) = pointer::split(path)?;
+        let items = document.json().pointer(list)?.as_array()?;
+        let from = pointer::index(&last)?;
+        let to = pointer::join(list, index);
+        (from < items.len() && index < items.len()).then(|| (Edit::moved(path, &to), to))
+    }
+
+    /// Gives an image of the scene another name, everywhere.
+    pub fn rename_image(document: &Document, from: &str, to: &str) -> Edit {
+        let layers = document.scene().layers.iter().enumerate();
+        let named = layers.flat_map(|(i, layer)| {
+            let named = layer.images().into_iter().filter(|(_, image)| *image == from);
+            named.map(move |(path, _)| Edit::replace(&format!("/layers/{i}{path}"), to.into()))
+        });
+        let images = |name| pointer::join("/images", name);
+        Edit::all(std::iter::once(Edit::moved(&images(from), &images(to))).chain(named))
+    }
+}
+
+/// Writes `value` at `path`, making the parents that are not written from their defaults.
+fn write(document: &Document, path: &str, value: Value) -> Edit {
+    let json = document.json();
+    if json.pointer(path).is_some() {
+        return Edit::replace(path, value);
+    }
+    let Some((parent, last)) = pointer::split(path) else { return Edit::replace("", value) };
+    match json.pointer(parent) {
+        Some(there) if !there.is_null() => Edit::add(path, value),
+        _ => {
+            let Some(place) = Place::of(json, parent) else { return Edit::add(path, value) };
+            let fresh = Fresh::at(document, parent);
+            let mut holder = place.value.filter(|v| !v.is_null()).cloned().unwrap_or_else(|| fresh.value(place.shape));
+            match &mut holder {
+                Value::Object(map) => drop(map.insert(last, value)),
+                Value::Array(items) => match pointer::index(&last).and_then(|index| items.get_mut(index)) {
+                    Some(item) => *item = value,
+                    None => items.push(value),
+                },
+                _ => {}
+            }
+            write(document, parent, holder)
+        }
+    }
+}
+
+/// What a new item of the list at `list` before item `index` starts as, and the index it gets.
+pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize, Value)> {
+    let json = document.json();
+    let place = Place::of(json, list)?;
+    let Body::List(item, ..) = place.shape.body() else { return None };
+    let items = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
+    let index = index.min(items.len());
+    let (holder, name) = pointer::split(list)?;
+    let holder = Place::of(json, holder)?;
+    let variant = match holder.shape.body() {
+        Body::Tagged(tag) => holder.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default(),
+        _ => "",
+    };
+    if let Some(between) = layers::item(variant, &name, items, index) {
+        return Some(between);
+    }
+    let mut value = Fresh::at(document, &pointer::join(list, index)).value(item);
+    if value.get("name").is_some() {
+        value["name"] = unique(name.trim_end_matches('s'), items).into();
+    }
+    Some((index, value))
+}
+
+/// `name`, or the first of `name 2`, `name 3` … that no item has.
+fn unique(name: &str, items: &[Value]) -> String {
+    let taken = |name: &str| items.iter().any(|item| field::name_of(Some(item)).as_deref() == Some(name));
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    let stem = if stem.is_empty() { name } else { stem };
+    let numbered = (2..).map(|n| format!("{stem} {n}"));
+    std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
+}
+
+/// Makes new values from the schema, at one place of a document.
+struct Fresh<'a> {
+    bounds: Rect,
+    image: Option<&'a String>,
+}
+
+impl<'a> Fresh<'a> {
+    fn at(document: &'a Document, path: &str) -> Self {
+        let scene = document.scene();
+        let mut tokens = path.splitn(4, '/').skip(1);
+        let layer = (tokens.next() == Some("layers")).then(|| scene.layers.get(tokens.next()?.parse::<usize>().ok()?));
+        let rest = tokens.next().map(|rest| format!("/{rest}")).unwrap_or_default();
+        let bounds = layer.flatten().map_or(Rect::new(0.0, 0.0, 100.0, 100.0), |layer| layer.bounds(&rest));
+        Fresh { bounds, image: scene.images.keys().next() }
+    }
+
+    /// A new value of a shape: what must be written, and no more.
+    fn value(&self, shape: Shape) -> Value {
+        let least = |(min, max): (f64, f64)| if (min..=max).contains(&0.0) { json!(0) } else { json!(min) };
+        match shape.body() {
+            Body::Number { .. } => shape.range().map_or(json!(0), least),
+            Body::Text if shape.reference().is_some() => self.image.map_or(json!(""), |name| json!(name)),
+            Body::Text => json!(""),
+            Body::Bool => json!(false),
+            Body::Choice => shape.choices().next().map_or(Value::Null, |(name, _)| json!(name)),
+            Body::Numbers(count) => Value::from(vec![shape.range().map_or(json!(0), least); count]),
+            Body::List(item, min, _) => Value::from(vec![self.value(item); min]),
+            Body::Map(_) => json!({}),
+            Body::Object => self.object(shape, ""),
+            Body::Tagged(_) => {
+                let first = shape.choices().next().and_then(|(name, _)| Some((name, shape.variant(name)?)));
+                first.map_or(Value::Null, |(name, variant)| self.object(variant, name))
+            }
+        }
+    }
+
+    /// The required fields of an object or of a variant.
+    fn object(&self, shape: Shape, variant: &str) -> Value {
+        let required = shape.required().filter_map(|name| {
+            let field = shape.property(None, name)?;
+            let start = shape.constant(name).cloned().or_else(|| layers::start(variant, name, self.bounds));
+            Some((name.to_owned(), start.unwrap_or_else(|| self.value(field))))
+        });
+        Value::Object(required.collect())
+    }
+
+    /// `variant` made out of another one: what both have stays, where it may.
+    fn converted(&self, variant: Shape, name: &str, old: Option<&Value>) -> Value {
+        let fresh = self.object(variant, name);
+        let mut map = Map::new();
+        for name in variant.fields().into_iter().flat_map(Map::keys) {
+            let kept = old.and_then(|old| old.get(name)).filter(|_| variant.constant(name).is_none());
+            let kept = kept.filter(|kept| variant.property(None, name).is_some_and(|field| shape::fits(field, kept)));
+            if let Some(value) = kept.or_else(|| fresh.get(name)) {
+                map.insert(name.clone(), value.clone());
+            }
+        }
+        Value::Object(map)
+    }
+}

@@ -1,0 +1,76 @@
+//! A document: the JSON as written, its order and its numbers kept, together with the scene it means. There is no
+//! document with an error in it: what cannot be rendered is refused with all its problems.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::edit::Edit;
+use super::{Scene, VERSION, check, json, migrate};
+use crate::base::problem::Problem;
+
+/// A scene as written and as meant. A clone shares both.
+#[derive(Clone, Debug)]
+pub struct Document {
+    json: Arc<Value>,
+    scene: Arc<Scene>,
+    warnings: Arc<[Problem]>,
+}
+
+impl Document {
+    /// Reads the text of a scene file. The errors are all that could be found at once.
+    pub fn parse(text: &str) -> Result<Document, Vec<Problem>> {
+        let mut json = json::parse(text).map_err(|problem| vec![problem])?;
+        migrate::migrate(&mut json).map_err(|problem| vec![problem])?;
+        Document::from_json(json)
+    }
+
+    /// The document that `json`, of the present version, means.
+    pub fn from_json(json: Value) -> Result<Document, Vec<Problem>> {
+        let (scene, warnings) = check::read(&json)?;
+        Ok(Document { json: Arc::new(json), scene: Arc::new(scene), warnings: warnings.into() })
+    }
+
+    /// A scene of pictures, (name, path, width, height) each: a layer each, with one zone that covers it. Names are
+    /// unique.
+    pub fn new(pictures: &[(&str, &str, usize, usize)]) -> Result<Document, Vec<Problem>> {
+        let images: serde_json::Map<_, _> =
+            pictures.iter().map(|(name, path, ..)| (name.to_string(), json!({ "path": path }))).collect();
+        let layers: Vec<_> = pictures
+            .iter()
+            .map(|(name, _, width, height)| {
+                let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": width, "height": height });
+                let zone = json!({ "name": "all", "outline": outline });
+                json!({ "kind": "picture", "name": name, "image": name, "zones": [zone] })
+            })
+            .collect();
+        Document::from_json(json!({ "plica": VERSION, "images": images, "layers": layers }))
+    }
+
+    /// What the document means.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// What is written.
+    pub fn json(&self) -> &Value {
+        &self.json
+    }
+
+    /// The text of the file.
+    pub fn to_text(&self) -> String {
+        json::to_text(&self.json)
+    }
+
+    /// What deserves a word; the scene renders.
+    pub fn warnings(&self) -> &[Problem] {
+        &self.warnings
+    }
+
+    /// The document after an edit, or why there is none.
+    pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
+        let mut json = Value::clone(&self.json);
+        edit.patch(&mut json).map_err(|problem| vec![problem])?;
+        Document::from_json(json)
+    }
+}

@@ -1,0 +1,233 @@
+//! An edit: a JSON Patch (RFC 6902), the one way in which a scene changes. An edit is a value; it is checked where it is
+//! applied ([`super::Document::apply`]).
+//!
+//! The patch is applied here and not by json-patch, because keys keep their order: a new one goes to its place in the
+//! schema, and taking one away does not shuffle the others. So undo gives back the very text.
+
+use json_patch::jsonptr::PointerBuf;
+use json_patch::{AddOperation, MoveOperation, Patch, PatchOperation, RemoveOperation, ReplaceOperation};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::schema::Place;
+use super::{Document, json, pointer};
+use crate::base::problem::Problem;
+
+/// A change of a scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Edit(pub Patch);
+
+impl Edit {
+    /// The edits one after another, as one.
+    pub fn all(edits: impl IntoIterator<Item = Edit>) -> Edit {
+        Edit(Patch(edits.into_iter().flat_map(|edit| edit.0.0).collect()))
+    }
+
+    /// Whether it does nothing.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Replaces what is written at `path`.
+    pub(super) fn replace(path: &str, value: Value) -> Edit {
+        Edit::one(PatchOperation::Replace(ReplaceOperation { path: parsed(path), value }))
+    }
+
+    /// Adds a key to an object, or an item to a list before the one at that index (`-`: at its end).
+    pub(super) fn add(path: &str, value: Value) -> Edit {
+        Edit::one(PatchOperation::Add(AddOperation { path: parsed(path), value }))
+    }
+
+    /// Takes away what is written at `path`.
+    pub fn remove(path: &str) -> Edit {
+        Edit::one(PatchOperation::Remove(RemoveOperation { path: parsed(path) }))
+    }
+
+    pub(super) fn moved(from: &str, path: &str) -> Edit {
+        Edit::one(PatchOperation::Move(MoveOperation { from: parsed(from), path: parsed(path) }))
+    }
+
+    fn one(operation: PatchOperation) -> Edit {
+        Edit(Patch(vec![operation]))
+    }
+
+    /// The pointer that the edit replaces, where that is all it does.
+    pub fn replaced(&self) -> Option<&str> {
+        match self.0.0.as_slice() {
+            [PatchOperation::Replace(one)] => Some(one.path.as_str()),
+            _ => None,
+        }
+    }
+
+    /// Changes `json`, without looking at what comes out.
+    pub(super) fn patch(&self, json: &mut Value) -> Result<(), Problem> {
+        self.0.iter().try_for_each(|operation| step(json, operation).map(|_| ()))
+    }
+
+    /// What takes the edit back: applied after it, it gives back `document` to the letter. Empty where the edit cannot be
+    /// applied.
+    pub fn inverse(&self, document: &Document) -> Edit {
+        let mut json = document.json().clone();
+        let mut undo = Vec::new();
+        for operation in self.0.iter() {
+            match step(&mut json, operation) {
+                Ok(inverse) => undo.push(inverse),
+                Err(_) => return Edit::default(),
+            }
+        }
+        Edit::all(undo.into_iter().rev())
+    }
+
+    /// The edit that makes `to` out of `from`, to the letter.
+    pub fn between(from: &Document, to: &Document) -> Edit {
+        let mut edits = Vec::new();
+        difference(from.json(), from.json(), to.json(), "", &mut edits);
+        let edit = Edit::all(edits);
+        let mut made = from.json().clone();
+        let exact = edit.patch(&mut made).is_ok() && json::same(&made, to.json());
+        if exact { edit } else { Edit::replace("", to.json().clone()) }
+    }
+}
+
+/// A pointer of ours as json-patch's type; one that is none leads nowhere.
+fn parsed(path: &str) -> PointerBuf {
+    PointerBuf::parse(path).unwrap_or_else(|_| PointerBuf::from_tokens([path]))
+}
+
+/// Does one operation and gives its inverse.
+fn step(json: &mut Value, operation: &PatchOperation) -> Result<Edit, Problem> {
+    let path = operation.path().as_str();
+    match operation {
+        PatchOperation::Add(one) => add(json, path, one.value.clone()),
+        PatchOperation::Remove(_) => remove(json, path).map(|(_, inverse)| inverse),
+        PatchOperation::Replace(one) => {
+            let target = json.pointer_mut(path).ok_or_else(|| missing(path))?;
+            Ok(Edit::replace(path, std::mem::replace(target, one.value.clone())))
+        }
+        PatchOperation::Move(one) => {
+            let from = one.from.as_str();
+            if path.strip_prefix(from).is_some_and(|rest| rest.starts_with('/')) {
+                return Err(Problem::error(path, format!("{from} cannot be moved into itself")));
+            }
+            let (value, back) = remove(json, from)?;
+            let away = add(json, path, value)?;
+            Ok(Edit::all([away, back]))
+        }
+        PatchOperation::Copy(one) => {
+            let value = json.pointer(one.from.as_str()).cloned().ok_or_else(|| missing(one.from.as_str()))?;
+            add(json, path, value)
+        }
+        PatchOperation::Test(one) if json.pointer(path) == Some(&one.value) => Ok(Edit::default()),
+        PatchOperation::Test(_) => Err(Problem::error(path, "is not what the edit was made for")),
+    }
+}
+
+fn missing(path: &str) -> Problem {
+    Problem::error(path, "there is nothing here")
+}
+
+/// RFC 6902 `add`. A new key goes to its place in the schema.
+fn add(json: &mut Value, path: &str, value: Value) -> Result<Edit, Problem> {
+    let Some((parent, last)) = pointer::split(path) else {
+        return Ok(Edit::replace("", std::mem::replace(json, value)));
+    };
+    let place = key_place(json, parent, &last);
+    match json.pointer_mut(parent).ok_or_else(|| missing(parent))? {
+        Value::Object(map) => match map.get_mut(&last) {
+            Some(old) => Ok(Edit::replace(path, std::mem::replace(old, value))),
+            None => {
+                map.shift_insert(place, last, value);
+                Ok(Edit::remove(path))
+            }
+        },
+        Value::Array(items) => {
+            let index = if last == "-" { Some(items.len()) } else { pointer::index(&last) };
+            let index = index.filter(|&index| index <= items.len()).ok_or_else(|| missing(path))?;
+            items.insert(index, value);
+            Ok(Edit::remove(&pointer::join(parent, index)))
+        }
+        _ => Err(missing(path)),
+    }
+}
+
+/// RFC 6902 `remove`, with what was there. The inverse is an `add` where that brings the key back to its old place, else
+/// the object as it was.
+fn remove(json: &mut Value, path: &str) -> Result<(Value, Edit), Problem> {
+    let (parent, last) =
+        pointer::split(path).ok_or_else(|| Problem::error("", "the whole scene cannot be taken away"))?;
+    let whole = json.pointer(parent).filter(|parent| parent.is_object()).cloned();
+    let value = match json.pointer_mut(parent).ok_or_else(|| missing(parent))? {
+        Value::Object(map) => map.shift_remove(&last).ok_or_else(|| missing(path))?,
+        Value::Array(items) => {
+            let index = pointer::index(&last).filter(|&index| index < items.len()).ok_or_else(|| missing(path))?;
+            items.remove(index)
+        }
+        _ => return Err(missing(path)),
+    };
+    let was = whole.as_ref().and_then(Value::as_object).and_then(|map| map.keys().position(|key| *key == last));
+    let inverse = match (was, whole) {
+        (Some(was), Some(whole)) if was != key_place(json, parent, &last) => Edit::replace(parent, whole),
+        _ => Edit::add(path, value.clone()),
+    };
+    Ok((value, inverse))
+}
+
+/// Where a new key of the object at `parent` goes: after the last of those that precede it in the schema; at the end
+/// where the schema does not know it.
+fn key_place(json: &Value, parent: &str, key: &str) -> usize {
+    let Some(map) = json.pointer(parent).and_then(Value::as_object) else { return 0 };
+    let keys: Vec<&str> = map.keys().map(String::as_str).collect();
+    place_among(&keys, &known_keys(json, parent), key)
+}
+
+/// The fields that the schema knows at `parent`, in its order.
+fn known_keys(json: &Value, parent: &str) -> Vec<&'static str> {
+    let known = Place::of(json, parent).map(|place| place.shape.properties(place.value)).unwrap_or_default();
+    known.into_iter().map(|(name, _)| name).collect()
+}
+
+fn place_among(written: &[&str], known: &[&str], key: &str) -> usize {
+    let Some(rank) = known.iter().position(|&name| name == key) else { return written.len() };
+    written.iter().rposition(|name| known[..rank].contains(name)).map_or(0, |last| last + 1)
+}
+
+/// Adds the edits that make `to` of `from`, both at `path` of `json`.
+fn difference(json: &Value, from: &Value, to: &Value, path: &str, edits: &mut Vec<Edit>) {
+    match (from, to) {
+        _ if json::same(from, to) => {}
+        (Value::Object(a), Value::Object(b)) if reachable(json, a, b, path) => {
+            let below = |key: &String| pointer::join(path, key);
+            edits.extend(a.keys().filter(|&key| !b.contains_key(key)).map(|key| Edit::remove(&below(key))));
+            for (key, to) in b {
+                match a.get(key) {
+                    Some(from) => difference(json, from, to, &below(key), edits),
+                    None => edits.push(Edit::add(&below(key), to.clone())),
+                }
+            }
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            let ahead = a.iter().zip(b).take_while(|(a, b)| json::same(a, b)).count();
+            let shorter = a.len().min(b.len()) - ahead;
+            let behind = a.iter().rev().zip(b.iter().rev()).take(shorter).take_while(|(a, b)| json::same(a, b)).count();
+            let (a, b) = (&a[ahead..a.len() - behind], &b[ahead..b.len() - behind]);
+            for (i, (a, b)) in a.iter().zip(b).enumerate() {
+                difference(json, a, b, &pointer::join(path, ahead + i), edits);
+            }
+            let at = |i: usize| pointer::join(path, ahead + i);
+            edits.extend((b.len()..a.len()).rev().map(|i| Edit::remove(&at(i))));
+            edits.extend((a.len()..b.len()).map(|i| Edit::add(&at(i), b[i].clone())));
+        }
+        _ => edits.push(Edit::replace(path, to.clone())),
+    }
+}
+
+/// Whether taking keys away and adding others one by one leaves them in the order of `to`.
+fn reachable(json: &Value, from: &Map<String, Value>, to: &Map<String, Value>, path: &str) -> bool {
+    let known = known_keys(json, path);
+    let mut keys: Vec<&str> = from.keys().filter(|&key| to.contains_key(key)).map(String::as_str).collect();
+    for key in to.keys().filter(|&key| !from.contains_key(key)) {
+        keys.insert(place_among(&keys, &known, key), key);
+    }
+    keys.iter().copied().eq(to.keys().map(String::as_str))
+}

@@ -1,0 +1,181 @@
+//! Fields for people: what a form, a line of help and completion need to know about one place in a document. Made from
+//! the schema alone.
+
+use serde_json::Value;
+
+use super::Document;
+use super::pointer;
+use super::schema::{Body, Place, Shape};
+
+/// One place in a document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name among its siblings: a key, the name of an item, or an index.
+    pub name: String,
+    /// One line of help.
+    pub help: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// Least and greatest number.
+    pub range: Option<(f64, f64)>,
+    /// The unit of its numbers.
+    pub unit: Option<&'static str>,
+    /// What counts where nothing is written.
+    pub default: Option<Value>,
+    /// Whether it may be taken away.
+    pub optional: bool,
+}
+
+/// What a [`Field`] is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// A number.
+    Number {
+        /// Without a fraction.
+        integer: bool,
+    },
+    /// Text.
+    Text,
+    /// true or false.
+    Bool,
+    /// One of several words; also the tag of a tagged object.
+    Choice(Vec<Choice>),
+    /// So many numbers, with their names where they have any ("x", "y").
+    Numbers(Vec<String>),
+    /// A list of such items.
+    List(Box<Field>),
+    /// An object with names of its own choice and such values.
+    Map(Box<Field>),
+    /// An object with known fields.
+    Object,
+    /// An object whose tag says which fields it has.
+    Tagged {
+        /// Name of the tag.
+        tag: &'static str,
+        /// What it may be.
+        variants: Vec<Choice>,
+    },
+    /// The name of one of the entries of this list of the scene ("images").
+    Reference(&'static str),
+}
+
+/// One word of a choice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The word.
+    pub name: &'static str,
+    /// One line of help.
+    pub help: &'static str,
+}
+
+/// A place below another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Child {
+    /// Its name among its siblings: a key, the name of an item, or an index.
+    pub name: String,
+    /// Where it is.
+    pub pointer: String,
+    /// Whether it is written in the document; else its default counts.
+    pub set: bool,
+    /// What it is.
+    pub field: Field,
+}
+
+/// What stands at `pointer`, or could; none where the schema knows no such place.
+pub fn field(document: &Document, pointer: &str) -> Option<Field> {
+    let place = Place::of(document.json(), pointer)?;
+    let last = pointer::split(pointer).map(|(_, last)| last).unwrap_or_default();
+    let name = name_of(place.value).unwrap_or(last);
+    Some(Field::new(name, place))
+}
+
+/// The value at `pointer`, or its default; `null` for an optional thing that is not there. None where the schema knows
+/// no such place.
+pub fn value(document: &Document, pointer: &str) -> Option<Value> {
+    let place = Place::of(document.json(), pointer)?;
+    place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
+}
+
+/// The places directly below `pointer`: the fields of an object in the schema's order, also those that are not written;
+/// the items of a list. None below plain values and lists of numbers.
+pub fn children(document: &Document, pointer: &str) -> Vec<Child> {
+    let Some(place) = Place::of(document.json(), pointer) else { return Vec::new() };
+    let child = |token: String| {
+        let below = place.step(&token)?;
+        let name = name_of(below.value).unwrap_or_else(|| token.clone());
+        let field = Field::new(name.clone(), below);
+        Some(Child { name, pointer: pointer::join(pointer, token), set: below.set, field })
+    };
+    let value = place.value.filter(|value| !value.is_null());
+    match place.shape.body() {
+        Body::List(..) => {
+            let count = value.and_then(Value::as_array).map_or(0, Vec::len);
+            (0..count).filter_map(|i| child(i.to_string())).collect()
+        }
+        Body::Map(_) => {
+            let keys = value.and_then(Value::as_object).into_iter().flat_map(|map| map.keys());
+            keys.filter_map(|key| child(key.clone())).collect()
+        }
+        Body::Object | Body::Tagged(_) if value.is_some() => {
+            place.shape.properties(value).into_iter().filter_map(|(name, _)| child(name.to_owned())).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The name that an item of a list carries.
+pub fn name_of(value: Option<&Value>) -> Option<String> {
+    Some(value?.as_object()?.get("name")?.as_str()?.to_owned())
+}
+
+impl Field {
+    fn new(name: String, place: Place) -> Field {
+        let shape = place.shape;
+        Field {
+            name,
+            help: shape.help(),
+            kind: kind(shape),
+            range: shape.range(),
+            unit: shape.unit(),
+            default: shape.default().cloned(),
+            optional: !place.required,
+        }
+    }
+
+    fn item(shape: Shape) -> Box<Field> {
+        Box::new(Field::new(String::new(), Place { shape, value: None, set: false, required: true }))
+    }
+
+    /// The range and unit in words: `0.001 to 1000000 px`.
+    pub fn range_text(&self) -> Option<String> {
+        range_text(self.range, self.unit)
+    }
+}
+
+/// A range with its unit in words.
+pub fn range_text(range: Option<(f64, f64)>, unit: Option<&str>) -> Option<String> {
+    let (min, max) = range?;
+    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+    Some(match (min.is_finite(), max.is_finite()) {
+        (true, false) => format!("at least {min}{unit}"),
+        (false, true) => format!("at most {max}{unit}"),
+        _ => format!("{min} to {max}{unit}"),
+    })
+}
+
+fn kind(shape: Shape) -> Kind {
+    let choices = || shape.choices().map(|(name, help)| Choice { name, help }).collect();
+    match shape.body() {
+        Body::Number { integer } => Kind::Number { integer },
+        Body::Text => shape.reference().map_or(Kind::Text, Kind::Reference),
+        Body::Bool => Kind::Bool,
+        Body::Choice => Kind::Choice(choices()),
+        Body::Numbers(n) => {
+            Kind::Numbers((0..n).map(|i| shape.column(i).map_or_else(|| i.to_string(), str::to_owned)).collect())
+        }
+        Body::List(item, ..) => Kind::List(Field::item(item)),
+        Body::Map(item) => Kind::Map(Field::item(item)),
+        Body::Object => Kind::Object,
+        Body::Tagged(tag) => Kind::Tagged { tag, variants: choices() },
+    }
+}

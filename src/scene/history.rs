@@ -1,0 +1,173 @@
+//! Undo and redo, without end: the present document, and every edit that led to it with its inverse. A value: no files,
+//! no clock; times come in.
+
+use super::{Document, Edit};
+use crate::base::problem::Problem;
+
+/// When and how an edit was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stamp {
+    /// Milliseconds since the epoch.
+    pub time_ms: u64,
+    /// By a key held down: it joins the edit before it where both replace the same value, into one step.
+    pub held: bool,
+}
+
+/// What a change of the history did, as the journal and the link want it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Applied {
+    /// The revision it led to; every change has one of its own, undo and redo too.
+    pub revision: u64,
+    /// The step it belongs to: edits that share it are undone as one.
+    pub step: u64,
+    /// What was applied.
+    pub edit: Edit,
+    /// What takes it back.
+    pub inverse: Edit,
+}
+
+/// One step of undo.
+#[derive(Clone, Debug)]
+struct Step {
+    id: u64,
+    edit: Edit,
+    inverse: Edit,
+    /// The last time it grew.
+    time_ms: u64,
+    /// Whether it may still take in a held key.
+    open: bool,
+    /// Names of the states before and after it.
+    before: u64,
+    after: u64,
+}
+
+/// A document with its past and its undone future.
+#[derive(Clone, Debug)]
+pub struct History {
+    document: Document,
+    revision: u64,
+    /// The name of the present state: undo comes back to the same one.
+    state: u64,
+    saved: Option<u64>,
+    next_step: u64,
+    done: Vec<Step>,
+    undone: Vec<Step>,
+}
+
+impl History {
+    /// The history of a document that was just read from its file.
+    pub fn new(document: Document) -> History {
+        History { document, revision: 0, state: 0, saved: Some(0), next_step: 0, done: Vec::new(), undone: Vec::new() }
+    }
+
+    /// The document as it is now.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// How many changes there were, undo and redo included.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Applies an edit; what was undone is forgotten. None where the edit changes nothing.
+    pub fn apply(&mut self, edit: Edit, stamp: Stamp) -> Result<Option<Applied>, Vec<Problem>> {
+        let document = self.document.apply(&edit)?;
+        let inverse = edit.inverse(&self.document);
+        if super::json::same(document.json(), self.document.json()) {
+            return Ok(None);
+        }
+        self.document = document;
+        self.revision += 1;
+        self.undone.clear();
+        let before = std::mem::replace(&mut self.state, self.revision);
+        let joins = |last: &&mut Step| {
+            stamp.held && last.open && edit.replaced().is_some() && edit.replaced() == last.edit.replaced()
+        };
+        let step = match self.done.last_mut().filter(joins) {
+            Some(last) => {
+                (last.edit, last.time_ms, last.after) = (edit.clone(), stamp.time_ms, self.state);
+                last.id
+            }
+            None => {
+                let id = self.next_step;
+                self.next_step += 1;
+                let (edit, inverse, time_ms) = (edit.clone(), inverse.clone(), stamp.time_ms);
+                self.done.push(Step { id, edit, inverse, time_ms, open: true, before, after: self.state });
+                id
+            }
+        };
+        Ok(Some(Applied { revision: self.revision, step, edit, inverse }))
+    }
+
+    /// Ends the step: a held key that follows begins another.
+    pub fn close_step(&mut self) {
+        if let Some(last) = self.done.last_mut() {
+            last.open = false;
+        }
+    }
+
+    /// Takes the last step back; none where there is none.
+    pub fn undo(&mut self) -> Option<Applied> {
+        let mut step = self.done.pop()?;
+        step.open = false;
+        let applied = self.go(&step, step.inverse.clone(), step.edit.clone(), step.before);
+        self.undone.push(step);
+        self.close_step();
+        applied
+    }
+
+    /// Does again what was undone last; none where there is nothing.
+    pub fn redo(&mut self) -> Option<Applied> {
+        let step = self.undone.pop()?;
+        let applied = self.go(&step, step.edit.clone(), step.inverse.clone(), step.after);
+        self.done.push(step);
+        applied
+    }
+
+    fn go(&mut self, step: &Step, edit: Edit, inverse: Edit, state: u64) -> Option<Applied> {
+        self.document = self.document.apply(&edit).ok()?;
+        self.revision += 1;
+        self.state = state;
+        Some(Applied { revision: self.revision, step: step.id, edit, inverse })
+    }
+
+    /// Back to the document as it was at a time, in milliseconds since the epoch.
+    pub fn earlier(&mut self, time_ms: u64) -> Vec<Applied> {
+        let mut all = Vec::new();
+        while self.done.last().is_some_and(|step| step.time_ms > time_ms) {
+            all.extend(self.undo());
+        }
+        all
+    }
+
+    /// On to the document as it was at a time, as far as it was undone.
+    pub fn later(&mut self, time_ms: u64) -> Vec<Applied> {
+        let mut all = Vec::new();
+        while self.undone.last().is_some_and(|step| step.time_ms <= time_ms) {
+            all.extend(self.redo());
+        }
+        all
+    }
+
+    /// How many steps can be undone and redone.
+    pub fn depth(&self) -> (usize, usize) {
+        (self.done.len(), self.undone.len())
+    }
+
+    /// The document as it is now was written to its file.
+    pub fn mark_saved(&mut self) {
+        self.saved = Some(self.state);
+        self.close_step();
+    }
+
+    /// The file is not what any state was (it was recovered, or another program wrote it).
+    pub fn mark_unsaved(&mut self) {
+        self.saved = None;
+    }
+
+    /// Whether the document is what was last written; undo comes back to it.
+    pub fn is_saved(&self) -> bool {
+        self.saved == Some(self.state)
+    }
+}

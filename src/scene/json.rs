@@ -1,0 +1,273 @@
+//! Text to JSON and back. serde_json reads, but through a visitor of our own: it refuses a key that stands twice (serde_json
+//! would silently keep the last) and text nested too deep, each with its line and column. Writing keeps what changes
+//! together on one line, so that diffs are small.
+
+use std::fmt;
+
+use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
+
+use crate::base::problem::Problem;
+
+/// Objects and lists may be nested this deep.
+pub const MAX_DEPTH: usize = 64;
+
+/// What stands on one line ends before this column.
+const MAX_COLUMN: usize = 110;
+
+/// Parses `text`; the problem says the line and the column.
+pub fn parse(text: &str) -> Result<Value, Problem> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = Seed { depth: 0 }.deserialize(&mut deserializer);
+    value.and_then(|value| deserializer.end().map(|()| value)).map_err(|error| place(&error))
+}
+
+fn place(error: &serde_json::Error) -> Problem {
+    let (line, column) = (error.line(), error.column());
+    let message = error.to_string();
+    let what = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
+    Problem::error("", format!("line {line}, column {column}: {what}"))
+}
+
+/// Reads one value at a depth.
+#[derive(Clone, Copy)]
+struct Seed {
+    depth: usize,
+}
+
+impl Seed {
+    fn deeper<E: serde::de::Error>(self) -> Result<Seed, E> {
+        if self.depth < MAX_DEPTH {
+            Ok(Seed { depth: self.depth + 1 })
+        } else {
+            Err(E::custom(format_args!("nested deeper than {MAX_DEPTH}")))
+        }
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Seed {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Seed {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut access: A) -> Result<Value, A::Error> {
+        let inner = self.deeper()?;
+        let mut items = Vec::new();
+        while let Some(item) = access.next_element_seed(inner)? {
+            items.push(item);
+        }
+        Ok(Value::Array(items))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut access: A) -> Result<Value, A::Error> {
+        let inner = self.deeper()?;
+        let mut map = Map::new();
+        while let Some(key) = access.next_key::<String>()? {
+            if map.contains_key(&key) {
+                return Err(A::Error::custom(format_args!("{} stands twice in one object", Value::from(key))));
+            }
+            let value = access.next_value_seed(inner)?;
+            map.insert(key, value);
+        }
+        Ok(Value::Object(map))
+    }
+}
+
+/// The text of a document: two spaces a level, lists of numbers and short objects of plain values on one line, a line end
+/// at the end. `parse` of it gives the value back, and the text of that is the same text.
+pub fn to_text(value: &Value) -> String {
+    let mut out = String::new();
+    write(value, 0, 0, &mut out);
+    out.push('\n');
+    out
+}
+
+/// Writes `value` where the line already holds `column` characters.
+fn write(value: &Value, level: usize, column: usize, out: &mut String) {
+    if level > 0 && is_flat(value) {
+        let start = out.len();
+        inline(value, out);
+        if out.len() - start + column < MAX_COLUMN || is_row(value) {
+            return;
+        }
+        out.truncate(start);
+    }
+    match value {
+        Value::Object(map) if !map.is_empty() => {
+            lines(map.iter(), '{', '}', level, out, |(key, value), out| {
+                let start = out.len();
+                scalar(&Value::from(key.as_str()), out);
+                out.push_str(": ");
+                write(value, level + 1, 2 * level + 2 + out.len() - start, out);
+            });
+        }
+        Value::Array(items) if !items.is_empty() => {
+            lines(items.iter(), '[', ']', level, out, |item, out| write(item, level + 1, 2 * level + 2, out));
+        }
+        _ => inline(value, out),
+    }
+}
+
+fn lines<T>(
+    items: impl ExactSizeIterator<Item = T>,
+    open: char,
+    close: char,
+    level: usize,
+    out: &mut String,
+    mut each: impl FnMut(T, &mut String),
+) {
+    let last = items.len() - 1;
+    out.push(open);
+    for (i, item) in items.enumerate() {
+        out.push('\n');
+        out.extend(std::iter::repeat_n("  ", level + 1));
+        each(item, out);
+        if i < last {
+            out.push(',');
+        }
+    }
+    out.push('\n');
+    out.extend(std::iter::repeat_n("  ", level));
+    out.push(close);
+}
+
+/// Whether `value` may stand on one line: a plain value, numbers, or an object of those.
+fn is_flat(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => map.values().all(|value| is_scalar(value) || is_numbers(value)),
+        Value::Array(_) => is_numbers(value),
+        _ => true,
+    }
+}
+
+/// A list of numbers, or of such lists.
+fn is_numbers(value: &Value) -> bool {
+    value.as_array().is_some_and(|items| items.iter().all(|item| item.is_number() || is_numbers(item)))
+}
+
+/// A list of plain numbers stays on its line however long it is, and so does a plain value.
+fn is_row(value: &Value) -> bool {
+    is_scalar(value) || value.as_array().is_some_and(|items| items.iter().all(Value::is_number))
+}
+
+fn is_scalar(value: &Value) -> bool {
+    !value.is_object() && !value.is_array()
+}
+
+fn inline(value: &Value, out: &mut String) {
+    match value {
+        Value::Object(map) if !map.is_empty() => {
+            for (i, (key, value)) in map.iter().enumerate() {
+                out.push_str(if i == 0 { "{ " } else { ", " });
+                scalar(&Value::from(key.as_str()), out);
+                out.push_str(": ");
+                inline(value, out);
+            }
+            out.push_str(" }");
+        }
+        Value::Array(items) => {
+            out.push('[');
+            for (i, item) in items.iter().enumerate() {
+                out.push_str(if i == 0 { "" } else { ", " });
+                inline(item, out);
+            }
+            out.push(']');
+        }
+        scalar_or_empty => scalar(scalar_or_empty, out),
+    }
+}
+
+/// A plain value, or an empty object, as serde_json writes it: numbers at their shortest, integers as integers.
+fn scalar(value: &Value, out: &mut String) {
+    use std::fmt::Write;
+    write!(out, "{value}").expect("writing to a string does not fail");
+}
+
+/// Whether two values are the same to the last sign, the order of keys included (`==` on objects does not look at it).
+pub fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|((ka, a), (kb, b))| ka == kb && same(a, b))
+        }
+        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
+        (a, b) => a == b,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn broken_text_is_refused_with_its_place() {
+        for (text, expected) in [
+            ("{ \"a\": 1,\n  \"a\": 2 }", "line 2, column 5: \"a\" stands twice in one object"),
+            ("[1e999]", "line 1, column 6: number out of range"),
+            ("{ \"a\": NaN }", "line 1, column 8: expected value"),
+            ("{ \"a\": 1 } x", "line 1, column 12: trailing characters"),
+            ("", "line 1, column 0: EOF while parsing a value"),
+        ] {
+            assert_eq!(parse(text).unwrap_err().message, expected, "{text}");
+        }
+        let deep = |n: usize| "[".repeat(n) + &"]".repeat(n);
+        assert!(parse(&deep(MAX_DEPTH)).is_ok());
+        assert_eq!(parse(&deep(MAX_DEPTH + 1)).unwrap_err().message, "line 1, column 66: nested deeper than 64");
+        assert!(parse(&deep(100_000)).is_err());
+    }
+
+    #[test]
+    fn text_is_stable_and_keeps_numbers_and_order() {
+        let text = concat!(
+            "{\n  \"z\": 1,\n  \"a\": 2.0,\n  \"empty\": {},\n  \"none\": [],\n",
+            "  \"point\": { \"at\": [1, -0.5], \"name\": \"\\u0007 é\" },\n",
+            "  \"list\": [\n    { \"x\": 1e300 },\n    { \"y\": { \"z\": 3 } }\n  ]\n}\n"
+        );
+        let expected = text.replace("{ \"y\": { \"z\": 3 } }", "{\n      \"y\": { \"z\": 3 }\n    }");
+        let value = parse(text).unwrap();
+        assert_eq!(to_text(&value), expected.replace("1e300", "1e+300"));
+        assert!(same(&parse(&to_text(&value)).unwrap(), &value));
+    }
+
+    #[test]
+    fn long_rows_stay_and_long_lists_of_points_break() {
+        let numbers = Value::from((0..200).collect::<Vec<_>>());
+        let points = Value::from((0..200).map(|i| vec![i, i]).collect::<Vec<_>>());
+        let text = to_text(&serde_json::json!({ "n": numbers, "p": points }));
+        assert_eq!(text.lines().count(), 2 + 1 + 202);
+    }
+}

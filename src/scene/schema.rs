@@ -1,0 +1,336 @@
+//! The schema of a scene, generated from its types, and the one walker over it: a JSON pointer to the shape of what
+//! stands there. The check of shape, forms, help, completion, edits and `plica schema` all look through this door.
+
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value};
+
+use super::pointer;
+
+/// A position, a vector or a plain number without a range of its own lies within this: every sum and product of a few
+/// of them stays finite.
+const LARGEST: f64 = 1e9;
+
+static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+    let mut schema = Value::from(schemars::schema_for!(super::Scene));
+    bound(&mut schema, None);
+    schema
+});
+
+/// The JSON Schema of a scene.
+pub fn json_schema() -> &'static Value {
+    &SCHEMA
+}
+
+/// Writes a range at every number of the schema that has none, except speeds and shifts, which may be any finite number.
+fn bound(node: &mut Value, unit: Option<&str>) {
+    let own = node.get("unit").and_then(Value::as_str).map(str::to_owned);
+    let unit = own.as_deref().or(unit);
+    if let Value::Object(map) = node {
+        let numeric = map.get("type").and_then(Value::as_str);
+        if let Some(range) = numeric.and_then(|kind| widest(kind, unit)) {
+            map.entry("minimum").or_insert(range[0].clone());
+            map.entry("maximum").or_insert(range[1].clone());
+        }
+    }
+    let children: Box<dyn Iterator<Item = &mut Value>> = match node {
+        Value::Object(map) => Box::new(map.values_mut()),
+        Value::Array(items) => Box::new(items.iter_mut()),
+        _ => Box::new(std::iter::empty()),
+    };
+    children.for_each(|child| bound(child, unit));
+}
+
+fn widest(kind: &str, unit: Option<&str>) -> Option<[Value; 2]> {
+    match (kind, unit) {
+        ("integer", _) => Some([0.into(), u32::MAX.into()]),
+        ("number", None | Some("px")) => Some([(-LARGEST).into(), LARGEST.into()]),
+        _ => None,
+    }
+}
+
+/// A node of the schema with its references followed.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    /// Where the type is used: description, default and unit of the field.
+    site: &'static Value,
+    /// The type itself.
+    body: &'static Value,
+    /// The field whose items these are, for what they inherit from it: help, unit, names of columns.
+    outer: Option<&'static Value>,
+    /// Set where this is the tag of the tagged type in `body`.
+    tag: Option<&'static str>,
+    /// Whether `null`, or nothing, may stand here.
+    pub optional: bool,
+}
+
+/// What a [`Shape`] is.
+#[derive(Clone, Copy, Debug)]
+pub enum Body {
+    /// A number.
+    Number {
+        /// Without a fraction.
+        integer: bool,
+    },
+    /// Text.
+    Text,
+    /// true or false.
+    Bool,
+    /// One of several words: [`Shape::choices`].
+    Choice,
+    /// So many numbers.
+    Numbers(usize),
+    /// A list of a shape, at least and at most so long.
+    List(Shape, usize, usize),
+    /// An object with names of its own choice and values of a shape.
+    Map(Shape),
+    /// An object with known fields.
+    Object,
+    /// An object with a tag that says which fields it has: [`Shape::choices`].
+    Tagged(&'static str),
+}
+
+impl Shape {
+    /// The whole document.
+    pub fn root() -> Shape {
+        Shape::of(&SCHEMA, None)
+    }
+
+    fn of(site: &'static Value, outer: Option<&'static Value>) -> Shape {
+        let mut shape = Shape { site, body: site, outer, tag: None, optional: false };
+        loop {
+            if let Some(any) = shape.body.get("anyOf").and_then(Value::as_array) {
+                let (nulls, others): (Vec<_>, Vec<_>) = any.iter().partition(|one| one["type"] == "null");
+                shape.optional |= !nulls.is_empty();
+                shape.body = others.first().copied().unwrap_or(&Value::Null);
+            } else if let Some(name) = shape.body.get("$ref").and_then(Value::as_str) {
+                shape.body = SCHEMA.pointer(name.trim_start_matches('#')).unwrap_or(&Value::Null);
+            } else {
+                return shape;
+            }
+        }
+    }
+
+    /// What it is.
+    pub fn body(self) -> Body {
+        if self.tag.is_some() {
+            return Body::Choice;
+        }
+        if let Some(variants) = self.body.get("oneOf").and_then(Value::as_array) {
+            return variants.first().and_then(tag_of).map_or(Body::Choice, Body::Tagged);
+        }
+        match self.type_name() {
+            "number" => Body::Number { integer: false },
+            "integer" => Body::Number { integer: true },
+            "boolean" => Body::Bool,
+            "array" => self.array(),
+            "object" => match self.body.get("additionalProperties").filter(|of| of.is_object()) {
+                Some(item) => Body::Map(Shape::of(item, None)),
+                None => Body::Object,
+            },
+            _ if self.body.get("enum").is_some() => Body::Choice,
+            _ => Body::Text,
+        }
+    }
+
+    fn array(self) -> Body {
+        let item = Shape::of(&self.body["items"], Some(self.outer.unwrap_or(self.site)));
+        let length = |key, otherwise| self.body.get(key).and_then(Value::as_u64).map_or(otherwise, |n| n as usize);
+        let (min, max) = (length("minItems", 0), length("maxItems", usize::MAX));
+        match item.body() {
+            Body::Number { .. } if min == max => Body::Numbers(min),
+            _ => Body::List(item, min, max),
+        }
+    }
+
+    /// The type in JSON's words; "null" beside another type is left out (it makes the shape optional).
+    fn type_name(self) -> &'static str {
+        let one = |value: &'static Value| value.as_str().filter(|&name| name != "null");
+        match self.body.get("type") {
+            Some(Value::Array(names)) => names.iter().find_map(one).unwrap_or_default(),
+            Some(name) => one(name).unwrap_or_default(),
+            None => "",
+        }
+    }
+
+    /// Whether `null`, or nothing, may stand here instead.
+    pub fn allows_null(self) -> bool {
+        let listed = |names: &'static Value| names.as_array().is_some_and(|names| names.iter().any(|n| n == "null"));
+        self.optional || self.body.get("type").is_some_and(listed)
+    }
+
+    fn meta(self, key: &str) -> Option<&'static Value> {
+        self.site.get(key).or_else(|| self.body.get(key)).or_else(|| self.outer?.get(key))
+    }
+
+    fn text(self, key: &str) -> Option<&'static str> {
+        self.meta(key).and_then(Value::as_str)
+    }
+
+    /// One line of help.
+    pub fn help(self) -> &'static str {
+        self.text("description").unwrap_or_default()
+    }
+
+    /// The unit of its numbers.
+    pub fn unit(self) -> Option<&'static str> {
+        self.text("unit")
+    }
+
+    /// What its text names: the key of one of the scene's lists ("images").
+    pub fn reference(self) -> Option<&'static str> {
+        self.text("reference")
+    }
+
+    /// Names of the numbers of a pair, where they have any: x and y of what is measured in pixels.
+    pub fn column(self, index: usize) -> Option<&'static str> {
+        match self.meta("columns") {
+            Some(names) => names.get(index).and_then(Value::as_str),
+            None if self.unit() == Some("px") => ["x", "y"].get(index).copied(),
+            None => None,
+        }
+    }
+
+    /// Least and greatest value of the number, or of each of its numbers.
+    pub fn range(self) -> Option<(f64, f64)> {
+        if let Body::Numbers(_) = self.body() {
+            return Shape::of(&self.body["items"], None).range();
+        }
+        let limit = |key| self.body.get(key).and_then(Value::as_f64);
+        match (limit("minimum"), limit("maximum")) {
+            (None, None) => None,
+            (min, max) => Some((min.unwrap_or(f64::NEG_INFINITY), max.unwrap_or(f64::INFINITY))),
+        }
+    }
+
+    /// The least number of characters of a text.
+    pub fn min_length(self) -> usize {
+        self.body.get("minLength").and_then(Value::as_u64).unwrap_or(0) as usize
+    }
+
+    /// What counts where nothing is written.
+    pub fn default(self) -> Option<&'static Value> {
+        self.site.get("default")
+    }
+
+    /// The words that a choice allows, or the tags of a tagged type, each with its help.
+    pub fn choices(self) -> impl Iterator<Item = (&'static str, &'static str)> + Clone {
+        let list = self.body.get("oneOf").or_else(|| self.body.get("enum")).and_then(Value::as_array);
+        list.into_iter().flatten().filter_map(|one| {
+            let name = tag_of(one).map(|tag| &one["properties"][tag]["const"]).or_else(|| one.get("const"));
+            let help = one.get("description").and_then(Value::as_str).unwrap_or_default();
+            Some((name.unwrap_or(one).as_str()?, help))
+        })
+    }
+
+    /// The branch of a tagged type whose tag is `name`.
+    pub fn variant(self, name: &str) -> Option<Shape> {
+        let variants = self.body.get("oneOf")?.as_array()?;
+        let branch = variants.iter().find(|one| tag_of(one).is_some_and(|tag| one["properties"][tag]["const"] == name));
+        branch.map(|branch| Shape { site: self.site, body: branch, outer: None, tag: None, optional: self.optional })
+    }
+
+    /// The branch that `value` chooses: itself where there is no tag, none where the tag is missing or unknown.
+    pub fn branch(self, value: Option<&Value>) -> Option<Shape> {
+        match self.body() {
+            Body::Tagged(tag) => self.variant(value?.get(tag)?.as_str()?),
+            _ => Some(self),
+        }
+    }
+
+    /// The field `name` of an object whose tag, if it has one, is in `value`.
+    pub fn property(self, value: Option<&Value>, name: &str) -> Option<Shape> {
+        match self.body() {
+            Body::Tagged(tag) if tag == name => Some(Shape { tag: Some(tag), site: self.body, ..self }),
+            Body::Tagged(_) => self.branch(value)?.property(None, name),
+            Body::Map(item) => Some(item),
+            _ => Some(Shape::of(self.fields()?.get(name)?, None)),
+        }
+    }
+
+    /// The fields of an object in their order, the tag first.
+    pub fn properties(self, value: Option<&Value>) -> Vec<(&'static str, Shape)> {
+        let names = self.branch(value).and_then(Shape::fields).into_iter().flat_map(Map::keys).map(String::as_str);
+        let mut names: Vec<_> = names.collect();
+        if let (Body::Tagged(tag), true) = (self.body(), names.is_empty()) {
+            names.push(tag);
+        }
+        names.into_iter().filter_map(|name| Some((name, self.property(value, name)?))).collect()
+    }
+
+    /// The only value that a field may have: the tag of a branch.
+    pub fn constant(self, name: &str) -> Option<&'static Value> {
+        self.fields()?.get(name)?.get("const")
+    }
+
+    /// The fields that must be written, of an object whose tag is already chosen.
+    pub fn required(self) -> impl Iterator<Item = &'static str> {
+        self.body.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
+    }
+
+    /// The known fields of an object whose tag is already chosen.
+    pub fn fields(self) -> Option<&'static Map<String, Value>> {
+        self.body.get("properties").and_then(Value::as_object)
+    }
+}
+
+/// The property of a branch of a tagged type that tells it apart.
+fn tag_of(branch: &'static Value) -> Option<&'static str> {
+    let properties = branch.get("properties")?.as_object()?;
+    properties.iter().find(|(_, property)| property.get("const").is_some()).map(|(name, _)| name.as_str())
+}
+
+/// What a pointer leads to.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// Its shape.
+    pub shape: Shape,
+    /// The value written there, else the default; none where there is neither.
+    pub value: Option<&'a Value>,
+    /// Whether it is written in the document.
+    pub set: bool,
+    /// Whether it must be.
+    pub required: bool,
+}
+
+impl<'a> Place<'a> {
+    /// The whole of a document.
+    pub fn root(json: &'a Value) -> Place<'a> {
+        Place { shape: Shape::root(), value: Some(json), set: true, required: true }
+    }
+
+    /// What `pointer` leads to; none where the schema knows no such place or a list is not so long. The place just after
+    /// the end of a list, also written `-`, and any name in a map are places without a value.
+    pub fn of(json: &'a Value, pointer: &str) -> Option<Place<'a>> {
+        if !pointer.is_empty() && !pointer.starts_with('/') {
+            return None;
+        }
+        pointer::tokens(pointer).try_fold(Place::root(json), |place, token| place.step(&token))
+    }
+
+    /// One token deeper.
+    pub fn step(self, token: &str) -> Option<Place<'a>> {
+        let here = self.value.filter(|value| !value.is_null());
+        match self.shape.body() {
+            Body::List(item, ..) => {
+                let items = here.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
+                let index = if token == "-" { items.len() } else { pointer::index(token)? };
+                let value = items.get(index);
+                let known = index <= items.len();
+                known.then_some(Place { shape: item, value, set: self.set && value.is_some(), required: true })
+            }
+            Body::Numbers(count) => {
+                let index = pointer::index(token).filter(|&index| index < count)?;
+                let shape = Shape::of(&self.shape.body["items"], Some(self.shape.outer.unwrap_or(self.shape.site)));
+                Some(Place { shape, value: here.and_then(|v| v.get(index)), set: self.set, required: true })
+            }
+            _ => {
+                let shape = self.shape.property(here, token)?;
+                let written = here.and_then(|value| value.get(token));
+                let required = self.shape.branch(here).is_some_and(|branch| branch.required().any(|n| n == token));
+                let set = self.set && written.is_some();
+                Some(Place { shape, value: written.or(shape.default()), set, required })
+            }
+        }
+    }
+}

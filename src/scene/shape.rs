@@ -1,0 +1,186 @@
+//! The check of shape: walks a document beside its schema, taking a tagged branch by its tag, and lists every unknown or
+//! missing field, wrong type, unknown word and number out of range at once. (Reading into the types would stop at the
+//! first, and would not say where.)
+
+use serde_json::{Map, Value};
+
+use super::field::range_text;
+use super::pointer;
+use super::schema::{Body, Shape};
+use crate::base::problem::{Problem, nearest, quoted, there_are};
+
+/// No more problems than this are listed.
+const MAX_PROBLEMS: usize = 1000;
+
+/// Every problem of shape in `json`.
+pub fn check(json: &Value) -> Vec<Problem> {
+    let mut walk = Walk { path: String::new(), problems: Vec::new() };
+    walk.value(Shape::root(), json);
+    if walk.problems.len() >= MAX_PROBLEMS {
+        walk.problems.push(Problem::error("", format!("more than {MAX_PROBLEMS} problems; the rest are not listed")));
+    }
+    walk.problems
+}
+
+/// Whether `value` has this shape.
+pub fn fits(shape: Shape, value: &Value) -> bool {
+    let mut walk = Walk { path: String::new(), problems: Vec::new() };
+    walk.value(shape, value);
+    walk.problems.is_empty()
+}
+
+struct Walk {
+    path: String,
+    problems: Vec<Problem>,
+}
+
+impl Walk {
+    fn report(&mut self, message: String, hint: impl Into<Option<String>>) {
+        if self.problems.len() < MAX_PROBLEMS {
+            let problem = Problem::error(self.path.as_str(), message);
+            self.problems.push(Problem { hint: hint.into(), ..problem });
+        }
+    }
+
+    /// Does `below` one step deeper.
+    fn under(&mut self, token: &str, below: impl FnOnce(&mut Self)) {
+        let length = self.path.len();
+        pointer::push(&mut self.path, token);
+        below(self);
+        self.path.truncate(length);
+    }
+
+    fn value(&mut self, shape: Shape, value: &Value) {
+        if value.is_null() && shape.allows_null() {
+            return;
+        }
+        match (shape.body(), value) {
+            (Body::Number { integer }, Value::Number(number)) => {
+                let number = number.as_f64().unwrap_or(f64::NAN);
+                self.number(shape, number, integer && !(value.is_u64() || value.is_i64()));
+            }
+            (Body::Text, Value::String(text)) if text.chars().count() < shape.min_length() => {
+                self.report("is empty".into(), Some(format!("expected {}", expected(shape))));
+            }
+            (Body::Text, Value::String(_)) | (Body::Bool, Value::Bool(_)) => {}
+            (Body::Choice, Value::String(word)) if shape.choices().any(|(name, _)| name == word) => {}
+            (Body::Choice, Value::String(word)) => {
+                self.report(format!("{} is not known here", quoted(word)), nearest(word, shape.choices().map(|c| c.0)));
+            }
+            (Body::Numbers(count), Value::Array(items)) if items.len() == count => {
+                let range = shape.range();
+                self.items(items, |walk, item| match item.as_f64() {
+                    Some(number) => walk.in_range(number, range, shape.unit()),
+                    None => walk.report(format!("expected a number, found {}", found(item)), None),
+                });
+            }
+            (Body::List(item, min, max), Value::Array(items)) => self.list(item, items, min, max),
+            (Body::Map(item), Value::Object(map)) => {
+                for (key, value) in map {
+                    self.under(key, |walk| walk.value(item, value));
+                }
+            }
+            (Body::Object, Value::Object(map)) => self.fields(shape, map),
+            (Body::Tagged(tag), Value::Object(map)) => self.tagged(shape, map, tag),
+            _ => self.report(format!("expected {}, found {}", expected(shape), found(value)), None),
+        }
+    }
+
+    fn number(&mut self, shape: Shape, number: f64, fraction: bool) {
+        if fraction {
+            self.report(format!("expected a whole number, found {number}"), None);
+        } else {
+            self.in_range(number, shape.range(), shape.unit());
+        }
+    }
+
+    fn in_range(&mut self, number: f64, range: Option<(f64, f64)>, unit: Option<&str>) {
+        let Some((min, max)) = range else { return };
+        if !(min..=max).contains(&number) {
+            let side = if number < min { "small" } else { "large" };
+            let range = range_text(range, unit).unwrap_or_default();
+            self.report(format!("{number} is too {side}: {range}"), None);
+        }
+    }
+
+    fn items(&mut self, items: &[Value], mut each: impl FnMut(&mut Self, &Value)) {
+        for (i, item) in items.iter().enumerate() {
+            self.under(&i.to_string(), |walk| each(walk, item));
+        }
+    }
+
+    fn list(&mut self, shape: Shape, items: &[Value], min: usize, max: usize) {
+        if !(min..=max).contains(&items.len()) {
+            let count = items.len();
+            let wanted = if min == max { format!("{min}") } else { format!("at least {min}") };
+            self.report(format!("expected {wanted} of these, found {count}"), None);
+        }
+        self.items(items, |walk, item| walk.value(shape, item));
+    }
+
+    fn tagged(&mut self, shape: Shape, map: &Map<String, Value>, tag: &'static str) {
+        let tags = || shape.choices().map(|(name, _)| name);
+        match map.get(tag) {
+            None => self.report(format!("{} is missing", quoted(tag)), Some(there_are(tags()))),
+            Some(Value::String(name)) => match shape.variant(name) {
+                Some(branch) => self.fields(branch, map),
+                None => self.under(tag, |walk| {
+                    walk.report(format!("there is no {tag} {}", quoted(name)), nearest(name, tags()));
+                }),
+            },
+            Some(other) => self.under(tag, |walk| {
+                walk.report(format!("expected a word, found {}", found(other)), Some(there_are(tags())));
+            }),
+        }
+    }
+
+    fn fields(&mut self, shape: Shape, map: &Map<String, Value>) {
+        let known = || shape.fields().into_iter().flat_map(Map::keys).map(String::as_str);
+        for name in shape.required().filter(|&name| !map.contains_key(name)) {
+            let field = shape.property(None, name);
+            let hint = field.map(|field| format!("{}; {}", field.help().trim_end_matches('.'), expected(field)));
+            self.report(format!("{} is missing", quoted(name)), hint);
+        }
+        for (name, value) in map {
+            match shape.property(None, name) {
+                Some(_) if shape.constant(name).is_some() => {}
+                Some(field) => self.under(name, |walk| walk.value(field, value)),
+                None => self.under(name, |walk| {
+                    walk.report(format!("unknown field {}", quoted(name)), nearest(name, known()));
+                }),
+            }
+        }
+    }
+}
+
+/// What a shape wants, in words.
+pub fn expected(shape: Shape) -> String {
+    let range = range_text(shape.range(), shape.unit()).map(|range| format!(", {range}")).unwrap_or_default();
+    match shape.body() {
+        Body::Number { integer: false } => format!("a number{range}"),
+        Body::Number { integer: true } => format!("a whole number{range}"),
+        Body::Text if shape.reference().is_some() => "a name of the scene's images".into(),
+        Body::Text => "text".into(),
+        Body::Bool => "true or false".into(),
+        Body::Choice => {
+            shape.choices().map(|(name, _)| quoted(name)).collect::<Vec<_>>().join(", ").replace(", ", " or ")
+        }
+        Body::Numbers(count) => format!("a list of {count} numbers{range}"),
+        Body::List(..) => "a list".into(),
+        Body::Map(_) | Body::Object => "an object".into(),
+        Body::Tagged(tag) => format!("an object with {}", quoted(tag)),
+    }
+}
+
+/// What was found, in words.
+pub fn found(value: &Value) -> String {
+    match value {
+        Value::Null => "null".into(),
+        Value::Bool(value) => value.to_string(),
+        Value::Number(number) => number.to_string(),
+        Value::String(text) => format!("the text {}", quoted(text)),
+        Value::Array(items) if items.iter().all(Value::is_number) => format!("a list of {} numbers", items.len()),
+        Value::Array(items) => format!("a list of {}", items.len()),
+        Value::Object(_) => "an object".into(),
+    }
+}
