@@ -8,6 +8,7 @@
 
 pub mod base;
 pub mod cli;
+pub mod export;
 pub mod files;
 pub mod layers;
 pub mod ops;

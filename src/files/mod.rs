@@ -3,6 +3,7 @@
 
 mod counts;
 pub mod disk;
+pub mod draft;
 pub mod fields;
 pub mod limits;
 pub mod materials;

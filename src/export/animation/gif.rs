@@ -1,0 +1,195 @@
+//! GIF, by the gif crate: 256 colours, no partial alpha, times in hundredths of a second. The last resort.
+//!
+//! The first frames wait, up to a bound, so that one palette can serve them all; later frames use it too unless it fails
+//! them. Each frame is written one late: what it leaves behind depends on the next.
+
+use gif::{DisposalMethod, Encoder, Repeat};
+
+use super::delta::{Rect, around};
+use super::palette::{Palette, is_opaque};
+use super::{Out, Show, Sink};
+use crate::base::error::{Error, Result};
+use crate::base::pixels::Frame;
+
+/// The longest side.
+const MOST: usize = 65535;
+/// Times are counted in hundredths of a second.
+const UNITS: u64 = 100;
+/// Pixels that may wait for the palette.
+const WAITING: usize = 1 << 26;
+/// A frame whose colours err more than this many times what the palette was made for gets its own.
+const FAILS: f64 = 4.0;
+/// The mean square error (Oklab) that nobody sees.
+const UNSEEN: f64 = 2e-5;
+
+/// Begins a GIF.
+pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
+    if show.width > MOST || show.height > MOST {
+        let what = format!("GIF holds at most {MOST} x {MOST} pixels, not {} x {}", show.width, show.height);
+        return Err(Error::at(&show.place, what).cure("--size makes frames smaller"));
+    }
+    Ok(Box::new(Gif { show, state: State::Waiting(out, Vec::new()), partial: false }))
+}
+
+struct Gif {
+    show: Show,
+    state: State,
+    /// Whether partial alpha was met.
+    partial: bool,
+}
+
+enum State {
+    Waiting(Out, Vec<Frame>),
+    Writing(Box<Writer>),
+    /// Between the two, and after an error.
+    Broken,
+}
+
+impl Sink for Gif {
+    fn frame(&mut self, _: u64, frame: Frame) -> Result<()> {
+        self.partial |= frame.cells().iter().any(|c| (1..255).contains(&c[3]));
+        match &mut self.state {
+            State::Waiting(_, frames) => {
+                frames.push(frame);
+                let pixels = frames.len() * self.show.width * self.show.height;
+                if pixels > WAITING { self.flush() } else { Ok(()) }
+            }
+            State::Writing(writer) => writer.frame(frame),
+            State::Broken => Ok(()),
+        }
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<Vec<String>> {
+        self.flush()?;
+        if let State::Writing(writer) = self.state {
+            writer.finish()?;
+        }
+        let place = &self.show.place;
+        let partial = format!("{place}: GIF has no partial alpha; pixels are shown from half opaque on");
+        let fast =
+            format!("{place}: many viewers slow a GIF down above 50 frames a second (--frames 0-N:2 takes half)");
+        let is_fast = self.show.frames > 1 && self.show.rate.num > 50 * self.show.rate.den;
+        Ok([self.partial.then_some(partial), is_fast.then_some(fast)].into_iter().flatten().collect())
+    }
+}
+
+impl Gif {
+    /// Makes the palette of the frames that waited, and writes them.
+    fn flush(&mut self) -> Result<()> {
+        match std::mem::replace(&mut self.state, State::Broken) {
+            State::Waiting(out, frames) => {
+                let mut writer = Box::new(Writer::new(out, &self.show, &frames)?);
+                frames.into_iter().try_for_each(|frame| writer.frame(frame))?;
+                self.state = State::Writing(writer);
+            }
+            other => self.state = other,
+        }
+        Ok(())
+    }
+}
+
+struct Writer {
+    show: Show,
+    encoder: Encoder<Out>,
+    palette: Palette,
+    /// The error that the palette was made for.
+    error: f64,
+    count: u64,
+    /// The frame to be written next, as it will be seen.
+    pending: Option<Pending>,
+}
+
+/// A frame in the colours it will have.
+struct Pending {
+    shown: Frame,
+    /// What of it must be written.
+    rect: Rect,
+    indices: Vec<u8>,
+    /// Its own colours, where it has some.
+    own: Option<Vec<[u8; 3]>>,
+    transparent: u8,
+}
+
+impl Writer {
+    fn new(out: Out, show: &Show, frames: &[Frame]) -> Result<Self> {
+        let palette = Palette::of(frames.iter());
+        let error = frames.iter().map(|f| palette.error(f)).fold(UNSEEN, f64::max);
+        let (width, height) = (show.width as u16, show.height as u16);
+        let colors = table(palette.colors());
+        let mut encoder = Encoder::new(out, width, height, &colors).map_err(|e| show.failed(e))?;
+        if !show.once && show.frames > 1 {
+            encoder.set_repeat(Repeat::Infinite).map_err(|e| show.failed(e))?;
+        }
+        Ok(Writer { show: show.clone(), encoder, palette, error, count: 0, pending: None })
+    }
+
+    fn frame(&mut self, frame: Frame) -> Result<()> {
+        let mut next = self.quantise(&frame);
+        if let Some(mut before) = self.pending.take() {
+            let cleared = around(&before.shown, &next.shown, |a, b| is_opaque(a) && !is_opaque(b));
+            let dispose = match cleared {
+                Some(rect) => {
+                    // Only disposal makes pixels transparent again: it must reach them, and the next frame fill the rest.
+                    before.rect = before.rect.union(rect);
+                    DisposalMethod::Background
+                }
+                None => DisposalMethod::Keep,
+            };
+            let moved = around(&before.shown, &next.shown, |a, b| a != b);
+            next.rect = match (moved, cleared) {
+                (Some(moved), Some(_)) => moved.union(before.rect),
+                (Some(moved), None) => moved,
+                (None, _) => Rect { x0: 0, y0: 0, x1: 1, y1: 1 },
+            };
+            self.write(&before, dispose)?;
+        }
+        self.pending = Some(next);
+        Ok(())
+    }
+
+    fn quantise(&mut self, frame: &Frame) -> Pending {
+        let mut own = (self.palette.error(frame) > FAILS * self.error).then(|| Palette::of([frame].into_iter()));
+        let palette = own.as_mut().unwrap_or(&mut self.palette);
+        let indices = palette.indices(frame);
+        let transparent = palette.transparent();
+        let color = |&index: &u8| match palette.colors().get(usize::from(index)) {
+            Some(&[r, g, b]) => [r, g, b, 255],
+            None => [0; 4],
+        };
+        let shown = Frame::from_cells(frame.width(), frame.height(), indices.iter().map(color).collect());
+        let own = own.map(|palette| palette.colors().to_vec());
+        Pending { rect: Rect::whole(frame), shown, indices, own, transparent }
+    }
+
+    fn write(&mut self, pending: &Pending, dispose: DisposalMethod) -> Result<()> {
+        let Pending { rect, indices, own, transparent, .. } = pending;
+        let rows = (rect.y0..rect.y1).map(|y| &indices[y * self.show.width..][rect.x0..rect.x1]);
+        let frame = gif::Frame {
+            delay: self.show.rate.delay(self.count, UNITS).min(65535) as u16,
+            dispose,
+            transparent: Some(*transparent),
+            left: rect.x0 as u16,
+            top: rect.y0 as u16,
+            width: rect.width() as u16,
+            height: rect.height() as u16,
+            palette: own.as_ref().map(|colors| table(colors)),
+            buffer: rows.flatten().copied().collect(),
+            ..Default::default()
+        };
+        self.count += 1;
+        self.encoder.write_frame(&frame).map_err(|e| self.show.failed(e))
+    }
+
+    fn finish(mut self) -> Result<()> {
+        if let Some(last) = self.pending.take() {
+            self.write(&last, DisposalMethod::Keep)?;
+        }
+        let out = self.encoder.into_inner().map_err(|e| self.show.failed(e))?;
+        out.keep(&self.show)
+    }
+}
+
+/// The colours and a place for the transparent one, as bytes.
+fn table(colors: &[[u8; 3]]) -> Vec<u8> {
+    colors.as_flattened().iter().copied().chain([0; 3]).collect()
+}

@@ -1,0 +1,110 @@
+//! Animated lossless WebP. libwebp (the webp crate) compresses one image at a time; the container around the images is
+//! written here, so that frames need not wait in memory and only the moving rectangle of each is written.
+//!
+//! Container: <https://developers.google.com/speed/webp/docs/riff_container>.
+
+use std::io::{Seek, SeekFrom, Write};
+
+use super::delta::{Rect, moved};
+use super::{Out, Show, Sink};
+use crate::base::error::{Error, Result};
+use crate::base::pixels::Frame;
+
+/// The longest side of a WebP image.
+const MOST: usize = 16383;
+/// Times are counted in milliseconds.
+const UNITS: u64 = 1000;
+/// The flags of VP8X: animation, alpha.
+const ANIMATED_WITH_ALPHA: u8 = 0x12;
+/// The flags of ANMF: replace what is there, leave it there.
+const REPLACE: u8 = 0x02;
+
+struct WebP {
+    out: Out,
+    show: Show,
+    /// Frames written and bytes written.
+    count: u64,
+    length: u64,
+    before: Option<Frame>,
+}
+
+/// Begins a WebP; a single frame makes a still one.
+pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
+    if show.width > MOST || show.height > MOST {
+        let what = format!("WebP holds at most {MOST} x {MOST} pixels, not {} x {}", show.width, show.height);
+        return Err(Error::at(&show.place, what).cure("--size makes frames smaller"));
+    }
+    let mut webp = WebP { out, show, count: 0, length: 0, before: None };
+    webp.write(b"RIFF\0\0\0\0WEBP")?; // the length is known at the end
+    if webp.show.frames > 1 {
+        let mut canvas = vec![ANIMATED_WITH_ALPHA, 0, 0, 0];
+        canvas.extend(u24(webp.show.width - 1));
+        canvas.extend(u24(webp.show.height - 1));
+        webp.chunk(b"VP8X", &canvas)?;
+        webp.chunk(b"ANIM", &[0, 0, 0, 0, u8::from(webp.show.once), 0])?;
+    }
+    Ok(Box::new(webp))
+}
+
+impl WebP {
+    fn write(&mut self, bytes: &[u8]) -> Result<()> {
+        self.length += bytes.len() as u64;
+        self.out.write_all(bytes).map_err(|e| self.show.failed(e))
+    }
+
+    fn chunk(&mut self, name: &[u8; 4], payload: &[u8]) -> Result<()> {
+        self.write(name)?;
+        self.write(&(payload.len() as u32).to_le_bytes())?;
+        self.write(payload)?;
+        self.write(&[0][..payload.len() % 2])
+    }
+
+    /// The chunk of one losslessly compressed image, its header included.
+    fn image(&self, rect: Rect, frame: &Frame) -> Result<Vec<u8>> {
+        let mut config = webp::WebPConfig::new().map_err(|()| self.show.failed("libwebp has another version"))?;
+        config.lossless = 1;
+        config.exact = 1; // colours under alpha 0 too
+        config.quality = 75.0; // effort
+        let pixels = rect.cut(frame);
+        let encoder = webp::Encoder::from_rgba(&pixels, rect.width() as u32, rect.height() as u32);
+        let file = encoder.encode_advanced(&config).map_err(|e| self.show.failed(format!("{e:?}")))?;
+        Ok(file[12..].to_vec()) // behind "RIFF", length, "WEBP"
+    }
+
+    fn animated(&mut self, rect: Rect, image: &[u8]) -> Result<()> {
+        let mut frame = Vec::with_capacity(image.len() + 16);
+        for number in [rect.x0 / 2, rect.y0 / 2, rect.width() - 1, rect.height() - 1] {
+            frame.extend(u24(number));
+        }
+        frame.extend(u24(self.show.rate.delay(self.count, UNITS).min(0xFF_FFFF) as usize));
+        frame.push(REPLACE);
+        frame.extend(image);
+        self.chunk(b"ANMF", &frame)
+    }
+}
+
+impl Sink for WebP {
+    fn frame(&mut self, _: u64, frame: Frame) -> Result<()> {
+        let mut rect = self.before.as_ref().map_or(Rect::whole(&frame), |before| moved(before, &frame));
+        (rect.x0, rect.y0) = (rect.x0 & !1, rect.y0 & !1); // places are even
+        let image = self.image(rect, &frame)?;
+        if self.show.frames > 1 { self.animated(rect, &image) } else { self.write(&image) }?;
+        self.count += 1;
+        self.before = Some(frame);
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<Vec<String>> {
+        let length = u32::try_from(self.length - 8).map_err(|_| self.show.failed("a WebP holds at most 4 GiB"))?;
+        let put = |out: &mut Out| out.seek(SeekFrom::Start(4)).and_then(|_| out.write_all(&length.to_le_bytes()));
+        put(&mut self.out).map_err(|e| self.show.failed(e))?;
+        self.out.keep(&self.show)?;
+        Ok(Vec::new())
+    }
+}
+
+/// The lowest 24 bits, little-endian.
+fn u24(number: usize) -> [u8; 3] {
+    let [a, b, c, ..] = (number as u32).to_le_bytes();
+    [a, b, c]
+}

@@ -1,0 +1,3 @@
+//! What leaves the program: animations, textures for engines, plots. Codecs live here and in `files`.
+
+pub mod animation;
