@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
-use json_patch::Patch as Edit;
+use crate::scene::edit::Edit;
 
 /// Version of the protocol; both ends must have the same.
 pub const VERSION: u16 = 1;

@@ -1,6 +1,12 @@
 //! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
 
+pub mod editor;
+mod host;
+mod keeper;
+pub mod link;
 pub mod message;
+mod outbox;
+pub mod script;
 
 use std::sync::Arc;
 

@@ -1,0 +1,243 @@
+//! The editor's side of the link. Every window has a thread that writes and one that reads; the editor only leaves word in
+//! the state between them, under a lock that nobody holds while writing, so it never waits for a window.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
+
+use super::host::{Shared, thread};
+use super::keeper::{Keeper, Life};
+use super::link::{Door, Listener};
+use super::outbox::{Latest, Measured};
+use crate::base::error::Result;
+use crate::base::problem::Problem;
+use crate::base::system;
+use crate::scene::Document;
+use crate::scene::edit::Edit;
+
+/// How long leaving windows are waited for at the end.
+const FAREWELL: Duration = Duration::from_millis(300);
+/// How long a window that lost an earlier editor has to come back before a new one is opened.
+const ORPHANS: Duration = Duration::from_secs(1);
+
+/// How the windows are doing; `Display` makes it the words of the status line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// No window, and none wanted.
+    Off,
+    /// A window was started and has not joined yet.
+    Starting,
+    /// Windows are there. The rest is what the one that reported last said.
+    Connected {
+        /// How many.
+        windows: usize,
+        /// What synthesis took, in milliseconds.
+        synth_ms: Option<f64>,
+        /// Frames a second.
+        fps: Option<f64>,
+        /// Name of the graphics adapter.
+        adapter: String,
+        /// What the window complains about, empty where all is well.
+        notice: String,
+    },
+    /// No window, and why.
+    OffBecause(String),
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Status::Off => write!(f, "off"),
+            Status::Starting => write!(f, "starting"),
+            Status::OffBecause(reason) => write!(f, "off: {reason}"),
+            Status::Connected { windows, fps, notice, .. } => {
+                match windows {
+                    1 => write!(f, "connected")?,
+                    many => write!(f, "{many} connected")?,
+                }
+                if !notice.is_empty() {
+                    return write!(f, ", {notice}");
+                }
+                fps.map_or(Ok(()), |fps| write!(f, " {fps:.0} fps"))
+            }
+        }
+    }
+}
+
+/// What comes from windows and scripts; delivered on their threads.
+#[derive(Debug)]
+pub enum Event {
+    /// [`Preview::status`] has something new to say.
+    Status,
+    /// The pointer in a window, in pixels of the picture.
+    Pointer {
+        /// From the left edge.
+        x: f64,
+        /// From the top edge.
+        y: f64,
+    },
+    /// A request by command name, from a key pressed in a window.
+    Command(String),
+    /// A script asks for a change.
+    Edit(Asked),
+}
+
+/// A change that a script asks for and waits to hear about.
+#[derive(Debug)]
+pub struct Asked {
+    /// The change.
+    pub edit: Edit,
+    answer: mpsc::SyncSender<Vec<Problem>>,
+}
+
+impl Asked {
+    pub(super) fn new(edit: Edit) -> (Self, mpsc::Receiver<Vec<Problem>>) {
+        let (answer, answered) = mpsc::sync_channel(1);
+        (Asked { edit, answer }, answered)
+    }
+
+    /// Tells the script: no problems means done. Unanswered requests are refused when dropped.
+    pub fn answer(self, problems: Vec<Problem>) {
+        drop(self.answer.try_send(problems));
+    }
+}
+
+/// The editor's hold on its windows. Dropping it says goodbye to them and ends the one it started.
+pub struct Preview {
+    shared: Arc<Shared>,
+    scene: PathBuf,
+    keeper: Option<Keeper>,
+    /// `None` where no window can join.
+    door: Option<Door>,
+}
+
+impl Preview {
+    /// Starts to listen for windows of `scene`. Where that fails the editor goes on without and the status says why.
+    pub fn start(
+        scene: &Path,
+        document: &Document,
+        revision: u64,
+        deliver: impl Fn(Event) + Send + Sync + 'static,
+    ) -> Preview {
+        let latest = Latest { document: document.clone(), revision, selection: None, playing: false, time: 0.0 };
+        let shared = Arc::new(Shared::new(latest, Box::new(deliver)));
+        let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
+        let mut preview = Preview { shared, scene, keeper: None, door: None };
+        if let Err(error) = preview.listen() {
+            preview.shared.lock().refused = Some(error.to_string());
+        }
+        preview
+    }
+
+    fn listen(&mut self) -> Result<()> {
+        let (listener, door) = Listener::open(&self.scene)?;
+        let (shared, scene) = (self.shared.clone(), self.scene.clone());
+        thread("link", move || shared.take_connections(&listener, &scene))?;
+        self.door = Some(door);
+        Ok(())
+    }
+
+    /// The document changed by `edit` into `document`, of `revision`. Returns at once, whatever the windows do.
+    pub fn publish(&self, document: &Document, revision: u64, edit: &Edit) {
+        let edit = Measured::new(edit);
+        self.shared.change(|state| {
+            (state.latest.document, state.latest.revision) = (document.clone(), revision);
+            state.peers.values_mut().for_each(|peer| peer.outbox.edited(&edit));
+        });
+    }
+
+    /// The selection moved to this JSON pointer.
+    pub fn select(&self, pointer: Option<String>) {
+        self.shared.change(|state| {
+            state.latest.selection = pointer;
+            state.peers.values_mut().for_each(|peer| peer.outbox.selected());
+        });
+    }
+
+    /// The animation was started or stopped, or moved to `time` (scene time, in seconds).
+    pub fn transport(&self, playing: bool, time: f64) {
+        self.shared.change(|state| {
+            (state.latest.playing, state.latest.time) = (playing, time);
+            state.peers.values_mut().for_each(|peer| peer.outbox.transport());
+        });
+    }
+
+    /// An overlay or zoom command for the windows, by name.
+    pub fn view(&self, command: &str) {
+        self.shared.change(|state| state.peers.values_mut().for_each(|peer| peer.outbox.view(command)));
+    }
+
+    /// How the windows are doing.
+    pub fn status(&self) -> Status {
+        self.shared.lock().status()
+    }
+
+    /// Opens a window and keeps it open; does nothing where one of ours is.
+    pub fn open_window(&mut self) {
+        if let Some(reason) = no_window(&self.scene) {
+            return self.shared.tell(|state| state.refused = Some(reason));
+        }
+        let scene = self.scene.clone();
+        self.keep(move || window_command(&scene));
+    }
+
+    /// Keeps a process alive that joins as a window.
+    fn keep(&mut self, command: impl Fn() -> Command + Send + 'static) {
+        let Some(door) = &mut self.door else { return };
+        if self.shared.lock().life == Some(Life::Running) {
+            return;
+        }
+        let orphans = std::mem::take(&mut door.orphans);
+        self.keeper = None;
+        let (shared, waiting) = (self.shared.clone(), self.shared.clone());
+        let wanted = move || !orphans || !waiting.a_window_comes(ORPHANS);
+        let tell = move |life| shared.tell(|state| state.life = life);
+        match Keeper::start(wanted, command, tell) {
+            Ok(keeper) => self.keeper = Some(keeper),
+            Err(error) => self.shared.tell(|state| state.life = Some(Life::GivenUp(error.to_string()))),
+        }
+    }
+}
+
+impl Drop for Preview {
+    fn drop(&mut self) {
+        self.shared.change(|state| state.closing = true);
+        self.door = None;
+        let state = self.shared.wait(FAREWELL, |state| state.peers.is_empty());
+        state.peers.values().for_each(|peer| peer.hang_up.now());
+        drop(state);
+        if let Some(keeper) = &self.keeper {
+            keeper.wait_for_end(FAREWELL);
+        }
+    }
+}
+
+/// Whether the editor should open a window unasked: there is a display, and it is not somebody else's across SSH.
+pub fn opens_by_itself() -> bool {
+    has_display() && !system::over_ssh()
+}
+
+fn has_display() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    cfg!(target_os = "macos") || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
+
+/// Why no window can be opened here, and what to do instead.
+fn no_window(scene: &Path) -> Option<String> {
+    if !cfg!(feature = "window") {
+        return Some("this plica was built without the window".into());
+    }
+    let how = format!("no display; `plica view {}` in a session with one (ssh -X has one) joins", scene.display());
+    (!has_display()).then_some(how)
+}
+
+/// The window's process, in a group of its own: what the terminal does to the editor's group is not meant for it.
+fn window_command(scene: &Path) -> Command {
+    use std::os::unix::process::CommandExt;
+    let program = std::env::current_exe().unwrap_or_else(|_| "plica".into());
+    let mut command = Command::new(program);
+    command.arg("view").arg("--joined").arg("--").arg(scene).process_group(0);
+    command
+}

@@ -1,0 +1,282 @@
+//! The editor's threads. One takes connections; every window has one that reads and one that writes. Between them and the
+//! editor stands a state under a lock, which nobody holds while reading, writing or cloning a document's JSON.
+
+use std::collections::BTreeMap;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use super::editor::{Asked, Event, Status};
+use super::keeper::Life;
+use super::link::{Caller, HangUp, Listener, Wire};
+use super::message::{self, FromEditor, Role, ToEditor};
+use super::outbox::{Latest, Outbox};
+use crate::base::error::{Error, Result};
+use crate::base::problem::Problem;
+use crate::scene::edit::Edit;
+
+/// The most connections at a time.
+const MAX_PEERS: usize = 64;
+/// How long a script waits for the editor to take or refuse its edit.
+const ANSWER: Duration = Duration::from_secs(10);
+
+/// What the threads share.
+pub(super) struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+    deliver: Box<dyn Fn(Event) + Send + Sync>,
+}
+
+/// How things stand.
+pub(super) struct State {
+    pub latest: Latest,
+    pub peers: BTreeMap<u64, Peer>,
+    next_peer: u64,
+    /// Connections, shaking hands or shaken.
+    connections: usize,
+    pub life: Option<Life>,
+    /// Why no window can join or be opened.
+    pub refused: Option<String>,
+    report: Report,
+    pub closing: bool,
+}
+
+/// One window that has joined.
+pub(super) struct Peer {
+    pub outbox: Outbox,
+    pub hang_up: HangUp,
+}
+
+#[derive(Default)]
+struct Report {
+    synth_ms: Option<f64>,
+    fps: Option<f64>,
+    adapter: String,
+    notice: String,
+}
+
+/// Starts a thread that nobody waits for.
+pub(super) fn thread(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
+    let started = std::thread::Builder::new().name(name.into()).spawn(work);
+    started.map(drop).map_err(|e| Error::at("link", e))
+}
+
+impl State {
+    /// What the status line says.
+    pub fn status(&self) -> Status {
+        match (self.peers.len(), &self.refused, &self.life) {
+            (0, _, Some(Life::Running)) => Status::Starting,
+            (0, _, Some(Life::GivenUp(reason))) | (0, Some(reason), _) => Status::OffBecause(reason.clone()),
+            (0, None, _) => Status::Off,
+            (windows, ..) => {
+                let Report { synth_ms, fps, adapter, notice } = &self.report;
+                let (adapter, notice) = (adapter.clone(), notice.clone());
+                Status::Connected { windows, synth_ms: *synth_ms, fps: *fps, adapter, notice }
+            }
+        }
+    }
+}
+
+fn hello(scene: &Path, Latest { document, revision, .. }: &Latest) -> FromEditor {
+    let (program, scene) = (env!("CARGO_PKG_VERSION").into(), scene.display().to_string());
+    FromEditor::Hello { program, scene, revision: *revision, document: document.json().clone() }
+}
+
+impl Shared {
+    pub fn new(latest: Latest, deliver: Box<dyn Fn(Event) + Send + Sync>) -> Self {
+        let state = State {
+            latest,
+            peers: BTreeMap::new(),
+            next_peer: 0,
+            connections: 0,
+            life: None,
+            refused: None,
+            report: Report::default(),
+            closing: false,
+        };
+        Shared { state: Mutex::new(state), changed: Condvar::new(), deliver }
+    }
+
+    pub fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes the state and wakes the writers.
+    pub fn change(&self, how: impl FnOnce(&mut State)) {
+        how(&mut self.lock());
+        self.changed.notify_all();
+    }
+
+    /// Changes the state where that shows in the status.
+    pub fn tell(&self, how: impl FnOnce(&mut State)) {
+        self.change(how);
+        (self.deliver)(Event::Status);
+    }
+
+    /// Waits until something is so, or for this long.
+    pub fn wait(&self, most: Duration, until: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
+        let waited = self.changed.wait_timeout_while(self.lock(), most, |state| !until(state));
+        waited.unwrap_or_else(PoisonError::into_inner).0
+    }
+
+    /// Waits for a window to join by itself; the end of the editor is as good.
+    pub fn a_window_comes(&self, most: Duration) -> bool {
+        let state = self.wait(most, |state| state.closing || !state.peers.is_empty());
+        state.closing || !state.peers.is_empty()
+    }
+
+    /// Takes connections until the editor ends.
+    pub fn take_connections(self: &Arc<Self>, listener: &Listener, scene: &Path) {
+        loop {
+            let caller = listener.accept();
+            {
+                let mut state = self.lock();
+                if state.closing {
+                    return;
+                }
+                if state.connections == MAX_PEERS || caller.is_err() {
+                    drop(state);
+                    // Out of file handles, most likely: not a reason to spin.
+                    std::thread::sleep(Duration::from_millis(50));
+                    continue;
+                }
+                state.connections += 1;
+            }
+            let (shared, scene) = (self.clone(), scene.to_owned());
+            let started = thread("link reader", move || {
+                if let Err(error) =
+                    caller.map_err(|e| Error::at("link", e)).and_then(|caller| shared.talk(caller, &scene))
+                {
+                    tracing::info!("{error}");
+                }
+                shared.change(|state| state.connections -= 1);
+            });
+            if started.is_err() {
+                self.change(|state| state.connections -= 1);
+            }
+        }
+    }
+
+    fn talk(self: &Arc<Self>, caller: Caller, scene: &Path) -> Result<()> {
+        match caller.greet()? {
+            (Role::Window, wire) => self.talk_with_window(wire, scene),
+            (Role::Script, wire) => self.talk_with_script(wire, scene),
+        }
+    }
+
+    fn talk_with_window(self: &Arc<Self>, wire: Wire, scene: &Path) -> Result<()> {
+        let Wire { mut reader, mut writer, hang_up } = wire;
+        let (latest, id) = {
+            let mut state = self.lock();
+            let (latest, id) = (state.latest.clone(), state.next_peer);
+            state.next_peer += 1;
+            state.peers.insert(id, Peer { outbox: Outbox::greeted(latest.revision), hang_up });
+            (latest, id)
+        };
+        let hello = hello(scene, &latest);
+        self.tell(|_| {});
+        let writing = self.clone();
+        let started = thread("link writer", move || {
+            if let Err(error) = message::write(&mut writer, &hello).and_then(|()| writing.write(id, &mut *writer)) {
+                tracing::info!("{error}");
+            }
+            writing.forget(id);
+        });
+        let ended = started.and_then(|()| self.read(id, &mut *reader));
+        self.forget(id);
+        ended
+    }
+
+    /// Sends what the outbox holds until the window is gone.
+    fn write(&self, id: u64, mut to: &mut (dyn Write + Send)) -> Result<()> {
+        loop {
+            let outgoing = {
+                let mut state = self.lock();
+                loop {
+                    let State { latest, peers, closing, .. } = &mut *state;
+                    let Some(peer) = peers.get_mut(&id) else { return Ok(()) };
+                    if *closing {
+                        break None;
+                    }
+                    if let Some(outgoing) = peer.outbox.next(latest) {
+                        break Some(outgoing);
+                    }
+                    state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+                }
+            };
+            match outgoing {
+                Some(outgoing) => message::write(&mut to, &outgoing.into_message())?,
+                None => return message::write(&mut to, &FromEditor::Bye("the editor was closed".into())),
+            }
+        }
+    }
+
+    /// Takes what the window says until it is gone.
+    fn read(&self, id: u64, mut from: &mut (dyn Read + Send)) -> Result<()> {
+        while let Some(said) = message::read::<ToEditor>(&mut from)? {
+            match said {
+                ToEditor::Ack { revision, synth_ms } => self.tell(|state| {
+                    state.report.synth_ms = Some(synth_ms);
+                    state.peers.get_mut(&id).into_iter().for_each(|peer| peer.outbox.shown(revision));
+                }),
+                ToEditor::WantScene => self.change(|state| {
+                    state.peers.get_mut(&id).into_iter().for_each(|peer| peer.outbox.want_scene());
+                }),
+                ToEditor::Report { fps, adapter, notice } => self.tell(|state| {
+                    let synth_ms = state.report.synth_ms;
+                    state.report = Report { synth_ms, fps: Some(fps), adapter: line(&adapter), notice: line(&notice) };
+                }),
+                ToEditor::Pointer { x, y } => (self.deliver)(Event::Pointer { x, y }),
+                ToEditor::Command(name) => (self.deliver)(Event::Command(line(&name))),
+                ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
+                    return Err(Error::at("link", "a window said what only a script says"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn forget(&self, id: u64) {
+        let mut gone = None;
+        self.change(|state| {
+            gone = state.peers.remove(&id);
+            if state.peers.is_empty() {
+                state.report = Report::default();
+            }
+        });
+        if let Some(peer) = gone {
+            peer.hang_up.now();
+            (self.deliver)(Event::Status);
+        }
+    }
+
+    fn talk_with_script(&self, mut wire: Wire, scene: &Path) -> Result<()> {
+        let latest = self.lock().latest.clone();
+        message::write(&mut wire.writer, &hello(scene, &latest))?;
+        while let Some(said) = message::read::<ToEditor>(&mut wire.reader)? {
+            let ToEditor::Edit { revision, patch } = said else {
+                return Err(Error::at("link", "a script said what only a window says"));
+            };
+            let problems = self.ask(revision, patch);
+            message::write(&mut wire.writer, &FromEditor::Edited(problems))?;
+        }
+        Ok(())
+    }
+
+    /// Hands an edit to the editor and waits for its answer.
+    fn ask(&self, revision: u64, edit: Edit) -> Vec<Problem> {
+        if self.lock().latest.revision != revision {
+            return vec![Problem::error("", "the scene changed meanwhile")];
+        }
+        let (asked, answered) = Asked::new(edit);
+        (self.deliver)(Event::Edit(asked));
+        let no_answer = |_| vec![Problem::error("", "the editor does not take the edit")];
+        answered.recv_timeout(ANSWER).unwrap_or_else(no_answer)
+    }
+}
+
+/// Text from another process as one line of bounded length, without control characters.
+fn line(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control()).take(200).collect()
+}
