@@ -8,3 +8,4 @@ pub mod maths;
 pub mod pixels;
 pub mod problem;
 pub mod system;
+pub mod text;

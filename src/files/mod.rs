@@ -5,10 +5,16 @@ mod counts;
 pub mod disk;
 pub mod draft;
 pub mod fields;
+pub mod journal;
 pub mod limits;
+pub mod log;
 pub mod materials;
 pub mod paths;
 pub mod picture;
+pub mod recovery;
+pub mod scene;
+pub mod session;
+pub mod watch;
 pub mod write;
 
 pub use limits::Limits;

@@ -6,6 +6,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::os::unix::fs::{MetadataExt, fchown};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::disk;
 use crate::base::error::{Error, Result};
@@ -58,6 +59,7 @@ impl Atomic {
         }
         let temporary = temporary_beside(&target);
         let file = disk::create_new(&temporary, false).map_err(|error| cannot_write(path, error))?;
+        unfinished().push(temporary.clone());
         let atomic = Atomic { file, temporary, target, committed: false };
         if let Some(old) = old {
             // Giving a file to its old owner is for root alone; the mode matters to everybody.
@@ -89,6 +91,7 @@ impl Atomic {
 
 impl Drop for Atomic {
     fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.temporary);
         if !self.committed {
             // It is of no use to anybody; where it cannot be removed, remove_stale does it another day.
             let _ = disk::remove(&self.temporary);
@@ -118,6 +121,21 @@ pub(super) fn temporary_beside(path: &Path) -> PathBuf {
     static MADE: AtomicU64 = AtomicU64::new(0);
     let number = MADE.fetch_add(1, Ordering::Relaxed);
     disk::folder_of(path).join(format!("{TEMPORARY_PREFIX}{}-{number}{TEMPORARY_SUFFIX}", std::process::id()))
+}
+
+/// The temporary files of this process.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of this process, which is to end at once.
+pub fn remove_unfinished() {
+    for path in unfinished().drain(..) {
+        // One that was renamed just now is not there any more.
+        let _ = disk::remove(&path);
+    }
 }
 
 /// Removes the temporary files that killed processes left in the folder of `path`.

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::base::error::{Error, Result};
+use crate::base::text::printable;
 
+pub mod scene_options;
 pub mod schema;
 
 /// What `plica` can be asked to do.
@@ -69,14 +71,16 @@ struct Stderr {
 
 impl Progress for Stderr {
     fn say(&mut self, line: &str) {
-        eprintln!("{line}");
+        // A terminal that went away is no reason to fail.
+        let _ = writeln!(std::io::stderr(), "{}", printable(line));
     }
 
     fn step(&mut self, what: &str, done: u64, total: u64) {
         let due = self.shown.is_none_or(|at| at.elapsed().as_millis() >= 100);
         if self.tty && (due || done == total) {
             self.shown = Some(std::time::Instant::now());
-            eprint!("\r\x1b[K{what} {done}/{total}{}", if done == total { "\n" } else { "" });
+            let end = if done == total { "\n" } else { "" };
+            let _ = write!(std::io::stderr(), "\r\x1b[K{} {done}/{total}{end}", printable(what));
         }
     }
 }

@@ -1,0 +1,83 @@
+//! What a process owes its surroundings: it ends when asked to and leaves nothing half-written, ends quietly when nobody
+//! reads its output any more, and says one line about a fault of its own.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use crate::base::error::{Error, Result};
+use crate::base::system::signals::{self, Answer, Registration, Signal};
+use crate::base::text::printable;
+use crate::files::write;
+
+/// How long work may take to see that it is cancelled.
+const GRACE: Duration = Duration::from_secs(5);
+
+/// Lets the first signal to end cancel the work; a second one, or patience running out, ends the process.
+///
+/// # Errors
+/// When signals cannot be listened to.
+pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
+    let handler = move |signal| match signal {
+        Signal::Stop | Signal::Continue => Answer::Pass,
+        _ if cancel.swap(true, Ordering::Relaxed) => end(),
+        _ => {
+            std::thread::spawn(|| {
+                std::thread::sleep(GRACE);
+                end()
+            });
+            Answer::Done
+        }
+    };
+    signals::handle(handler).map_err(|error| Error::at("signals", error))
+}
+
+fn end() -> ! {
+    write::remove_unfinished();
+    std::process::exit(Error::Interrupted.exit_status().into())
+}
+
+/// Makes a panic one line on standard error; the rest goes to the log.
+pub fn report_panics(log: Option<PathBuf>) {
+    std::panic::set_hook(Box::new(move |panic| {
+        tracing::error!("{panic}\n{}", std::backtrace::Backtrace::force_capture());
+        let line = panic.to_string().replace('\n', " ");
+        let more = log.as_ref().map(|log| format!("; more in {}", log.display())).unwrap_or_default();
+        // Where nobody reads it there is nothing more to do.
+        let _ = writeln!(io::stderr(), "plica: a fault of its own: {}{}", printable(&line), printable(&more));
+    }));
+}
+
+/// Standard output that remembers whether its reader has gone.
+pub struct Output {
+    out: io::Stdout,
+    closed: Arc<AtomicBool>,
+}
+
+impl Output {
+    /// Standard output; `closed` becomes true once nobody reads it.
+    pub fn new(closed: Arc<AtomicBool>) -> Self {
+        Output { out: io::stdout(), closed }
+    }
+
+    fn note<T>(&self, outcome: io::Result<T>) -> io::Result<T> {
+        if outcome.as_ref().is_err_and(|error| error.kind() == io::ErrorKind::BrokenPipe) {
+            self.closed.store(true, Ordering::Relaxed);
+        }
+        outcome
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let outcome = self.out.write(bytes);
+        self.note(outcome)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let outcome = self.out.flush();
+        self.note(outcome)
+    }
+}

@@ -1,0 +1,291 @@
+//! The journal beside a scene: every edit, undo, redo and save, on the disk some milliseconds after it was made. It holds
+//! a lock for as long as somebody edits, is kept over save and quit (that is undo after reopening), and drops its oldest
+//! half when it outgrows a bound.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::os::unix::fs::{FileExt, MetadataExt};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, Sender};
+use std::thread::JoinHandle;
+
+mod format;
+mod writer;
+
+pub use format::{Contents, Header, Kind, Record, Unreadable, read};
+
+use super::{disk, scene};
+use crate::base::system::folders;
+use crate::scene::Document;
+use writer::{Message, Shared, Writer};
+
+/// A journal grows by this much between two droppings of its oldest part.
+const COMPACT_EVERY: usize = 8 << 20;
+/// A journal larger than this is none of ours.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// A journal open for writing. Dropping it waits until all is on the disk; one without records is removed.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    messages: Option<Sender<Message>>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<Writer>>,
+    /// Length of the journal once all that was sent is written.
+    length: usize,
+    empty: bool,
+    /// A place in the journal, and the document there.
+    checkpoint: Option<(usize, Document)>,
+    compact_every: usize,
+}
+
+/// Why there is no journal.
+#[derive(Debug)]
+pub enum Unopened {
+    /// Another process edits the scene.
+    Locked {
+        /// Its number, where known.
+        pid: Option<u32>,
+    },
+    /// It cannot be written, or is not to be touched.
+    Failed(io::Error),
+}
+
+impl From<io::Error> for Unopened {
+    fn from(error: io::Error) -> Self {
+        Unopened::Failed(error)
+    }
+}
+
+/// A journal found and locked, or to be made: what to do with it is not decided yet.
+#[derive(Debug)]
+pub struct Found {
+    file: File,
+    path: PathBuf,
+    bytes: Vec<u8>,
+    /// What it holds; none where it is new or damaged.
+    pub contents: Option<Contents>,
+}
+
+/// Where the journal of a scene lies: beside it.
+pub fn path_beside(scene_path: &Path) -> PathBuf {
+    let name = scene_path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.strip_suffix(".plica.json").unwrap_or(&name);
+    disk::folder_of(scene_path).join(format!(".{name}.journal"))
+}
+
+/// Where the journal of a scene lies if its folder cannot be written: among the user's state, under a hash of its path.
+pub fn path_in_state(scene_path: &Path) -> Option<PathBuf> {
+    let hash = scene::hash(scene_path.as_os_str().as_encoded_bytes());
+    Some(folders::state()?.join("journals").join(format!("{}.journal", &hash[..32])))
+}
+
+/// Finds and locks the journal of a scene, or makes an empty one. `scene_path` is absolute and free of links.
+///
+/// # Errors
+/// When another process holds it, when it can lie neither beside the scene nor among the user's state, or when a newer
+/// program wrote it.
+pub fn find(scene_path: &Path) -> Result<Found, Unopened> {
+    let beside = path_beside(scene_path);
+    let in_state = path_in_state(scene_path);
+    let stray = in_state.as_ref().filter(|path| path.exists() && !beside.exists());
+    if let Some(path) = stray {
+        return lock(path);
+    }
+    match (lock(&beside), in_state) {
+        (Err(Unopened::Failed(error)), Some(path)) if error.kind() != io::ErrorKind::InvalidData => {
+            if let Some(folder) = path.parent() {
+                std::fs::create_dir_all(folder)?;
+            }
+            lock(&path)
+        }
+        (found, _) => found,
+    }
+}
+
+fn lock(path: &Path) -> Result<Found, Unopened> {
+    loop {
+        let mut file = disk::open_private(path)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(std::fs::TryLockError::WouldBlock) => {
+                let mut bytes = [0; 16];
+                let pid = file.read_exact_at(&mut bytes, 0).ok().and_then(|()| format::writer(&bytes));
+                return Err(Unopened::Locked { pid });
+            }
+            Err(std::fs::TryLockError::Error(error)) => return Err(error.into()),
+        }
+        // The holder before us may have put a new file in its place, or removed it, after we opened it.
+        let (ours, there) = (file.metadata()?, std::fs::metadata(path));
+        if !there.is_ok_and(|there| (there.dev(), there.ino()) == (ours.dev(), ours.ino())) {
+            continue;
+        }
+        if ours.len() > MOST_BYTES {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "is too large for a journal").into());
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        let contents = match read(&bytes) {
+            Ok(contents) => Some(contents),
+            Err(Unreadable::Damaged) => None,
+            Err(Unreadable::Newer(version)) => {
+                let what = format!("was written by a newer plica (version {version})");
+                return Err(io::Error::new(io::ErrorKind::InvalidData, what).into());
+            }
+        };
+        return Ok(Found { file, path: path.to_owned(), bytes, contents });
+    }
+}
+
+impl Found {
+    /// Where it lies.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Goes on with the first `records` records; the bytes after them are kept aside. Without contents it starts anew
+    /// from `header`. `revision` is that of the history which the records gave.
+    ///
+    /// # Errors
+    /// When it cannot be written. What was found is still there then.
+    pub fn open(mut self, header: &Header, records: usize, revision: u64) -> io::Result<Opened> {
+        let end = match &self.contents {
+            None => 0,
+            Some(contents) if records == 0 => contents.header_end,
+            Some(contents) => contents.records[records - 1].1,
+        };
+        let aside = if end < self.bytes.len() { Some(self.keep_aside(end)?) } else { None };
+        if end < self.bytes.len() {
+            disk::truncate(&self.file, end as u64)?;
+        }
+        self.bytes.truncate(end);
+        io::Seek::seek(&mut self.file, io::SeekFrom::Start(end as u64))?;
+        if self.contents.is_none() {
+            self.bytes = format::start(header);
+            disk::write(&mut self.file, &self.bytes)?;
+        } else {
+            self.file.write_all_at(&std::process::id().to_le_bytes(), format::PID_AT as u64)?;
+            self.bytes[format::PID_AT..][..4].copy_from_slice(&std::process::id().to_le_bytes());
+        }
+        disk::sync(&self.file)?;
+        disk::sync_folder_of(&self.path)?;
+        let empty = records == 0;
+        Ok(Opened { journal: self.start(revision, empty)?, aside })
+    }
+
+    /// Writes the bytes from `end` on to a file of their own.
+    fn keep_aside(&self, end: usize) -> io::Result<PathBuf> {
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        let free = |path: &PathBuf| path.symlink_metadata().is_err();
+        let names = (1..).map(|n| if n == 1 { format!("{name}.rest") } else { format!("{name}.rest-{n}") });
+        let path = names.map(|name| self.path.with_file_name(name)).find(free).expect("some number is free");
+        let mut file = disk::create_new(&path, true)?;
+        disk::write(&mut file, &self.bytes[end..])?;
+        disk::sync(&file)?;
+        Ok(path)
+    }
+
+    fn start(self, revision: u64, empty: bool) -> io::Result<Journal> {
+        let shared = Arc::new(Shared::default());
+        shared.acknowledged.store(revision, Ordering::Release);
+        let (length, path) = (self.bytes.len(), self.path.clone());
+        let writer = Writer {
+            file: self.file,
+            path: self.path,
+            synced: length,
+            contents: self.bytes,
+            shared: shared.clone(),
+            revision,
+            failed: None,
+        };
+        let (messages, receiver) = mpsc::channel();
+        let thread = std::thread::Builder::new().name("journal".into()).spawn(move || writer.run(receiver))?;
+        Ok(Journal {
+            path,
+            messages: Some(messages),
+            shared,
+            thread: Some(thread),
+            length,
+            empty,
+            checkpoint: None,
+            compact_every: COMPACT_EVERY,
+        })
+    }
+}
+
+/// A journal ready to be written.
+#[derive(Debug)]
+pub struct Opened {
+    /// It.
+    pub journal: Journal,
+    /// Where bytes that were not understood are kept.
+    pub aside: Option<PathBuf>,
+}
+
+impl Journal {
+    /// Takes a record, without waiting. `document` is what it led to, `file` the hash of the scene file.
+    pub fn append(&mut self, record: &Record, document: &Document, file: &str) {
+        let frame = format::encode(record);
+        self.length += frame.len();
+        self.empty = false;
+        self.send(Message::Append(frame, record.revision));
+        match &self.checkpoint {
+            Some((at, _)) if self.length - at < self.compact_every => {}
+            _ => {
+                let now = (self.length, document.clone());
+                if let Some((dropped, document)) = self.checkpoint.replace(now) {
+                    let header = Header { file: file.to_owned(), document: document.json().clone() };
+                    self.drop_oldest(dropped, format::start(&header));
+                }
+            }
+        }
+    }
+
+    fn drop_oldest(&mut self, dropped: usize, start: Vec<u8>) {
+        let shift = |at: usize| at - dropped + start.len();
+        self.length = shift(self.length);
+        self.checkpoint = self.checkpoint.take().map(|(at, document)| (shift(at), document));
+        self.send(Message::Compact(start, dropped));
+    }
+
+    /// The newest revision that is safe on the disk.
+    pub fn acknowledged(&self) -> u64 {
+        self.shared.acknowledged.load(Ordering::Acquire)
+    }
+
+    /// Why nothing is being written, until it is again.
+    pub fn failing(&self) -> Option<String> {
+        self.shared.failing()
+    }
+
+    /// Waits until all that was taken is on the disk, or tells why it is not.
+    pub fn flush(&self) -> Result<(), String> {
+        let (reply, answer) = mpsc::channel();
+        self.send(Message::Flush(reply));
+        answer.recv().unwrap_or_else(|_| Err("its writer has ended".into()))
+    }
+
+    /// Where it lies.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn send(&self, message: Message) {
+        if self.messages.as_ref().is_none_or(|messages| messages.send(message).is_err()) {
+            self.shared.set_failing(Some("its writer has ended".into()));
+        }
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        self.messages = None;
+        let writer = self.thread.take().map(JoinHandle::join);
+        if let (true, Some(Ok(writer))) = (self.empty, writer) {
+            // Still under the writer's lock. One that stays says nothing and does no harm.
+            let _ = disk::remove(&writer.path);
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! The log: what happened, for whoever mends a fault. It is a file and nothing else; the terminal is the user's. It
+//! comes into being with its first line.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use crate::base::error::{Error, Result};
+use crate::base::system::folders;
+
+/// A log longer than this begins anew; the old one is kept once.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Starts the log in `file`, else in the user's state folder, and tells where it is. None where there is no such folder.
+///
+/// # Errors
+/// When `file` is given and cannot be written.
+pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
+    let path = match file {
+        Some(file) => file.to_owned(),
+        None => match folders::state() {
+            Some(folder) => folder.join("plica.log"),
+            None => return Ok(None),
+        },
+    };
+    let mut log = Log { path: path.clone(), file: None };
+    if file.is_some() {
+        log.open().map_err(|error| Error::at(path.display(), format!("cannot be written: {error}")))?;
+    }
+    let subscriber = tracing_subscriber::fmt().with_ansi(false).with_writer(Mutex::new(log)).finish();
+    // Somebody else's subscriber, in a program that uses the library, stays.
+    let _ = tracing::subscriber::set_global_default(subscriber);
+    Ok(Some(path))
+}
+
+struct Log {
+    path: PathBuf,
+    file: Option<File>,
+}
+
+impl Log {
+    fn open(&mut self) -> io::Result<&mut File> {
+        if self.file.is_none() {
+            if let Some(folder) = self.path.parent() {
+                std::fs::create_dir_all(folder)?;
+            }
+            if self.path.metadata().is_ok_and(|found| found.is_file() && found.len() > MOST_BYTES) {
+                std::fs::rename(&self.path, self.path.with_extension("log.old"))?;
+            }
+            self.file = Some(OpenOptions::new().append(true).create(true).mode(0o600).open(&self.path)?);
+        }
+        self.file.as_mut().ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+}
+
+/// A log that cannot be written must not stop anything.
+impl Write for Log {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Ok(file) = self.open() {
+            let _ = file.write_all(bytes);
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,69 @@
+//! Scene files: read within the limits, written atomically.
+
+use std::io::Read;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::{Limits, Options, paths, write_atomic};
+use crate::base::error::{Error, Result};
+use crate::scene::Document;
+
+/// Reads the scene at `path`; `-` is standard input.
+///
+/// # Errors
+/// When it cannot be read, is larger than the limits allow, or has errors in it: all of them.
+pub fn open(path: &Path, options: &Options) -> Result<Document> {
+    parse(path, &read_text(path, &options.limits)?, options)
+}
+
+/// The document in the text of the scene at `path`.
+///
+/// # Errors
+/// When it has errors in it or exceeds the limits: all problems.
+pub fn parse(path: &Path, text: &str, options: &Options) -> Result<Document> {
+    let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
+    let document = Document::parse(text).map_err(refused)?;
+    match options.limits.exceeded(document.scene()) {
+        problems if problems.is_empty() => Ok(document),
+        problems => Err(refused(problems)),
+    }
+}
+
+/// The text of the scene at `path`; `-` is standard input.
+///
+/// # Errors
+/// When it cannot be read, is no text, or is larger than the limits allow.
+pub fn read_text(path: &Path, limits: &Limits) -> Result<String> {
+    if path == Path::new("-") {
+        return text("standard input", std::io::stdin().lock(), limits);
+    }
+    text(&path.display().to_string(), paths::open_named(path)?, limits)
+}
+
+fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
+    let mut bytes = Vec::new();
+    // One more than allowed tells a file that is too large from one that just fits.
+    from.take(limits.scene.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| Error::at(place, error))?;
+    if bytes.len() as u64 > limits.scene {
+        let most = limits.scene;
+        return Err(Error::at(place, format!("is larger than {most} bytes")).cure("give --limit scene=BYTES"));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Error::at(place, format!("is not text: byte {at} is not UTF-8")).cure("a scene is a JSON file")
+    })
+}
+
+/// Writes a scene's text to `path`, atomically.
+///
+/// # Errors
+/// As [`write_atomic`]: the scene is not saved then.
+pub fn save(path: &Path, text: &str) -> Result<()> {
+    write_atomic(path, text.as_bytes())
+}
+
+/// SHA-256 of a file's bytes, in hexadecimal: how a file that another program wrote is told from our own.
+pub fn hash(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,51 @@
+//! Options that every command which opens a scene has.
+
+use crate::base::error::Result;
+use crate::files::{self, Limits, limits};
+
+/// What a scene may take and name.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct SceneOptions {
+    /// Raise or lower a limit; may be given again
+    #[arg(long = "limit", value_name = "NAME=VALUE", long_help = limit_help())]
+    pub limits: Vec<String>,
+    /// Let paths in the scene leave its folder
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+impl SceneOptions {
+    /// What they mean.
+    ///
+    /// # Errors
+    /// A wrong limit is a wrong command line.
+    pub fn options(&self) -> Result<files::Options> {
+        Ok(files::Options { limits: Limits::from_settings(&self.limits)?, allow_outside: self.allow_outside })
+    }
+}
+
+fn limit_help() -> String {
+    let rows = limits::TABLE.iter().map(|row| format!("\n  {:<18}{} [{}]", row.name, row.help, row.default));
+    format!("Raise or lower a limit; may be given again. A value may end in K, M or G.{}", rows.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        scene: SceneOptions,
+    }
+
+    #[test]
+    fn limits_come_from_the_command_line() {
+        let line = Line::parse_from(["x", "--limit", "side=7", "--limit=pixels=2K", "--allow-outside"]);
+        let options = line.scene.options().unwrap();
+        assert_eq!((options.limits.side, options.limits.pixels, options.allow_outside), (7, 2048, true));
+        assert!(Line::parse_from(["x", "--limit", "side"]).scene.options().is_err());
+        assert!(limit_help().contains("memory"));
+    }
+}
