@@ -32,7 +32,7 @@ pub fn lashes() -> Canvas {
     let upper = curve(UPPER);
     let mut chance = Chance::new(41);
     for i in 0..96 {
-        let t = 0.10 + 0.885 * (i as f64 + chance.within(-0.4, 0.4)) / 95.0;
+        let t = 0.12 + 0.84 * (i as f64 + chance.within(-0.4, 0.4)) / 95.0;
         let root = upper.eval(t) + Vec2::new(0.0, -1.5);
         let length = (4.0 + 5.5 * t) * chance.within(0.7, 1.1) * ramp(0.05, 0.3, t);
         let lean = (t - 0.45) * 14.0 + chance.within(-2.5, 2.5);
