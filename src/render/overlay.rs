@@ -259,7 +259,7 @@ impl Drawing<'_> {
 /// The curve through open nodes as a line, to within a twentieth of a pixel.
 fn flattened(nodes: &[Node]) -> Vec<Point> {
     let mut points = Vec::new();
-    kurbo::flatten(&bezier(nodes, false), 0.05, |el| match el {
+    kurbo::flatten(bezier(nodes, false), 0.05, |el| match el {
         kurbo::PathEl::MoveTo(p) | kurbo::PathEl::LineTo(p) => points.push(p),
         _ => {}
     });

@@ -374,8 +374,8 @@ mod tests {
     #[test]
     fn functions_have_the_values_of_their_formulae() {
         for (json, tau, s) in [
-            (r#"{"function":"exponential","rate":2}"#, 0.5, (1f64.exp() - 1.0) / (2f64.exp() - 1.0)),
-            (r#"{"function":"exponential-inverse","rate":2}"#, 0.5, (1.0 - (-1f64).exp()) / (1.0 - (-2f64).exp())),
+            (r#"{"function":"exponential","rate":2}"#, 0.5, 0.268_941_421_369_995_1),
+            (r#"{"function":"exponential-inverse","rate":2}"#, 0.5, 0.731_058_578_630_004_9),
             (r#"{"function":"sigmoid"}"#, 0.5, 0.5),
             (r#"{"function":"sigmoid"}"#, 1.0, 1.0),
             (r#"{"function":"sine"}"#, 0.5, 1.0),

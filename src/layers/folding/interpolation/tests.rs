@@ -98,8 +98,7 @@ fn thin_plate_reproduces_an_affine_map_and_rigid_a_rotation() {
 
 #[test]
 fn a_run_is_its_pixels() {
-    let anchors: Vec<[f64; 4]> =
-        (0..40).map(|i| f64::from(i)).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
+    let anchors: Vec<[f64; 4]> = (0..40).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
     for method in METHODS {
         let interpolator = Interpolator::new(&serde_json::from_str(method).unwrap(), make(&anchors));
         let mut out = Jumps::default();

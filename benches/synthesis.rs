@@ -1,0 +1,48 @@
+//! How long a zone takes to be synthesised, by method and number of anchors: the base that later work is measured by.
+//! `cargo bench --bench synthesis`
+
+mod scenes;
+
+use divan::Bencher;
+use plica::layers::Materials;
+use plica::layers::folding::field::{Field, Inputs};
+use plica::layers::folding::synth::CENTRE;
+
+fn main() {
+    divan::main();
+}
+
+/// Anchors on a picture of 1920 x 1080 pixels, with a radius that holds 32 of them on average.
+#[divan::bench(args = [62, 94, 1000], sample_count = 5)]
+fn shepard_1920x1080(bencher: Bencher, anchors: usize) {
+    synthesis(bencher, (1920, 1080), anchors, r#"{"method":"shepard"}"#);
+}
+
+#[divan::bench(args = [62, 94, 1000], sample_count = 5)]
+fn modified_shepard_1920x1080(bencher: Bencher, anchors: usize) {
+    let radius = (32.0 * 1920.0 * 1080.0 / (std::f64::consts::PI * anchors as f64)).sqrt();
+    synthesis(bencher, (1920, 1080), anchors, &format!(r#"{{"method":"modified-shepard","radius":{radius}}}"#));
+}
+
+#[divan::bench(args = [62, 94, 1000], sample_count = 3)]
+fn thin_plate_1920x1080(bencher: Bencher, anchors: usize) {
+    synthesis(bencher, (1920, 1080), anchors, r#"{"method":"thin-plate"}"#);
+}
+
+#[divan::bench(args = [62, 94], sample_count = 3)]
+fn rigid_1920x1080(bencher: Bencher, anchors: usize) {
+    synthesis(bencher, (1920, 1080), anchors, r#"{"method":"rigid"}"#);
+}
+
+/// The zone that has to be shown again within 50 ms of a key press.
+#[divan::bench(args = ["shepard", "modified-shepard"], sample_count = 20)]
+fn edit_512x512_with_94_anchors_and_a_fold(bencher: Bencher, method: &str) {
+    let more = if method == "shepard" { "" } else { r#","radius":170"# };
+    synthesis(bencher, (512, 512), 94, &format!(r#"{{"method":"{method}"{more}}}"#));
+}
+
+fn synthesis(bencher: Bencher, size: (usize, usize), anchors: usize, interpolation: &str) {
+    let zone = scenes::zone(size, anchors, interpolation);
+    let inputs = Inputs::new(&zone, size, CENTRE);
+    bencher.bench(|| Field::new(&zone, &inputs, &Materials::default()));
+}
