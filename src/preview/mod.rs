@@ -3,14 +3,15 @@
 pub mod editor;
 mod host;
 mod keeper;
+pub mod keys;
 pub mod link;
 pub mod message;
 mod outbox;
 pub mod script;
+#[cfg(feature = "window")]
+pub mod window;
 
 use std::sync::Arc;
-
-pub mod keys;
 
 use crate::scene::Scene;
 

@@ -10,6 +10,8 @@ pub mod cpu;
 #[cfg(feature = "window")]
 pub mod gpu;
 pub mod overlay;
+#[cfg(feature = "window")]
+pub mod reduce;
 
 /// What a frame of a scene needs except the time.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@ use kurbo::{Point, Vec2};
 
 use super::{LayerSynth, Synth};
 use crate::layers::Layer;
+use crate::layers::folding::anchors::anchors;
 use crate::layers::folding::field::Field;
 use crate::layers::folding::model::{PictureLayer, Zone};
 use crate::layers::folding::outline::{Node, bezier, point, vector};
@@ -180,6 +181,9 @@ impl Drawing<'_> {
         for (z, zone) in layer.zones.iter().enumerate() {
             let at = zone_pointer(index, z);
             self.outlines(zone, &at);
+            if self.view.anchors {
+                self.anchors(zone, &at);
+            }
             for (t, tool) in zone.motion.iter().enumerate() {
                 if self.view.curves {
                     self.tool(tool, &format!("{at}/motion/{t}"));
@@ -202,6 +206,22 @@ impl Drawing<'_> {
             let points = region.polygon().vertices().to_vec();
             self.add(Kind::FoldRegion, &at, Shape::Fill(points.clone()));
             self.add(Kind::FoldRegion, &at, Shape::Line { points, closed: true });
+        }
+    }
+
+    fn anchors(&mut self, zone: &Zone, at: &str) {
+        for anchor in anchors(zone) {
+            let at = format!("{at}/motion/{}", anchor.tool);
+            if anchor.jump == Vec2::ZERO {
+                self.add(Kind::Still, &at, Shape::Dot(anchor.at));
+                continue;
+            }
+            self.add(Kind::Jump, &at, Shape::Arrow(anchor.at, anchor.at + anchor.jump));
+            self.add(Kind::Anchor, &at, Shape::Dot(anchor.at));
+            if self.view.labels {
+                let numbers = format!("{}, {}", short(anchor.jump.x), short(anchor.jump.y));
+                self.add(Kind::Anchor, &at, Shape::Label(anchor.at, numbers));
+            }
         }
     }
 
@@ -254,6 +274,12 @@ impl Drawing<'_> {
             }
         }
     }
+}
+
+/// A number with at most two decimals.
+fn short(number: f64) -> String {
+    let text = format!("{number:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// The curve through open nodes as a line, to within a twentieth of a pixel.
@@ -310,6 +336,7 @@ mod tests {
             (View { outlines: true, ..View::default() }, vec![Kind::ZoneOutline]),
             (View { regions: true, ..View::default() }, vec![Kind::FoldRegion]),
             (View { curves: true, ..View::default() }, vec![Kind::Curve, Kind::Handle]),
+            (View { anchors: true, ..View::default() }, vec![Kind::Jump, Kind::Anchor]),
         ] {
             assert_eq!(kinds(&view), expected, "{view:?}");
         }

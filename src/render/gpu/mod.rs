@@ -47,6 +47,11 @@ impl Gpu {
         Ok(Gpu { instance, parts })
     }
 
+    /// What adapters and surfaces come from.
+    pub fn instance(&self) -> &wgpu::Instance {
+        &self.instance
+    }
+
     /// The device.
     pub fn device(&self) -> &Device {
         &self.parts.device

@@ -1,0 +1,456 @@
+//! The window's events: what happens becomes a change of the [`State`], and a change asks for one drawing. While nothing
+//! plays the loop sleeps.
+
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+use kurbo::{Point, Size};
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::window::{Window, WindowId};
+
+use super::canvas::Canvas;
+use super::screen::{Drawn, Screen};
+use super::state::{BAR_PX, Outcome, State};
+use super::worker::{Event, Ready};
+use super::{PLACE, chrome, input, marks};
+use crate::base::error::{Error, Result};
+use crate::preview::keys::{KEYS, PLAY};
+use crate::preview::{Reply, Update};
+use crate::render::gpu::Gpu;
+use crate::render::overlay::{View, overlay};
+use crate::render::reduce::reduced;
+use crate::render::{LayerSynth, Synth};
+use crate::scene::Scene;
+
+/// Smallest and first size of a window, in logical pixels.
+const SMALLEST: (f64, f64) = (480.0, 320.0);
+const FIRST: (f64, f64) = (960.0, 640.0);
+/// A window opens on at most this share of the monitor.
+const MOST_OF_MONITOR: f64 = 0.85;
+/// Frames a second where the monitor does not tell.
+const RATE: f64 = 60.0;
+/// A line of a mouse wheel is one step; a touchpad gives pixels.
+const WHEEL_PX: f64 = 60.0;
+
+/// The window and all that it shows.
+pub struct App {
+    title: String,
+    size: Option<(u32, u32)>,
+    replies: Sender<Reply>,
+    instance: Option<wgpu::Instance>,
+    state: State,
+    shown: Option<Show>,
+    opened: Option<Opened>,
+    marks: Cached,
+    drag: Drag,
+    clock: Clock,
+    failed: Option<Error>,
+}
+
+/// What is open once there is something to show.
+struct Opened {
+    window: Arc<Window>,
+    gpu: Gpu,
+    screen: Screen,
+    hidden: bool,
+}
+
+/// A scene, ready to be drawn.
+struct Show {
+    scene: Arc<Scene>,
+    /// As large as the picture: for the overlay.
+    synth: Synth,
+    /// As large as the GPU can hold, moving and still.
+    frames: Synth,
+    still: Synth,
+    /// Pixels of the frames a pixel of the picture.
+    frame_scale: f64,
+}
+
+/// The overlay's strokes, and what they were made for.
+#[derive(Default)]
+struct Cached {
+    made_for: Option<(View, super::camera::Camera, Size, bool, u64)>,
+    canvas: Canvas,
+    revision: u64,
+}
+
+/// What the pressed mouse button moves.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Drag {
+    Nothing,
+    Picture,
+    Time,
+}
+
+/// When frames were and are due.
+struct Clock {
+    last: Instant,
+    due: Instant,
+    counted_from: Instant,
+    frames: u32,
+}
+
+impl App {
+    /// A window that opens with the first scene or the first problem.
+    pub fn new(instance: wgpu::Instance, title: String, size: Option<(u32, u32)>, replies: Sender<Reply>) -> App {
+        let now = Instant::now();
+        App {
+            title,
+            size,
+            replies,
+            instance: Some(instance),
+            state: State { scale: 1.0, ..State::default() },
+            shown: None,
+            opened: None,
+            marks: Cached::default(),
+            drag: Drag::Nothing,
+            clock: Clock { last: now, due: now, counted_from: now, frames: 0 },
+            failed: None,
+        }
+    }
+
+    /// Why the window ended, where that was an error.
+    pub fn ended(self) -> Result<()> {
+        self.failed.map_or(Ok(()), Err)
+    }
+
+    /// Does what can fail; a failure ends the window.
+    fn attempt(&mut self, event_loop: &ActiveEventLoop, work: impl FnOnce(&mut App) -> Result<()>) {
+        if let Err(error) = work(self) {
+            self.failed = Some(error);
+            event_loop.exit();
+        }
+    }
+
+    /// Opens the window where it is not open yet.
+    fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
+        let Some(instance) = self.instance.take() else { return Ok(()) };
+        let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+        let (scale, room) = monitor.map_or((1.0, None), |m| (m.scale_factor(), Some(m.size())));
+        let size = self.size.unwrap_or_else(|| first_size(self.state.picture, scale, room));
+        let attributes = Window::default_attributes()
+            .with_title(self.title.clone())
+            .with_inner_size(PhysicalSize::new(size.0, size.1));
+        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
+        let (gpu, screen) = Screen::open(instance, window.clone())?;
+        self.opened = Some(Opened { window, gpu, screen, hidden: false });
+        self.resized();
+        Ok(())
+    }
+
+    fn resized(&mut self) {
+        if let Some(opened) = &self.opened {
+            let size = opened.window.inner_size();
+            if size.width > 0 && size.height > 0 {
+                self.state.resize(Size::new(size.width.into(), size.height.into()), opened.window.scale_factor());
+            }
+            self.redraw();
+        }
+    }
+
+    fn redraw(&self) {
+        if let Some(opened) = &self.opened {
+            opened.window.request_redraw();
+        }
+    }
+
+    /// Takes a scene that is ready.
+    fn take(&mut self, event_loop: &ActiveEventLoop, ready: Ready) -> Result<()> {
+        let (width, height) = ready.synth.size;
+        self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
+        self.open(event_loop)?;
+        let Some(opened) = &self.opened else { return Ok(()) };
+        let factor = width.max(height).div_ceil(opened.gpu.device().max_side()).max(1);
+        let frames = if factor > 1 { reduced(&ready.synth, factor) } else { ready.synth.clone() };
+        self.state.notice = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
+        self.shown = Some(Show {
+            scene: ready.scene,
+            synth: ready.synth,
+            still: still(&frames),
+            frames,
+            frame_scale: 1.0 / factor as f64,
+        });
+        self.marks.revision += 1;
+        self.reply(Reply::Shown { revision: ready.revision, synth_ms: ready.synth_ms });
+        self.redraw();
+        Ok(())
+    }
+
+    /// Takes what comes from the editor.
+    fn follow(&mut self, event_loop: &ActiveEventLoop, update: Update) -> Result<()> {
+        match update {
+            Update::Scene { .. } => {} // comes as Ready, synthesised
+            Update::Selection(pointer) => self.state.selection = pointer,
+            Update::Transport { playing, time } => {
+                self.state.transport.playing = playing;
+                self.state.transport.seek(time, &self.state.timeline);
+                self.clock.start();
+            }
+            Update::View(command) => self.run(event_loop, &command),
+            Update::Notice(line) => {
+                self.state.notice = Some(line).filter(|line| !line.is_empty());
+                self.open(event_loop)?;
+            }
+            Update::Closed => event_loop.exit(),
+        }
+        self.redraw();
+        Ok(())
+    }
+
+    fn run(&mut self, event_loop: &ActiveEventLoop, command: &str) {
+        let played = self.state.transport.playing;
+        match self.state.run(command) {
+            Outcome::Redraw => self.redraw(),
+            Outcome::Quit => event_loop.exit(),
+            Outcome::Unknown => {}
+        }
+        if self.state.transport.playing && !played {
+            self.clock.start();
+        }
+    }
+
+    /// A key: the window follows at once, and the editor is told what concerns it too.
+    fn key(&mut self, event_loop: &ActiveEventLoop, command: &'static str) {
+        self.run(event_loop, command);
+        if KEYS.iter().any(|row| row.command == command && row.context == PLAY) {
+            self.reply(Reply::Command(command.to_owned()));
+        }
+    }
+
+    fn reply(&self, reply: Reply) {
+        // Nobody listens where a file is followed, or once the editor is gone: the window goes on.
+        let _ = self.replies.send(reply);
+    }
+
+    fn pointer(&mut self, at: Option<Point>) {
+        let before = std::mem::replace(&mut self.state.pointer, at);
+        match (self.drag, before, at) {
+            (Drag::Picture, Some(from), Some(to)) => self.state.camera.pan(from - to),
+            (Drag::Time, _, Some(to)) => self.scrub(to.x),
+            _ => {}
+        }
+        if let Some(Point { x, y }) = self.state.pointed() {
+            self.reply(Reply::Pointer { x, y });
+        }
+        self.redraw();
+    }
+
+    fn press(&mut self, pressed: bool) {
+        self.drag = match self.state.pointer {
+            Some(at) if pressed && at.y >= self.state.area().height => Drag::Time,
+            Some(_) if pressed => Drag::Picture,
+            _ => Drag::Nothing,
+        };
+        if let (Drag::Time, Some(at)) = (self.drag, self.state.pointer) {
+            self.scrub(at.x);
+        }
+    }
+
+    fn scrub(&mut self, x: f64) {
+        let frame = chrome::frame_at(&self.state, x);
+        self.state.transport.go_to(frame, &self.state.timeline);
+        self.redraw();
+    }
+
+    fn wheel(&mut self, steps: f64) {
+        let about = self.state.pointer.unwrap_or(Point::ZERO);
+        if steps != 0.0 {
+            let steps = if steps > 0.0 { steps.ceil() } else { steps.floor() };
+            self.state.camera.zoom_step(steps as i32, about, self.state.area());
+            self.redraw();
+        }
+    }
+
+    /// Draws the window. A lost device is replaced, and the drawing asked for again.
+    fn draw(&mut self) -> Result<()> {
+        let now = Instant::now();
+        self.state.transport.advance((now - self.clock.last).as_secs_f64(), &self.state.timeline);
+        self.clock.last = now;
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        match opened.paint(&self.state, self.shown.as_ref(), &mut self.marks) {
+            Ok(Drawn::Yes) => opened.hidden = false,
+            Ok(Drawn::Again) => opened.window.request_redraw(),
+            Ok(Drawn::Hidden) => opened.hidden = true,
+            Err(_) if opened.gpu.device().is_lost() => {
+                opened.screen.reopen(&mut opened.gpu)?;
+                opened.window.request_redraw();
+            }
+            Err(error) => return Err(error),
+        }
+        self.count(now);
+        Ok(())
+    }
+
+    /// Tells the editor once a second how fast the animation runs.
+    fn count(&mut self, now: Instant) {
+        self.clock.frames += 1;
+        let secs = (now - self.clock.counted_from).as_secs_f64();
+        if let (true, Some(opened)) = (secs >= 1.0, &self.opened) {
+            let fps = f64::from(self.clock.frames) / secs;
+            let notice = self.state.notice.clone().unwrap_or_default();
+            self.reply(Reply::Report { fps, adapter: opened.gpu.device().name(), notice });
+            (self.clock.counted_from, self.clock.frames) = (now, 0);
+        }
+    }
+
+    fn plays_visibly(&self) -> bool {
+        self.state.transport.playing && self.opened.as_ref().is_some_and(|o| !o.hidden)
+    }
+}
+
+impl Clock {
+    /// Time runs from now.
+    fn start(&mut self) {
+        let now = Instant::now();
+        *self = Clock { last: now, due: now, counted_from: now, frames: 0 };
+    }
+}
+
+impl Opened {
+    fn paint(&mut self, state: &State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
+        if self.gpu.device().is_lost() {
+            self.screen.reopen(&mut self.gpu)?;
+        }
+        let (frame, frame_scale) = match show {
+            Some(show) => {
+                let synth = if state.shown.still { &show.still } else { &show.frames };
+                let time = state.transport.scene_time(&state.timeline);
+                marks.follow(state, show);
+                (self.gpu.texture(synth, time)?, show.frame_scale)
+            }
+            None => (self.gpu.texture(&Synth { size: (1, 1), layers: Vec::new() }, 0.0)?, 1.0),
+        };
+        let chrome = chrome::draw(state);
+        let strokes = [&marks.canvas.strokes[..], &chrome.strokes[..]];
+        let drawn = self.screen.draw(&self.gpu, state, &frame, frame_scale, strokes);
+        self.gpu.device().take_uncaught()?;
+        drawn
+    }
+
+    fn interval(&self) -> Duration {
+        let rate = self.window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
+        Duration::from_secs_f64(1.0 / rate.map_or(RATE, |r| f64::from(r) / 1000.0).max(1.0))
+    }
+}
+
+impl Cached {
+    /// Makes the strokes again where anything that they show has changed.
+    fn follow(&mut self, state: &State, show: &Show) {
+        let key = (state.overlay_view(), state.camera.clone(), state.window, state.shown.grid, self.revision);
+        if self.made_for.as_ref() == Some(&key) {
+            return;
+        }
+        let found = overlay(&show.scene, Some(&show.synth), &key.0);
+        self.canvas = Canvas::default();
+        if state.shown.grid {
+            marks::grid(&mut self.canvas, state.picture, &state.camera, state.area());
+        }
+        self.canvas.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
+        self.made_for = Some(key);
+    }
+}
+
+/// The same picture, nothing moving.
+fn still(synth: &Synth) -> Synth {
+    let layers = synth.layers.iter().map(|LayerSynth::Picture(layer)| {
+        LayerSynth::Picture(crate::layers::folding::synth::Synth { picture: layer.picture.clone(), zones: Vec::new() })
+    });
+    Synth { size: synth.size, layers: layers.collect() }
+}
+
+/// The size of a window around a picture, in physical pixels.
+fn first_size(picture: Size, scale: f64, room: Option<PhysicalSize<u32>>) -> (u32, u32) {
+    let first = if picture == Size::ZERO { Size::from(FIRST) * scale } else { picture };
+    let side = |wanted: f64, least: f64, room: Option<u32>| {
+        let most = room.map_or(f64::INFINITY, |r| f64::from(r) * MOST_OF_MONITOR);
+        wanted.max(least * scale).min(most).round() as u32
+    };
+    let bar = (BAR_PX * scale).round();
+    (side(first.width, SMALLEST.0, room.map(|r| r.width)), side(first.height + bar, SMALLEST.1, room.map(|r| r.height)))
+}
+
+impl ApplicationHandler<Event> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        event_loop.set_control_flow(ControlFlow::Wait);
+        self.redraw();
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
+        self.attempt(event_loop, |app| match event {
+            Event::Ready(ready) => app.take(event_loop, ready),
+            Event::Problem(line) => app.follow(event_loop, Update::Notice(line)),
+            Event::Update(update) => app.follow(event_loop, update),
+        });
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => self.attempt(event_loop, App::draw),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => self.resized(),
+            WindowEvent::Occluded(hidden) => {
+                self.opened.iter_mut().for_each(|o| o.hidden = hidden);
+                self.clock.start();
+                self.redraw();
+            }
+            WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {
+                if let Some(command) = input::command(&event.logical_key) {
+                    self.key(event_loop, command);
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => self.pointer(Some(Point::new(position.x, position.y))),
+            WindowEvent::CursorLeft { .. } => self.pointer(None),
+            WindowEvent::MouseInput { state, button: MouseButton::Left, .. } => {
+                self.press(state == ElementState::Pressed);
+            }
+            WindowEvent::MouseWheel { delta: MouseScrollDelta::LineDelta(_, y), .. } => self.wheel(f64::from(y)),
+            WindowEvent::MouseWheel { delta: MouseScrollDelta::PixelDelta(by), .. } => self.wheel(by.y / WHEEL_PX),
+            _ => {}
+        }
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.redraw();
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let interval = self.opened.as_ref().map(Opened::interval);
+        let flow = match interval {
+            Some(interval) if self.plays_visibly() => {
+                let now = Instant::now();
+                if self.clock.due <= now {
+                    self.clock.due = (self.clock.due + interval).max(now);
+                }
+                ControlFlow::WaitUntil(self.clock.due)
+            }
+            _ => ControlFlow::Wait,
+        };
+        event_loop.set_control_flow(flow);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_opens_around_its_picture_within_the_monitor() {
+        let room = Some(PhysicalSize::new(1000, 1000));
+        for (picture, scale, size) in [
+            (Size::ZERO, 1.0, (850, 674)),
+            (Size::new(600.0, 400.0), 1.0, (600, 434)),
+            (Size::new(10.0, 10.0), 1.0, (480, 320)),
+            (Size::new(5000.0, 10.0), 1.0, (850, 320)),
+            (Size::new(600.0, 400.0), 1.5, (720, 480)),
+        ] {
+            assert_eq!(first_size(picture, scale, room), size, "{picture:?}");
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Marks of the overlay as strokes on the screen: the only place that knows how a kind's style becomes lines and dots.
+
+use kurbo::{Point, Rect, Size, Vec2};
+
+use super::camera::Camera;
+use super::canvas::{Canvas, Color};
+use crate::base::geometry::Polygon;
+use crate::render::overlay::{Dot, FILL_ALPHA, Mark, SELECTED, SELECTED_GROWTH, Shape, Style};
+
+/// Distance of the lines that fill a region, in logical pixels.
+const HATCH_PX: f64 = 7.0;
+const LABEL_PX: f64 = 8.0;
+const HEAD_PX: f64 = 7.0;
+/// The pixel grid shows from this zoom on.
+const GRID_ZOOM: f64 = 8.0;
+const GRID: Color = [255, 255, 255, 28];
+
+/// Draws marks.
+pub fn draw(marks: &[Mark], camera: &Camera, area: Size, scale: f64) -> Canvas {
+    let mut canvas = Canvas::default();
+    let painter = Painter { camera, area, scale };
+    for mark in marks {
+        painter.mark(&mut canvas, mark);
+    }
+    canvas
+}
+
+/// Draws the borders of the picture's pixels, where they are large enough.
+pub fn grid(canvas: &mut Canvas, picture: Size, camera: &Camera, area: Size) {
+    if camera.zoom < GRID_ZOOM {
+        return;
+    }
+    let seen = Rect::from_points(
+        camera.image_from_screen(Point::ZERO, area),
+        camera.image_from_screen((area.width, area.height).into(), area),
+    );
+    let seen = seen.intersect(picture.to_rect()).expand();
+    let screen = |x: f64, y: f64| camera.screen_from_image(Point::new(x, y), area);
+    for x in seen.x0 as i64..=seen.x1 as i64 {
+        canvas.line(screen(x as f64, seen.y0), screen(x as f64, seen.y1), 1.0, GRID);
+    }
+    for y in seen.y0 as i64..=seen.y1 as i64 {
+        canvas.line(screen(seen.x0, y as f64), screen(seen.x1, y as f64), 1.0, GRID);
+    }
+}
+
+struct Painter<'a> {
+    camera: &'a Camera,
+    area: Size,
+    scale: f64,
+}
+
+impl Painter<'_> {
+    fn screen(&self, at: Point) -> Point {
+        self.camera.screen_from_image(at, self.area)
+    }
+
+    fn seen(&self, points: &[Point]) -> bool {
+        let mut bounds = Rect::new(f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
+        points.iter().for_each(|&p| bounds = bounds.union_pt(p));
+        bounds.inflate(40.0, 40.0).overlaps(self.area.to_rect())
+    }
+
+    fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
+        let style = mark.kind.style();
+        let grown = if mark.selected { f64::from(SELECTED_GROWTH) } else { 1.0 } * self.scale;
+        let color = if mark.selected { SELECTED } else { style.color };
+        let width = f64::from(style.width_px) * grown;
+        match &mark.shape {
+            Shape::Line { points, closed } => {
+                let points: Vec<_> = points.iter().map(|&p| self.screen(p)).collect();
+                let dash = style.dash_px.map(|(a, b)| (f64::from(a) * self.scale, f64::from(b) * self.scale));
+                if self.seen(&points) {
+                    canvas.with_halo(|c| c.polyline(&points, *closed, width, dash, color));
+                }
+            }
+            Shape::Fill(points) => self.hatch(canvas, points, color),
+            Shape::Dot(at) => self.dot(canvas, self.screen(*at), &style, grown, color),
+            Shape::Arrow(from, to) => {
+                let (from, to) = (self.screen(*from), self.screen(*to));
+                if self.seen(&[from, to]) {
+                    canvas.with_halo(|c| c.arrow(from, to, width, HEAD_PX * grown, color));
+                }
+            }
+            Shape::Label(at, text) => {
+                let at = self.screen(*at) + Vec2::new(9.0, -14.0) * self.scale;
+                if self.seen(&[at]) {
+                    canvas.with_halo(|c| c.text(text, at, LABEL_PX * self.scale, color));
+                }
+            }
+        }
+    }
+
+    fn dot(&self, canvas: &mut Canvas, at: Point, style: &Style, grown: f64, color: Color) {
+        let r = f64::from(style.dot_px) * grown;
+        if self.seen(&[at]) {
+            canvas.with_halo(|c| match style.dot {
+                Dot::Disc => c.disc(at, r, color),
+                Dot::Square => c.rect(Rect::from_center_size(at, (2.0 * r, 2.0 * r)), 0.0, color),
+                Dot::Diamond => c.diamond(at, r, color),
+            });
+        }
+    }
+
+    /// Thin slanted lines over the inside of a polygon, and a light tint by their nearness.
+    fn hatch(&self, canvas: &mut Canvas, points: &[Point], [r, g, b, _]: Color) {
+        let polygon = Polygon::new(points.iter().map(|&p| self.screen(p)).collect());
+        let (bounds, step) = (polygon.bounds(), HATCH_PX * self.scale);
+        let color = [r, g, b, (FILL_ALPHA * 4.0 * 255.0) as u8];
+        let slant = Vec2::new(1.0, -1.0);
+        let mut cuts = Vec::new();
+        let first = ((bounds.x0 + bounds.y0) / step).ceil() as i64;
+        let last = ((bounds.x1 + bounds.y1) / step).floor() as i64;
+        for k in first..=last {
+            let from = Point::new(k as f64 * step, 0.0);
+            cuts.clear();
+            polygon.line_crossings(from, slant, &mut cuts);
+            cuts.sort_unstable_by(f64::total_cmp);
+            for pair in cuts.chunks_exact(2) {
+                let ends = [from + slant * pair[0], from + slant * pair[1]];
+                if self.seen(&ends) {
+                    canvas.line(ends[0], ends[1], self.scale, color);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::overlay::Kind;
+
+    const AREA: Size = Size::new(200.0, 100.0);
+
+    fn camera() -> Camera {
+        let mut camera = Camera::default();
+        camera.fit(AREA, AREA);
+        camera
+    }
+
+    fn strokes(shape: Shape, selected: bool) -> usize {
+        draw(&[Mark { kind: Kind::FoldRegion, shape, selected }], &camera(), AREA, 1.0).strokes.len()
+    }
+
+    #[test]
+    fn what_is_out_of_sight_is_not_drawn() {
+        assert!(strokes(Shape::Dot(Point::new(50.0, 50.0)), false) > 0);
+        assert_eq!(strokes(Shape::Dot(Point::new(500.0, 50.0)), false), 0);
+        assert_eq!(strokes(Shape::Arrow(Point::new(-90.0, 0.0), Point::new(-50.0, 0.0)), false), 0);
+    }
+
+    #[test]
+    fn hatches_stay_inside() {
+        let polygon = vec![(20.0, 20.0).into(), (60.0, 20.0).into(), (60.0, 60.0).into(), (20.0, 60.0).into()];
+        let mark = Mark { kind: Kind::FoldRegion, shape: Shape::Fill(polygon), selected: false };
+        let canvas = draw(&[mark], &camera(), AREA, 1.0);
+        assert!(canvas.strokes.len() > 5);
+        let inside = |p: [f32; 2]| p.iter().all(|c| (19.9..=60.1).contains(c));
+        assert!(canvas.strokes.iter().all(|s| inside(s.a) && inside(s.b)));
+    }
+
+    #[test]
+    fn the_grid_waits_until_pixels_are_large() {
+        let mut canvas = Canvas::default();
+        grid(&mut canvas, Size::new(4.0, 4.0), &camera(), AREA);
+        assert!(canvas.strokes.is_empty());
+        let mut near = Camera::default();
+        near.fit(Size::new(4.0, 4.0), AREA);
+        grid(&mut canvas, Size::new(4.0, 4.0), &near, AREA);
+        assert_eq!(canvas.strokes.len(), 10);
+    }
+}

@@ -1,0 +1,95 @@
+//! The window: shows a scene as it plays, with what explains it drawn over it, and takes the keys of `preview::keys`.
+//! Drawn only when something changes or plays; where it cannot be opened, the reason is one line.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use winit::event_loop::EventLoop;
+
+use super::{Reply, Update};
+use crate::base::error::{Error, Result};
+
+mod app;
+mod camera;
+mod canvas;
+mod chrome;
+mod glyphs;
+mod input;
+mod marks;
+mod screen;
+mod state;
+mod transport;
+mod worker;
+
+pub use worker::Load;
+
+/// What a window is opened with.
+pub struct Setup {
+    /// What to call it.
+    pub title: String,
+    /// Its size in physical pixels; none: that of the picture, as far as the display has room.
+    pub size: Option<(u32, u32)>,
+    /// What it shows.
+    pub updates: Receiver<Update>,
+    /// What it has to say.
+    pub replies: Sender<Reply>,
+    /// How the pictures of a scene are loaded.
+    pub load: Load,
+}
+
+const PLACE: &str = "window";
+
+/// Opens the window and runs it until it is closed.
+///
+/// # Errors
+/// There is no display, or no GPU and no software driver that can show on it.
+pub fn run(setup: Setup) -> Result<()> {
+    let event_loop =
+        quietly(|| EventLoop::with_user_event().build()).map_err(no_display)?.map_err(|e| no_display(e.to_string()))?;
+    let proxy = event_loop.create_proxy();
+    worker::start(setup.updates, setup.load, move |event| proxy.send_event(event).is_ok());
+    let instance = crate::render::gpu::device::instance(Some(Box::new(event_loop.owned_display_handle())));
+    let mut app = app::App::new(instance, setup.title, setup.size, setup.replies);
+    quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|e| Error::at(PLACE, e))?;
+    app.ended()
+}
+
+fn no_display(what: String) -> Error {
+    let what = what.lines().next().unwrap_or_default().to_owned();
+    Error::at(PLACE, format!("no display can be opened: {what}")).cure("plica render and plica edit need none")
+}
+
+/// Does `work`; a panic of the window system's libraries becomes its message instead of a trace on the terminal.
+fn quietly<T>(work: impl FnOnce() -> T) -> std::result::Result<T, String> {
+    let said = Arc::new(Mutex::new(String::new()));
+    let before = Arc::new(std::panic::take_hook());
+    let (heard, others, here) = (said.clone(), before.clone(), std::thread::current().id());
+    std::panic::set_hook(Box::new(move |info| {
+        if std::thread::current().id() != here {
+            return others(info);
+        }
+        let text = info.payload_as_str().unwrap_or("a library of the window system failed");
+        *heard.lock().unwrap_or_else(PoisonError::into_inner) = format!("{text} ({})", place(info));
+    }));
+    let done = catch_unwind(AssertUnwindSafe(work));
+    std::panic::set_hook(Box::new(move |info| before(info)));
+    done.map_err(|_| said.lock().unwrap_or_else(PoisonError::into_inner).clone())
+}
+
+fn place(info: &std::panic::PanicHookInfo<'_>) -> String {
+    info.location()
+        .map_or(String::new(), |l| format!("{}:{}", l.file().rsplit('/').next().unwrap_or_default(), l.line()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_its_message() {
+        assert_eq!(quietly(|| 3), Ok(3));
+        let said = quietly(|| panic!("no library")).unwrap_err();
+        assert!(said.starts_with("no library (mod.rs:"), "{said}");
+    }
+}

@@ -1,0 +1,344 @@
+//! The window's surface and what is drawn to it: the frame, scaled, then strokes. A surface that is outdated or lost is
+//! made anew; a window without size is not drawn.
+
+use std::sync::Arc;
+
+use bytemuck::Zeroable;
+use winit::window::Window;
+
+use super::canvas::{Color, Stroke};
+use super::chrome::GROUND;
+use super::state::State;
+use crate::base::error::{Error, Result};
+use crate::base::pixels::linear_from_srgb;
+use crate::render::gpu::Gpu;
+
+const SHADER: &str = include_str!("screen.wgsl");
+
+const LIGHT: Color = [74, 77, 82, 255];
+const DARK: Color = [56, 59, 64, 255];
+/// Side of a check, in logical pixels.
+const CHECK_PX: f64 = 8.0;
+
+/// What became of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// It is on the screen.
+    Yes,
+    /// The surface was made anew: draw again.
+    Again,
+    /// The window cannot be seen.
+    Hidden,
+}
+
+/// The surface of a window, with its pipelines.
+pub struct Screen {
+    window: Arc<Window>,
+    surface: wgpu::Surface<'static>,
+    format: wgpu::TextureFormat,
+    configured: (u32, u32),
+    pipelines: Pipelines,
+}
+
+struct Pipelines {
+    bindings: wgpu::BindGroupLayout,
+    enlarged: wgpu::RenderPipeline,
+    reduced: wgpu::RenderPipeline,
+    strokes: wgpu::RenderPipeline,
+    uniform: wgpu::Buffer,
+}
+
+/// The uniform `Screen` of screen.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, Zeroable)]
+struct ScreenUniform {
+    size: [f32; 2],
+    origin: [f32; 2],
+    frame: [f32; 2],
+    zoom: f32,
+    check: f32,
+    ground: [f32; 4],
+    light: [f32; 4],
+    dark: [f32; 4],
+}
+
+impl Screen {
+    /// A GPU that can show in the window, and the window's surface.
+    pub fn open(instance: wgpu::Instance, window: Arc<Window>) -> Result<(Gpu, Screen)> {
+        let surface = surface(&instance, &window)?;
+        let gpu = Gpu::open(instance, Some(&surface))?;
+        let format = format(&surface, &gpu)?;
+        let pipelines = Pipelines::new(&gpu, format)?;
+        Ok((gpu, Screen { window, surface, format, configured: (0, 0), pipelines }))
+    }
+
+    /// Goes on after the device was lost: a new device and all that was made with the old one.
+    pub fn reopen(&mut self, gpu: &mut Gpu) -> Result<()> {
+        gpu.reopen(Some(&self.surface))?;
+        self.format = format(&self.surface, gpu)?;
+        self.pipelines = Pipelines::new(gpu, self.format)?;
+        self.configured = (0, 0);
+        Ok(())
+    }
+
+    /// Draws `frame`, whose pixels are `frame_scale` of the picture's, with strokes over it.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        state: &State,
+        frame: &wgpu::Texture,
+        frame_scale: f64,
+        layers: [&[Stroke]; 2],
+    ) -> Result<Drawn> {
+        let size = self.window.inner_size();
+        if size.width == 0 || size.height == 0 {
+            return Ok(Drawn::Hidden);
+        }
+        if self.configured != (size.width, size.height) {
+            self.configure(gpu, size.width, size.height)?;
+        }
+        let texture = match self.surface.get_current_texture() {
+            wgpu::CurrentSurfaceTexture::Success(texture) | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => texture,
+            wgpu::CurrentSurfaceTexture::Timeout | wgpu::CurrentSurfaceTexture::Occluded => return Ok(Drawn::Hidden),
+            wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Validation => {
+                self.configured = (0, 0);
+                return Ok(Drawn::Again);
+            }
+            wgpu::CurrentSurfaceTexture::Lost => {
+                self.surface = surface(gpu.instance(), &self.window)?;
+                self.configured = (0, 0);
+                return Ok(Drawn::Again);
+            }
+        };
+        let uniform = uniform(state, (frame.width(), frame.height()), frame_scale);
+        self.paint(gpu, &texture.texture, &uniform, frame, layers)?;
+        self.window.pre_present_notify();
+        gpu.device().queue.present(texture);
+        Ok(Drawn::Yes)
+    }
+
+    fn configure(&mut self, gpu: &Gpu, width: u32, height: u32) -> Result<()> {
+        let config = self.surface.get_default_config(&gpu.device().adapter, width, height);
+        let mut config = config.ok_or_else(|| Error::at("window", "the GPU cannot show in this window"))?;
+        config.format = self.format;
+        config.present_mode = wgpu::PresentMode::AutoVsync;
+        gpu.device().checked(|| self.surface.configure(&gpu.device().raw, &config))?;
+        self.configured = (width, height);
+        Ok(())
+    }
+
+    fn paint(
+        &self,
+        gpu: &Gpu,
+        into: &wgpu::Texture,
+        uniform: &ScreenUniform,
+        frame: &wgpu::Texture,
+        layers: [&[Stroke]; 2],
+    ) -> Result<()> {
+        let device = gpu.device();
+        device.checked(|| {
+            device.queue.write_buffer(&self.pipelines.uniform, 0, bytemuck::bytes_of(uniform));
+            let group = self.pipelines.group(&device.raw, frame);
+            let strokes = layers.map(|strokes| instances(device, strokes));
+            let mut encoder = device.raw.create_command_encoder(&Default::default());
+            let view = into.create_view(&Default::default());
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations::default(),
+                })],
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &group, &[]);
+            let reduces = uniform.zoom < 1.0;
+            pass.set_pipeline(if reduces { &self.pipelines.reduced } else { &self.pipelines.enlarged });
+            pass.draw(0..3, 0..1);
+            pass.set_pipeline(&self.pipelines.strokes);
+            for (buffer, strokes) in strokes.iter().zip(layers) {
+                if let Some(buffer) = buffer {
+                    pass.set_vertex_buffer(0, buffer.slice(..));
+                    pass.draw(0..4, 0..strokes.len() as u32);
+                }
+            }
+            drop(pass);
+            device.queue.submit([encoder.finish()]);
+        })
+    }
+}
+
+impl Pipelines {
+    fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Pipelines> {
+        let device = gpu.device();
+        device.checked(|| {
+            let raw = &device.raw;
+            let bindings = bindings(raw);
+            let module = raw.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("screen"),
+                source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+            });
+            let maker = Maker { device: raw, module: &module, bindings: &bindings, format };
+            Pipelines {
+                enlarged: maker.frame(false),
+                reduced: maker.frame(true),
+                strokes: maker.strokes(),
+                uniform: raw.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("screen"),
+                    size: size_of::<ScreenUniform>() as u64,
+                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                }),
+                bindings,
+            }
+        })
+    }
+
+    fn group(&self, device: &wgpu::Device, frame: &wgpu::Texture) -> wgpu::BindGroup {
+        let view = frame.create_view(&Default::default());
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.bindings,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) },
+            ],
+        })
+    }
+}
+
+/// What the pipelines of the screen have in common.
+struct Maker<'a> {
+    device: &'a wgpu::Device,
+    module: &'a wgpu::ShaderModule,
+    bindings: &'a wgpu::BindGroupLayout,
+    format: wgpu::TextureFormat,
+}
+
+impl Maker<'_> {
+    fn frame(&self, reduces: bool) -> wgpu::RenderPipeline {
+        let constants = [("reduces", f64::from(u8::from(reduces)))];
+        self.make(["whole_screen", "show_frame"], &constants, &[], None)
+    }
+
+    fn strokes(&self) -> wgpu::RenderPipeline {
+        let attributes =
+            wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32, 3 => Uint32, 4 => Unorm8x4];
+        let layout = wgpu::VertexBufferLayout {
+            array_stride: size_of::<Stroke>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &attributes,
+        };
+        let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        self.make(["place_stroke", "fill_stroke"], &[], &[Some(layout)], blend)
+    }
+
+    fn make(
+        &self,
+        [vertex, fragment]: [&str; 2],
+        constants: &[(&str, f64)],
+        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
+        blend: Option<wgpu::BlendState>,
+    ) -> wgpu::RenderPipeline {
+        let encodes = ("encodes", f64::from(u8::from(!self.format.is_srgb())));
+        let constants: Vec<_> = constants.iter().copied().chain([encodes]).collect();
+        let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            bind_group_layouts: &[Some(self.bindings)],
+            ..Default::default()
+        });
+        let target = wgpu::ColorTargetState { format: self.format, blend, write_mask: wgpu::ColorWrites::ALL };
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some(vertex),
+                compilation_options: options.clone(),
+                buffers,
+            },
+            primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(fragment),
+                compilation_options: options,
+                targets: &[Some(target)],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+fn bindings(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count: None,
+    };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let frame = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[entry(0, uniform), entry(1, frame)],
+    })
+}
+
+fn instances(device: &crate::render::gpu::device::Device, strokes: &[Stroke]) -> Option<wgpu::Buffer> {
+    if strokes.is_empty() {
+        return None;
+    }
+    let bytes: &[u8] = bytemuck::cast_slice(strokes);
+    let buffer = device.raw.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    device.queue.write_buffer(&buffer, 0, bytes);
+    Some(buffer)
+}
+
+fn surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>> {
+    instance.create_surface(window.clone()).map_err(|e| Error::at("window", e))
+}
+
+/// One that takes sRGB codes as they are, where there is one.
+fn format(surface: &wgpu::Surface<'_>, gpu: &Gpu) -> Result<wgpu::TextureFormat> {
+    let formats = surface.get_capabilities(&gpu.device().adapter).formats;
+    let plain =
+        |f: &&wgpu::TextureFormat| matches!(f, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Rgba8Unorm);
+    let found = formats.iter().find(plain).or(formats.first());
+    found.copied().ok_or_else(|| Error::at("window", "the GPU cannot show in this window"))
+}
+
+fn uniform(state: &State, (width, height): (u32, u32), frame_scale: f64) -> ScreenUniform {
+    let linear = |color: Color| {
+        let [r, g, b, _] = color.map(|code| linear_from_srgb(f64::from(code) / 255.0) as f32);
+        [r, g, b, 1.0]
+    };
+    let origin = state.camera.origin(state.area());
+    let zoom = state.camera.zoom / frame_scale;
+    let checks = if state.shown.plain { [GROUND; 2] } else { [LIGHT, DARK] };
+    ScreenUniform {
+        size: [state.window.width as f32, state.window.height as f32],
+        origin: [origin.x as f32, origin.y as f32],
+        frame: [(f64::from(width) * zoom) as f32, (f64::from(height) * zoom) as f32],
+        zoom: zoom as f32,
+        check: (CHECK_PX * state.scale) as f32,
+        ground: linear(GROUND),
+        light: linear(checks[0]),
+        dark: linear(checks[1]),
+    }
+}

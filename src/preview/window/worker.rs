@@ -1,0 +1,115 @@
+//! Synthesis beside the event loop. One thread listens to the outside, one synthesises; the latest scene wins, and what
+//! an edit left as it was is taken over from the synthesis before.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::time::Instant;
+
+use crate::base::problem::Problem;
+use crate::layers::Materials;
+use crate::preview::Update;
+use crate::render::{self, Synth};
+use crate::scene::Scene;
+
+/// Loads what a scene names: what there is, and what is wrong.
+pub type Load = Box<dyn FnMut(&Scene) -> (Materials, Vec<Problem>) + Send>;
+
+/// What reaches the event loop.
+#[derive(Debug)]
+pub enum Event {
+    /// From outside; never a scene.
+    Update(Update),
+    /// A scene is ready to be shown.
+    Ready(Ready),
+    /// A scene cannot be shown, or not wholly: a line for the person.
+    Problem(String),
+}
+
+/// A scene that is ready to be shown.
+#[derive(Debug)]
+pub struct Ready {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Its synthesis.
+    pub synth: Synth,
+    /// Its revision.
+    pub revision: u64,
+    /// What the synthesis took, in milliseconds.
+    pub synth_ms: f64,
+}
+
+/// The event loop is gone.
+struct Gone;
+
+/// Starts both threads. `send` gives an event to the event loop and tells whether that is still there.
+pub fn start(updates: Receiver<Update>, load: Load, send: impl Fn(Event) -> bool + Clone + Send + 'static) {
+    let (jobs, work) = mpsc::channel();
+    let told = send.clone();
+    std::thread::spawn(move || listen(&updates, &jobs, &told));
+    std::thread::spawn(move || drop(synthesise(&work, load, &send)));
+}
+
+fn listen(updates: &Receiver<Update>, jobs: &Sender<(Arc<Scene>, u64)>, send: &impl Fn(Event) -> bool) {
+    for update in updates {
+        let alive = match update {
+            Update::Scene { scene, revision } => jobs.send((scene, revision)).is_ok(),
+            other => send(Event::Update(other)),
+        };
+        if !alive {
+            return;
+        }
+    }
+}
+
+fn synthesise(work: &Receiver<(Arc<Scene>, u64)>, mut load: Load, send: &impl Fn(Event) -> bool) -> Result<(), Gone> {
+    let send = |event| if send(event) { Ok(()) } else { Err(Gone) };
+    let mut previous: Option<Synth> = None;
+    while let Ok(first) = work.recv() {
+        let (scene, revision) = work.try_iter().last().unwrap_or(first);
+        let began = Instant::now();
+        let (materials, problems) = load(&scene);
+        match render::synth(&scene, &materials, previous.as_ref()) {
+            Ok(synth) => {
+                previous = Some(synth.clone());
+                let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
+                send(Event::Ready(Ready { scene, synth, revision, synth_ms }))?;
+                problems.first().map_or(Ok(()), |problem| send(Event::Problem(problem.to_string())))?;
+            }
+            // A missing picture was already found, with its reason, while it was loaded.
+            Err(problem) => send(Event::Problem(problems.first().unwrap_or(&problem).to_string()))?,
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::pixels::Picture;
+
+    fn scene(image: &str) -> Arc<Scene> {
+        let text = format!(r#"{{"plica": 1, "layers": [{{"kind": "picture", "name": "a", "image": "{image}"}}]}}"#);
+        Arc::new(serde_json::from_str(&text).unwrap())
+    }
+
+    #[test]
+    fn the_latest_scene_wins_and_the_rest_passes_in_order() {
+        let (updates, receiver) = mpsc::channel();
+        let (events, seen) = mpsc::channel();
+        let load = Box::new(|_: &Scene| {
+            let picture = Arc::new(Picture::filled(2, 2, [1.0; 4]));
+            (Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() }, Vec::new())
+        });
+        for revision in 1..=3 {
+            updates.send(Update::Scene { scene: scene("a"), revision }).unwrap();
+        }
+        updates.send(Update::Scene { scene: scene("b"), revision: 4 }).unwrap();
+        updates.send(Update::Notice("hello".into())).unwrap();
+        drop(updates);
+        start(receiver, load, move |event| events.send(event).is_ok());
+        let all: Vec<Event> = seen.iter().collect();
+        assert!(all.iter().any(|e| matches!(e, Event::Update(Update::Notice(n)) if n == "hello")));
+        let last = all.iter().rfind(|e| !matches!(e, Event::Update(_)));
+        assert!(matches!(last, Some(Event::Problem(p)) if p.contains("/layers/0/image")), "{all:?}");
+    }
+}
