@@ -101,17 +101,24 @@ impl Polygon {
         self.sides().map(|(a, b)| (b - a).hypot2().sqrt()).sum()
     }
 
-    /// Adds to `out` the places s (any sign) where the line q + s d crosses a side. A vertex counts with one of its two
-    /// sides, so the parity of the crossings beyond s is the membership at s. `d` is not zero.
-    pub fn line_crossings(&self, q: Point, d: Vec2, out: &mut Vec<f64>) {
-        for (a, b) in self.sides() {
-            let (ca, cb) = (d.cross(a - q), d.cross(b - q));
-            if (ca > 0.0) != (cb > 0.0) {
-                let p = a + (b - a) * (ca / (ca - cb));
-                out.push((p - q).dot(d) / d.hypot2());
-            }
-        }
+    /// The places s (any sign, in no order) where the line q + s d crosses a side: the parity of the crossings beyond s
+    /// is the membership at s. `d` is not zero.
+    pub fn line_crossings(&self, q: Point, d: Vec2) -> impl Iterator<Item = f64> + '_ {
+        self.sides().filter_map(move |(a, b)| side_crossing(a, b, q, d))
     }
+}
+
+/// The s where the line q + s d crosses the side from `a` to `b`. Ties are decided as if the line lay a hair lower and
+/// to the right, which is the half-open rule: along a left or top edge it is in, and a vertex counts with one of its
+/// two sides. `d` is not zero.
+pub fn side_crossing(a: Point, b: Point, q: Point, d: Vec2) -> Option<f64> {
+    let rightward = if d.x != 0.0 { d.x > 0.0 } else { d.y < 0.0 };
+    let left_of_line = |c: f64| if rightward { c > 0.0 } else { c >= 0.0 };
+    let (ca, cb) = (d.cross(a - q), d.cross(b - q));
+    (left_of_line(ca) != left_of_line(cb)).then(|| {
+        let p = a + (b - a) * (ca / (ca - cb));
+        (p - q).dot(d) / d.hypot2()
+    })
 }
 
 /// Distance from `q` to the nearest of some sides, in pixels; infinite without any.
@@ -178,10 +185,25 @@ mod tests {
     #[test]
     fn line_crossings_have_the_parity_of_membership() {
         let (q, d) = (Point::new(0.0, 2.0), Vec2::new(3.0, 0.0));
-        let mut s = Vec::new();
-        square().line_crossings(q, d, &mut s);
+        let mut s: Vec<f64> = square().line_crossings(q, d).collect();
         s.sort_unstable_by(f64::total_cmp);
         assert_eq!(s, [0.5, 1.5]);
+    }
+
+    #[test]
+    fn lines_along_edges_follow_the_half_open_rule() {
+        for (q, d, crossings) in [
+            ((0.0, 1.5), (1.0, 0.0), 2),
+            ((9.0, 1.5), (-1.0, 0.0), 2),
+            ((0.0, 4.5), (1.0, 0.0), 0),
+            ((9.0, 4.5), (-1.0, 0.0), 0),
+            ((1.5, 0.0), (0.0, 1.0), 2),
+            ((1.5, 9.0), (0.0, -1.0), 2),
+            ((4.5, 0.0), (0.0, 1.0), 0),
+            ((4.5, 9.0), (0.0, -1.0), 0),
+        ] {
+            assert_eq!(square().line_crossings(q.into(), d.into()).count(), crossings, "{q:?} {d:?}");
+        }
     }
 
     #[test]

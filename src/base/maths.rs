@@ -1,7 +1,7 @@
 //! Mathematics with the same bits on every machine: the transcendental functions come from `libm`, never from the
 //! platform (clippy.toml bans the others).
 
-pub use libm::{acos, atan2, cbrt, cos, exp, expm1, log as ln, pow, sin};
+pub use libm::{acos, atan2, cbrt, cos, exp, expm1, log as ln, pow, sin, tanh};
 
 /// One whole turn in radians.
 pub const TAU: f64 = std::f64::consts::TAU;

@@ -8,12 +8,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::base::error::{Error, Result};
 use crate::base::text::printable;
 
+pub mod opened;
+pub mod probe;
 pub mod scene_options;
 pub mod schema;
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
 pub enum Command {
+    /// Tell what a pixel does at a time, and why
+    Probe(probe::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
 }
@@ -22,6 +26,7 @@ impl Command {
     /// Does it.
     pub fn run(self, context: &mut Context) -> Result<()> {
         match self {
+            Command::Probe(args) => probe::run(args, context),
             Command::Schema(args) => schema::run(args, context),
         }
     }

@@ -92,9 +92,7 @@ fn motion(zone: &Zone) -> Vec<Problem> {
 /// Numbers of a position function that hang together.
 fn position(position: &Position) -> Vec<Problem> {
     match position {
-        Position::Exponential { rate } | Position::ExponentialInverse { rate } | Position::Sigmoid { rate }
-            if *rate == 0.0 =>
-        {
+        Position::Exponential { rate } | Position::ExponentialInverse { rate } if *rate == 0.0 => {
             vec![Problem::error("/rate", "a rate of 0 has no curve").hint("the nearest is the function linear")]
         }
         Position::Keyframes { points, .. } => {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::model::Zone;
-use crate::base::maths::{TAU, cos, exp, expm1, sin};
+use crate::base::maths::{TAU, cos, exp, expm1, sin, tanh};
 use crate::layers::timeline::Wrap;
 
 /// A position function: where along its jump path a sampler is at each local time τ. 0 is its own pixel, 1 the end.
@@ -18,21 +18,21 @@ pub enum Position {
     Exponential {
         /// k, not 0; negative turns the curve over.
         #[serde(default = "three")]
-        #[schemars(range(min = -500.0, max = 500.0))]
+        #[schemars(range(min = -1e6, max = 1e6))]
         rate: f64,
     },
     /// s = (1 - e^(-kτ)) / (1 - e^(-k)): fast, then slow.
     ExponentialInverse {
         /// k, not 0; negative turns the curve over.
         #[serde(default = "three")]
-        #[schemars(range(min = -500.0, max = 500.0))]
+        #[schemars(range(min = -1e6, max = 1e6))]
         rate: f64,
     },
     /// The logistic curve through (0, 0) and (1, 1): slow at both ends.
     Sigmoid {
-        /// k, not 0; larger is steeper in the middle.
+        /// k; larger is steeper in the middle.
         #[serde(default = "ten")]
-        #[schemars(range(min = -500.0, max = 500.0))]
+        #[schemars(range(min = -1e6, max = 1e6))]
         rate: f64,
     },
     /// s = offset + amplitude sin(2π (cycles τ + phase)).
@@ -184,12 +184,9 @@ impl Position {
     pub fn eval(&self, tau: f64) -> f64 {
         match self {
             Position::Linear => tau,
-            Position::Exponential { rate } => expm1(rate * tau) / expm1(*rate),
-            Position::ExponentialInverse { rate } => expm1(-rate * tau) / expm1(-rate),
-            Position::Sigmoid { rate } => {
-                let (low, high) = (logistic(-rate / 2.0), logistic(rate / 2.0));
-                (logistic(rate * (tau - 0.5)) - low) / (high - low)
-            }
+            Position::Exponential { rate } => exponential(*rate, tau),
+            Position::ExponentialInverse { rate } => exponential(-rate, tau),
+            Position::Sigmoid { rate } => sigmoid(*rate, tau),
             Position::Sine { cycles, phase, amplitude, offset } => {
                 offset + amplitude * sin(TAU * (cycles * tau + phase))
             }
@@ -249,8 +246,21 @@ fn turning_points(cycles: f64, phase: f64, first: f64) -> Vec<f64> {
     turns.map(|turn| ((turn - phase) / cycles).clamp(0.0, 1.0)).collect()
 }
 
-fn logistic(x: f64) -> f64 {
-    1.0 / (1.0 + exp(-x))
+/// (e^(kτ) - 1) / (e^k - 1) without overflow; its limit τ for k = 0.
+fn exponential(k: f64, tau: f64) -> f64 {
+    match k {
+        0.0 => tau,
+        k if k > 0.0 => exp(k * (tau - 1.0)) * expm1(-k * tau) / expm1(-k),
+        k => expm1(k * tau) / expm1(k),
+    }
+}
+
+/// (σ(k(τ - 1/2)) - σ(-k/2)) / (σ(k/2) - σ(-k/2)), by σ(x) = (1 + tanh(x/2)) / 2; its limit τ for k = 0.
+fn sigmoid(k: f64, tau: f64) -> f64 {
+    if k == 0.0 {
+        return tau;
+    }
+    0.5 + tanh(k * (tau - 0.5) / 2.0) / (2.0 * tanh(k / 4.0))
 }
 
 /// CSS easing: y where x(u) = tau. x is monotone, so halving always finds it.
@@ -332,7 +342,10 @@ mod tests {
             r#"{"function":"linear"}"#,
             r#"{"function":"exponential"}"#,
             r#"{"function":"exponential","rate":-40}"#,
-            r#"{"function":"exponential","rate":500}"#,
+            r#"{"function":"exponential","rate":1500}"#,
+            r#"{"function":"exponential-inverse","rate":1e-9}"#,
+            r#"{"function":"sigmoid","rate":0}"#,
+            r#"{"function":"sigmoid","rate":1500}"#,
             r#"{"function":"exponential-inverse"}"#,
             r#"{"function":"sigmoid"}"#,
             r#"{"function":"sigmoid","rate":-300}"#,

@@ -4,7 +4,7 @@
 use kurbo::{Point, Rect, Vec2};
 
 use super::outline::Outline;
-use crate::base::geometry::Polygon;
+use crate::base::geometry::{Polygon, side_crossing};
 
 /// Crossings nearer to each other than this, as a share of the path, are one place: regions that share a side leave no
 /// gap between them.
@@ -81,7 +81,7 @@ impl Regions {
         }
         let mut events: Vec<(f64, usize)> = sides
             .iter()
-            .filter_map(|side| crossing(side, q, jump).map(|s| (s, side.region)))
+            .filter_map(|side| side_crossing(side.from, side.to, q, jump).map(|s| (s, side.region)))
             .filter(|(s, _)| *s >= low - SAME && *s <= high + SAME)
             .collect();
         events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -101,22 +101,9 @@ impl Regions {
     /// Which regions hold the places just beside an init-position that lies on a side itself: by the parity of the
     /// crossings further on.
     fn member_beside(&self, q: Point, jump: Vec2, sign: f64) -> Vec<bool> {
-        let parity = |polygon: &Polygon| {
-            let mut all = Vec::new();
-            polygon.line_crossings(q, jump, &mut all);
-            all.iter().filter(|s| **s * sign > SAME).count() % 2 == 1
-        };
+        let parity = |polygon: &Polygon| polygon.line_crossings(q, jump).filter(|s| s * sign > SAME).count() % 2 == 1;
         self.polygons.iter().map(parity).collect()
     }
-}
-
-/// The s where the line from `q` along `jump` crosses a side; a vertex counts with one of its two sides.
-fn crossing(side: &Side, q: Point, jump: Vec2) -> Option<f64> {
-    let (from, to) = (jump.cross(side.from - q), jump.cross(side.to - q));
-    ((from > 0.0) != (to > 0.0)).then(|| {
-        let p = side.from + (side.to - side.from) * (from / (from - to));
-        (p - q).dot(jump) / jump.hypot2()
-    })
 }
 
 /// Walks away from s = 0 through `events` (places, and the region that changes there) and lists where the union

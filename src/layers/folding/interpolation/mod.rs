@@ -137,10 +137,13 @@ impl Interpolator {
             Interpolation::ModifiedShepardRandom { radius, ring, seed } => {
                 Method::Modified(Modified { radius, ring: Some((ring, seed)) })
             }
-            Interpolation::ThinPlate { smoothing } => match thin_plate::Plate::solve(&anchors, smoothing) {
-                Some(plate) => Method::ThinPlate(plate),
-                None => Method::Shepard { power: two() },
-            },
+            Interpolation::ThinPlate { smoothing } => {
+                let anchors = thin_plate::distinct(&anchors);
+                return match thin_plate::Plate::solve(&anchors, smoothing) {
+                    Some(plate) => Interpolator { anchors, method: Method::ThinPlate(plate) },
+                    None => Interpolator { anchors, method: Method::Shepard { power: two() } },
+                };
+            }
             Interpolation::Rigid {} => Method::Rigid,
         };
         Interpolator { anchors, method }

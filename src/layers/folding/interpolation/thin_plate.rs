@@ -23,9 +23,8 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// Solves for the plate; none with fewer than three anchors, or all on one line.
+    /// Solves for the plate through [`distinct`] anchors; none with fewer than three, or all on one line.
     pub fn solve(anchors: &[Anchor], smoothing: f64) -> Option<Self> {
-        let anchors = distinct(anchors);
         let n = anchors.len();
         let sum = anchors.iter().fold(Vec2::ZERO, |sum, anchor| sum + anchor.at.to_vec2());
         let center = (sum / n.max(1) as f64).to_point();
@@ -80,7 +79,8 @@ fn affine_term(place: Vec2, i: usize) -> f64 {
     [1.0, place.x, place.y][i]
 }
 
-fn distinct(anchors: &[Anchor]) -> Vec<Anchor> {
+/// The anchors without those that are at an earlier one.
+pub fn distinct(anchors: &[Anchor]) -> Vec<Anchor> {
     let mut kept: Vec<Anchor> = Vec::with_capacity(anchors.len());
     for anchor in anchors {
         if kept.iter().all(|other| (other.at - anchor.at).hypot2() >= SAME_PX * SAME_PX) {

@@ -1,0 +1,55 @@
+//! A scene opened for a command: its document and everything it names. Used by every command that looks at pixels.
+
+use std::path::{Path, PathBuf};
+
+use super::{Context, scene_options::SceneOptions};
+use crate::base::error::{Error, Result};
+use crate::files::{self, materials};
+use crate::layers::Materials;
+use crate::render::{self, Synth};
+use crate::scene::Document;
+
+/// A scene and what it names.
+pub struct Opened {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// The scene.
+    pub document: Document,
+    /// Its pictures and fields.
+    pub materials: Materials,
+}
+
+impl Opened {
+    /// Opens the scene at `path` and loads what it names; warnings are said.
+    ///
+    /// # Errors
+    /// What cannot be read; every problem of the scene.
+    pub fn new(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
+        let options = options.options()?;
+        let document = files::scene::open(path, &options)?;
+        for warning in document.warnings() {
+            context.messages.say(&format!("{}: {warning}", path.display()));
+        }
+        let loaded = materials::load(path, document.scene(), &options, &mut materials::Cache::default());
+        let materials = loaded.map_err(|problems| Error::Scene { file: path.display().to_string(), problems })?;
+        Ok(Opened { path: path.to_path_buf(), document, materials })
+    }
+
+    /// The scene made ready for frames at any time.
+    ///
+    /// # Errors
+    /// As [`render::synth`].
+    pub fn synth(&self) -> Result<Synth> {
+        let synth = render::synth(self.document.scene(), &self.materials, None);
+        synth.map_err(|problem| Error::Scene { file: self.path.display().to_string(), problems: vec![problem] })
+    }
+
+    /// The same for n x n samples a pixel.
+    ///
+    /// # Errors
+    /// As [`render::samples`].
+    pub fn samples(&self, n: u32) -> Result<Vec<Synth>> {
+        let samples = render::samples(self.document.scene(), &self.materials, n);
+        samples.map_err(|problem| Error::Scene { file: self.path.display().to_string(), problems: vec![problem] })
+    }
+}
