@@ -108,13 +108,11 @@ impl Painter<'_> {
         let (bounds, step) = (polygon.bounds(), HATCH_PX * self.scale);
         let color = [r, g, b, (FILL_ALPHA * 4.0 * 255.0) as u8];
         let slant = Vec2::new(1.0, -1.0);
-        let mut cuts = Vec::new();
         let first = ((bounds.x0 + bounds.y0) / step).ceil() as i64;
         let last = ((bounds.x1 + bounds.y1) / step).floor() as i64;
         for k in first..=last {
             let from = Point::new(k as f64 * step, 0.0);
-            cuts.clear();
-            polygon.line_crossings(from, slant, &mut cuts);
+            let mut cuts: Vec<f64> = polygon.line_crossings(from, slant).collect();
             cuts.sort_unstable_by(f64::total_cmp);
             for pair in cuts.chunks_exact(2) {
                 let ends = [from + slant * pair[0], from + slant * pair[1]];
