@@ -14,6 +14,8 @@ pub mod picture;
 pub mod recovery;
 pub mod scene;
 pub mod session;
+#[cfg(test)]
+mod session_tests;
 pub mod watch;
 pub mod write;
 

@@ -257,8 +257,15 @@ impl Session {
             tracing::warn!("saving without a journal: {reason}");
         }
         let text = self.document().to_text();
-        scene::save(&self.path, &text)?;
-        self.file = scene::hash(text.as_bytes());
+        let ours = scene::hash(text.as_bytes());
+        if let Err(error) = scene::save(&self.path, &text) {
+            // It may have come as far as the file and not be safe there: what is there is ours all the same.
+            if self.file_hash().is_some_and(|found| found == ours) {
+                self.file = ours;
+            }
+            return Err(error);
+        }
+        self.file = ours;
         self.now_saved(true);
         Ok(())
     }

@@ -14,7 +14,7 @@ use std::thread::JoinHandle;
 mod format;
 mod writer;
 
-pub use format::{Contents, Header, Kind, Record, Unreadable, read};
+pub use format::{Contents, Header, Kind, Record, Unreadable, encode, read};
 
 use super::{disk, scene};
 use crate::base::system::folders;
@@ -227,7 +227,7 @@ pub struct Opened {
 impl Journal {
     /// Takes a record, without waiting. `document` is what it led to, `file` the hash of the scene file.
     pub fn append(&mut self, record: &Record, document: &Document, file: &str) {
-        let frame = format::encode(record);
+        let frame = encode(record);
         self.length += frame.len();
         self.empty = false;
         self.send(Message::Append(frame, record.revision));
@@ -248,6 +248,12 @@ impl Journal {
         self.length = shift(self.length);
         self.checkpoint = self.checkpoint.take().map(|(at, document)| (shift(at), document));
         self.send(Message::Compact(start, dropped));
+    }
+
+    /// For tests: how much the journal grows between two droppings of its oldest part, in bytes.
+    #[cfg(test)]
+    pub fn compact_every(&mut self, bytes: usize) {
+        self.compact_every = bytes;
     }
 
     /// The newest revision that is safe on the disk.

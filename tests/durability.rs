@@ -1,0 +1,391 @@
+//! Nothing acknowledged is lost, and a scene file is the old one or the new one: a process that edits and saves is killed
+//! at random, killed at every system call of an edit and a save, and has every one of them fail once.
+//!
+//! The process is this test binary again, run as the test `child`. System calls are met by strace, one thread at a time;
+//! where tracing is forbidden or strace is missing, only the file layer's own faults (`files::disk`) do the same. The run
+//! says which.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use plica::files::disk::{self, Fault};
+use plica::files::session::{Mode, Overwrite, Session};
+use plica::files::{self, Options};
+use plica::scene::Edit;
+
+const TASK: &str = "PLICA_TEST_TASK";
+const SCENE: &str = "PLICA_TEST_SCENE";
+const FAULT: &str = "PLICA_TEST_FAULT";
+
+/// System calls that a program cannot live without, or that are not about files: they are killed at but do not fail.
+const NEVER_FAIL: [&str; 14] = [
+    "futex",
+    "mmap",
+    "munmap",
+    "mprotect",
+    "mremap",
+    "brk",
+    "madvise",
+    "rt_sigprocmask",
+    "sigaltstack",
+    "sched_yield",
+    "getrandom",
+    "exit",
+    "exit_group",
+    "restart_syscall",
+];
+
+// What the child does.
+
+#[test]
+#[ignore = "run by the others, in a process of its own"]
+fn child() {
+    let Ok(task) = std::env::var(TASK) else { return };
+    let scene = PathBuf::from(std::env::var_os(SCENE).unwrap());
+    gate("OPENING");
+    if let Ok(fault) = std::env::var(FAULT) {
+        let (kind, n) = fault.split_once(' ').unwrap();
+        disk::inject(n.parse().unwrap(), if kind == "kill" { Fault::Kill } else { Fault::Error });
+    }
+    let before = disk::operations();
+    let mut session = match Session::open(&scene, &Options::default(), Mode::Edit) {
+        Ok(session) => session,
+        Err(error) => return say(&format!("FAILED {error}")),
+    };
+    session.recover();
+    gate("OPENED");
+    let first = number(&session) + 1;
+    match task.as_str() {
+        "forever" => (first..).for_each(|n| step(&mut session, n, n % 3 == 0)),
+        _ => (1..=3).for_each(|n| step(&mut session, n, n < 3)),
+    }
+    drop(session);
+    say(&format!("OPERATIONS {}", disk::operations() - before));
+}
+
+fn step(session: &mut Session, n: u64, save: bool) {
+    say(&format!("EDIT {n}"));
+    session.apply(title(n), false).unwrap();
+    // A failure comes once: the second try stands for the person's next edit, or the writer's own next one.
+    if session.flush().or_else(|_| session.flush()).is_ok() {
+        say(&format!("ACKNOWLEDGED {n}"));
+    }
+    if save {
+        say(&format!("SAVING {n}"));
+        if session.save(Overwrite::No).or_else(|_| session.save(Overwrite::No)).is_ok() {
+            say(&format!("SAVED {n}"));
+        }
+    }
+}
+
+fn title(n: u64) -> Edit {
+    let operation = serde_json::json!([{ "op": "add", "path": "/title", "value": n.to_string() }]);
+    Edit(serde_json::from_value(operation).unwrap())
+}
+
+fn number(session: &Session) -> u64 {
+    session.document().scene().title.parse().unwrap()
+}
+
+fn say(line: &str) {
+    // This write may be the one that is made to fail.
+    let _ = std::io::stdout().write_all(format!("{line}\n").as_bytes());
+    let _ = std::io::stdout().flush();
+}
+
+/// Says where we are and waits for a line, so that a tracer can attach.
+fn gate(name: &str) {
+    say(&format!("{name} {}", std::process::id()));
+    let mut line = String::new();
+    std::io::stdin().read_line(&mut line).unwrap();
+}
+
+// What the parent does.
+
+struct Place {
+    folder: tempfile::TempDir,
+    scene: PathBuf,
+}
+
+fn place() -> Place {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("cat.plica.json");
+    std::fs::write(&scene, "{ \"plica\": 1, \"title\": \"0\" }\n").unwrap();
+    Place { folder, scene }
+}
+
+struct Running {
+    child: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+}
+
+/// What a child said it did.
+#[derive(Debug, Default)]
+struct Said {
+    edited: u64,
+    acknowledged: u64,
+    saving: u64,
+    saved: u64,
+    operations: u64,
+    failed: Option<String>,
+}
+
+fn start(task: &str, place: &Place, fault: Option<String>) -> Running {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", "child", "--ignored", "--nocapture", "--test-threads=1"]);
+    command.env(TASK, task).env(SCENE, &place.scene).env("XDG_STATE_HOME", place.folder.path().join("state"));
+    command.envs(fault.map(|fault| (FAULT, fault)));
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("a child");
+    let (to, from) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
+    Running { child, to, from }
+}
+
+impl Running {
+    fn wait_for(&mut self, gate: &str) {
+        let mut line = String::new();
+        while !line.contains(gate) {
+            line.clear();
+            assert!(self.from.read_line(&mut line).unwrap() > 0, "the child ended before {gate}");
+        }
+    }
+
+    fn go(&mut self) {
+        // A child that was killed meanwhile does not read it.
+        let _ = self.to.write_all(b"\n");
+    }
+
+    fn end(mut self) -> (Said, ExitStatus) {
+        let mut said = Said::default();
+        let mut all = String::new();
+        self.from.read_to_string(&mut all).unwrap();
+        for line in all.lines() {
+            let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
+            let number = || rest.parse().unwrap_or(0);
+            match word {
+                "EDIT" => said.edited = number(),
+                "ACKNOWLEDGED" => said.acknowledged = number(),
+                "SAVING" => said.saving = number(),
+                "SAVED" => said.saved = number(),
+                "OPERATIONS" => said.operations = number(),
+                "FAILED" => said.failed = Some(rest.to_owned()),
+                _ => {}
+            }
+        }
+        (said, self.child.wait().unwrap())
+    }
+}
+
+/// The file is whole, old or new; the journal has all that was acknowledged, and undo leads back to the start.
+fn check(place: &Place, said: &Said, before: u64, context: &str) -> u64 {
+    let document = files::scene::open(&place.scene, &Options::default());
+    let in_file: u64 = document.unwrap_or_else(|error| panic!("{context}: {error}")).scene().title.parse().unwrap();
+    let old_or_new = in_file == said.saved || in_file == said.saving || (said.saved == 0 && in_file <= before);
+    assert!(old_or_new, "{context}: the file has {in_file}; {said:?}");
+    let mut session = Session::open(&place.scene, &Options::default(), Mode::Edit)
+        .unwrap_or_else(|error| panic!("{context}: {error}"));
+    session.recover();
+    let recovered = number(&session);
+    assert!(recovered >= said.acknowledged.max(in_file), "{context}: {recovered} is left of {said:?}");
+    assert!(recovered <= said.edited.max(before), "{context}: {recovered} was never made; {said:?}");
+    recovered
+}
+
+fn check_once(place: &Place, said: &Said, context: &str) {
+    let recovered = check(place, said, 0, context);
+    if said.acknowledged == recovered {
+        let mut session = Session::open(&place.scene, &Options::default(), Mode::Edit).unwrap();
+        session.recover();
+        let steps = std::iter::from_fn(|| session.undo()).count();
+        assert_eq!((steps as u64, number(&session)), (recovered, 0), "{context}: undo leads back");
+    }
+    let left: Vec<_> = std::fs::read_dir(place.folder.path()).unwrap().flatten().map(|e| e.file_name()).collect();
+    assert!(!left.iter().any(|name| name.to_string_lossy().ends_with(".tmp")), "{context}: {left:?}");
+}
+
+#[test]
+fn killed_at_random_nothing_acknowledged_is_lost() {
+    const KILLS: u32 = 60;
+    let place = place();
+    let (mut before, mut acknowledged) = (0, 0);
+    // Any sequence of pauses will do; this one is the same every time.
+    let mut random = 1u64;
+    for round in 0..KILLS {
+        let mut running = start("forever", &place, None);
+        running.wait_for("OPENING");
+        running.go();
+        running.wait_for("OPENED");
+        running.go();
+        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        std::thread::sleep(Duration::from_micros((random >> 33) % 30_000));
+        running.child.kill().unwrap();
+        let (said, _) = running.end();
+        acknowledged += u64::from(said.acknowledged > 0);
+        before = check(&place, &said, before, &format!("round {round}"));
+    }
+    assert!(acknowledged > 10, "the child hardly ever got to an edit");
+}
+
+#[test]
+fn every_file_operation_killed_at_and_failing_once() {
+    let count = run_once("whole", None).operations;
+    assert!(count >= 20, "{count} operations");
+    for n in 0..count {
+        for kind in ["kill", "error"] {
+            run_once(&format!("{kind} at operation {n}"), Some(format!("{kind} {n}")));
+        }
+    }
+    tell(&format!(
+        "{count} file operations of an open, edits and saves: killed at and failing once each, by the file layer"
+    ));
+}
+
+fn run_once(context: &str, fault: Option<String>) -> Said {
+    let place = place();
+    let kills = fault.as_ref().is_some_and(|fault| fault.starts_with("kill"));
+    let mut running = start("once", &place, fault);
+    running.go();
+    running.go();
+    let (said, status) = running.end();
+    assert_eq!(status.success(), !kills, "{context}: {said:?}");
+    check_once(&place, &said, context);
+    said
+}
+
+#[test]
+fn every_system_call_killed_at_and_failing_once() {
+    if !may_trace() {
+        return tell("strace is missing or tracing is forbidden: file operations met by the file layer alone");
+    }
+    let mut cases = Vec::new();
+    for thread in [Thread::Main, Thread::Journal] {
+        let place = place();
+        let log = place.folder.path().join("log");
+        traced(&place, thread, &["-o", log.to_str().unwrap()]);
+        let calls = calls(&std::fs::read_to_string(log).unwrap());
+        assert!(calls.contains_key(if thread == Thread::Main { "fsync" } else { "fdatasync" }), "{calls:?}");
+        for (call, count) in calls {
+            for n in 1..=count {
+                cases.push((thread, format!("inject={call}:signal=KILL:when={n}")));
+                if !NEVER_FAIL.contains(&call.as_str()) {
+                    cases.push((thread, format!("inject={call}:error=EIO:when={n}")));
+                }
+            }
+        }
+    }
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                while let Some((thread, inject)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let place = place();
+                    let (said, status) = traced(&place, *thread, &["-o", "/dev/null", "-e", inject]);
+                    let context = format!("{thread:?} {inject}");
+                    assert!(status.success() || inject.contains("KILL"), "{context}: {said:?}");
+                    check_once(&place, &said, &context);
+                }
+            });
+        }
+    });
+    tell(&format!(
+        "{} system calls of an open, edits and saves: killed at and failing once each, by strace",
+        cases.len()
+    ));
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Thread {
+    Main,
+    Journal,
+}
+
+fn may_trace() -> bool {
+    let plain = Command::new("strace").args(["-o", "/dev/null", "true"]).stderr(Stdio::null()).status();
+    plain.is_ok_and(|status| status.success())
+}
+
+/// Runs the child with one of its threads under strace.
+fn traced(place: &Place, thread: Thread, arguments: &[&str]) -> (Said, ExitStatus) {
+    let mut running = start("once", place, None);
+    running.wait_for("OPENING");
+    if thread == Thread::Journal {
+        running.go();
+        running.wait_for("OPENED");
+    }
+    let thread_id = thread_id(running.child.id(), thread);
+    let mut strace = Command::new("strace");
+    strace.args(arguments).args(["-p", &thread_id]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut strace = strace.spawn().unwrap();
+    let mut attached = String::new();
+    let mut messages = BufReader::new(strace.stderr.take().unwrap());
+    messages.read_line(&mut attached).unwrap();
+    assert!(attached.contains("attached"), "{attached}");
+    running.go();
+    running.go();
+    let ended = running.end();
+    strace.wait().unwrap();
+    ended
+}
+
+/// The thread that runs the test waits at a gate; the journal's has a name of its own.
+fn thread_id(process: u32, thread: Thread) -> String {
+    let tasks = PathBuf::from(format!("/proc/{process}/task"));
+    let name = |id: &str| std::fs::read_to_string(tasks.join(id).join("comm")).unwrap_or_default();
+    let ids = || -> Vec<String> {
+        let entries = std::fs::read_dir(&tasks).unwrap().flatten();
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
+    };
+    match thread {
+        // With one test at a time there is no other thread yet, or the test's thread has the test's name.
+        Thread::Main => ids().into_iter().find(|id| name(id).trim() == "child").unwrap_or(process.to_string()),
+        Thread::Journal => ids().into_iter().find(|id| name(id).trim() == "journal").expect("the journal's thread"),
+    }
+}
+
+/// How often each system call was begun.
+fn calls(log: &str) -> BTreeMap<String, usize> {
+    let mut calls = BTreeMap::new();
+    for line in log.lines().filter(|line| !line.contains(" resumed>")) {
+        if let Some((name, _)) =
+            line.split_once('(').filter(|(name, _)| name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'))
+        {
+            *calls.entry(name.to_owned()).or_default() += 1;
+        }
+    }
+    calls
+}
+
+/// A line that the test harness does not swallow.
+fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "durability: {line}");
+}
+
+/// The order of a save: the new file is on the disk before it takes the old one's place, and its name after.
+#[test]
+fn a_save_syncs_before_and_after_the_rename() {
+    if !may_trace() {
+        return tell("strace is missing or tracing is forbidden: the order of a save was not seen");
+    }
+    let place = place();
+    let log = place.folder.path().join("log");
+    traced(&place, Thread::Main, &["-y", "-o", log.to_str().unwrap()]);
+    let log = std::fs::read_to_string(log).unwrap();
+    let steps: Vec<&str> = log.lines().filter_map(|line| save_step(line, place.folder.path())).collect();
+    let one = ["sync file", "rename", "sync folder"];
+    assert!(steps.windows(3).filter(|w| *w == one).count() == 2, "{steps:?}");
+}
+
+fn save_step<'a>(line: &'a str, folder: &Path) -> Option<&'a str> {
+    let folder = format!("<{}>", folder.canonicalize().unwrap().display());
+    match line.split_once('(')?.0 {
+        "rename" | "renameat" | "renameat2" => Some("rename"),
+        "fsync" if line.contains(&folder) => Some("sync folder"),
+        "fsync" if line.contains(".tmp>") => Some("sync file"),
+        _ => None,
+    }
+}
