@@ -82,26 +82,30 @@ pub fn path_in_state(scene_path: &Path) -> Option<PathBuf> {
     Some(folders::state()?.join("journals").join(format!("{}.journal", &hash[..32])))
 }
 
-/// Finds and locks the journal of a scene, or makes an empty one. `scene_path` is absolute and free of links.
+/// Finds and locks the journal of a scene, or makes an empty one. `scene_path` is absolute and free of links. Where there
+/// is one in both places, the one written last counts.
 ///
 /// # Errors
 /// When another process holds it, when it can lie neither beside the scene nor among the user's state, or when a newer
 /// program wrote it.
 pub fn find(scene_path: &Path) -> Result<Found, Unopened> {
-    let beside = path_beside(scene_path);
-    let in_state = path_in_state(scene_path);
-    let stray = in_state.as_ref().filter(|path| path.exists() && !beside.exists());
-    if let Some(path) = stray {
-        return lock(path);
-    }
-    match (lock(&beside), in_state) {
-        (Err(Unopened::Failed(error)), Some(path)) if error.kind() != io::ErrorKind::InvalidData => {
-            if let Some(folder) = path.parent() {
-                std::fs::create_dir_all(folder)?;
+    let beside = lock(&path_beside(scene_path));
+    let Some(in_state) = path_in_state(scene_path) else { return beside };
+    match beside {
+        Ok(beside) if !in_state.exists() => Ok(beside),
+        Ok(beside) => {
+            let stray = lock(&in_state)?;
+            if stray.last_written() <= beside.last_written() {
+                return Ok(beside);
             }
-            lock(&path)
+            beside.leave();
+            Ok(stray)
         }
-        (found, _) => found,
+        Err(Unopened::Failed(error)) if error.kind() != io::ErrorKind::InvalidData => {
+            std::fs::create_dir_all(disk::folder_of(&in_state))?;
+            lock(&in_state)
+        }
+        Err(why) => Err(why),
     }
 }
 
@@ -143,6 +147,20 @@ impl Found {
     /// Where it lies.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// When its last record was made; 0 without records.
+    fn last_written(&self) -> u64 {
+        let last = self.contents.as_ref().and_then(|contents| contents.records.last());
+        last.map_or(0, |(record, _)| record.time)
+    }
+
+    /// Not used after all.
+    fn leave(self) {
+        if self.bytes.is_empty() {
+            // An empty file that stays does no harm.
+            let _ = disk::remove(&self.path);
+        }
     }
 
     /// Goes on with the first `records` records; the bytes after them are kept aside. Without contents it starts anew
