@@ -1,44 +1,27 @@
 //! The top of the command line: parse, run one subcommand, print one error, exit status.
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use crate::base::error::{Error, Result};
 use crate::files;
-use crate::ops::{Command, Context};
+use crate::ops::Context;
+use crate::ops::command_line::CommandLine;
 
 mod process;
 
-const EXAMPLES: &str = "\
-Examples:
-  plica edit photo.png                       make a scene beside the picture and edit it
-  plica demo                                 open a built-in demo scene
-  plica render scene.plica.json -o eye.gif   write the animation";
-
-/// Animates still pictures from the keyboard.
-#[derive(Parser)]
-#[command(name = "plica", version, about, after_help = EXAMPLES, arg_required_else_help = true)]
-struct Cli {
-    #[command(subcommand)]
-    command: Command,
-    /// Write the log here instead of to the state folder
-    #[arg(long, global = true, value_name = "FILE")]
-    log: Option<PathBuf>,
-}
-
 /// Runs the process.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let line = CommandLine::parse();
     let cancel = Arc::new(AtomicBool::new(false));
     let closed = Arc::new(AtomicBool::new(false));
     let mut context = Context::process(cancel.clone());
     context.out = Box::new(process::Output::new(closed.clone()));
-    match run(cli, &mut context, cancel) {
+    match run(line, &mut context, cancel) {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) if closed.load(Ordering::Relaxed) => ExitCode::SUCCESS,
         Err(error) => {
@@ -48,10 +31,13 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(cli: Cli, context: &mut Context, cancel: Arc<AtomicBool>) -> Result<()> {
-    let log = files::log::start(cli.log.as_deref())?;
+fn run(line: CommandLine, context: &mut Context, cancel: Arc<AtomicBool>) -> Result<()> {
+    let log = files::log::start(line.log.as_deref())?;
     process::report_panics(log);
     let _registered = process::cancel_on_signals(cancel)?;
-    cli.command.run(context)?;
+    match line.command {
+        Some(command) => command.run(context)?,
+        None => context.print(CommandLine::command().render_help())?,
+    }
     context.out.flush().map_err(|error| Error::at("standard output", error))
 }

@@ -1,7 +1,6 @@
 //! The only file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
 //! elsewhere.
 
-mod counts;
 pub mod disk;
 pub mod draft;
 pub mod fields;
@@ -22,6 +21,8 @@ pub mod write;
 pub use limits::Limits;
 pub use write::write_atomic;
 
+use crate::scene::check::Rules;
+
 /// What a person allows a scene to do and to take.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
@@ -29,4 +30,12 @@ pub struct Options {
     pub limits: Limits,
     /// Whether paths in a scene may leave its folder.
     pub allow_outside: bool,
+}
+
+impl Options {
+    /// What they mean for the check of a scene.
+    pub fn rules(&self) -> Rules {
+        let Limits { anchors, points, frames, .. } = self.limits;
+        Rules { allow_outside: self.allow_outside, anchors, points, frames }
+    }
 }

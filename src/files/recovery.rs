@@ -1,6 +1,7 @@
 //! From a journal back to a history: its records are done again, one after another, from the document it starts from.
 
 use super::journal::{Contents, Kind, Record};
+use crate::scene::check::Rules;
 use crate::scene::history::Stamp;
 use crate::scene::{Document, History};
 
@@ -24,7 +25,7 @@ pub struct Replayed {
 /// Does the records of a journal again, as far as they can be done. None where it does not start from a document that
 /// this program understands.
 pub fn replay(contents: &Contents) -> Option<Replayed> {
-    let document = Document::from_json(contents.header.document.clone()).ok()?;
+    let document = Document::from_json_under(contents.header.document.clone(), Rules::NONE).ok()?;
     let history = History::new(document);
     let file = contents.header.file.clone();
     let mut replayed = Replayed { history, records: 0, file, unsaved: 0, time_ms: 0, next_step: 0 };

@@ -23,11 +23,7 @@ pub fn open(path: &Path, options: &Options) -> Result<Document> {
 /// When it has errors in it or exceeds the limits: all problems.
 pub fn parse(path: &Path, text: &str, options: &Options) -> Result<Document> {
     let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
-    let document = Document::parse(text).map_err(refused)?;
-    match options.limits.exceeded(document.scene()) {
-        problems if problems.is_empty() => Ok(document),
-        problems => Err(refused(problems)),
-    }
+    Document::parse_under(text, options.rules()).map_err(refused)
 }
 
 /// The text of the scene at `path`; `-` is standard input.

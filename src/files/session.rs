@@ -131,8 +131,9 @@ impl Session {
 
     /// Decides between the journal's document and the file's.
     fn compare(&mut self, replayed: Replayed, document: Document) {
-        let Replayed { history, unsaved, time_ms, next_step, file, .. } = replayed;
+        let Replayed { mut history, unsaved, time_ms, next_step, file, .. } = replayed;
         self.first_step = next_step;
+        history.govern(self.options.rules());
         let file_changed = file != self.file;
         if history.document().to_text() == document.to_text() {
             self.history = history;

@@ -37,6 +37,15 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
     write_atomic(path, bytes)
 }
 
+/// Copies a file to a new one, atomically; a file of the same content that is there already will do.
+///
+/// # Errors
+/// When something else of that name is there, or as [`write_atomic`].
+pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
+    let bytes = std::fs::read(from).map_err(|error| Error::at(from.display(), error))?;
+    if std::fs::read(to).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
+}
+
 /// A file being written, to take its place on [`Atomic::commit`]. Dropped before that, it leaves nothing behind.
 #[derive(Debug)]
 pub struct Atomic {

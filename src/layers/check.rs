@@ -30,19 +30,22 @@ pub fn plain_text(text: &str, path: &str) -> Option<Problem> {
     }
 }
 
-/// The path of a file, by its look alone: relative, and not upwards.
-pub fn file_path(text: &str, path: &str) -> Option<Problem> {
+/// The path of a file, by its look alone: without control characters, and unless `outside` is allowed relative and not
+/// upwards.
+pub fn file_path(text: &str, path: &str, outside: bool) -> Option<Problem> {
     let upwards = text.split(['/', '\\']).any(|part| part == "..");
     let what = if text.chars().any(char::is_control) {
-        "holds a control character"
-    } else if std::path::Path::new(text).is_absolute() || text.starts_with(['/', '\\']) || text.get(1..2) == Some(":") {
+        return Some(Problem::error(path, format!("{} holds a control character", quoted(text))));
+    } else if outside {
+        return None;
+    } else if text.starts_with('/') {
         "is an absolute path"
     } else if upwards {
         "leads out of the scene's folder"
     } else {
         return None;
     };
-    let hint = "paths are relative to the scene; copy the file beside it";
+    let hint = "copy the file beside the scene, or give --allow-outside";
     Some(Problem::error(path, format!("{} {what}", quoted(text))).hint(hint))
 }
 

@@ -20,6 +20,17 @@ pub type Xy = [f64; 2];
 /// Width and height of pictures in pixels, by their names in the scene's images.
 pub type Sizes = BTreeMap<String, (usize, usize)>;
 
+/// How many things a place of the document asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Count {
+    /// What is counted: "anchors", "points" (of outlines).
+    pub what: &'static str,
+    /// The place, relative to the layer.
+    pub path: String,
+    /// How many, estimated from above.
+    pub count: f64,
+}
+
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -43,6 +54,13 @@ impl Layer {
         }
     }
 
+    /// What the layer asks for, place by place, told before any of it is made; paths are relative to the layer.
+    pub fn counts(&self) -> Vec<Count> {
+        match self {
+            Layer::Picture(picture) => folding::check::counts(picture),
+        }
+    }
+
     /// What the sizes of the scene's pictures say about the layer; paths are relative to it.
     pub fn check_images(&self, sizes: &Sizes) -> Vec<Problem> {
         match self {
@@ -54,6 +72,13 @@ impl Layer {
     pub fn images(&self) -> Vec<(String, &str)> {
         match self {
             Layer::Picture(picture) => folding::check::images(picture),
+        }
+    }
+
+    /// The files that the layer names by their paths, each with its pointer relative to the layer.
+    pub fn files(&self) -> Vec<(String, &str)> {
+        match self {
+            Layer::Picture(picture) => folding::check::files(picture),
         }
     }
 

@@ -8,26 +8,51 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::base::error::{Error, Result};
 use crate::base::text::printable;
 
+pub mod check;
+pub mod command_line;
+pub mod completions;
+pub mod get;
+pub mod man;
+pub mod new;
 pub mod opened;
 pub mod probe;
 pub mod scene_options;
 pub mod schema;
+pub mod set;
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
 pub enum Command {
+    /// Make a scene of pictures
+    New(new::Args),
+    /// Set values in a scene
+    Set(set::Args),
+    /// Print a value of a scene
+    Get(get::Args),
+    /// Find every problem of a scene
+    Check(check::Args),
     /// Tell what a pixel does at a time, and why
     Probe(probe::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
+    /// Print a shell's completions
+    Completions(completions::Args),
+    /// Print the manual
+    Man(man::Args),
 }
 
 impl Command {
     /// Does it.
     pub fn run(self, context: &mut Context) -> Result<()> {
         match self {
+            Command::New(args) => new::run(args, context),
+            Command::Set(args) => set::run(args, context),
+            Command::Get(args) => get::run(args, context),
+            Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),
             Command::Schema(args) => schema::run(args, context),
+            Command::Completions(args) => completions::run(args, context),
+            Command::Man(args) => man::run(args, context),
         }
     }
 }

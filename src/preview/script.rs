@@ -8,6 +8,7 @@ use super::message::{self, FromEditor, Role, ToEditor};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::Document;
+use crate::scene::check::Rules;
 use crate::scene::edit::Edit;
 
 /// How often an edit is made anew when somebody else was faster.
@@ -53,7 +54,7 @@ struct Joined {
 fn ask(scene: &Path) -> Result<Option<Joined>> {
     let Some((hello, wire)) = link::join(scene, Role::Script)? else { return Ok(None) };
     let FromEditor::Hello { revision, document, .. } = hello else { return Err(gone()) };
-    let document = Document::from_json(document);
+    let document = Document::from_json_under(document, Rules::NONE);
     let document = document.map_err(|problems| Error::Scene { file: scene.display().to_string(), problems })?;
     Ok(Some(Joined { wire, document, revision }))
 }

@@ -92,7 +92,8 @@ fn write(document: &Document, path: &str, value: Value) -> Edit {
         _ => {
             let Some(place) = Place::of(json, parent) else { return Edit::add(path, value) };
             let fresh = Fresh::at(document, parent);
-            let mut holder = place.value.filter(|v| !v.is_null()).cloned().unwrap_or_else(|| fresh.value(place.shape));
+            let default = place.value.filter(|value| !value.is_null());
+            let mut holder = default.map_or_else(|| fresh.value(place.shape), |default| barest(place.shape, default));
             match &mut holder {
                 Value::Object(map) => drop(map.insert(last, value)),
                 Value::Array(items) => match pointer::index(&last).and_then(|index| items.get_mut(index)) {
@@ -103,6 +104,19 @@ fn write(document: &Document, path: &str, value: Value) -> Edit {
             }
             write(document, parent, holder)
         }
+    }
+}
+
+/// A default, with no more written out than what must be.
+fn barest(shape: Shape, default: &Value) -> Value {
+    let required = |name: &String| {
+        shape.branch(Some(default)).is_some_and(|branch| branch.required().any(|required| required == name))
+    };
+    match default {
+        Value::Object(map) if !matches!(shape.body(), Body::Map(_)) => {
+            Value::Object(map.iter().filter(|(name, _)| required(name)).map(|(k, v)| (k.clone(), v.clone())).collect())
+        }
+        other => other.clone(),
     }
 }
 
@@ -129,9 +143,12 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     Some((index, value))
 }
 
-/// `name`, or the first of `name 2`, `name 3` … that no item has.
 fn unique(name: &str, items: &[Value]) -> String {
-    let taken = |name: &str| items.iter().any(|item| field::name_of(Some(item)).as_deref() == Some(name));
+    unique_name(name, |name| items.iter().any(|item| field::name_of(Some(item)).as_deref() == Some(name)))
+}
+
+/// `name`, or the first of `name 2`, `name 3` … that is not taken; a number at its end goes on.
+pub fn unique_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
     let stem = if stem.is_empty() { name } else { stem };
     let numbered = (2..).map(|n| format!("{stem} {n}"));

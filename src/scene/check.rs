@@ -8,19 +8,40 @@ use super::{Scene, pointer, shape};
 use crate::base::problem::{Problem, Severity, nearest, quoted};
 use crate::layers::{Sizes, check as rules};
 
-/// A scene plays at most so many frames.
-const MAX_FRAMES: f64 = 100_000.0;
+/// What a person allows a scene to ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rules {
+    /// Whether paths may leave the scene's folder.
+    pub allow_outside: bool,
+    /// Anchors of the scene.
+    pub anchors: u64,
+    /// Points of its outlines, once they are flattened.
+    pub points: u64,
+    /// Frames of its timeline.
+    pub frames: u64,
+}
 
-/// Every problem of `json`: of shape, and, where the shape is right, of names, ranges and references. The scene comes
-/// with the warnings; errors come without it.
-pub fn read(json: &Value) -> Result<(Scene, Vec<Problem>), Vec<Problem>> {
+impl Rules {
+    /// For a document that was checked before.
+    pub const NONE: Rules = Rules { allow_outside: true, anchors: u64::MAX, points: u64::MAX, frames: u64::MAX };
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Rules { allow_outside: false, anchors: 1_000_000, points: 1_000_000, frames: 100_000 }
+    }
+}
+
+/// The scene that `json` means, with its warnings; or every problem: of shape, and, where the shape is right, of names,
+/// ranges and references.
+pub fn read(json: &Value, rules: &Rules) -> Result<(Scene, Vec<Problem>), Vec<Problem>> {
     let problems = shape::check(json);
     if !problems.is_empty() {
         return Err(problems);
     }
     // The walk above says the same as the types and more; where they ever differ the types have the last word.
     let scene = Scene::deserialize(json).map_err(|e| vec![Problem::error("", e.to_string())])?;
-    let problems = check(&scene);
+    let problems = check(&scene, rules);
     if problems.iter().any(|problem| problem.severity == Severity::Error) {
         Err(problems)
     } else {
@@ -28,31 +49,17 @@ pub fn read(json: &Value) -> Result<(Scene, Vec<Problem>), Vec<Problem>> {
     }
 }
 
-/// Every problem of a scene whose shape is right.
-pub fn check(scene: &Scene) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    timeline(scene, &mut problems);
-    for (name, image) in &scene.images {
-        let path = pointer::join("/images", name);
-        problems.extend(rules::plain_text(name, &path));
-        problems.extend(rules::file_path(&image.path, &format!("{path}/path")));
+/// Every problem of a scene whose shape is right, errors first.
+pub fn check(scene: &Scene, rules: &Rules) -> Vec<Problem> {
+    // What asks for too much is not even looked at more closely.
+    let mut problems = counts(scene, rules);
+    if problems.is_empty() {
+        problems.extend(below_layers(scene, |layer| layer.check()));
     }
-    let layers = scene.layers.iter().enumerate();
-    problems.extend(rules::names(layers.map(|(i, layer)| (format!("/layers/{i}/name"), layer.name()))));
-    for (i, layer) in scene.layers.iter().enumerate() {
-        let prefix = format!("/layers/{i}");
-        problems.extend(layer.check().into_iter().map(|problem| problem.under(&prefix)));
-        for (path, image) in layer.images() {
-            if !scene.images.contains_key(image) {
-                let message = format!("there is no image {}", quoted(image));
-                let hint = match nearest(image, scene.images.keys().map(String::as_str)) {
-                    Some(hint) => hint,
-                    None => "add it to the scene's images".into(),
-                };
-                problems.push(Problem::error(format!("{prefix}{path}"), message).hint(hint));
-            }
-        }
-    }
+    problems.extend(scene.images.keys().filter_map(|name| rules::plain_text(name, &pointer::join("/images", name))));
+    problems.extend(names(scene));
+    problems.extend(paths(scene, rules));
+    problems.extend(references(scene));
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems
 }
@@ -60,16 +67,65 @@ pub fn check(scene: &Scene) -> Vec<Problem> {
 /// What the sizes of the pictures say about a scene: outlines outside their picture, masks of another size. Pictures of
 /// unknown size are left out.
 pub fn check_images(scene: &Scene, sizes: &Sizes) -> Vec<Problem> {
-    let layers = scene.layers.iter().enumerate();
-    layers
-        .flat_map(|(i, layer)| layer.check_images(sizes).into_iter().map(move |p| p.under(&format!("/layers/{i}"))))
-        .collect()
+    below_layers(scene, |layer| layer.check_images(sizes))
 }
 
-fn timeline(scene: &Scene, problems: &mut Vec<Problem>) {
-    let frames = scene.timeline.duration * scene.timeline.fps;
-    if frames > MAX_FRAMES {
-        let message = format!("{frames:.0} frames are too many: at most {MAX_FRAMES}");
-        problems.push(Problem::error("/timeline", message).hint("a shorter duration, or fewer frames a second"));
+fn below_layers(scene: &Scene, check: impl Fn(&crate::layers::Layer) -> Vec<Problem>) -> Vec<Problem> {
+    let layers = scene.layers.iter().enumerate();
+    let below = layers.map(|(i, layer)| (format!("/layers/{i}"), check(layer)));
+    below.flat_map(|(prefix, problems)| problems.into_iter().map(move |problem| problem.under(&prefix))).collect()
+}
+
+/// The first place of each kind where the scene asks for more than is allowed.
+fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (what, most) in [("anchors", rules.anchors), ("points", rules.points)] {
+        let layers = scene.layers.iter().enumerate();
+        let places = layers.flat_map(|(i, layer)| {
+            let counts = layer.counts().into_iter().filter(|count| count.what == what);
+            counts.map(move |count| (format!("/layers/{i}{}", count.path), count.count))
+        });
+        let mut sum = 0.0;
+        let over = places.into_iter().find(|(_, count)| {
+            sum += count;
+            sum > most as f64
+        });
+        problems.extend(over.map(|(path, _)| too_many(path, what, most)));
     }
+    if scene.timeline.frames() > rules.frames {
+        problems.push(too_many("/timeline".into(), "frames", rules.frames));
+    }
+    problems
+}
+
+fn too_many(path: String, what: &str, most: u64) -> Problem {
+    let message = format!("makes more than {most} {what} in one scene");
+    Problem::error(path, message).hint(format!("make fewer, or give --limit {what}=N"))
+}
+
+fn names(scene: &Scene) -> Vec<Problem> {
+    let layers = scene.layers.iter().enumerate();
+    rules::names(layers.map(|(i, layer)| (format!("/layers/{i}/name"), layer.name())))
+}
+
+/// Paths of files, by their looks.
+fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
+    let images = scene.images.iter().map(|(name, image)| (pointer::join("/images", name) + "/path", &*image.path));
+    let layers = scene.layers.iter().enumerate();
+    let files = layers
+        .flat_map(|(i, layer)| layer.files().into_iter().map(move |(path, file)| (format!("/layers/{i}{path}"), file)));
+    images.chain(files).filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside)).collect()
+}
+
+/// Every image that a layer names is one of the scene's.
+fn references(scene: &Scene) -> Vec<Problem> {
+    below_layers(scene, |layer| {
+        let unknown = layer.images().into_iter().filter(|(_, image)| !scene.images.contains_key(*image));
+        let problem = |(path, image): (String, &str)| {
+            let hint = nearest(image, scene.images.keys().map(String::as_str));
+            let hint = hint.unwrap_or_else(|| "add it to the scene's images".into());
+            Problem::error(path, format!("there is no image {}", quoted(image))).hint(hint)
+        };
+        unknown.map(problem).collect()
+    })
 }

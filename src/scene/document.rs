@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::check::Rules;
 use super::edit::Edit;
 use super::{Scene, VERSION, check, json, migrate};
 use crate::base::problem::Problem;
@@ -15,20 +16,31 @@ pub struct Document {
     json: Arc<Value>,
     scene: Arc<Scene>,
     warnings: Arc<[Problem]>,
+    rules: Rules,
 }
 
 impl Document {
     /// Reads the text of a scene file. The errors are all that could be found at once.
     pub fn parse(text: &str) -> Result<Document, Vec<Problem>> {
+        Document::parse_under(text, Rules::default())
+    }
+
+    /// The same under other rules than the default ones; they hold for what edits make of it too.
+    pub fn parse_under(text: &str, rules: Rules) -> Result<Document, Vec<Problem>> {
         let mut json = json::parse(text).map_err(|problem| vec![problem])?;
         migrate::migrate(&mut json).map_err(|problem| vec![problem])?;
-        Document::from_json(json)
+        Document::from_json_under(json, rules)
     }
 
     /// The document that `json`, of the present version, means.
     pub fn from_json(json: Value) -> Result<Document, Vec<Problem>> {
-        let (scene, warnings) = check::read(&json)?;
-        Ok(Document { json: Arc::new(json), scene: Arc::new(scene), warnings: warnings.into() })
+        Document::from_json_under(json, Rules::default())
+    }
+
+    /// The same under other rules.
+    pub fn from_json_under(json: Value, rules: Rules) -> Result<Document, Vec<Problem>> {
+        let (scene, warnings) = check::read(&json, &rules)?;
+        Ok(Document { json: Arc::new(json), scene: Arc::new(scene), warnings: warnings.into(), rules })
     }
 
     /// A scene of pictures, (name, path, width, height) each: a layer each, with one zone that covers it. Names are
@@ -45,6 +57,11 @@ impl Document {
             })
             .collect();
         Document::from_json(json!({ "plica": VERSION, "images": images, "layers": layers }))
+    }
+
+    /// From now on edits are checked by these rules.
+    pub fn govern(&mut self, rules: Rules) {
+        self.rules = rules;
     }
 
     /// What the document means.
@@ -71,6 +88,6 @@ impl Document {
     pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
         let mut json = Value::clone(&self.json);
         edit.patch(&mut json).map_err(|problem| vec![problem])?;
-        Document::from_json(json)
+        Document::from_json_under(json, self.rules)
     }
 }

@@ -47,6 +47,24 @@ fn set_makes_parents_and_keeps_what_fits() {
         let path = address::resolve(&changed, &zone(at)).unwrap();
         assert_eq!(field::value(&changed, &path), Some(expected), "{address}");
     }
+    let bare = Document::new(&[("cat", "cat.png", 9, 9)]).unwrap();
+    for (address, value, at, expected) in [
+        ("timeline.fps", json!(24), "/timeline", json!({ "fps": 24 })),
+        (
+            "layers.cat.zones.all.interpolation.power",
+            json!(3),
+            "/layers/0/zones/0/interpolation",
+            json!({ "method": "shepard", "power": 3 }),
+        ),
+        (
+            "layers.cat.zones.all.position.function",
+            json!("sigmoid"),
+            "/layers/0/zones/0/position",
+            json!({ "function": "sigmoid" }),
+        ),
+    ] {
+        assert_eq!(set(&bare, address, value).json().pointer(at), Some(&expected), "{address}");
+    }
     let changed = set(&squint(), "layers.0.zones.0.fold.rule", json!("mask"));
     assert_eq!(changed.json()["layers"][0]["zones"][0]["fold"], json!({ "rule": "mask", "image": "cat" }));
 }

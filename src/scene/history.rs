@@ -1,6 +1,7 @@
 //! Undo and redo, without end: the present document, and every edit that led to it with its inverse. A value: no files,
 //! no clock; times come in.
 
+use super::check::Rules;
 use super::{Document, Edit};
 use crate::base::problem::Problem;
 
@@ -63,6 +64,11 @@ impl History {
     /// The document as it is now.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    /// From now on edits are checked by these rules.
+    pub fn govern(&mut self, rules: Rules) {
+        self.document.govern(rules);
     }
 
     /// How many changes there were, undo and redo included.

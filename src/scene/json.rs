@@ -119,7 +119,7 @@ pub fn to_text(value: &Value) -> String {
 
 /// Writes `value` where the line already holds `column` characters.
 fn write(value: &Value, level: usize, column: usize, out: &mut String) {
-    if level > 0 && is_flat(value) {
+    if (level > 0 || !value.is_object()) && is_flat(value) {
         let start = out.len();
         inline(value, out);
         if out.len() - start + column < MAX_COLUMN || is_row(value) {

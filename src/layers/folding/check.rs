@@ -1,10 +1,21 @@
 //! What can be wrong in a picture layer beyond its shape. Paths are relative to the layer.
 
-use super::{
-    fold::Fold, interpolation::Interpolation, model::PictureLayer, model::Zone, position::Position, tools::Tool,
-};
+use kurbo::{Point, Rect};
+
+use super::{anchors, counts, fold::Fold, interpolation::Interpolation, outline::Outline, position::Position};
+use super::{model::PictureLayer, model::Zone, tools::Tool};
+use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::problem::{Problem, quoted};
-use crate::layers::{Sizes, check as rules};
+use crate::layers::{Count, Sizes, check as rules};
+
+/// In zones with more anchors than this, coincident ones are not looked for.
+const MAX_COMPARED: f64 = 20_000.0;
+
+/// Anchors nearer to each other than this stand at one place (folding.md, section 4).
+const SAME_PX: f64 = 1e-6;
+
+/// So many coincident pairs of a zone are named.
+const MAX_PAIRS: usize = 3;
 
 /// Every problem of the layer by itself.
 pub fn check(layer: &PictureLayer) -> Vec<Problem> {
@@ -31,10 +42,35 @@ pub fn images(layer: &PictureLayer) -> Vec<(String, &str)> {
     images
 }
 
+/// The files that the layer names by their paths, each with its pointer.
+pub fn files(layer: &PictureLayer) -> Vec<(String, &str)> {
+    let tools = layer.zones.iter().enumerate();
+    let tools = tools.flat_map(|(i, zone)| zone.motion.iter().enumerate().map(move |(j, tool)| (i, j, tool)));
+    tools
+        .filter_map(|(i, j, tool)| match tool {
+            Tool::Field { path, .. } => Some((format!("/zones/{i}/motion/{j}/path"), path.as_str())),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The anchors and outline points that the layer asks for, place by place, told before they are made.
+pub fn counts(layer: &PictureLayer) -> Vec<Count> {
+    let mut all = Vec::new();
+    for (i, zone) in layer.zones.iter().enumerate() {
+        all.push(Count { what: "points", path: format!("/zones/{i}/outline"), count: counts::points(zone) });
+        for (j, tool) in zone.motion.iter().enumerate() {
+            let count = counts::anchors(tool, &zone.outline);
+            all.push(Count { what: "anchors", path: format!("/zones/{i}/motion/{j}"), count });
+        }
+    }
+    all
+}
+
 /// What the sizes of pictures say: an outline outside its picture, a mask of another size.
 pub fn check_images(layer: &PictureLayer, sizes: &Sizes) -> Vec<Problem> {
     let Some(&(width, height)) = sizes.get(&layer.image) else { return Vec::new() };
-    let picture = kurbo::Rect::new(0.0, 0.0, width as f64, height as f64);
+    let picture = Rect::new(0.0, 0.0, width as f64, height as f64);
     let mut problems = Vec::new();
     for (i, zone) in layer.zones.iter().enumerate() {
         let bounds = zone.outline.polygon().bounds();
@@ -54,7 +90,9 @@ pub fn check_images(layer: &PictureLayer, sizes: &Sizes) -> Vec<Problem> {
 }
 
 fn check_zone(zone: &Zone) -> Vec<Problem> {
-    let mut problems = Vec::new();
+    let mut problems = outline(&zone.outline, "/outline");
+    let regions = zone.fold.iter().flat_map(|fold| fold.regions()).enumerate();
+    problems.extend(regions.flat_map(|(i, region)| outline(region, &format!("/fold/regions/{i}"))));
     if let Interpolation::ModifiedShepardRandom { radius, ring, .. } = zone.interpolation
         && ring > radius
     {
@@ -69,21 +107,61 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
         problems.push(Problem::warning("/motion", "nothing moves: no tool gives a jump vector").hint("add a point"));
     }
     problems.extend(motion(zone));
+    if problems.is_empty() {
+        problems.extend(coincident(zone));
+    }
     problems.extend(position(&zone.position).into_iter().map(|problem| problem.under("/position")));
     problems
+}
+
+/// An outline encloses something; where it crosses itself, that deserves a word.
+fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
+    let polygon = outline.polygon();
+    if let Some(what) = emptiness(&polygon) {
+        return vec![Problem::error(path, format!("the outline {what}"))];
+    }
+    let drawn = matches!(outline, Outline::Polygon { .. } | Outline::Path { .. });
+    let crossing = if drawn { self_crossing(&polygon) } else { None };
+    let message = |Point { x, y }| format!("the outline crosses itself near ({x:.1}, {y:.1})");
+    let hint = "what it encloses twice is outside (even-odd)";
+    crossing.map(|place| Problem::warning(path, message(place)).hint(hint)).into_iter().collect()
+}
+
+/// Anchors at one place: there only the first counts.
+fn coincident(zone: &Zone) -> Vec<Problem> {
+    let count: f64 = zone.motion.iter().map(|tool| counts::anchors(tool, &zone.outline)).sum();
+    if count > MAX_COMPARED {
+        return Vec::new();
+    }
+    let anchors = anchors::anchors(zone);
+    let mut order: Vec<usize> = (0..anchors.len()).collect();
+    order.sort_by(|&i, &j| anchors[i].at.x.total_cmp(&anchors[j].at.x).then(i.cmp(&j)));
+    let mut pairs = Vec::new();
+    for (k, &i) in order.iter().enumerate() {
+        let near = order[k + 1..].iter().take_while(|&&j| anchors[j].at.x - anchors[i].at.x < SAME_PX);
+        let same = near.filter(|&&j| (anchors[j].at - anchors[i].at).hypot() < SAME_PX);
+        pairs.extend(same.map(|&j| (i.min(j), i.max(j))).take(MAX_PAIRS));
+    }
+    pairs.sort_unstable();
+    let named = pairs.iter().take(MAX_PAIRS).map(|&(i, j)| {
+        let (first, second) = (&anchors[i], &anchors[j]);
+        let Point { x, y } = first.at;
+        let message = format!(
+            "anchors {i} (of tool {}) and {j} (of tool {}) stand at the same place, ({x}, {y})",
+            first.tool, second.tool
+        );
+        Problem::warning(format!("/motion/{}", second.tool), message).hint("at that place only the first counts")
+    });
+    named.collect()
 }
 
 /// Tools whose fields hang together.
 fn motion(zone: &Zone) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (i, tool) in zone.motion.iter().enumerate() {
-        match tool {
-            Tool::Curve { jumps, .. } => {
-                let path = |j| format!("/motion/{i}/jumps/{j}/along");
-                problems.extend(rules::ascending("places along a curve", jumps.iter().map(|jump| jump.along), path));
-            }
-            Tool::Field { path, .. } => problems.extend(rules::file_path(path, &format!("/motion/{i}/path"))),
-            _ => {}
+        if let Tool::Curve { jumps, .. } = tool {
+            let path = |j| format!("/motion/{i}/jumps/{j}/along");
+            problems.extend(rules::ascending("places along a curve", jumps.iter().map(|jump| jump.along), path));
         }
     }
     problems

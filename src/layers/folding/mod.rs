@@ -3,6 +3,7 @@
 
 pub mod anchors;
 pub mod check;
+pub mod counts;
 pub mod field;
 pub mod fold;
 pub mod frame;

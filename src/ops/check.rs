@@ -1,0 +1,62 @@
+//! `plica check`: every problem of a scene, with its path.
+
+use std::path::PathBuf;
+
+use super::Context;
+use super::scene_options::SceneOptions;
+use crate::base::error::{Error, Result};
+use crate::base::problem::{Problem, Severity};
+use crate::files;
+use crate::scene::check;
+
+/// Find every problem of a scene.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; - is standard input
+    scene: PathBuf,
+    /// Print one list of JSON objects: severity, path, message, hint
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: SceneOptions,
+}
+
+/// Prints the problems; fails when one of them is an error.
+pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    let problems = problems(&args)?;
+    let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
+    if args.json {
+        let list = serde_json::to_value(&problems).map_err(|e| Error::at("the list of problems", e))?;
+        context.print(format_args!("{list:#}"))?;
+    } else {
+        problems.iter().try_for_each(|problem| context.print(problem))?;
+    }
+    let warnings = problems.len() - errors;
+    let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    match (errors, warnings) {
+        (0, 0) => context.messages.say("no problems"),
+        (0, _) => context.messages.say(&counted(warnings, "warning")),
+        _ => {
+            let what = [counted(errors, "error"), counted(warnings, "warning")];
+            let what = if warnings == 0 { what[0].clone() } else { what.join(", ") };
+            return Err(Error::at(args.scene.display(), what));
+        }
+    }
+    Ok(())
+}
+
+fn problems(args: &Args) -> Result<Vec<Problem>> {
+    let options = args.reading.options()?;
+    let document = match files::scene::open(&args.scene, &options) {
+        Ok(document) => document,
+        Err(Error::Scene { problems, .. }) => return Ok(problems),
+        Err(error) => return Err(error),
+    };
+    let scene = document.scene();
+    let (sizes, unreadable) = files::materials::sizes(&args.scene, scene, &options);
+    let mut problems = document.warnings().to_vec();
+    problems.extend(unreadable);
+    problems.extend(check::check_images(scene, &sizes));
+    problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
+    Ok(problems)
+}

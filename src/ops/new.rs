@@ -1,0 +1,78 @@
+//! `plica new`: a scene with pictures, each a layer with one zone that covers it.
+
+use std::path::{Path, PathBuf};
+
+use super::Context;
+use super::scene_options::SceneOptions;
+use crate::base::error::{Error, Result};
+use crate::files::{self, disk, picture, write};
+use crate::scene::{Document, build::unique_name};
+
+/// Make a scene of pictures, one layer each, with one zone that covers it.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The pictures, the lowest first; one from another folder is copied beside the scene
+    #[arg(required = true)]
+    images: Vec<PathBuf>,
+    /// The scene file [default: beside the first picture, PICTURE.plica.json]
+    #[arg(short, long, value_name = "SCENE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    reading: SceneOptions,
+}
+
+/// Writes the scene and prints where it is.
+pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    let first = args.images.first().ok_or_else(|| Error::Usage("name a picture".into()))?;
+    let path = args.output.clone().unwrap_or_else(|| beside(first));
+    create(&path, &args.images, &args.reading.options()?)?;
+    context.print(path.display())
+}
+
+/// The scene file that belongs to a picture: beside it, under its name.
+pub fn beside(picture: &Path) -> PathBuf {
+    let stem = picture.file_stem().unwrap_or_default().to_string_lossy();
+    picture.with_file_name(format!("{stem}.plica.json"))
+}
+
+/// Writes a scene of `images` at `path`, which must not be there yet.
+///
+/// # Errors
+/// When the scene, or another file with a picture's name, is there; when a picture cannot be read or copied.
+pub fn create(path: &Path, images: &[PathBuf], options: &files::Options) -> Result<Document> {
+    if path.symlink_metadata().is_ok() {
+        let cure = format!("edit it (plica edit {}), or choose another name with -o", path.display());
+        return Err(Error::at(path.display(), "is there already").cure(cure));
+    }
+    let mut pictures: Vec<(String, String, usize, usize)> = Vec::new();
+    let mut copies = Vec::new();
+    for image in images {
+        let (width, height) = picture::size(image, &options.limits)?;
+        let file = file_name(image)?;
+        if pictures.iter().any(|(_, other, ..)| *other == file) {
+            return Err(Error::at(image.display(), "has the same file name as another picture").cure("rename one"));
+        }
+        if !same_folder(image, path) {
+            copies.push((image, path.with_file_name(&file)));
+        }
+        let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = unique_name(&stem, |name| pictures.iter().any(|(other, ..)| other == name));
+        pictures.push((name, file, width, height));
+    }
+    let borrowed: Vec<_> = pictures.iter().map(|(n, f, w, h)| (n.as_str(), f.as_str(), *w, *h)).collect();
+    let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
+    let document = Document::new(&borrowed).map_err(refused)?;
+    copies.iter().try_for_each(|(from, to)| write::copy_new(from, to))?;
+    write::write_new(path, document.to_text().as_bytes())?;
+    Ok(document)
+}
+
+fn file_name(image: &Path) -> Result<String> {
+    let name = image.file_name().and_then(|name| name.to_str());
+    name.map(str::to_owned).ok_or_else(|| Error::at(image.display(), "has a name that is no text").cure("rename it"))
+}
+
+fn same_folder(a: &Path, b: &Path) -> bool {
+    let folder = |path: &Path| disk::folder_of(path).canonicalize().ok();
+    folder(a).is_some() && folder(a) == folder(b)
+}
