@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::write::{Atomic, temporary_beside};
+use super::write::{Atomic, temporary_beside, unfinished};
 use crate::base::error::{Error, Result};
 
 /// A file being written, buffered. What already stands in its place stays until [`DraftFile::keep`].
@@ -82,6 +82,7 @@ impl DraftFolder {
         let temporary =
             if target.is_dir() { temporary_beside(&target.join("file")) } else { temporary_beside(&target) };
         fs::create_dir(&temporary).map_err(|e| at_folder_of(path, &e))?;
+        unfinished().push(temporary.clone());
         Ok(DraftFolder { target, temporary })
     }
 
@@ -105,6 +106,7 @@ impl DraftFolder {
 
 impl Drop for DraftFolder {
     fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.temporary);
         let _ = fs::remove_dir_all(&self.temporary);
     }
 }

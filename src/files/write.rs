@@ -132,18 +132,18 @@ pub(super) fn temporary_beside(path: &Path) -> PathBuf {
     disk::folder_of(path).join(format!("{TEMPORARY_PREFIX}{}-{number}{TEMPORARY_SUFFIX}", std::process::id()))
 }
 
-/// The temporary files of this process.
+/// The temporary files and folders of this process.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+pub(super) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files of this process, which is to end at once.
+/// Removes the temporary files and folders of this process, which is to end at once.
 pub fn remove_unfinished() {
     for path in unfinished().drain(..) {
         // One that was renamed just now is not there any more.
-        let _ = disk::remove(&path);
+        let _ = if path.is_dir() { std::fs::remove_dir_all(&path) } else { disk::remove(&path) };
     }
 }
 

@@ -4,6 +4,7 @@
 use std::io::{IsTerminal, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use crate::base::error::{Error, Result};
 use crate::base::text::printable;
@@ -16,6 +17,7 @@ pub mod man;
 pub mod new;
 pub mod opened;
 pub mod probe;
+pub mod render;
 pub mod scene_options;
 pub mod schema;
 pub mod set;
@@ -33,6 +35,8 @@ pub enum Command {
     Check(check::Args),
     /// Tell what a pixel does at a time, and why
     Probe(probe::Args),
+    /// Render frames to numbered files, an animation or a stream
+    Render(render::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
     /// Print a shell's completions
@@ -50,6 +54,7 @@ impl Command {
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),
+            Command::Render(args) => render::run(args, context),
             Command::Schema(args) => schema::run(args, context),
             Command::Completions(args) => completions::run(args, context),
             Command::Man(args) => man::run(args, context),
@@ -78,7 +83,7 @@ pub trait Progress: Send {
 impl Context {
     /// The command line's own: standard output and standard error.
     pub fn process(cancel: Arc<AtomicBool>) -> Self {
-        let messages = Box::new(Stderr { tty: std::io::stderr().is_terminal(), shown: None });
+        let messages = Box::new(Stderr { tty: std::io::stderr().is_terminal(), begun: None, shown: None });
         Context { out: Box::new(std::io::stdout()), messages, cancel }
     }
 
@@ -96,21 +101,62 @@ impl Context {
 /// Messages on standard error; progress there only where a person looks.
 struct Stderr {
     tty: bool,
-    shown: Option<std::time::Instant>,
+    /// When the work in progress began.
+    begun: Option<Instant>,
+    /// When its line was last written; none while there is no such line.
+    shown: Option<Instant>,
 }
 
 impl Progress for Stderr {
     fn say(&mut self, line: &str) {
+        let clear = if self.shown.take().is_some() { "\r\x1b[K" } else { "" };
         // A terminal that went away is no reason to fail.
-        let _ = writeln!(std::io::stderr(), "{}", printable(line));
+        let _ = writeln!(std::io::stderr(), "{clear}{}", printable(line));
     }
 
     fn step(&mut self, what: &str, done: u64, total: u64) {
+        let begun = *self.begun.get_or_insert_with(Instant::now);
         let due = self.shown.is_none_or(|at| at.elapsed().as_millis() >= 100);
         if self.tty && (due || done == total) {
-            self.shown = Some(std::time::Instant::now());
             let end = if done == total { "\n" } else { "" };
-            let _ = write!(std::io::stderr(), "\r\x1b[K{} {done}/{total}{end}", printable(what));
+            let left = left(begun.elapsed(), done, total);
+            let _ = write!(std::io::stderr(), "\r\x1b[K{} {done}/{total}{left}{end}", printable(what));
+            self.shown = Some(Instant::now());
+        }
+        if done == total {
+            (self.begun, self.shown) = (None, None);
+        }
+    }
+}
+
+/// How long the rest will take, as text, once that can be told.
+fn left(spent: Duration, done: u64, total: u64) -> String {
+    if done == 0 || done >= total || spent.as_millis() < 500 {
+        return String::new();
+    }
+    let secs = (spent.as_secs_f64() / done as f64 * (total - done) as f64).ceil() as u64;
+    match secs {
+        0..60 => format!(", {secs} s left"),
+        60..3600 => format!(", {} min {} s left", secs / 60, secs % 60),
+        _ => format!(", {} h {} min left", secs / 3600, secs / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_is_told_once_it_can_be() {
+        for (millis, done, total, text) in [
+            (100, 1, 10, ""),
+            (1000, 0, 10, ""),
+            (1000, 10, 10, ""),
+            (1000, 5, 10, ", 1 s left"),
+            (10_000, 1, 10, ", 1 min 30 s left"),
+            (10_000, 1, 1000, ", 2 h 46 min left"),
+        ] {
+            assert_eq!(left(Duration::from_millis(millis), done, total), text, "{millis} {done}/{total}");
         }
     }
 }

@@ -21,14 +21,20 @@ pub fn linear(synth: &Synth, scene_time: f64) -> Picture {
 
 /// The mean of the frames of several samples of each pixel, in linear light.
 pub fn mean(samples: &[Synth], scene_time: f64) -> Picture {
-    let mut frames = samples.iter().map(|synth| linear(synth, scene_time));
+    mean_of(samples.iter().map(|synth| linear(synth, scene_time)))
+}
+
+/// The mean of linear frames of one size.
+pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Picture>) -> Picture {
+    let share = 1.0 / frames.len() as f32;
     let Some(mut sum) = frames.next() else { return Picture::filled(0, 0, [0.0; 4]) };
-    let share = 1.0 / samples.len() as f32;
     for frame in frames {
         let add = |sum: &mut Rgba, more: &Rgba| *sum = std::array::from_fn(|i| sum[i] + more[i]);
         sum.cells_mut().par_iter_mut().zip(frame.cells().par_iter()).for_each(|(sum, more)| add(sum, more));
     }
-    sum.cells_mut().par_iter_mut().for_each(|colour| *colour = colour.map(|c| c * share));
+    if share < 1.0 {
+        sum.cells_mut().par_iter_mut().for_each(|colour| *colour = colour.map(|c| c * share));
+    }
     sum
 }
 

@@ -2,7 +2,7 @@
 //! none is kept longer than its format needs, so that length costs no memory.
 
 use std::io::{self, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
@@ -59,7 +59,7 @@ pub struct Format {
     begin: fn(Out, Show) -> Result<Box<dyn Sink>>,
 }
 
-/// Every format of one file. A sequence of files is told by its pattern, see [`begin`].
+/// Every format of one file. A sequence of files is told by its pattern, see [`Target::file`].
 pub const FORMATS: &[Format] = &[
     Format {
         name: "apng",
@@ -140,36 +140,63 @@ impl Seek for Out {
     }
 }
 
-/// Begins to write `show` to `path`: a sequence of PNG files where the file name holds a pattern such as `%04d`, one PNG
-/// for a single frame to `.png`, else the format that the extension names.
-pub fn begin(path: &Path, show: Show) -> Result<Box<dyn Sink>> {
-    if let Some(pattern) = sequence::Pattern::parse(path)? {
-        return sequence::begin(pattern, show);
-    }
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let by_extension = |f: &&Format| extension.as_deref().is_some_and(|e| f.extensions.contains(&e));
-    if let Some(format) = FORMATS.iter().find(by_extension) {
-        return (format.begin)(Out::File(DraftFile::create(path)?), show);
-    }
-    if extension.as_deref() == Some("png") {
-        return match show.frames {
-            1 => apng::begin(Out::File(DraftFile::create(path)?), show),
-            n => Err(Error::Usage(format!(
-                "{}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)",
-                path.display()
-            ))),
-        };
-    }
-    Err(Error::Usage(format!("{}: the extension names no format; these do:\n{}", path.display(), table())))
+/// Where an animation goes and in which format, checked before any frame is made.
+pub struct Target(Kind);
+
+enum Kind {
+    Sequence(sequence::Pattern),
+    File(PathBuf, fn(Out, Show) -> Result<Box<dyn Sink>>),
+    Stream(Box<dyn Write + Send>, fn(Out, Show) -> Result<Box<dyn Sink>>),
 }
 
-/// Begins to write `show` to a stream in the format called `name`.
-pub fn begin_stream(name: &str, out: Box<dyn Write + Send>, show: Show) -> Result<Box<dyn Sink>> {
-    match FORMATS.iter().find(|f| f.name == name) {
-        Some(format) if format.streams => (format.begin)(Out::Stream(out), show),
-        _ => {
-            let streams: Vec<_> = FORMATS.iter().filter(|f| f.streams).map(|f| f.name).collect();
-            Err(Error::Usage(format!("--format: {name} is not written to standard output ({})", streams.join(", "))))
+impl Target {
+    /// `frames` frames to `path`: a sequence of PNG files where the file name holds a pattern such as `%04d`, one PNG for
+    /// a single frame to `.png`, else the format that the extension names.
+    ///
+    /// # Errors
+    /// A wrong command line; an unknown extension lists the table.
+    pub fn file(path: &Path, frames: u64) -> Result<Self> {
+        if let Some(pattern) = sequence::Pattern::parse(path)? {
+            return Ok(Target(Kind::Sequence(pattern)));
+        }
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let extension = extension.as_deref().unwrap_or_default();
+        if let Some(format) = FORMATS.iter().find(|f| f.extensions.contains(&extension)) {
+            return Ok(Target(Kind::File(path.to_path_buf(), format.begin)));
+        }
+        let place = path.display();
+        match (extension, frames) {
+            ("png", 1) => Ok(Target(Kind::File(path.to_path_buf(), apng::begin))),
+            ("png", n) => Err(Error::Usage(format!(
+                "{place}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)"
+            ))),
+            _ => Err(Error::Usage(format!("{place}: the extension names no format; these do:\n{}", table()))),
+        }
+    }
+
+    /// To a stream, in the format called `name`.
+    ///
+    /// # Errors
+    /// A wrong command line: the format needs a file.
+    pub fn stream(name: &str, out: Box<dyn Write + Send>) -> Result<Self> {
+        match FORMATS.iter().find(|f| f.name == name) {
+            Some(format) if format.streams => Ok(Target(Kind::Stream(out, format.begin))),
+            _ => {
+                let streams: Vec<_> = FORMATS.iter().filter(|f| f.streams).map(|f| f.name).collect();
+                Err(Error::Usage(format!("--format {name}: standard output takes {}", streams.join(" or "))))
+            }
+        }
+    }
+
+    /// Begins to write.
+    ///
+    /// # Errors
+    /// The place cannot be written, or the format cannot hold the show.
+    pub fn begin(self, show: Show) -> Result<Box<dyn Sink>> {
+        match self.0 {
+            Kind::Sequence(pattern) => sequence::begin(pattern, show),
+            Kind::File(path, begin) => begin(Out::File(DraftFile::create(&path)?), show),
+            Kind::Stream(out, begin) => begin(Out::Stream(out), show),
         }
     }
 }

@@ -23,6 +23,10 @@ fn frames(width: usize, height: usize, count: u64) -> Vec<Frame> {
     (0..count).map(frame).collect()
 }
 
+fn begin(path: &Path, show: Show) -> Result<Box<dyn Sink>> {
+    Target::file(path, show.frames)?.begin(show)
+}
+
 fn show(frames: &[Frame], fps: f64, once: bool) -> Show {
     let (width, height) = (frames[0].width(), frames[0].height());
     Show { place: "test".into(), width, height, frames: frames.len() as u64, rate: Rate::from_fps(fps), once }
@@ -212,7 +216,7 @@ impl Write for Shared {
 
 fn streamed(name: &str, frames: &[Frame]) -> (Vec<u8>, Vec<String>) {
     let out = Shared::default();
-    let mut sink = begin_stream(name, Box::new(out.clone()), show(frames, 29.97, false)).unwrap();
+    let mut sink = Target::stream(name, Box::new(out.clone())).unwrap().begin(show(frames, 29.97, false)).unwrap();
     for frame in frames {
         sink.frame(0, frame.clone()).unwrap();
     }
@@ -247,7 +251,7 @@ fn an_unknown_extension_lists_the_table() {
         let all = FORMATS.iter().all(|f| error.to_string().contains(f.help));
         assert!(error.exit_status() == 2 && (all || name == "a.png"), "{error}");
     }
-    assert!(begin_stream("gif", Box::new(io::sink()), show(&frames(2, 2, 2), 30.0, false)).is_err());
+    assert!(Target::stream("gif", Box::new(io::sink())).is_err());
 }
 
 #[test]
