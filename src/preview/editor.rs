@@ -241,3 +241,129 @@ fn window_command(scene: &Path) -> Command {
     command.arg("view").arg("--joined").arg("--").arg(scene).process_group(0);
     command
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::{Receiver, channel};
+
+    use super::*;
+    use crate::files::Options;
+    use crate::preview::Update;
+    use crate::preview::client;
+
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    struct Stage {
+        folder: tempfile::TempDir,
+        preview: Preview,
+        events: Receiver<Event>,
+    }
+
+    fn stage() -> Stage {
+        let folder = tempfile::tempdir().unwrap();
+        let (sender, events) = channel();
+        let document = Document::parse(r#"{"plica": 1}"#).unwrap();
+        let scene = folder.path().join("s.plica.json");
+        let preview = Preview::start(&scene, &document, 0, move |event| drop(sender.send(event)));
+        Stage { folder, preview, events }
+    }
+
+    impl Stage {
+        /// Keeps [`window_process`] alive: it joins, and dies while the file named by `dies` can be removed.
+        fn keep_window(&mut self) {
+            let scene = self.preview.scene.clone();
+            self.preview.keep(move || {
+                let mut command = Command::new(std::env::current_exe().unwrap());
+                command.args(["--exact", "preview::editor::tests::window_process", "--nocapture"]);
+                command.env("PLICA_TEST_SCENE", &scene);
+                command
+            });
+        }
+
+        fn dies(&self, times: usize) {
+            (1..=times).for_each(|time| std::fs::write(self.folder.path().join(time.to_string()), "").unwrap());
+        }
+
+        /// The states that the status goes through until `last`, each once.
+        fn until(&self, last: impl Fn(&Status) -> bool) -> Vec<String> {
+            let mut seen: Vec<String> = Vec::new();
+            loop {
+                let status = self.preview.status();
+                if seen.last() != Some(&status.to_string()) {
+                    seen.push(status.to_string());
+                }
+                if last(&status) {
+                    return seen;
+                }
+                self.events.recv_timeout(PATIENCE).expect("an event");
+            }
+        }
+    }
+
+    fn connected(status: &Status) -> bool {
+        matches!(status, Status::Connected { windows: 1, .. })
+    }
+
+    /// Plays the window; does nothing when run as a test.
+    #[test]
+    fn window_process() {
+        let Some(scene) = std::env::var_os("PLICA_TEST_SCENE").map(PathBuf::from) else { return };
+        let link = client::follow(&scene, &Options::default(), true);
+        let update = link.updates.iter().find(|update| matches!(update, Update::Scene { .. } | Update::Closed));
+        assert!(matches!(update, Some(Update::Scene { .. })));
+        if (1..9).any(|time| std::fs::remove_file(scene.with_file_name(time.to_string())).is_ok()) {
+            eprintln!("plica: no adapter\u{7}");
+            std::process::exit(1);
+        }
+        assert!(link.updates.iter().any(|update| matches!(update, Update::Closed)));
+    }
+
+    #[test]
+    fn a_window_that_dies_comes_back() {
+        let mut stage = stage();
+        stage.dies(2);
+        stage.keep_window();
+        while stage.folder.path().join("2").exists() {
+            stage.events.recv_timeout(PATIENCE).expect("an event");
+        }
+        stage.until(connected);
+        let Stage { preview, events, .. } = stage;
+        drop(preview);
+        assert!(events.iter().all(|event| matches!(event, Event::Status)), "and ends with its editor");
+    }
+
+    #[test]
+    fn three_deaths_turn_it_off_with_one_line() {
+        let mut stage = stage();
+        stage.dies(3);
+        stage.keep_window();
+        let seen = stage.until(|status| matches!(status, Status::OffBecause(_)));
+        assert_eq!(seen.last().unwrap(), "off: no adapter");
+        stage.keep_window();
+        stage.until(connected);
+    }
+
+    #[test]
+    fn a_window_that_lost_its_editor_is_not_doubled() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("s.plica.json");
+        // What a killed editor leaves behind: its socket and its window.
+        let (listener, door) = Listener::open(&scene).unwrap();
+        std::mem::forget(door);
+        drop(listener);
+        let document = Document::parse(r#"{"plica": 1}"#).unwrap();
+        let (sender, events) = channel();
+        let mut preview = Preview::start(&scene, &document, 0, move |event| drop(sender.send(event)));
+        assert!(preview.door.as_ref().unwrap().orphans);
+        let _orphan = client::follow(&scene, &Options::default(), true);
+        drop(preview.shared.wait(PATIENCE, |state| !state.peers.is_empty()));
+        preview.keep(|| Command::new("a second window"));
+        // One for the keeper's start, one for its end.
+        for _ in 0..2 {
+            events.recv_timeout(PATIENCE).expect("an event");
+        }
+        drop(preview.shared.wait(PATIENCE, |state| state.life != Some(Life::Running)));
+        assert_eq!(preview.shared.lock().life, None);
+        assert!(connected(&preview.status()));
+    }
+}

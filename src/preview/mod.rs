@@ -1,5 +1,6 @@
 //! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
 
+pub mod client;
 pub mod editor;
 mod host;
 mod keeper;
