@@ -1,3 +1,5 @@
 //! What leaves the program: animations, textures for engines, plots. Codecs live here and in `files`.
 
 pub mod animation;
+mod still;
+pub mod textures;

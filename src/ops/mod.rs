@@ -21,6 +21,7 @@ pub mod render;
 pub mod scene_options;
 pub mod schema;
 pub mod set;
+pub mod synth;
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
@@ -37,6 +38,8 @@ pub enum Command {
     Probe(probe::Args),
     /// Render frames to numbered files, an animation or a stream
     Render(render::Args),
+    /// Write a scene's textures and their manifest for other engines
+    Synth(synth::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
     /// Print a shell's completions
@@ -55,6 +58,7 @@ impl Command {
             Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),
             Command::Render(args) => render::run(args, context),
+            Command::Synth(args) => synth::run(args, context),
             Command::Schema(args) => schema::run(args, context),
             Command::Completions(args) => completions::run(args, context),
             Command::Man(args) => man::run(args, context),

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::{Show, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::still;
 use crate::files::draft::DraftFolder;
 
 /// A file name with one frame number in it.
@@ -86,7 +87,7 @@ impl Sequence {
     fn write(&mut self) -> Result<()> {
         let (draft, show) = (&self.draft, &self.show);
         let write = |(name, frame): &(String, Frame)| {
-            let bytes = png(frame).map_err(|e| show.failed(e))?;
+            let bytes = still::frame(frame).map_err(|e| show.failed(e))?;
             draft.write(name, &bytes)
         };
         self.waiting.par_iter().map(write).collect::<Result<()>>()?;
@@ -106,19 +107,6 @@ impl Sink for Sequence {
         self.draft.keep(&self.names)?;
         Ok(Vec::new())
     }
-}
-
-/// A frame as a PNG file.
-pub fn png(frame: &Frame) -> std::result::Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, frame.width() as u32, frame.height() as u32);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(frame.cells().as_flattened())?;
-    writer.finish()?;
-    Ok(bytes)
 }
 
 #[cfg(test)]

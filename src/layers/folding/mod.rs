@@ -2,6 +2,7 @@
 //! through the picture as time passes; thresholds along the path let one part slide over another.
 
 pub mod anchors;
+pub mod atlas;
 pub mod check;
 pub mod counts;
 pub mod field;

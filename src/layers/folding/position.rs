@@ -218,10 +218,41 @@ impl Position {
         }
     }
 
+    /// Where s jumps, ascending in τ.
+    pub fn breaks(&self) -> Vec<Break> {
+        match self {
+            Position::Keyframes { points, between: Between::Step } => {
+                let jumps = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
+                jumps.map(|pair| Break { tau: pair[1][0], holds: Side::After }).collect()
+            }
+            Position::Piecewise { segments } => piecewise_breaks(segments),
+            _ => Vec::new(),
+        }
+    }
+
     /// The range over both ends and the given inner places.
     fn over(&self, turning: Vec<f64>) -> (f64, f64) {
         hull(turning.into_iter().chain([0.0, 1.0]).map(|tau| self.eval(tau)))
     }
+}
+
+/// A jump in s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Break {
+    /// Local time τ of the jump.
+    pub tau: f64,
+    /// Which side's value holds at that τ itself.
+    pub holds: Side,
+}
+
+/// A side of a jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The one before.
+    Before,
+    /// The one after.
+    After,
 }
 
 impl Segment {
@@ -326,6 +357,21 @@ fn piecewise(segments: &[Segment], tau: f64) -> f64 {
     let length = segment.until - start;
     let local = if length > 0.0 { ((tau - start) / length).clamp(0.0, 1.0) } else { 1.0 };
     segment.at(segment.ease.eval(local))
+}
+
+fn piecewise_breaks(segments: &[Segment]) -> Vec<Break> {
+    let mut breaks = Vec::new();
+    let mut start = 0.0;
+    for (i, segment) in segments.iter().enumerate() {
+        let inner = segment.ease.breaks().into_iter();
+        breaks.extend(inner.map(|b| Break { tau: start + b.tau * (segment.until - start), ..b }));
+        start = segment.until;
+        let next = segments.get(i + 1);
+        if next.is_some_and(|next| next.at(next.ease.eval(0.0)) != segment.at(segment.ease.eval(1.0))) {
+            breaks.push(Break { tau: segment.until, holds: Side::Before });
+        }
+    }
+    breaks
 }
 
 #[cfg(test)]

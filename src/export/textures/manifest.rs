@@ -1,0 +1,185 @@
+//! The manifest of a folder of textures: everything a player must know besides the numbers in them.
+
+use serde::Serialize;
+
+use super::data::TextureNote;
+use crate::layers::folding::position::Break;
+use crate::layers::timeline::{Timeline, Wrap};
+
+/// The version of this format; a player refuses a larger one.
+pub const VERSION: u32 = 1;
+
+/// What `manifest.json` holds.
+#[derive(Debug, Serialize)]
+pub struct Manifest {
+    /// [`VERSION`].
+    pub plica_textures: u32,
+    /// The scene's title.
+    pub title: String,
+    /// Width and height of a frame, in pixels.
+    pub size: [usize; 2],
+    /// Length, frame rate and what follows the end.
+    pub timeline: Timeline,
+    /// Number of frames.
+    pub frames: u64,
+    /// How all of it is read, in words.
+    pub conventions: Conventions,
+    /// The colour atlas.
+    pub colour: Colour,
+    /// The position functions.
+    pub function: Function,
+    /// The layers, composed in this order: later over earlier.
+    pub layers: Vec<Layer>,
+}
+
+/// How the textures are read, in words for whoever writes a player.
+#[derive(Debug, Serialize)]
+pub struct Conventions {
+    texels: &'static str,
+    coordinates: &'static str,
+    colour: &'static str,
+    data: &'static str,
+    codes: &'static str,
+    time: &'static str,
+    function: &'static str,
+    sampler: &'static str,
+    first_stretch: &'static str,
+    thresholds: &'static str,
+    rules: &'static str,
+    compose: &'static str,
+}
+
+/// The conventions of this version.
+pub const CONVENTIONS: Conventions = Conventions {
+    texels: "rows from the top; the centre of texel (i, j) is at (i + 0.5, j + 0.5)",
+    coordinates: "u = x / width and v = y / height of the colour texture, v downward; flip v only where a target wants it",
+    colour: "sRGB with straight alpha; decode to linear light and premultiply before bilinear reads, encode at the end",
+    data: "read init, jump, function and thresholds as they are: no colour space, no premultiplying, compression or mip maps; init, jump and thresholds nearest, texel for texel of the zone's box",
+    codes: "whole numbers: value = (code - zero) / (one - zero) * scale, so that the code zero is exactly 0; 32 bits: the value itself",
+    time: "frame k has t = k / frames, for once k / max(frames - 1, 1); a zone's x = speed (t + shift); tau = x - floor(x) for repeat, 1 - |1 - 2 (x - floor(x))| for ping-pong, clamp(x, 0, 1) for once",
+    function: "s of a zone stands in its row: texel i at tau = i / (columns - 1), linear between; in the interval that holds a break, the straight line through the two texels on tau's own side of it",
+    sampler: "init R, G is where the sampler stands at s = 0; it reads init + e * jump, clamped to the texel centres of the zone's piece, bilinear; init A is 0 outside the zone, else (row + 0.5) / rows",
+    first_stretch: "without a thresholds texture: where the rule is none or mask every sampler is active with e = s; else it is active, with e = s, where s0 < s <= s1, at s = 0 where s0 = 0 < s1, below 0 as at 0, above 1 as at 1",
+    thresholds: "slot 0 is 1 where the pixel itself lies in a fold region; then the crossings with s >= 0, ascending, then those with s <= 0, descending, on which side of 0 s is. Slot n is channel n mod 4 of block n div 4; blocks are as large as the box and stacked downward. Starting from slot 0, each crossing c that s has passed (|s| > |c| + tolerance) changes inside to outside and back",
+    rules: "return is active outside, fly-over inside, with e = s; cover is active outside with e = s, and inside with e = the last crossing passed, or still if none was; a pixel that is not active shows what lies beneath",
+    compose: "a layer begins as its piece at (0, 0); its zones follow in order, each reading only its own source: lay replace puts the read in place of what lies beneath, lay over puts it over that (Porter and Duff), in linear light",
+};
+
+/// The colour atlas in the manifest.
+#[derive(Debug, Serialize)]
+pub struct Colour {
+    /// The file.
+    pub file: String,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Its pieces.
+    pub pieces: Vec<PieceNote>,
+}
+
+/// A piece of the atlas.
+#[derive(Debug, Serialize)]
+pub struct PieceNote {
+    /// The image it is cut from.
+    pub image: String,
+    /// Its first column in the atlas.
+    pub x: usize,
+    /// Its first row in the atlas.
+    pub y: usize,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Where its first texel lies in the image; one beyond the edge is transparent.
+    pub from: [i64; 2],
+}
+
+/// The function texture in the manifest.
+#[derive(Debug, Serialize)]
+pub struct Function {
+    /// The texture: one row a zone.
+    #[serde(flatten)]
+    pub texture: TextureNote,
+    /// The largest difference between s and what is read between texels, measured at eight places in each interval.
+    pub error_between: f64,
+}
+
+/// A layer.
+#[derive(Debug, Serialize)]
+pub struct Layer {
+    /// Its name.
+    pub name: String,
+    /// The piece that it begins as.
+    pub piece: usize,
+    /// Its zones, in the order they are shown.
+    pub zones: Vec<Zone>,
+}
+
+/// A zone.
+#[derive(Debug, Serialize)]
+pub struct Zone {
+    /// Its name.
+    pub name: String,
+    /// Its row in the function texture.
+    pub row: usize,
+    /// The piece that its samplers read.
+    pub piece: usize,
+    /// The pixels of the layer that init and jump cover.
+    #[serde(rename = "box")]
+    pub bounds: Box,
+    /// Its fold's rule: none, cover, return, fly-over or mask.
+    pub rule: &'static str,
+    /// How what is read is laid on what is beneath: replace or over.
+    pub lay: &'static str,
+    /// What follows the end.
+    pub wrap: Wrap,
+    /// Passes in one timeline.
+    pub speed: f64,
+    /// Temporal shift in timelines; the same as init B.
+    pub shift: f64,
+    /// The smallest and largest s.
+    pub range: [f64; 2],
+    /// Where s jumps, ascending.
+    pub breaks: Vec<Break>,
+    /// The init texture.
+    pub init: TextureNote,
+    /// The jump texture.
+    pub jump: TextureNote,
+    /// The thresholds texture, where the first stretch does not tell all.
+    pub thresholds: Option<ThresholdsNote>,
+}
+
+/// A part of a layer's picture.
+#[derive(Debug, Serialize)]
+pub struct Box {
+    /// First column.
+    pub x: usize,
+    /// First row.
+    pub y: usize,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+/// A thresholds texture in the manifest.
+#[derive(Debug, Serialize)]
+pub struct ThresholdsNote {
+    /// The texture.
+    #[serde(flatten)]
+    pub texture: TextureNote,
+    /// Which slots hold what.
+    pub slots: Slots,
+    /// How far s must be beyond a crossing to have passed it.
+    pub tolerance: f64,
+}
+
+/// The slots of a thresholds texture; slot 0 tells whether the pixel itself lies in a fold region.
+#[derive(Debug, Serialize)]
+pub struct Slots {
+    /// Crossings with s >= 0, from slot 1 on.
+    pub ahead: usize,
+    /// Crossings with s <= 0, after those.
+    pub behind: usize,
+}
