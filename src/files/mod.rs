@@ -10,6 +10,7 @@ pub mod log;
 pub mod materials;
 pub mod paths;
 pub mod picture;
+pub mod profiles;
 pub mod recovery;
 pub mod scene;
 pub mod session;

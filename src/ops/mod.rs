@@ -12,6 +12,7 @@ use crate::base::text::printable;
 pub mod check;
 pub mod command_line;
 pub mod completions;
+pub mod demo;
 pub mod get;
 pub mod man;
 pub mod new;
@@ -26,6 +27,8 @@ pub mod synth;
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
 pub enum Command {
+    /// Open a built-in demo scene
+    Demo(demo::Args),
     /// Make a scene of pictures
     New(new::Args),
     /// Set values in a scene
@@ -52,6 +55,7 @@ impl Command {
     /// Does it.
     pub fn run(self, context: &mut Context) -> Result<()> {
         match self {
+            Command::Demo(args) => demo::run(args, context),
             Command::New(args) => new::run(args, context),
             Command::Set(args) => set::run(args, context),
             Command::Get(args) => get::run(args, context),

@@ -23,4 +23,5 @@ pub const PICTURES: &[(&str, fn() -> Canvas)] = &[
     ("profiles/car/car.png", road::car),
     ("profiles/car/light.png", road::light),
     ("profiles/cat/cat.png", cat::cat),
+    ("tests/photos/flesh.png", wound::flesh_for_hand),
 ];

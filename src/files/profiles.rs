@@ -1,0 +1,118 @@
+//! The demo scenes, embedded in the binary so that it needs nothing beside it, and unpacked where they can be edited.
+
+use std::path::{Path, PathBuf};
+
+use super::write::write_new;
+use crate::base::error::{Error, Result};
+use crate::base::problem::nearest;
+use crate::base::system;
+
+/// A scene that ships with the program.
+#[derive(Debug)]
+pub struct Profile {
+    /// Its name; the scene's file is `NAME.plica.json`.
+    pub name: &'static str,
+    /// What it shows, in one line.
+    pub help: &'static str,
+    /// The scene and its pictures: name and bytes.
+    pub files: &'static [(&'static str, &'static [u8])],
+}
+
+macro_rules! profile {
+    ($name:literal, $help:literal, $($file:literal),+) => {
+        Profile {
+            name: $name,
+            help: $help,
+            files: &[$((
+                $file,
+                include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/", $name, "/", $file)),
+            )),+],
+        }
+    };
+}
+
+/// Every demo scene; the first is the one opened without a name.
+pub const TABLE: &[Profile] = &[
+    profile!("blink", "an eyelid slides over an eyeball", "blink.plica.json", "eye.png", "lashes.png"),
+    profile!("cat", "a cat squints: two fold regions in one zone", "cat.plica.json", "cat.png"),
+    profile!("waves", "waves swash over a beach", "waves.plica.json", "beach.png"),
+    profile!("wound", "a cut closes and opens: 62 anchors from three curves", "wound.plica.json", "arm.png"),
+    profile!("pecs", "a chest bounces: two zones, one half a timeline ahead", "pecs.plica.json", "chest.png"),
+    profile!("car", "a car flies past a sign", "car.plica.json", "road.png", "car.png", "light.png"),
+];
+
+/// The demo scene called `name`.
+///
+/// # Errors
+/// A name that is not in the table is a wrong command line; the message names the nearest one.
+pub fn find(name: &str) -> Result<&'static Profile> {
+    TABLE.iter().find(|profile| profile.name == name).ok_or_else(|| {
+        let hint = nearest(name, TABLE.iter().map(|profile| profile.name)).unwrap_or_default();
+        Error::Usage(format!("there is no demo '{name}' ({hint})"))
+    })
+}
+
+impl Profile {
+    /// The folder it is unpacked into where no other is named: under the user's cache, else with the temporary files.
+    pub fn scratch(&self) -> PathBuf {
+        let folder = format!("plica-demo-{}", self.name);
+        match system::folders::cache() {
+            Some(cache) => cache.join(folder),
+            None => std::env::temp_dir().join(format!("{folder}-{}", system::user())),
+        }
+    }
+
+    /// The name of the scene's file.
+    pub fn scene_file(&self) -> String {
+        format!("{}.plica.json", self.name)
+    }
+
+    /// Writes what is missing of the scene and its pictures into `folder`, and returns the scene's path. What is there
+    /// already is kept as it is: somebody may have edited it.
+    ///
+    /// # Errors
+    /// When the folder cannot be made or written.
+    pub fn unpack(&self, folder: &Path) -> Result<PathBuf> {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Error::at(folder.display(), error).cure("name another folder with -o"))?;
+        for (name, bytes) in self.files {
+            let path = folder.join(name);
+            if path.symlink_metadata().is_err() {
+                write_new(&path, bytes)?;
+            }
+        }
+        Ok(folder.join(self.scene_file()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_profile_holds_its_scene() {
+        for profile in TABLE {
+            assert!(profile.files.iter().any(|(file, _)| *file == profile.scene_file()), "{}", profile.name);
+            assert!(profile.files.iter().all(|(_, bytes)| bytes.len() < 300_000), "{}", profile.name);
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_is_told_the_nearest() {
+        let message = find("blik").unwrap_err().to_string();
+        assert!(message.contains("blink"), "{message}");
+        assert_eq!(find("car").unwrap().name, "car");
+    }
+
+    #[test]
+    fn unpacking_keeps_what_is_there() {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("a/b");
+        let scene = TABLE[0].unpack(&folder).unwrap();
+        std::fs::write(&scene, "edited").unwrap();
+        std::fs::remove_file(folder.join("eye.png")).unwrap();
+        TABLE[0].unpack(&folder).unwrap();
+        assert_eq!(std::fs::read_to_string(&scene).unwrap(), "edited");
+        assert!(folder.join("eye.png").is_file());
+    }
+}
