@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use crate::base::text::printable;
+
 /// How bad a [`Problem`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -58,9 +60,10 @@ impl fmt::Display for Problem {
             Severity::Warning => "warning: ",
             Severity::Error => "",
         };
-        write!(f, "{path}: {kind}{}", self.message)?;
+        // Keys and names come from files: none of them may steer a terminal.
+        write!(f, "{}: {kind}{}", printable(path), printable(&self.message))?;
         match &self.hint {
-            Some(hint) => write!(f, " ({hint})"),
+            Some(hint) => write!(f, " ({})", printable(hint)),
             None => Ok(()),
         }
     }

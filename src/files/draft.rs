@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::write::{Atomic, temporary_beside, unfinished};
+use super::write::{Atomic, Temporary};
 use crate::base::error::{Error, Result};
 
 /// A file being written, buffered. What already stands in its place stays until [`DraftFile::keep`].
@@ -68,7 +68,7 @@ impl Seek for DraftFile {
 #[derive(Debug)]
 pub struct DraftFolder {
     target: PathBuf,
-    temporary: PathBuf,
+    temporary: Temporary,
 }
 
 impl DraftFolder {
@@ -80,34 +80,26 @@ impl DraftFolder {
         }
         // Within a folder that is there, else beside it: renaming needs one file system.
         let temporary =
-            if target.is_dir() { temporary_beside(&target.join("file")) } else { temporary_beside(&target) };
-        fs::create_dir(&temporary).map_err(|e| at_folder_of(path, &e))?;
-        unfinished().push(temporary.clone());
+            if target.is_dir() { Temporary::beside(&target.join("file")) } else { Temporary::beside(&target) };
+        fs::create_dir(temporary.path()).map_err(|e| at_folder_of(path, &e))?;
         Ok(DraftFolder { target, temporary })
     }
 
     /// Writes one file of the set. May be called from many threads at once.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        fs::write(self.temporary.join(name), bytes).map_err(|e| Error::at(self.target.join(name).display(), e))
+        fs::write(self.temporary.path().join(name), bytes).map_err(|e| Error::at(self.target.join(name).display(), e))
     }
 
     /// Puts the files in their place, in the order of `names`.
     pub fn keep(self, names: &[String]) -> Result<()> {
         if !self.target.exists() {
-            return fs::rename(&self.temporary, &self.target).map_err(|e| Error::at(self.target.display(), e));
+            return self.temporary.put(&self.target).map_err(|e| Error::at(self.target.display(), e));
         }
         for name in names {
             let target = self.target.join(name);
-            fs::rename(self.temporary.join(name), &target).map_err(|e| Error::at(target.display(), e))?;
+            fs::rename(self.temporary.path().join(name), &target).map_err(|e| Error::at(target.display(), e))?;
         }
         Ok(())
-    }
-}
-
-impl Drop for DraftFolder {
-    fn drop(&mut self) {
-        unfinished().retain(|path| *path != self.temporary);
-        let _ = fs::remove_dir_all(&self.temporary);
     }
 }
 

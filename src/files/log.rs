@@ -25,7 +25,7 @@ pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
             None => return Ok(None),
         },
     };
-    let mut log = Log { path: path.clone(), file: None };
+    let mut log = Log { path: path.clone(), makes_folder: file.is_none(), file: None };
     if file.is_some() {
         log.open().map_err(|error| Error::at(path.display(), format!("cannot be written: {error}")))?;
     }
@@ -37,13 +37,14 @@ pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
 
 struct Log {
     path: PathBuf,
+    makes_folder: bool,
     file: Option<File>,
 }
 
 impl Log {
     fn open(&mut self) -> io::Result<&mut File> {
         if self.file.is_none() {
-            if let Some(folder) = self.path.parent() {
+            if let Some(folder) = self.path.parent().filter(|_| self.makes_folder) {
                 std::fs::create_dir_all(folder)?;
             }
             if self.path.metadata().is_ok_and(|found| found.is_file() && found.len() > MOST_BYTES) {

@@ -50,9 +50,8 @@ pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
 #[derive(Debug)]
 pub struct Atomic {
     file: File,
-    temporary: PathBuf,
+    temporary: Temporary,
     target: PathBuf,
-    committed: bool,
 }
 
 impl Atomic {
@@ -66,45 +65,27 @@ impl Atomic {
         if old.as_ref().is_some_and(|old| !old.is_file()) {
             return Err(Error::at(path.display(), "is not a regular file").cure("name a file"));
         }
-        let temporary = temporary_beside(&target);
-        let file = disk::create_new(&temporary, false).map_err(|error| cannot_write(path, error))?;
-        unfinished().push(temporary.clone());
-        let atomic = Atomic { file, temporary, target, committed: false };
+        let temporary = Temporary::beside(&target);
+        let file = disk::create_new(temporary.path(), false).map_err(|error| cannot_write(path, error))?;
         if let Some(old) = old {
             // Giving a file to its old owner is for root alone; the mode matters to everybody.
-            let _ = fchown(&atomic.file, Some(old.uid()), Some(old.gid()));
-            atomic.file.set_permissions(old.permissions()).map_err(|error| cannot_write(path, error))?;
+            let _ = fchown(&file, Some(old.uid()), Some(old.gid()));
+            file.set_permissions(old.permissions()).map_err(|error| cannot_write(path, error))?;
         }
-        Ok(atomic)
+        Ok(Atomic { file, temporary, target })
     }
 
     /// Brings the file to the disk and puts it in its place.
     ///
     /// # Errors
     /// As [`write_atomic`]. The failed file is never tried again: begin a new one.
-    pub fn commit(mut self) -> Result<()> {
-        self.put_in_place().map_err(|error| cannot_write(&self.target, error))?;
-        disk::sync_folder_of(&self.target).map_err(|error| {
-            Error::at(self.target.display(), format!("was written, but may not survive a power cut: {error}"))
+    pub fn commit(self) -> Result<()> {
+        let Atomic { file, temporary, target } = self;
+        disk::sync(&file).and_then(|()| temporary.put(&target)).map_err(|error| cannot_write(&target, error))?;
+        disk::sync_folder_of(&target).map_err(|error| {
+            Error::at(target.display(), format!("was written, but may not survive a power cut: {error}"))
                 .cure("write it again, or to another disk")
         })
-    }
-
-    fn put_in_place(&mut self) -> io::Result<()> {
-        disk::sync(&self.file)?;
-        disk::rename(&self.temporary, &self.target)?;
-        self.committed = true;
-        Ok(())
-    }
-}
-
-impl Drop for Atomic {
-    fn drop(&mut self) {
-        unfinished().retain(|path| *path != self.temporary);
-        if !self.committed {
-            // It is of no use to anybody; where it cannot be removed, remove_stale does it another day.
-            let _ = disk::remove(&self.temporary);
-        }
     }
 }
 
@@ -125,29 +106,55 @@ impl Seek for Atomic {
     }
 }
 
-/// A name of our own beside `path`, short so that it is never too long where `path` is not.
-pub(super) fn temporary_beside(path: &Path) -> PathBuf {
-    static MADE: AtomicU64 = AtomicU64::new(0);
-    let number = MADE.fetch_add(1, Ordering::Relaxed);
-    disk::folder_of(path).join(format!("{TEMPORARY_PREFIX}{}-{number}{TEMPORARY_SUFFIX}", std::process::id()))
-}
+/// A name for a file or folder being made, beside its place. What stands there is removed when this is dropped.
+#[derive(Debug)]
+pub struct Temporary(PathBuf);
 
-/// The temporary files and folders of this process.
+/// What [`remove_unfinished`] removes.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-pub(super) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
+impl Temporary {
+    /// A name of our own beside `path`, short so that it is never too long where `path` is not. Nothing is made.
+    pub fn beside(path: &Path) -> Self {
+        static MADE: AtomicU64 = AtomicU64::new(0);
+        let number = MADE.fetch_add(1, Ordering::Relaxed);
+        let name = format!("{TEMPORARY_PREFIX}{}-{number}{TEMPORARY_SUFFIX}", std::process::id());
+        let path = disk::folder_of(path).join(name);
+        unfinished().push(path.clone());
+        Temporary(path)
+    }
 
-/// Removes the temporary files and folders of this process, which is to end at once.
-pub fn remove_unfinished() {
-    for path in unfinished().drain(..) {
-        // One that was renamed just now is not there any more.
-        let _ = if path.is_dir() { std::fs::remove_dir_all(&path) } else { disk::remove(&path) };
+    /// Where it is to be made.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Puts what was made in its place, at once.
+    ///
+    /// # Errors
+    /// When it cannot be renamed; it is removed then.
+    pub fn put(self, target: &Path) -> io::Result<()> {
+        disk::rename(&self.0, target)
     }
 }
 
-/// Removes the temporary files that killed processes left in the folder of `path`.
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+        remove(&self.0);
+    }
+}
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what this process has half made; for a process that is to end at once.
+pub fn remove_unfinished() {
+    unfinished().drain(..).for_each(|path| remove(&path));
+}
+
+/// Removes what killed processes left half made in the folder of `path`.
 pub fn remove_stale(path: &Path) {
     let Ok(entries) = std::fs::read_dir(disk::folder_of(path)) else { return };
     for entry in entries.flatten() {
@@ -155,9 +162,18 @@ pub fn remove_stale(path: &Path) {
         let middle = name.to_str().and_then(|n| n.strip_prefix(TEMPORARY_PREFIX)?.strip_suffix(TEMPORARY_SUFFIX));
         let Some((pid, _)) = middle.and_then(|middle| middle.split_once('-')) else { continue };
         if pid.parse().is_ok_and(|pid| !system::process_lives(pid)) {
-            // Somebody else may be first, or it is not ours to remove: either is fine.
-            let _ = disk::remove(&entry.path());
+            remove(&entry.path());
         }
+    }
+}
+
+/// Removes a file or a folder. It may have got its place meanwhile, or somebody else was first; and what cannot be
+/// removed now is removed as stale another day.
+fn remove(path: &Path) {
+    match path.symlink_metadata() {
+        Ok(found) if found.is_dir() => drop(std::fs::remove_dir_all(path)),
+        Ok(_) => drop(disk::remove(path)),
+        Err(_) => {}
     }
 }
 
@@ -231,9 +247,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut dead = std::process::Command::new("true").spawn().unwrap();
         dead.wait().unwrap();
-        let ours = temporary_beside(&folder.path().join("x"));
+        let ours = Temporary::beside(&folder.path().join("x"));
         let theirs = format!(".plica-{}-0.tmp", dead.id());
-        for name in [ours.file_name().unwrap().to_str().unwrap(), &theirs, ".plica-x.tmp", "cat.png"] {
+        for name in [ours.path().file_name().unwrap().to_str().unwrap(), &theirs, ".plica-x.tmp", "cat.png"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         remove_stale(&folder.path().join("x"));

@@ -10,7 +10,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::files::{disk, write};
+use crate::files::disk;
+use crate::files::write::Temporary;
 
 /// How long after a failure the next file is tried.
 const TRY_AGAIN: Duration = Duration::from_secs(1);
@@ -127,25 +128,13 @@ impl Writer {
     }
 
     fn write_anew(&mut self) -> io::Result<()> {
-        let temporary = write::temporary_beside(&self.path);
-        let made = (|| {
-            let mut file = disk::create_new(&temporary, true)?;
-            file.try_lock()?;
-            disk::write(&mut file, &self.contents)?;
-            disk::sync(&file)?;
-            disk::rename(&temporary, &self.path)?;
-            Ok(file)
-        })();
-        match made {
-            Ok(file) => {
-                self.file = file;
-                disk::sync_folder_of(&self.path)
-            }
-            Err(error) => {
-                // What cannot be removed now is removed as stale another day.
-                let _ = disk::remove(&temporary);
-                Err(error)
-            }
-        }
+        let temporary = Temporary::beside(&self.path);
+        let mut file = disk::create_new(temporary.path(), true)?;
+        file.try_lock()?;
+        disk::write(&mut file, &self.contents)?;
+        disk::sync(&file)?;
+        temporary.put(&self.path)?;
+        self.file = file;
+        disk::sync_folder_of(&self.path)
     }
 }

@@ -1,0 +1,102 @@
+//! The process among others: signals, closed and full outputs, the log, and what reaches a terminal.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+fn plica(arguments: &[&str], folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
+    command.args(arguments).current_dir(folder).env("XDG_STATE_HOME", folder.join("state"));
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+/// The exit status, and all that was said on either output.
+fn outcome(mut command: Command) -> (Option<i32>, String) {
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    (status.code(), String::from_utf8([stderr, stdout].concat()).unwrap())
+}
+
+fn signal(child: &Child, name: &str) {
+    let status = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status();
+    assert!(status.unwrap().success());
+}
+
+/// Waits until the child listens to signals: there is a thread for them.
+fn listening(child: &Child) {
+    let tasks = format!("/proc/{}/task", child.id());
+    let named = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("comm")).unwrap_or_default();
+    while !std::fs::read_dir(&tasks).unwrap().flatten().any(|entry| named(entry).trim() == "signals") {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_signal_ends_with_130_even_where_work_is_stuck() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["INT", "TERM", "HUP"] {
+        // A scene from a standard input that never comes.
+        let mut child = plica(&["check", "-"], folder.path()).stdin(Stdio::piped()).spawn().unwrap();
+        listening(&child);
+        while child.try_wait().unwrap().is_none() {
+            signal(&child, name);
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{name}");
+    }
+}
+
+#[test]
+fn a_stopped_process_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = plica(&["check", "-"], folder.path()).stdin(Stdio::piped()).spawn().unwrap();
+    listening(&child);
+    signal(&child, "TSTP");
+    let state = || std::fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();
+    while !state().contains(") T ") {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    signal(&child, "CONT");
+    drop(child.stdin.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1), "an empty scene is an error");
+}
+
+#[test]
+fn a_closed_pipe_is_no_error_and_a_full_disk_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = plica(&["schema"], folder.path()).spawn().unwrap();
+    drop(child.stdout.take());
+    let mut said = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    assert_eq!((child.wait().unwrap().code(), said.as_str()), (Some(0), ""));
+    if let Ok(full) = File::options().write(true).open("/dev/full") {
+        let mut command = plica(&["schema"], folder.path());
+        command.stdout(full);
+        let (status, said) = outcome(command);
+        assert!(status == Some(1) && said.starts_with("plica: standard output: "), "{status:?} {said}");
+    }
+}
+
+#[test]
+fn the_log_is_where_it_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let (status, _) = outcome(plica(&["schema", "--log", "here.log"], folder.path()));
+    assert_eq!((status, folder.path().join("here.log").exists()), (Some(0), true));
+    assert!(!folder.path().join("state").exists(), "nothing is made where nothing is to be said");
+    let (status, said) = outcome(plica(&["--log", "no/such/folder.log", "schema"], folder.path()));
+    assert!(status == Some(1) && said.contains("no/such/folder.log"), "{said}");
+}
+
+#[test]
+fn nothing_from_a_file_steers_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = "evil\x1b[2J\u{9b}31m.json";
+    std::fs::write(folder.path().join(name), "{ \"pli\\u001b[31mca\": 1, \"\x1b]0;title\x07\": 2 }").unwrap();
+    let (status, said) = outcome(plica(&["check", name], folder.path()));
+    assert_eq!(status, Some(1));
+    assert!(!said.chars().any(|c| c.is_control() && c != '\n'), "{said:?}");
+    let (status, said) = outcome(plica(&["check", "missing\x1b[2J"], folder.path()));
+    assert!(status == Some(1) && !said.contains('\x1b') && said.contains("no such file"), "{said:?}");
+}
