@@ -5,24 +5,36 @@
 
 use kurbo::{BezPath, Point, Rect, Vec2};
 
-/// Curves are flattened to within this many pixels.
-pub const FLATNESS_PX: f64 = 0.002;
+/// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
+/// should.
+pub const FLATNESS_PX: f64 = 2e-5;
+
+/// Sides that share a box, so that most of a curve is passed over at a glance.
+const GROUP: usize = 32;
 
 /// A closed polygon, even-odd; the closing side is implied. At least three vertices, all finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     vertices: Vec<Point>,
     bounds: Rect,
+    /// The box of each [`GROUP`] of sides.
+    groups: Vec<Rect>,
 }
 
 impl Polygon {
     /// The polygon through `vertices`. A repeated last vertex is harmless.
     pub fn new(vertices: Vec<Point>) -> Self {
-        let mut bounds = vertices.first().map_or(Rect::ZERO, |&p| Rect::from_points(p, p));
-        for &p in &vertices {
-            bounds = bounds.union_pt(p);
-        }
-        Polygon { vertices, bounds }
+        let box_of = |points: &mut dyn Iterator<Item = Point>| {
+            let corner = |r: Rect, p: Point| r.union_pt(p);
+            points.next().map_or(Rect::ZERO, |first| points.fold(Rect::from_points(first, first), corner))
+        };
+        let n = vertices.len();
+        let group = |start: usize| {
+            let end = (start + GROUP).min(n);
+            box_of(&mut (start..=end).map(|i| vertices[i % n]))
+        };
+        let groups = (0..n).step_by(GROUP).map(group).collect();
+        Polygon { bounds: box_of(&mut vertices.iter().copied()), groups, vertices }
     }
 
     /// The polygon of a closed path, flattened to [`FLATNESS_PX`].
@@ -72,22 +84,30 @@ impl Polygon {
         (0..n).map(move |i| (self.vertices[i], self.vertices[(i + 1) % n]))
     }
 
+    /// The sides that may meet `area`: all that do, and a few more.
+    pub fn sides_near(&self, area: Rect) -> impl Iterator<Item = (Point, Point)> + '_ {
+        let meets = move |r: &Rect| r.x0 <= area.x1 && area.x0 <= r.x1 && r.y0 <= area.y1 && area.y0 <= r.y1;
+        let n = self.vertices.len();
+        let groups = self.groups.iter().enumerate().filter(move |(_, group)| meets(group));
+        groups
+            .flat_map(move |(g, _)| g * GROUP..((g + 1) * GROUP).min(n))
+            .map(move |i| (self.vertices[i], self.vertices[(i + 1) % n]))
+            .filter(move |(a, b)| meets(&Rect::from_points(*a, *b)))
+    }
+
     /// Whether `q` is inside: even-odd; on a left or top edge in, on a right or bottom edge out.
     pub fn contains(&self, q: Point) -> bool {
-        let mut inside = false;
-        for (a, b) in self.sides() {
-            if let Some(x) = crossing_of_row(a, b, q.y) {
-                inside ^= q.x < x;
-            }
-        }
-        inside
+        let mut xs = Vec::new();
+        self.row_crossings(q.y, &mut xs);
+        xs.iter().filter(|&&x| x <= q.x).count() % 2 == 1
     }
 
     /// The places, ascending, where the horizontal line at `y` crosses the polygon: a point (x, y) is inside between an
     /// even one (at or after it) and the odd one that follows (before it).
     pub fn row_crossings(&self, y: f64, out: &mut Vec<f64>) {
         out.clear();
-        out.extend(self.sides().filter_map(|(a, b)| crossing_of_row(a, b, y)));
+        let row = Rect::new(f64::NEG_INFINITY, y, f64::INFINITY, y);
+        out.extend(self.sides_near(row).filter_map(|(a, b)| crossing_of_row(a, b, y)));
         out.sort_unstable_by(f64::total_cmp);
     }
 
@@ -157,6 +177,18 @@ mod tests {
     }
 
     #[test]
+    fn groups_hide_no_side() {
+        let round = Polygon::ellipse(Point::new(30.0, 30.0), Vec2::new(20.0, 25.0));
+        assert!(round.groups.len() > 10);
+        for area in
+            [Rect::new(8.0, 3.0, 12.0, 40.0), Rect::new(49.9, 0.0, 60.0, 60.0), Rect::new(20.0, 20.0, 21.0, 21.0)]
+        {
+            let meets = |(a, b): &(Point, Point)| area.overlaps(Rect::from_points(*a, *b));
+            assert_eq!(round.sides_near(area).filter(meets).count(), round.sides().filter(meets).count());
+        }
+    }
+
+    #[test]
     fn rows_agree_with_points() {
         let star = Polygon::new(
             [(5.0, 0.3), (8.1, 9.7), (0.2, 3.9), (9.9, 4.1), (1.7, 9.5)].iter().map(|&p| p.into()).collect(),
@@ -166,7 +198,8 @@ mod tests {
             star.row_crossings(y, &mut xs);
             for x in (0..40).map(|i| i as f64 * 0.25) {
                 let by_row = xs.iter().filter(|&&c| c <= x).count() % 2 == 1;
-                assert_eq!(by_row, star.contains((x, y).into()), "{x} {y}");
+                let to_the_right = star.sides().filter_map(|(a, b)| crossing_of_row(a, b, y)).filter(|&c| c > x);
+                assert_eq!(by_row, to_the_right.count() % 2 == 1, "{x} {y}");
             }
         }
     }

@@ -97,7 +97,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
         && ring > radius
     {
         let message = format!("the ring of {ring} px is wider than the radius of {radius} px");
-        problems.push(Problem::error("/interpolation/ring", message).hint("at most the radius"));
+        problems.push(Problem::warning("/interpolation/ring", message).hint("every anchor counts by chance"));
     }
     if matches!(zone.fold, Some(Fold::Mask { .. })) && zone.sampler.is_some() {
         let hint = "take away either the fold or the sampler";

@@ -192,9 +192,7 @@ impl Prepared {
     /// The feather weight within `bounds`: only the outline's sides near it are looked at.
     fn feather_of(&self, bounds: Rect) -> impl Fn(Point) -> f64 {
         let near = bounds.inflate(self.feather, self.feather);
-        let meets = |a: Point, b: Point| near.overlaps(Rect::from_points(a, b).inflate(1e-9, 1e-9));
-        let sides: Vec<(Point, Point)> =
-            if self.feather > 0.0 { self.outline.sides().filter(|(a, b)| meets(*a, *b)).collect() } else { Vec::new() };
+        let sides: Vec<_> = if self.feather > 0.0 { self.outline.sides_near(near).collect() } else { Vec::new() };
         let feather = self.feather;
         move |q| if sides.is_empty() { 1.0 } else { smoothstep(0.0, feather, distance(q, sides.iter().copied())) }
     }

@@ -42,15 +42,8 @@ impl Regions {
     /// The sides that can meet paths within `bounds`; most runs of pixels have none.
     pub fn sides_within(&self, bounds: Rect) -> Vec<Side> {
         let bounds = bounds.inflate(1e-6, 1e-6);
-        let meets = |from: Point, to: Point| {
-            from.x.min(to.x) <= bounds.x1
-                && from.x.max(to.x) >= bounds.x0
-                && from.y.min(to.y) <= bounds.y1
-                && from.y.max(to.y) >= bounds.y0
-        };
-        let of_region = |(region, polygon): (usize, &Polygon)| {
-            let sides = polygon.sides().filter(|(from, to)| meets(*from, *to));
-            sides.map(|(from, to)| Side { region, from, to }).collect::<Vec<_>>()
+        let of_region = |(region, polygon): (usize, &'_ Polygon)| {
+            polygon.sides_near(bounds).map(|(from, to)| Side { region, from, to }).collect::<Vec<_>>()
         };
         self.polygons.iter().enumerate().flat_map(of_region).collect()
     }
