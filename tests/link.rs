@@ -67,7 +67,7 @@ impl Stage {
 }
 
 fn hear(peer: &mut UnixStream) -> FromEditor {
-    message::read(peer).unwrap().expect("the editor is there")
+    message::read(peer, link::most()).unwrap().expect("the editor is there")
 }
 
 /// An edit of the title, and the document it makes.

@@ -114,6 +114,16 @@ impl Limits {
         settings.iter().try_for_each(|setting| limits.set(setting))?;
         Ok(limits)
     }
+
+    /// What sets these limits over the defaults, as `NAME=VALUE`.
+    pub fn settings(&self) -> Vec<String> {
+        let mut own = self.clone();
+        let values = TABLE.iter().map(|row| (row, *(row.of)(&mut own)));
+        values
+            .filter(|(row, value)| *value != row.default)
+            .map(|(row, value)| format!("{}={value}", row.name))
+            .collect()
+    }
 }
 
 fn unknown(name: &str) -> Error {
@@ -140,6 +150,7 @@ mod tests {
         for row in &TABLE {
             let mut limits = Limits::from_settings(&[format!("{}=7", row.name)]).unwrap();
             assert_eq!(*(row.of)(&mut limits), 7);
+            assert_eq!(limits.settings(), [format!("{}=7", row.name)]);
             *(row.of)(&mut limits) = row.default;
             assert_eq!(limits, Limits::default(), "{}: two rows share a field", row.name);
             assert!(row.default > 0 && !row.help.is_empty());

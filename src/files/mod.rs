@@ -39,4 +39,10 @@ impl Options {
         let Limits { anchors, points, frames, .. } = self.limits;
         Rules { allow_outside: self.allow_outside, anchors, points, frames }
     }
+
+    /// The command line that means the same, for another process that opens the same scene.
+    pub fn arguments(&self) -> Vec<String> {
+        let limits = self.limits.settings().into_iter().flat_map(|setting| ["--limit".to_owned(), setting]);
+        limits.chain(self.allow_outside.then(|| "--allow-outside".to_owned())).collect()
+    }
 }

@@ -95,8 +95,8 @@ impl Outlet {
 }
 
 /// Hands on what the editor says, until it hangs up or nobody `takes` it any more.
-fn listen(mut from: &mut dyn Read, takes: impl Fn(FromEditor) -> bool) -> Result<()> {
-    while let Some(said) = message::read(&mut from)? {
+fn listen(mut from: &mut dyn Read, most: u64, takes: impl Fn(FromEditor) -> bool) -> Result<()> {
+    while let Some(said) = message::read(&mut from, most)? {
         if !takes(said) {
             break;
         }
@@ -177,7 +177,7 @@ impl Client {
 
     /// Joins the editor where one answers.
     fn join(&mut self) -> Outcome<bool> {
-        let joined = match link::join(&self.scene, Role::Window) {
+        let joined = match link::join(&self.scene, Role::Window, self.options.limits.message) {
             Ok(Some((hello, wire))) => self.enter(hello, wire),
             Ok(None) => return Ok(false),
             Err(error) => Err(error),
@@ -199,9 +199,9 @@ impl Client {
         let document = self.document(document)?;
         let Wire { mut reader, writer, hang_up } = wire;
         self.session += 1;
-        let (session, sender) = (self.session, self.sender.clone());
+        let (session, sender, most) = (self.session, self.sender.clone(), self.options.limits.message);
         std::thread::spawn(move || {
-            let lost = listen(&mut *reader, |said| sender.send(Heard::Said(session, said)).is_ok()).err();
+            let lost = listen(&mut *reader, most, |said| sender.send(Heard::Said(session, said)).is_ok()).err();
             drop(sender.send(Heard::Lost(session, lost)));
         });
         self.outlet.set(Some(writer));
@@ -212,7 +212,7 @@ impl Client {
 
     fn document(&self, json: serde_json::Value) -> Result<Document> {
         let file = self.scene.display().to_string();
-        Document::from_json(json).map_err(|problems| Error::Scene { file, problems })
+        Document::from_json_under(json, self.options.rules()).map_err(|problems| Error::Scene { file, problems })
     }
 
     /// Shows a document, or the same one again.

@@ -14,6 +14,7 @@ use super::outbox::{Latest, Measured};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::base::system;
+use crate::files::Options;
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
@@ -108,6 +109,7 @@ impl Asked {
 pub struct Preview {
     shared: Arc<Shared>,
     scene: PathBuf,
+    options: Options,
     keeper: Option<Keeper>,
     /// `None` where no window can join.
     door: Option<Door>,
@@ -124,11 +126,17 @@ impl Preview {
         let latest = Latest { document: document.clone(), revision, selection: None, playing: false, time: 0.0 };
         let shared = Arc::new(Shared::new(latest, Box::new(deliver)));
         let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
-        let mut preview = Preview { shared, scene, keeper: None, door: None };
+        let mut preview = Preview { shared, scene, options: Options::default(), keeper: None, door: None };
         if let Err(error) = preview.listen() {
             preview.shared.lock().refused = Some(error.to_string());
         }
         preview
+    }
+
+    /// Windows that are opened from here may do what the editor may.
+    pub fn with_options(mut self, options: &Options) -> Preview {
+        self.options.clone_from(options);
+        self
     }
 
     fn listen(&mut self) -> Result<()> {
@@ -179,8 +187,8 @@ impl Preview {
         if let Some(reason) = no_window(&self.scene) {
             return self.shared.tell(|state| state.refused = Some(reason));
         }
-        let scene = self.scene.clone();
-        self.keep(move || window_command(&scene));
+        let (scene, options) = (self.scene.clone(), self.options.clone());
+        self.keep(move || window_command(&scene, &options));
     }
 
     /// Keeps a process alive that joins as a window.
@@ -234,11 +242,11 @@ fn no_window(scene: &Path) -> Option<String> {
 }
 
 /// The window's process, in a group of its own: what the terminal does to the editor's group is not meant for it.
-fn window_command(scene: &Path) -> Command {
+fn window_command(scene: &Path, options: &Options) -> Command {
     use std::os::unix::process::CommandExt;
     let program = std::env::current_exe().unwrap_or_else(|_| "plica".into());
     let mut command = Command::new(program);
-    command.arg("view").arg("--joined").arg("--").arg(scene).process_group(0);
+    command.arg("view").arg("--joined").args(options.arguments()).arg("--").arg(scene).process_group(0);
     command
 }
 
@@ -247,7 +255,6 @@ mod tests {
     use std::sync::mpsc::{Receiver, channel};
 
     use super::*;
-    use crate::files::Options;
     use crate::preview::Update;
     use crate::preview::client;
 

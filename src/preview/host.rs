@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::editor::{Asked, Event, Status};
 use super::keeper::Life;
-use super::link::{Caller, HangUp, Listener, Wire};
+use super::link::{self, Caller, HangUp, Listener, Wire};
 use super::message::{self, FromEditor, Role, ToEditor};
 use super::outbox::{Latest, Outbox};
 use crate::base::error::{Error, Result};
@@ -214,7 +214,7 @@ impl Shared {
 
     /// Takes what the window says until it is gone.
     fn read(&self, id: u64, mut from: &mut (dyn Read + Send)) -> Result<()> {
-        while let Some(said) = message::read::<ToEditor>(&mut from)? {
+        while let Some(said) = message::read::<ToEditor>(&mut from, link::most())? {
             match said {
                 ToEditor::Ack { revision, synth_ms } => self.tell(|state| {
                     state.report.synth_ms = Some(synth_ms);
@@ -254,7 +254,7 @@ impl Shared {
     fn talk_with_script(&self, mut wire: Wire, scene: &Path) -> Result<()> {
         let latest = self.lock().latest.clone();
         message::write(&mut wire.writer, &hello(scene, &latest))?;
-        while let Some(said) = message::read::<ToEditor>(&mut wire.reader)? {
+        while let Some(said) = message::read::<ToEditor>(&mut wire.reader, link::most())? {
             let ToEditor::Edit { revision, patch } = said else {
                 return Err(Error::at("link", "a script said what only a window says"));
             };

@@ -15,12 +15,18 @@ use sha2::{Digest, Sha256};
 use super::message::{self, FromEditor, Role, ToEditor};
 use crate::base::error::{Error, Result};
 use crate::base::system;
+use crate::files::Limits;
 
 /// How long the other end may take to say who it is.
 pub const HANDSHAKE: Duration = Duration::from_secs(2);
 
 /// How long one write may stand still before the other end counts as gone.
 const STUCK: Duration = Duration::from_secs(10);
+
+/// What an editor and a script take at most in one message, in bytes.
+pub fn most() -> u64 {
+    Limits::default().message
+}
 
 /// An open connection: two halves that may live on two threads, and a way to end both.
 pub struct Wire {
@@ -140,7 +146,7 @@ impl Caller {
     /// The editor's part of shaking hands: who is it, and in time. The answer, a [`FromEditor::Hello`], is still to be sent.
     pub fn greet(self) -> Result<(Role, Wire)> {
         check_peer(&self.0)?;
-        let hello = message::read(&mut Timed { stream: &self.0, until: Instant::now() + HANDSHAKE });
+        let hello = message::read(&mut Timed { stream: &self.0, until: Instant::now() + HANDSHAKE }, most());
         let reason = match hello {
             Ok(Some(ToEditor::Hello { role, .. })) => {
                 return Ok((role, Wire::socket(self.0).map_err(|e| Error::at("link", e))?));
@@ -156,14 +162,16 @@ impl Caller {
     }
 }
 
-/// The other part: joins the editor that has `scene` open and returns its hello. `None` where nobody has.
-pub fn join(scene: &Path, role: Role) -> Result<Option<(FromEditor, Wire)>> {
-    let Ok(stream) = UnixStream::connect(socket_path(scene)?) else { return Ok(None) };
+/// The other part: joins the editor that has `scene` open and returns its hello, of `most` bytes. `None` where nobody has,
+/// or nobody can have for want of a folder for sockets.
+pub fn join(scene: &Path, role: Role, most: u64) -> Result<Option<(FromEditor, Wire)>> {
+    let Ok(path) = socket_path(scene) else { return Ok(None) };
+    let Ok(stream) = UnixStream::connect(path) else { return Ok(None) };
     check_peer(&stream)?;
     let limits = stream.set_read_timeout(Some(HANDSHAKE)).and_then(|()| stream.set_write_timeout(Some(HANDSHAKE)));
     limits.map_err(|e| Error::at("link", e))?;
     message::write(&mut &stream, &ToEditor::Hello { program: env!("CARGO_PKG_VERSION").into(), role })?;
-    match message::read(&mut &stream)? {
+    match message::read(&mut &stream, most)? {
         Some(hello @ FromEditor::Hello { .. }) => {
             let wire = Wire::socket(stream).map_err(|e| Error::at("link", e))?;
             Ok(Some((hello, wire)))

@@ -14,9 +14,6 @@ use crate::scene::edit::Edit;
 /// Version of the protocol; both ends must have the same.
 pub const VERSION: u16 = 1;
 
-/// The longest message taken, in bytes.
-pub const MAX_LEN: u32 = 64 << 20;
-
 const MAGIC: [u8; 4] = *b"PLCA";
 const HEADER: usize = 12;
 /// The only kind so far. Pieces of pictures, for a window on another machine, will be another.
@@ -128,18 +125,18 @@ pub enum ToEditor {
     },
 }
 
-/// Writes one message. Fails where it would be longer than a reader takes, or the other end is gone.
+/// Writes one message. How long it may be is the reader's to say; fails where the other end is gone.
 pub fn write(to: &mut impl Write, message: &impl Serialize) -> Result<()> {
     let body = serde_json::to_vec(message).map_err(|e| Error::at("link", e))?;
-    let len =
-        u32::try_from(body.len()).ok().filter(|&len| len <= MAX_LEN).ok_or_else(|| too_long(body.len() as u64))?;
+    let len = u32::try_from(body.len()).map_err(|_| too_long(body.len() as u64, u32::MAX.into()))?;
     let sent = to.write_all(&header(len)).and_then(|()| to.write_all(&body)).and_then(|()| to.flush());
     sent.map_err(|e| broken(&e))
 }
 
-/// Reads one message; `None` where the other end left between messages.
-pub fn read<T: DeserializeOwned>(from: &mut impl Read) -> Result<Option<T>> {
-    let Some(len) = read_header(from)? else { return Ok(None) };
+/// Reads one message of at most `most` bytes ([`Limits::message`](crate::files::Limits::message)); `None` where the other
+/// end left between messages.
+pub fn read<T: DeserializeOwned>(from: &mut impl Read, most: u64) -> Result<Option<T>> {
+    let Some(len) = read_header(from, most)? else { return Ok(None) };
     let body = read_body(from, len as usize)?;
     let message = serde_json::from_slice(&body);
     message.map(Some).map_err(|e| Error::at("link", format!("a message that cannot be understood: {e}")))
@@ -155,7 +152,7 @@ fn header(len: u32) -> [u8; HEADER] {
 }
 
 /// The checked length of the message that follows.
-fn read_header(from: &mut impl Read) -> Result<Option<u32>> {
+fn read_header(from: &mut impl Read, most: u64) -> Result<Option<u32>> {
     let mut header = [0; HEADER];
     let got = fill(from, &mut header)?;
     if got == 0 {
@@ -177,7 +174,7 @@ fn read_header(from: &mut impl Read) -> Result<Option<u32>> {
     if kind != KIND_JSON {
         return Err(Error::at("link", format!("a message of unknown kind {kind}")));
     }
-    if len > MAX_LEN { Err(too_long(len.into())) } else { Ok(Some(len)) }
+    if u64::from(len) > most { Err(too_long(len.into(), most)) } else { Ok(Some(len)) }
 }
 
 /// Reads in steps, so that memory is taken for what came and never for what was announced.
@@ -218,8 +215,8 @@ fn broken(error: &io::Error) -> Error {
     }
 }
 
-fn too_long(len: u64) -> Error {
-    Error::at("link", format!("a message of {len} bytes, {MAX_LEN} is the most"))
+fn too_long(len: u64, most: u64) -> Error {
+    Error::at("link", format!("a message of {len} bytes, {most} is the most")).cure("give --limit message=BYTES")
 }
 
 #[cfg(test)]
@@ -230,6 +227,13 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::files::Limits;
+
+    const MAX: u32 = 64 << 20;
+
+    fn read<T: DeserializeOwned>(from: &mut impl Read) -> Result<Option<T>> {
+        super::read(from, Limits::default().message)
+    }
 
     fn bytes(message: &impl Serialize) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -291,7 +295,7 @@ mod tests {
             ("a newer version", changed(4, &[2, 0]), "use the same plica"),
             ("an unknown kind", changed(6, &[9, 0]), "unknown kind 9"),
             ("a huge length", changed(8, &[0xff; 4]), "4294967295 bytes"),
-            ("one byte too many", changed(8, &(MAX_LEN + 1).to_le_bytes()), "67108864 is the most"),
+            ("one byte too many", changed(8, &(MAX + 1).to_le_bytes()), "67108864 is the most"),
             ("unknown JSON", [&header(7)[..], br#"{"a":1}"#].concat(), "unknown variant"),
             ("broken JSON", [&header(3)[..], b"\"wa"].concat(), "cannot be understood"),
         ];
@@ -319,18 +323,10 @@ mod tests {
                 self.0.read(buffer)
             }
         }
-        let bytes = header(MAX_LEN);
+        let bytes = header(MAX);
         let mut from = Watched(&bytes, 0);
         assert!(read::<ToEditor>(&mut from).is_err());
         assert_eq!(from.1, STEP);
-    }
-
-    #[test]
-    fn what_a_reader_would_refuse_is_not_sent() {
-        let mut sent = Vec::new();
-        let error = write(&mut sent, &"x".repeat(MAX_LEN as usize)).expect_err("too long").to_string();
-        assert!(error.contains("is the most"), "{error}");
-        assert_eq!(sent.len(), 0);
     }
 
     proptest! {

@@ -52,7 +52,7 @@ struct Joined {
 }
 
 fn ask(scene: &Path) -> Result<Option<Joined>> {
-    let Some((hello, wire)) = link::join(scene, Role::Script)? else { return Ok(None) };
+    let Some((hello, wire)) = link::join(scene, Role::Script, link::most())? else { return Ok(None) };
     let FromEditor::Hello { revision, document, .. } = hello else { return Err(gone()) };
     let document = Document::from_json_under(document, Rules::NONE);
     let document = document.map_err(|problems| Error::Scene { file: scene.display().to_string(), problems })?;
@@ -62,7 +62,7 @@ fn ask(scene: &Path) -> Result<Option<Joined>> {
 impl Joined {
     fn edit(&mut self, patch: Edit) -> Result<Vec<Problem>> {
         message::write(&mut self.wire.writer, &ToEditor::Edit { revision: self.revision, patch })?;
-        match message::read(&mut self.wire.reader)? {
+        match message::read(&mut self.wire.reader, link::most())? {
             Some(FromEditor::Edited(problems)) => Ok(problems),
             _ => Err(gone()),
         }
