@@ -23,6 +23,8 @@ pub mod scene_options;
 pub mod schema;
 pub mod set;
 pub mod synth;
+#[cfg(feature = "window")]
+pub mod view;
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
@@ -43,6 +45,9 @@ pub enum Command {
     Render(render::Args),
     /// Write a scene's textures and their manifest for other engines
     Synth(synth::Args),
+    /// Open the preview window
+    #[cfg(feature = "window")]
+    View(view::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
     /// Print a shell's completions
@@ -66,6 +71,8 @@ impl Command {
             Command::Schema(args) => schema::run(args, context),
             Command::Completions(args) => completions::run(args, context),
             Command::Man(args) => man::run(args, context),
+            #[cfg(feature = "window")]
+            Command::View(args) => view::run(args, context),
         }
     }
 }

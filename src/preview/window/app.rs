@@ -31,6 +31,8 @@ const SMALLEST: (f64, f64) = (480.0, 320.0);
 const FIRST: (f64, f64) = (960.0, 640.0);
 /// A window opens on at most this share of the monitor.
 const MOST_OF_MONITOR: f64 = 0.85;
+/// A scene is given so long before the window opens with a notice alone.
+const PATIENCE: Duration = Duration::from_millis(500);
 /// Frames a second where the monitor does not tell.
 const RATE: f64 = 60.0;
 /// A line of a mouse wheel is one step; a touchpad gives pixels.
@@ -48,6 +50,8 @@ pub struct App {
     marks: Cached,
     drag: Drag,
     clock: Clock,
+    /// When the window opens without a scene, to show a notice.
+    open_by: Option<Instant>,
     failed: Option<Error>,
 }
 
@@ -110,6 +114,7 @@ impl App {
             marks: Cached::default(),
             drag: Drag::Nothing,
             clock: Clock { last: now, due: now, counted_from: now, frames: 0 },
+            open_by: None,
             failed: None,
         }
     }
@@ -167,7 +172,7 @@ impl App {
         let Some(opened) = &self.opened else { return Ok(()) };
         let factor = width.max(height).div_ceil(opened.gpu.device().max_side()).max(1);
         let frames = if factor > 1 { reduced(&ready.synth, factor) } else { ready.synth.clone() };
-        self.state.notice = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
+        self.state.problem = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
         self.shown = Some(Show {
             scene: ready.scene,
             synth: ready.synth,
@@ -182,7 +187,7 @@ impl App {
     }
 
     /// Takes what comes from the editor.
-    fn follow(&mut self, event_loop: &ActiveEventLoop, update: Update) -> Result<()> {
+    fn follow(&mut self, event_loop: &ActiveEventLoop, update: Update) {
         match update {
             Update::Scene { .. } => {} // comes as Ready, synthesised
             Update::Selection(pointer) => self.state.selection = pointer,
@@ -194,10 +199,17 @@ impl App {
             Update::View(command) => self.run(event_loop, &command),
             Update::Notice(line) => {
                 self.state.notice = Some(line).filter(|line| !line.is_empty());
-                self.open(event_loop)?;
+                self.open_by.get_or_insert(Instant::now() + PATIENCE);
             }
             Update::Closed => event_loop.exit(),
         }
+        self.redraw();
+    }
+
+    /// Takes what is wrong with a scene.
+    fn warn(&mut self, event_loop: &ActiveEventLoop, line: String) -> Result<()> {
+        self.state.problem = Some(line);
+        self.open(event_loop)?;
         self.redraw();
         Ok(())
     }
@@ -292,7 +304,7 @@ impl App {
         let secs = (now - self.clock.counted_from).as_secs_f64();
         if let (true, Some(opened)) = (secs >= 1.0, &self.opened) {
             let fps = f64::from(self.clock.frames) / secs;
-            let notice = self.state.notice.clone().unwrap_or_default();
+            let notice = self.state.problem.clone().unwrap_or_default();
             self.reply(Reply::Report { fps, adapter: opened.gpu.device().name(), notice });
             (self.clock.counted_from, self.clock.frames) = (now, 0);
         }
@@ -383,8 +395,12 @@ impl ApplicationHandler<Event> for App {
     fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
         self.attempt(event_loop, |app| match event {
             Event::Ready(ready) => app.take(event_loop, ready),
-            Event::Problem(line) => app.follow(event_loop, Update::Notice(line)),
-            Event::Update(update) => app.follow(event_loop, update),
+            Event::Problem(line) => app.warn(event_loop, line),
+            Event::Interrupted => Err(Error::Interrupted),
+            Event::Update(update) => {
+                app.follow(event_loop, update);
+                Ok(())
+            }
         });
     }
 
@@ -414,8 +430,9 @@ impl ApplicationHandler<Event> for App {
         }
     }
 
-    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.attempt(event_loop, |app| app.open(event_loop));
             self.redraw();
         }
     }
@@ -430,6 +447,7 @@ impl ApplicationHandler<Event> for App {
                 }
                 ControlFlow::WaitUntil(self.clock.due)
             }
+            None => self.open_by.map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
             _ => ControlFlow::Wait,
         };
         event_loop.set_control_flow(flow);

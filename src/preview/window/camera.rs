@@ -49,8 +49,11 @@ impl Camera {
         self.fitted = true;
     }
 
-    /// One pixel a pixel, around the place in the middle.
-    pub fn one(&mut self) {
+    /// One pixel a pixel, around the place in the middle; a picture that has room is shown whole.
+    pub fn one(&mut self, picture: Size, area: Size) {
+        if picture.width <= area.width && picture.height <= area.height {
+            self.fit(picture, area);
+        }
         (self.zoom, self.fitted) = (1.0, false);
     }
 
@@ -65,7 +68,7 @@ impl Camera {
     pub fn zoom_step(&mut self, steps: i32, about: Point, area: Size) {
         let place = 2.0 * ln(self.zoom) / ln(2.0);
         let next = if steps > 0 { (place + 1e-6).floor() } else { (place - 1e-6).ceil() } + f64::from(steps);
-        let kept = self.image_from_screen(about, area);
+        let kept = self.center + (about.to_vec2() - area.to_vec2() / 2.0) / self.zoom;
         self.zoom = pow(2.0, next / 2.0).clamp(ZOOMS.0, ZOOMS.1);
         self.fitted = false;
         self.center = kept + (area.to_vec2() / 2.0 - about.to_vec2()) / self.zoom;
@@ -97,16 +100,17 @@ mod tests {
     #[test]
     fn zooming_keeps_the_place_under_the_pointer_and_meets_one_to_one() {
         let mut camera = Camera::default();
-        camera.fit(PICTURE, Size::new(133.0, 400.0));
+        camera.fit(PICTURE, AREA);
         let about = Point::new(100.0, 50.0);
+        camera.one(PICTURE, AREA);
         let kept = camera.image_from_screen(about, AREA);
         for _ in 0..12 {
             camera.zoom_step(1, about, AREA);
-            let off = (camera.image_from_screen(about, AREA) - kept).hypot() * camera.zoom;
-            assert!(off <= 1.5, "{off} at {}", camera.zoom);
+            let off = (camera.screen_from_image(kept, AREA) - about).hypot();
+            assert!(off <= camera.zoom * 0.75 + 0.75, "{off} at {}", camera.zoom);
         }
         let mut seen = Vec::new();
-        for _ in 0..12 {
+        for _ in 0..16 {
             camera.zoom_step(-1, about, AREA);
             seen.push(camera.zoom);
         }

@@ -15,6 +15,7 @@ const PANEL: Color = [22, 24, 29, 238];
 const RAIL: Color = [58, 64, 74, 255];
 const ACCENT: Color = [86, 180, 233, 255];
 const TEXT: Color = [205, 210, 218, 255];
+const WARNING: Color = [240, 160, 40, 255];
 const DIM: Color = [132, 141, 153, 255];
 
 const TEXT_PX: f64 = 8.0;
@@ -57,10 +58,11 @@ fn bar(canvas: &mut Canvas, state: &State) {
     let size = TEXT_PX * scale / glyphs::BASE;
     let right_at = rail.x1 - glyphs::width(&right) * size;
     canvas.text(&right, Point::new(right_at, y), TEXT_PX * scale, DIM);
-    if let Some(notice) = &state.notice {
+    if let Some(line) = state.problem.as_ref().or(state.notice.as_ref()) {
+        let color = if state.problem.is_some() { WARNING } else { DIM };
         let from = left.x + glyphs::width(&times) * size + 24.0 * scale;
         let room = ((right_at - from - 16.0 * scale) / size).max(0.0);
-        canvas.text(&shortened(notice, room), Point::new(from, y), TEXT_PX * scale, ACCENT);
+        canvas.text(&shortened(line, room), Point::new(from, y), TEXT_PX * scale, color);
     }
 }
 

@@ -4,6 +4,7 @@ use kurbo::{Point, Rect, Size, Vec2};
 
 use super::camera::Camera;
 use super::canvas::{Canvas, Color};
+use super::glyphs;
 use crate::base::geometry::Polygon;
 use crate::render::overlay::{Dot, FILL_ALPHA, Mark, SELECTED, SELECTED_GROWTH, Shape, Style};
 
@@ -18,7 +19,7 @@ const GRID: Color = [255, 255, 255, 28];
 /// Draws marks.
 pub fn draw(marks: &[Mark], camera: &Camera, area: Size, scale: f64) -> Canvas {
     let mut canvas = Canvas::default();
-    let painter = Painter { camera, area, scale };
+    let mut painter = Painter { camera, area, scale, labels: Vec::new() };
     for mark in marks {
         painter.mark(&mut canvas, mark);
     }
@@ -48,6 +49,8 @@ struct Painter<'a> {
     camera: &'a Camera,
     area: Size,
     scale: f64,
+    /// Where labels stand; one that would lie on another waits until there is room.
+    labels: Vec<Rect>,
 }
 
 impl Painter<'_> {
@@ -61,7 +64,7 @@ impl Painter<'_> {
         bounds.inflate(40.0, 40.0).overlaps(self.area.to_rect())
     }
 
-    fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
+    fn mark(&mut self, canvas: &mut Canvas, mark: &Mark) {
         let style = mark.kind.style();
         let grown = if mark.selected { f64::from(SELECTED_GROWTH) } else { 1.0 } * self.scale;
         let color = if mark.selected { SELECTED } else { style.color };
@@ -84,7 +87,10 @@ impl Painter<'_> {
             }
             Shape::Label(at, text) => {
                 let at = self.screen(*at) + Vec2::new(9.0, -14.0) * self.scale;
-                if self.seen(&[at]) {
+                let size = Size::new(glyphs::width(text) / glyphs::BASE, 1.0) * (LABEL_PX * self.scale);
+                let place = Rect::from_origin_size(at, size).inflate(3.0 * self.scale, 3.0 * self.scale);
+                if self.seen(&[at]) && !self.labels.iter().any(|other| other.overlaps(place)) {
+                    self.labels.push(place);
                     canvas.with_halo(|c| c.text(text, at, LABEL_PX * self.scale, color));
                 }
             }
@@ -146,6 +152,15 @@ mod tests {
         assert!(strokes(Shape::Dot(Point::new(50.0, 50.0)), false) > 0);
         assert_eq!(strokes(Shape::Dot(Point::new(500.0, 50.0)), false), 0);
         assert_eq!(strokes(Shape::Arrow(Point::new(-90.0, 0.0), Point::new(-50.0, 0.0)), false), 0);
+    }
+
+    #[test]
+    fn labels_do_not_lie_on_one_another() {
+        let label =
+            |x: f64| Mark { kind: Kind::Anchor, shape: Shape::Label(Point::new(x, 50.0), "0".into()), selected: false };
+        let count = |marks: &[Mark]| draw(marks, &camera(), AREA, 1.0).strokes.len();
+        assert_eq!(count(&[label(10.0), label(12.0)]), count(&[label(10.0)]));
+        assert_eq!(count(&[label(10.0), label(60.0)]), 2 * count(&[label(10.0)]));
     }
 
     #[test]

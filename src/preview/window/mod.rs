@@ -2,6 +2,7 @@
 //! Drawn only when something changes or plays; where it cannot be opened, the reason is one line.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -36,6 +37,8 @@ pub struct Setup {
     pub replies: Sender<Reply>,
     /// How the pictures of a scene are loaded.
     pub load: Load,
+    /// Set by a signal: the window ends, interrupted.
+    pub cancel: Arc<AtomicBool>,
 }
 
 const PLACE: &str = "window";
@@ -48,7 +51,7 @@ pub fn run(setup: Setup) -> Result<()> {
     let event_loop =
         quietly(|| EventLoop::with_user_event().build()).map_err(no_display)?.map_err(|e| no_display(e.to_string()))?;
     let proxy = event_loop.create_proxy();
-    worker::start(setup.updates, setup.load, move |event| proxy.send_event(event).is_ok());
+    worker::start(setup.updates, setup.load, setup.cancel, move |event| proxy.send_event(event).is_ok());
     let instance = crate::render::gpu::device::instance(Some(Box::new(event_loop.owned_display_handle())));
     let mut app = app::App::new(instance, setup.title, setup.size, setup.replies);
     quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|e| Error::at(PLACE, e))?;
@@ -56,7 +59,10 @@ pub fn run(setup: Setup) -> Result<()> {
 }
 
 fn no_display(what: String) -> Error {
-    let what = what.lines().next().unwrap_or_default().to_owned();
+    let line = what.lines().next().unwrap_or_default();
+    // winit puts the line of its source before the reason.
+    let what =
+        line.strip_prefix("os error at ").and_then(|rest| rest.split_once(": ")).map_or(line, |(_, reason)| reason);
     Error::at(PLACE, format!("no display can be opened: {what}")).cure("plica render and plica edit need none")
 }
 

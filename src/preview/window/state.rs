@@ -35,8 +35,10 @@ pub struct State {
     pub selection: Option<String>,
     /// The pointer on the screen, while it is in the window.
     pub pointer: Option<Point>,
-    /// A line for the person.
+    /// How the window is connected: a line for the person.
     pub notice: Option<String>,
+    /// What is wrong with the scene: a line for the person, before the notice.
+    pub problem: Option<String>,
     /// What lies over the picture.
     pub panel: Panel,
 }
@@ -130,7 +132,7 @@ impl State {
             "zoom-in" => self.camera.zoom_step(1, about, area),
             "zoom-out" => self.camera.zoom_step(-1, about, area),
             "zoom-fit" => self.camera.fit(self.picture, area),
-            "zoom-one" => self.camera.one(),
+            "zoom-one" => self.camera.one(self.picture, area),
             "pan-left" => self.camera.pan(pan(-1.0, 0.0)),
             "pan-right" => self.camera.pan(pan(1.0, 0.0)),
             "pan-up" => self.camera.pan(pan(0.0, -1.0)),

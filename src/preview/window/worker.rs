@@ -2,14 +2,18 @@
 //! an edit left as it was is taken over from the synthesis before.
 
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, Sender};
-use std::time::Instant;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
 
 use crate::base::problem::Problem;
 use crate::layers::Materials;
 use crate::preview::Update;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
+
+/// How often a signal is looked for.
+const LOOK: Duration = Duration::from_millis(250);
 
 /// Loads what a scene names: what there is, and what is wrong.
 pub type Load = Box<dyn FnMut(&Scene) -> (Materials, Vec<Problem>) + Send>;
@@ -23,6 +27,8 @@ pub enum Event {
     Ready(Ready),
     /// A scene cannot be shown, or not wholly: a line for the person.
     Problem(String),
+    /// A signal asks for the end.
+    Interrupted,
 }
 
 /// A scene that is ready to be shown.
@@ -42,20 +48,34 @@ pub struct Ready {
 struct Gone;
 
 /// Starts both threads. `send` gives an event to the event loop and tells whether that is still there.
-pub fn start(updates: Receiver<Update>, load: Load, send: impl Fn(Event) -> bool + Clone + Send + 'static) {
+pub fn start(
+    updates: Receiver<Update>,
+    load: Load,
+    cancel: Arc<AtomicBool>,
+    send: impl Fn(Event) -> bool + Clone + Send + 'static,
+) {
     let (jobs, work) = mpsc::channel();
     let told = send.clone();
-    std::thread::spawn(move || listen(&updates, &jobs, &told));
+    std::thread::spawn(move || listen(&updates, &cancel, &jobs, &told));
     std::thread::spawn(move || drop(synthesise(&work, load, &send)));
 }
 
-fn listen(updates: &Receiver<Update>, jobs: &Sender<(Arc<Scene>, u64)>, send: &impl Fn(Event) -> bool) {
-    for update in updates {
-        let alive = match update {
-            Update::Scene { scene, revision } => jobs.send((scene, revision)).is_ok(),
-            other => send(Event::Update(other)),
+fn listen(
+    updates: &Receiver<Update>,
+    cancel: &AtomicBool,
+    jobs: &Sender<(Arc<Scene>, u64)>,
+    send: &impl Fn(Event) -> bool,
+) {
+    let mut alive = true;
+    while alive {
+        alive = match updates.recv_timeout(LOOK) {
+            Ok(Update::Scene { scene, revision }) => jobs.send((scene, revision)).is_ok(),
+            Ok(other) => send(Event::Update(other)),
+            Err(RecvTimeoutError::Timeout) => true,
+            Err(RecvTimeoutError::Disconnected) => return,
         };
-        if !alive {
+        if cancel.load(Ordering::Relaxed) {
+            send(Event::Interrupted);
             return;
         }
     }
@@ -106,7 +126,7 @@ mod tests {
         updates.send(Update::Scene { scene: scene("b"), revision: 4 }).unwrap();
         updates.send(Update::Notice("hello".into())).unwrap();
         drop(updates);
-        start(receiver, load, move |event| events.send(event).is_ok());
+        start(receiver, load, Arc::default(), move |event| events.send(event).is_ok());
         let all: Vec<Event> = seen.iter().collect();
         assert!(all.iter().any(|e| matches!(e, Event::Update(Update::Notice(n)) if n == "hello")));
         let last = all.iter().rfind(|e| !matches!(e, Event::Update(_)));
