@@ -6,6 +6,7 @@ pub mod expression;
 pub mod geometry;
 pub mod keys;
 pub mod maths;
+pub mod oklab;
 pub mod pixels;
 pub mod problem;
 pub mod system;

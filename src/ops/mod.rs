@@ -13,6 +13,7 @@ pub mod check;
 pub mod command_line;
 pub mod completions;
 pub mod demo;
+pub mod field;
 pub mod get;
 pub mod man;
 pub mod new;
@@ -48,6 +49,8 @@ pub enum Command {
     /// Open the preview window
     #[cfg(feature = "window")]
     View(view::Args),
+    /// Plot the jump vectors, or write them as a table
+    Field(field::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
     /// Print a shell's completions
@@ -68,6 +71,7 @@ impl Command {
             Command::Probe(args) => probe::run(args, context),
             Command::Render(args) => render::run(args, context),
             Command::Synth(args) => synth::run(args, context),
+            Command::Field(args) => field::run(args, context),
             Command::Schema(args) => schema::run(args, context),
             Command::Completions(args) => completions::run(args, context),
             Command::Man(args) => man::run(args, context),

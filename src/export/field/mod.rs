@@ -1,0 +1,266 @@
+//! Vector fields as plots and tables. A plot is a list of strokes and fills that the SVG and the PNG both only draw, so
+//! that they look the same; letters are strokes too, and need no font.
+
+use kurbo::{Point, Rect, Vec2};
+
+use crate::base::maths::atan2;
+use crate::base::oklab::hue;
+use crate::base::pixels::Frame;
+use crate::layers::folding::field::Field;
+use crate::render::overlay::{Dot, Shape, View, overlay};
+use crate::render::{LayerSynth, Synth, cpu};
+use crate::scene::Scene;
+
+mod letters;
+mod raster;
+mod svg;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use raster::png;
+pub use svg::svg;
+pub use table::csv;
+
+/// A stroke or a fill, in pixels of the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// At least two points.
+    pub points: Vec<Point>,
+    /// Whether the last point joins the first.
+    pub closed: bool,
+    /// The width of the stroke; none fills the inside, even-odd.
+    pub stroke: Option<f64>,
+    /// sRGB with straight alpha.
+    pub color: [u8; 4],
+    /// Length of a dash and of the gap after it.
+    pub dash: Option<(f64, f64)>,
+}
+
+/// A plot of a vector field.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    /// Width in pixels.
+    pub width: f64,
+    /// Height in pixels.
+    pub height: f64,
+    /// The picture beneath, faint: what it shows and the part of the plot it fills.
+    pub picture: Option<(Frame, Rect)>,
+    /// What is drawn over it, from below to above.
+    pub marks: Vec<Mark>,
+    /// What it shows, in words.
+    pub title: String,
+}
+
+/// How opaque the picture beneath is.
+pub const FAINT: f64 = 0.3;
+
+/// Pixels that a plot is at least long.
+const LONG: f64 = 900.0;
+/// Arrows along the longer side, unless a step is given.
+const ARROWS: f64 = 42.0;
+/// Around the picture.
+const MARGIN: f64 = 14.0;
+/// Below the picture, for the legend.
+const LEGEND: f64 = 62.0;
+const INK: [u8; 4] = [60, 64, 72, 255];
+
+/// A jump vector at the centre of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrow {
+    /// The centre of the pixel.
+    pub at: Point,
+    /// Its jump vector, in pixels of the image.
+    pub jump: [f32; 2],
+}
+
+impl Arrow {
+    fn vector(&self) -> Vec2 {
+        Vec2::new(self.jump[0].into(), self.jump[1].into())
+    }
+}
+
+/// The jump vectors of every `step`-th pixel in both directions, zone after zone, row after row.
+pub fn arrows(synth: &Synth, step: usize) -> Vec<Arrow> {
+    fields(synth).flat_map(|field| arrows_of(field, step.max(1))).collect()
+}
+
+fn fields(synth: &Synth) -> impl Iterator<Item = &Field> {
+    let zones = synth.layers.iter().flat_map(|LayerSynth::Picture(layer)| &layer.zones);
+    zones.map(|zone| &*zone.field)
+}
+
+fn arrows_of(field: &Field, step: usize) -> Vec<Arrow> {
+    let on_lattice = move |from: usize, n: usize| (from..from + n).filter(move |i| i % step == step / 2);
+    let (width, height) = (field.inside.width(), field.inside.height());
+    let mut arrows = Vec::new();
+    for y in on_lattice(field.y0, height) {
+        for x in on_lattice(field.x0, width) {
+            let (i, j) = (x - field.x0, y - field.y0);
+            if *field.inside.get(i, j) {
+                arrows.push(Arrow { at: Point::new(x as f64 + 0.5, y as f64 + 0.5), jump: *field.jumps.get(i, j) });
+            }
+        }
+    }
+    arrows
+}
+
+/// Degrees from the x axis toward the y axis: clockwise on the screen.
+fn degrees(vector: Vec2) -> f64 {
+    atan2(vector.y, vector.x).to_degrees()
+}
+
+/// Plots the field of `scene`, whose synthesis is `synth`: an arrow every `step` pixels, as many as fit without it. The
+/// plot shows the zones with a little around them; `picture` lays them over what they move.
+pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) -> Plot {
+    let shown = shown(synth);
+    let long = shown.width().max(shown.height());
+    let scale = (LONG / long).max(1.0).min(16.0);
+    let step = step.unwrap_or((long / ARROWS).round().max(1.0) as usize);
+    let frame = Rect::new(MARGIN, MARGIN, MARGIN + shown.width() * scale, MARGIN + shown.height() * scale);
+    let arrows = arrows(synth, step);
+    let longest = arrows.iter().map(|arrow| arrow.vector().hypot2().sqrt()).fold(0.0, f64::max);
+    // The longest arrow reaches a little beyond its neighbour.
+    let stretch = if longest > 0.0 { 1.4 * step as f64 * scale / longest } else { 1.0 };
+    let plot_from_image = |p: Point| frame.origin() + (p - shown.origin()) * scale;
+
+    let mut marks = outlines(scene, &plot_from_image);
+    for arrow in &arrows {
+        draw_arrow(plot_from_image(arrow.at), arrow.vector() * stretch, step as f64 * scale, &mut marks);
+    }
+    marks.extend(anchors(scene, &plot_from_image));
+    let height = frame.y1 + LEGEND;
+    let width = (frame.x1 + MARGIN).max(360.0);
+    legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), stretch, longest, scale, &mut marks);
+    let title =
+        format!("Vector field: {} arrows, one every {step} px; the longest jump is {longest:.2} px", arrows.len());
+    let picture = picture.then(|| (part(synth, shown), frame));
+    Plot { width, height, picture, marks, title }
+}
+
+/// The part of the picture that the plot shows: the zones and a little around them, in whole pixels.
+fn shown(synth: &Synth) -> Rect {
+    let whole = Rect::new(0.0, 0.0, synth.size.0 as f64, synth.size.1 as f64);
+    let bounds = fields(synth).map(|field| {
+        let (x, y) = (field.x0 as f64, field.y0 as f64);
+        Rect::new(x, y, x + field.inside.width() as f64, y + field.inside.height() as f64)
+    });
+    let Some(zones) = bounds.reduce(|a, b| a.union(b)) else { return whole };
+    let around = (zones.width().max(zones.height()) * 0.08).ceil();
+    zones.inflate(around, around).intersect(whole)
+}
+
+fn part(synth: &Synth, shown: Rect) -> Frame {
+    let frame = cpu::frame(synth, 0.0);
+    let (x0, x1) = (shown.x0 as usize, shown.x1 as usize);
+    let rows = (shown.y0 as usize..shown.y1 as usize).flat_map(|y| frame.row(y)[x0..x1].iter().copied());
+    Frame::from_cells(x1 - x0, (shown.y1 - shown.y0) as usize, rows.collect())
+}
+
+/// Zone outlines and fold regions, in the look they have everywhere.
+fn outlines(scene: &Scene, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
+    marks_of(scene, &View { outlines: true, regions: true, ..View::default() }, plot_from_image)
+}
+
+fn anchors(scene: &Scene, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
+    marks_of(scene, &View { anchors: true, ..View::default() }, plot_from_image)
+}
+
+fn marks_of(scene: &Scene, view: &View, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
+    let mark = |mark: crate::render::overlay::Mark| {
+        let style = mark.kind.style();
+        let dash = style.dash_px.map(|(on, off)| (f64::from(on), f64::from(off)));
+        match mark.shape {
+            Shape::Line { points, closed } => {
+                let points = points.into_iter().map(plot_from_image).collect();
+                Some(Mark { points, closed, stroke: Some(style.width_px.into()), color: style.color, dash })
+            }
+            Shape::Dot(at) => {
+                Some(fill(dot(plot_from_image(at), style.dot, f64::from(style.dot_px) * 0.8), style.color))
+            }
+            // The arrows of the field say more.
+            Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) => None,
+        }
+    };
+    overlay(scene, None, view).into_iter().filter_map(mark).collect()
+}
+
+fn dot(at: Point, shape: Dot, radius: f64) -> Vec<Point> {
+    let (corners, first) = match shape {
+        Dot::Disc => (16, 0.0),
+        Dot::Square => (4, 0.125),
+        Dot::Diamond => (4, 0.0),
+    };
+    (0..corners).map(|k| at + turned(first + f64::from(k) / f64::from(corners)) * radius).collect()
+}
+
+/// The unit vector `turns` of a turn from the x axis.
+fn turned(turns: f64) -> Vec2 {
+    let angle = turns * crate::base::maths::TAU;
+    Vec2::new(crate::base::maths::cos(angle), crate::base::maths::sin(angle))
+}
+
+fn fill(points: Vec<Point>, color: [u8; 4]) -> Mark {
+    Mark { points, closed: true, stroke: None, color, dash: None }
+}
+
+fn line(points: Vec<Point>, width: f64, color: [u8; 4]) -> Mark {
+    Mark { points, closed: false, stroke: Some(width), color, dash: None }
+}
+
+/// An arrow with its tail at `at`, coloured by its direction; a dot where there is no jump. `room` is the distance of
+/// arrows, which bounds how heavy they look.
+fn draw_arrow(at: Point, vector: Vec2, room: f64, marks: &mut Vec<Mark>) {
+    let length = vector.hypot2().sqrt();
+    if length < 0.75 {
+        marks.push(fill(dot(at, Dot::Disc, 0.9), [120, 126, 136, 200]));
+        return;
+    }
+    let [r, g, b] = hue(degrees(vector) / 360.0);
+    let color = [r, g, b, 255];
+    let (along, across) = (vector / length, Vec2::new(-vector.y, vector.x) / length);
+    let width = (room * 0.075).clamp(0.8, 2.2);
+    let head = (width * 4.2).min(length * 0.6);
+    let (tip, neck) = (at + vector, at + along * (length - head));
+    marks.push(line(vec![at, at + along * (length - head * 0.8)], width, color));
+    marks.push(fill(vec![tip, neck + across * head * 0.42, neck - across * head * 0.42], color));
+}
+
+/// The wheel of directions, an arrow of a round length with what it stands for, and a bar for distances in the picture.
+fn legend(at: Point, stretch: f64, longest: f64, scale: f64, marks: &mut Vec<Mark>) {
+    let wheel = at + Vec2::new(22.0, 0.0);
+    const SPOKES: usize = 24;
+    for k in 0..SPOKES {
+        let (from, to) = ((k as f64 - 0.53) / SPOKES as f64, (k as f64 + 0.53) / SPOKES as f64);
+        let [r, g, b] = hue(k as f64 / SPOKES as f64);
+        let ring = [turned(from) * 20.0, turned(to) * 20.0, turned(to) * 10.0, turned(from) * 10.0];
+        marks.push(fill(ring.map(|v| wheel + v).to_vec(), [r, g, b, 255]));
+    }
+    if longest > 0.0 {
+        let jump = round_below(longest.min(90.0 / stretch));
+        let from = at + Vec2::new(66.0, 6.0);
+        let vector = Vec2::new(jump * stretch, 0.0);
+        draw_arrow(from, vector, 20.0, marks);
+        letters::write(&format!("jump {} px", number(jump)), from + Vec2::new(0.0, -12.0), INK, marks);
+    }
+    let distance = round_below(90.0 / scale);
+    let from = at + Vec2::new(200.0, 6.0);
+    let to = from + Vec2::new(distance * scale, 0.0);
+    let tick = Vec2::new(0.0, 4.0);
+    marks.push(line(vec![from - tick, from + tick], 1.4, INK));
+    marks.push(line(vec![to - tick, to + tick], 1.4, INK));
+    marks.push(line(vec![from, to], 1.4, INK));
+    letters::write(&format!("picture {} px", number(distance)), from + Vec2::new(0.0, -12.0), INK, marks);
+}
+
+/// The largest 1, 2 or 5 times a power of ten that is not above `most`.
+fn round_below(most: f64) -> f64 {
+    let powers = std::iter::successors(Some(1e-6), |p| Some(p * 10.0)).take(14);
+    let all = powers.flat_map(|p| [p, 2.0 * p, 5.0 * p]);
+    all.filter(|&r| r <= most * 1.000_001).fold(1e-6, f64::max)
+}
+
+fn number(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,85 @@
+//! A plot as SVG, complete in itself: the picture is in it.
+
+use std::fmt::Write;
+
+use super::{FAINT, Mark, Plot};
+use crate::base::error::{Error, Result};
+use crate::export::still;
+
+/// The plot as an SVG document.
+///
+/// # Errors
+/// The picture's encoder's.
+pub fn svg(plot: &Plot) -> Result<String> {
+    let (width, height) = (short(plot.width), short(plot.height));
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
+         <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        plot.title
+    );
+    if let Some((frame, place)) = &plot.picture {
+        let bytes = still::frame(frame).map_err(|e| Error::at("the picture in the plot", e))?;
+        let [x, y, w, h] = [place.x0, place.y0, place.width(), place.height()].map(short);
+        text += &format!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" opacity=\"{FAINT}\" preserveAspectRatio=\"none\" \
+             href=\"data:image/png;base64,{}\"/>\n",
+            base64(&bytes)
+        );
+    }
+    text += "<g stroke-linecap=\"round\" stroke-linejoin=\"round\" fill-rule=\"evenodd\">\n";
+    plot.marks.iter().for_each(|mark| draw(mark, &mut text));
+    text += "</g>\n</svg>\n";
+    Ok(text)
+}
+
+fn draw(mark: &Mark, text: &mut String) {
+    let [r, g, b, a] = mark.color;
+    *text += "<path d=\"";
+    for (i, point) in mark.points.iter().enumerate() {
+        let command = if i == 0 { 'M' } else { 'L' };
+        let _ = write!(text, "{command}{} {}", short(point.x), short(point.y)); // a String takes all
+    }
+    *text += if mark.closed { "Z\"" } else { "\"" };
+    let color = format!("#{r:02x}{g:02x}{b:02x}");
+    let opacity = if a == 255 { String::new() } else { format!(" opacity=\"{}\"", short(f64::from(a) / 255.0)) };
+    *text += &match mark.stroke {
+        Some(width) => format!(" fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\"{opacity}", short(width)),
+        None => format!(" fill=\"{color}\"{opacity}"),
+    };
+    if let Some((on, off)) = mark.dash {
+        *text += &format!(" stroke-dasharray=\"{} {}\"", short(on), short(off));
+    }
+    *text += "/>\n";
+}
+
+/// Two decimals at most.
+fn short(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// RFC 4648.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let number = (0..3).fold(0u32, |n, i| n << 8 | u32::from(three.get(i).copied().unwrap_or(0)));
+        for i in 0..4 {
+            let digit = DIGITS[(number >> (18 - 6 * i) & 63) as usize];
+            text.push(if i > three.len() { '=' } else { digit.into() });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_of_every_length() {
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Plots and tables of a field that is known in every pixel.
+
+use super::*;
+use crate::layers::Materials;
+use crate::render;
+
+fn scene() -> (Scene, Synth) {
+    let scene: Scene = serde_json::from_str(
+        r#"{ "plica": 1, "images": { "a": { "path": "a.png" } }, "layers": [{ "kind": "picture", "name": "l", "image": "a",
+          "zones": [{ "name": "z", "outline": { "kind": "rectangle", "x": 10, "y": 12, "width": 20, "height": 8 },
+            "fold": { "rule": "cover", "regions": [{ "kind": "ellipse", "center": [20, 16], "radii": [5, 2] }] },
+            "motion": [{ "tool": "translate", "by": [3, -4] }, { "tool": "point", "at": [20, 16] }] }] }] }"#,
+    )
+    .unwrap();
+    let picture = std::sync::Arc::new(crate::base::pixels::Picture::filled(60, 40, [0.2, 0.4, 0.1, 1.0]));
+    let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
+    let synth = render::synth(&scene, &materials, None).unwrap();
+    (scene, synth)
+}
+
+#[test]
+fn the_table_has_every_pixel_of_the_lattice() {
+    let (_, synth) = scene();
+    let text = csv(&arrows(&synth, 1));
+    let lines: Vec<_> = text.lines().collect();
+    assert_eq!(lines.len(), 1 + 20 * 8);
+    assert_eq!(lines[..2], ["x,y,dx,dy,length,degrees", "10.5,12.5,3,-4,5.000000,-53.1301"]);
+    let sparse = arrows(&synth, 4);
+    assert_eq!(sparse.len(), 5 * 2);
+    assert!(sparse.iter().all(|a| a.at.x % 4.0 == 2.5 && a.at.y % 4.0 == 2.5));
+}
+
+#[test]
+fn the_svg_is_well_formed() {
+    let (scene, synth) = scene();
+    for picture in [true, false] {
+        let text = svg(&plot(&scene, &synth, None, picture)).unwrap();
+        assert_eq!(text.matches("<image").count(), usize::from(picture));
+        let mut open = Vec::new();
+        for tag in text.split('<').skip(1) {
+            let (tag, rest) = tag.split_once('>').unwrap();
+            assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
+            match tag.strip_prefix('/') {
+                Some(name) => assert_eq!(open.pop(), Some(name.to_owned())),
+                None if tag.ends_with('/') => {}
+                None => open.push(tag.split_whitespace().next().unwrap().to_owned()),
+            }
+            assert!(open.last().is_some_and(|t| t == "title") || rest.trim().is_empty());
+        }
+        assert!(open.is_empty() && !text.contains("NaN") && !text.contains("inf"));
+    }
+}
+
+#[test]
+fn the_png_shows_arrows_and_picture() {
+    let (scene, synth) = scene();
+    let plot = plot(&scene, &synth, Some(2), true);
+    let image = image::load_from_memory(&png(&plot).unwrap()).unwrap().to_rgba8();
+    assert_eq!((f64::from(image.width()), f64::from(image.height())), (plot.width.ceil(), plot.height.ceil()));
+    let colors: std::collections::HashSet<_> = image.pixels().map(|p| p.0).collect();
+    assert!(colors.len() > 50, "{} colours", colors.len());
+    assert!(plot.marks.iter().all(|m| m.points.iter().all(|p| p.is_finite())));
+}
+
+#[test]
+fn round_lengths() {
+    for (most, round) in [(7.3, 5.0), (1.0, 1.0), (0.034, 0.02), (250.0, 200.0)] {
+        assert!((round_below(most) / round - 1.0).abs() < 1e-9, "{most}: {}", round_below(most));
+    }
+}

@@ -1,0 +1,88 @@
+//! `plica field`: the vector field of a scene or a zone as a plot or a table.
+
+use std::path::{Path, PathBuf};
+
+use super::{Context, opened::Opened, scene_options::SceneOptions};
+use crate::base::error::{Error, Result};
+use crate::export::field::{arrows, csv, plot, png, svg};
+use crate::files::write_atomic;
+use crate::layers::Layer;
+use crate::render;
+use crate::scene::Scene;
+
+/// Plot the jump vectors, or write them as a table.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; - is standard input
+    scene: PathBuf,
+    /// Only this zone: its name, or LAYER.ZONE where the name is not unique
+    #[arg(long, value_name = "ZONE")]
+    zone: Option<String>,
+    /// An arrow or a row every N pixels; without it as many arrows as fit, and a row for every pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    step: Option<u32>,
+    /// Leave the faint picture out of a plot
+    #[arg(long)]
+    no_picture: bool,
+    /// Where to: .svg and .png are plots, .csv is x,y,dx,dy,length,degrees
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+enum Kind {
+    Svg,
+    Png,
+    Csv,
+}
+
+/// Writes it.
+pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    let kind = kind(&args.output)?;
+    let opened = Opened::new(&args.scene, &args.options, context)?;
+    let scene = match &args.zone {
+        Some(name) => only_zone(opened.document.scene(), name)?,
+        None => Scene::clone(opened.document.scene()),
+    };
+    let synth = render::synth(&scene, &opened.materials, None);
+    let synth = synth.map_err(|p| Error::Scene { file: args.scene.display().to_string(), problems: vec![p] })?;
+    context.check_cancelled()?;
+    let step = args.step.map(|step| step as usize);
+    let plot = || plot(&scene, &synth, step, !args.no_picture);
+    let bytes = match kind {
+        Kind::Csv => csv(&arrows(&synth, step.unwrap_or(1))).into_bytes(),
+        Kind::Svg => svg(&plot())?.into_bytes(),
+        Kind::Png => png(&plot())?,
+    };
+    context.check_cancelled()?;
+    write_atomic(&args.output, &bytes)
+}
+
+fn kind(path: &Path) -> Result<Kind> {
+    match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("svg") => Ok(Kind::Svg),
+        Some("png") => Ok(Kind::Png),
+        Some("csv") => Ok(Kind::Csv),
+        _ => Err(Error::Usage(format!("{}: a field is written as .svg, .png or .csv", path.display()))),
+    }
+}
+
+/// The scene with no zone but the one called `name`.
+fn only_zone(scene: &Scene, name: &str) -> Result<Scene> {
+    let called = |layer: &str, zone: &str| zone == name || format!("{layer}.{zone}") == name;
+    let mut names = Vec::new();
+    let mut found = 0;
+    let mut scene = scene.clone();
+    for layer in &mut scene.layers {
+        let Layer::Picture(layer) = layer;
+        names.extend(layer.zones.iter().map(|zone| zone.name.clone()));
+        layer.zones.retain(|zone| called(&layer.name, &zone.name));
+        found += layer.zones.len();
+    }
+    match found {
+        1 => Ok(scene),
+        0 => Err(Error::Usage(format!("--zone {name}: there is no such zone, only {}", names.join(", ")))),
+        _ => Err(Error::Usage(format!("--zone {name}: several layers have one; write LAYER.ZONE"))),
+    }
+}
