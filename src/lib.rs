@@ -15,3 +15,5 @@ pub mod ops;
 pub mod preview;
 pub mod render;
 pub mod scene;
+#[cfg(feature = "tui")]
+pub mod tui;

@@ -11,6 +11,8 @@ use crate::base::error::{Error, Result};
 use crate::files;
 use crate::ops::Context;
 use crate::ops::command_line::CommandLine;
+#[cfg(feature = "tui")]
+use crate::{ops::Command, tui};
 
 mod process;
 
@@ -36,6 +38,12 @@ fn run(line: CommandLine, context: &mut Context, cancel: Arc<AtomicBool>) -> Res
     process::report_panics(log);
     let _registered = process::cancel_on_signals(cancel)?;
     match line.command {
+        #[cfg(feature = "tui")]
+        Some(Command::Edit(args)) => tui::run(tui::Options::of(&args)?)?,
+        #[cfg(feature = "tui")]
+        Some(Command::Demo(args)) if !args.list && process::is_interactive() => {
+            tui::run(tui::Options::new(args.unpack()?))?;
+        }
         Some(command) => command.run(context)?,
         None => context.print(CommandLine::command().render_help())?,
     }

@@ -81,3 +81,10 @@ impl Write for Output {
         self.note(outcome)
     }
 }
+
+/// Whether a person sits at a terminal: only then does a command open the editor unasked.
+#[cfg(feature = "tui")]
+pub fn is_interactive() -> bool {
+    use std::io::IsTerminal;
+    std::io::stdin().is_terminal() && std::io::stdout().is_terminal()
+}

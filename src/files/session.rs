@@ -248,7 +248,7 @@ impl Session {
         if self.mode == Mode::ReadOnly {
             return Err(Error::at(place, "is open to read only").cure("save a copy under another name"));
         }
-        if overwrite == Overwrite::No && self.file_hash().is_some_and(|found| found != self.file) {
+        if overwrite == Overwrite::No && self.file_changed() {
             return Err(Error::at(place, "was changed by another program")
                 .cure("load its version, which undo takes back, or overwrite it"));
         }
@@ -339,6 +339,11 @@ impl Session {
         let step = self.first_step + applied.step;
         let record = Record { revision: applied.revision, time: now_ms(), step, kind, patch, inverse };
         journal.append(&record, self.history.document(), &self.file);
+    }
+
+    /// Whether another program changed the file since we read or wrote it.
+    pub fn file_changed(&self) -> bool {
+        self.file_hash().is_some_and(|found| found != self.file)
     }
 
     fn file_hash(&self) -> Option<String> {

@@ -23,7 +23,7 @@ pub struct Args {
 
 /// Prints the problems; fails when one of them is an error.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let problems = problems(&args)?;
+    let problems = problems(&args, context)?;
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
     if args.json {
         let list = serde_json::to_value(&problems).map_err(|e| Error::at("the list of problems", e))?;
@@ -45,9 +45,9 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     Ok(())
 }
 
-fn problems(args: &Args) -> Result<Vec<Problem>> {
+fn problems(args: &Args, context: &Context) -> Result<Vec<Problem>> {
     let options = args.reading.options()?;
-    let document = match files::scene::open(&args.scene, &options) {
+    let document = match context.document(&args.scene, &options) {
         Ok(document) => document,
         Err(Error::Scene { problems, .. }) => return Ok(problems),
         Err(error) => return Err(error),

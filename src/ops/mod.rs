@@ -2,17 +2,23 @@
 //! [`Command`] is the only list of them.
 
 use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use clap::{FromArgMatches, Subcommand};
+
 use crate::base::error::{Error, Result};
 use crate::base::text::printable;
+use crate::files;
+use crate::scene::Document;
 
 pub mod check;
 pub mod command_line;
 pub mod completions;
 pub mod demo;
+pub mod edit;
 pub mod field;
 pub mod get;
 pub mod man;
@@ -34,6 +40,8 @@ pub enum Command {
     Demo(demo::Args),
     /// Make a scene of pictures
     New(new::Args),
+    /// Edit a scene, or a picture, in the terminal
+    Edit(edit::Args),
     /// Set values in a scene
     Set(set::Args),
     /// Print a value of a scene
@@ -65,6 +73,7 @@ impl Command {
         match self {
             Command::Demo(args) => demo::run(args, context),
             Command::New(args) => new::run(args, context),
+            Command::Edit(_) => Err(Error::Usage("edit opens a terminal of its own: here :e opens a scene".into())),
             Command::Set(args) => set::run(args, context),
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),
@@ -81,6 +90,35 @@ impl Command {
     }
 }
 
+/// The names of all subcommands.
+pub fn names() -> impl Iterator<Item = String> {
+    let table = Command::augment_subcommands(clap::Command::new("plica"));
+    table.get_subcommands().map(|one| one.get_name().to_owned()).collect::<Vec<_>>().into_iter()
+}
+
+/// The subcommand that `words` say, its name first, as on the command line.
+///
+/// # Errors
+/// The words are wrong; the message says how.
+pub fn parse(words: &[String]) -> Result<Command> {
+    let table = Command::augment_subcommands(clap::Command::new("plica").no_binary_name(true));
+    let usage = |error: clap::Error| {
+        let text = error.to_string();
+        let first = text.lines().next().unwrap_or_default();
+        Error::Usage(first.trim_start_matches("error: ").to_owned())
+    };
+    table.try_get_matches_from(words).and_then(|found| Command::from_arg_matches(&found)).map_err(usage)
+}
+
+/// A scene that an editor has open: a subcommand that reads this file takes the scene as it is there, unsaved edits too.
+#[derive(Clone)]
+pub struct Open {
+    /// Its file.
+    pub path: PathBuf,
+    /// The scene.
+    pub document: Document,
+}
+
 /// What a subcommand is given besides its arguments: where data and messages go, and the wish to stop.
 pub struct Context {
     /// Data: standard output, or a buffer in the editor and in tests.
@@ -89,6 +127,8 @@ pub struct Context {
     pub messages: Box<dyn Progress>,
     /// Set by a signal or by Esc; long work looks at it between frames and files and ends with [`Error::Interrupted`].
     pub cancel: Arc<AtomicBool>,
+    /// The scene that the editor has open; none on the command line.
+    pub open: Option<Open>,
 }
 
 /// Where messages and the progress of long work go.
@@ -103,7 +143,18 @@ impl Context {
     /// The command line's own: standard output and standard error.
     pub fn process(cancel: Arc<AtomicBool>) -> Self {
         let messages = Box::new(Stderr { tty: std::io::stderr().is_terminal(), begun: None, shown: None });
-        Context { out: Box::new(std::io::stdout()), messages, cancel }
+        Context { out: Box::new(std::io::stdout()), messages, cancel, open: None }
+    }
+
+    /// The scene at `path`: as the editor has it, where it is the one that is open there; else from the file.
+    ///
+    /// # Errors
+    /// As [`files::scene::open`].
+    pub fn document(&self, path: &Path, options: &files::Options) -> Result<Document> {
+        match &self.open {
+            Some(open) if open.path == path => Ok(open.document.clone()),
+            _ => files::scene::open(path, options),
+        }
     }
 
     /// Ends the work with [`Error::Interrupted`] once cancelled.
@@ -177,5 +228,13 @@ mod tests {
         ] {
             assert_eq!(left(Duration::from_millis(millis), done, total), text, "{millis} {done}/{total}");
         }
+    }
+
+    #[test]
+    fn words_are_parsed_as_on_the_command_line() {
+        assert!(names().any(|name| name == "schema"));
+        assert!(matches!(parse(&["schema".into()]), Ok(Command::Schema(_))));
+        let wrong = parse(&["schema".into(), "--no-such".into()]).err().unwrap();
+        assert!(matches!(&wrong, Error::Usage(text) if text.contains("--no-such") && !text.contains('\n')), "{wrong}");
     }
 }

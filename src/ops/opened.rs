@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Context, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
-use crate::files::{self, materials};
+use crate::files::materials;
 use crate::layers::Materials;
 use crate::render::{self, Synth};
 use crate::scene::Document;
@@ -26,7 +26,7 @@ impl Opened {
     /// What cannot be read; every problem of the scene.
     pub fn new(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
         let options = options.options()?;
-        let document = files::scene::open(path, &options)?;
+        let document = context.document(path, &options)?;
         for warning in document.warnings() {
             context.messages.say(&format!("{}: {warning}", path.display()));
         }

@@ -17,7 +17,7 @@ pub enum Tool {
         at: Xy,
         /// Jump vector: where the sampler goes. The picture is seen to move the opposite way.
         #[serde(default)]
-        #[schemars(extend("unit" = "px"))]
+        #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
         jump: Xy,
     },
     /// Anchors along a cubic Bezier spline, evenly by arc length, with jump vectors given at a few places along it.
@@ -51,7 +51,7 @@ pub enum Tool {
     /// Dense: the same vector everywhere.
     Translate {
         /// Jump vector.
-        #[schemars(extend("unit" = "px"))]
+        #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
         by: Xy,
     },
     /// Dense: scaled about a centre.
@@ -133,7 +133,7 @@ pub struct JumpAlong {
     #[schemars(range(min = 0.0, max = 1.0))]
     pub along: f64,
     /// Jump vector, in the curve's `frame`.
-    #[schemars(extend("unit" = "px"))]
+    #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
     pub jump: Xy,
 }
 

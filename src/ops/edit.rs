@@ -1,0 +1,23 @@
+//! `plica edit`: the arguments of the terminal editor. It stands above the subcommands, since it runs them itself: what is
+//! here is for the command line, completions and the manual.
+
+use std::path::PathBuf;
+
+use super::scene_options::SceneOptions;
+
+/// Edit a scene, or a picture, in the terminal.
+#[derive(clap::Args)]
+pub struct Args {
+    /// A scene, or a picture whose scene lies beside it (it is made where it is not there)
+    #[arg(value_name = "SCENE | PICTURE")]
+    pub path: PathBuf,
+    /// Do not open the preview window
+    #[arg(long)]
+    pub no_view: bool,
+    /// Only look: no lock, no journal, nothing is changed
+    #[arg(long)]
+    pub read_only: bool,
+    /// How files are read.
+    #[command(flatten)]
+    pub scene: SceneOptions,
+}

@@ -1,0 +1,260 @@
+//! The editor's state: a value that `update` (update.rs) changes and the panes draw. Tests drive it without a terminal.
+
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::choice::Choice;
+use super::colour::Depth;
+use super::door::Door;
+use super::entry::Entry;
+use super::keys;
+use super::line::Line;
+use super::place::Placing;
+use super::sheet::Sheet;
+use super::tree;
+use super::update::{Change, Effect};
+use crate::base::pixels::Frame;
+use crate::base::problem::Problem;
+use crate::render::Synth;
+use crate::scene::{Document, Edit, field};
+
+/// Everything that the screen shows and the keys change.
+pub struct State {
+    /// The scene, its history and its file.
+    pub door: Door,
+    /// Width and height of the terminal.
+    pub size: (u16, u16),
+    /// What the terminal shows of colours.
+    pub depth: Depth,
+    /// The pane that takes the keys.
+    pub focus: Pane,
+    /// Pointer of the node in the middle.
+    pub node: String,
+    /// Nodes of the tree that are folded.
+    pub folded: BTreeSet<String>,
+    /// The row of the sheet under the cursor.
+    pub row: usize,
+    /// The cell of the row under the cursor.
+    pub column: usize,
+    /// The row where the selection began.
+    pub selected_from: Option<usize>,
+    /// What is going on.
+    pub mode: Mode,
+    /// The count typed so far.
+    pub count: Option<usize>,
+    /// The keys of an unfinished binding.
+    pub pressed: String,
+    /// The power of ten that `+` and `-` step by.
+    pub step: i32,
+    /// The cursor and zoom of the picture.
+    pub placing: Placing,
+    /// Width and height of the picture, once known.
+    pub picture_size: Option<(usize, usize)>,
+    /// Scene time t of folding.md, in [0, 1].
+    pub time: f64,
+    /// Whether the animation runs.
+    pub playing: bool,
+    /// One line for the person.
+    pub message: Option<Message>,
+    /// Commands that were run, the newest last.
+    pub lines: Vec<String>,
+    /// What was searched for last.
+    pub sought: String,
+    /// What the threads have found out.
+    pub seen: Seen,
+    /// What is still to happen outside.
+    pub effects: VecDeque<Effect>,
+}
+
+/// A pane that can have the focus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pane {
+    /// The tree of the scene.
+    Tree,
+    /// The form or table.
+    Table,
+    /// The picture.
+    Picture,
+}
+
+/// What is going on.
+#[derive(Clone, Debug)]
+pub enum Mode {
+    /// Keys are commands.
+    Normal,
+    /// A value is being typed into a cell.
+    Entry(Entry),
+    /// A command or a search is being typed.
+    Line(Line),
+    /// Something is being chosen from a list.
+    Choice(Choice),
+    /// A text is shown: the help, or what a command printed.
+    Pages(Pages),
+    /// The picture's cursor sets a jump vector.
+    Aim,
+}
+
+/// A text that is longer than a line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pages {
+    /// What it is.
+    pub title: String,
+    /// Its lines.
+    pub lines: Vec<String>,
+    /// The first line shown.
+    pub scroll: usize,
+}
+
+/// A line for the person.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// What is said.
+    pub text: String,
+    /// Whether something could not be done.
+    pub bad: bool,
+}
+
+/// What the threads have found out about the scene; old while they work on.
+#[derive(Clone, Default)]
+pub struct Seen {
+    /// What a frame needs.
+    pub synth: Option<Arc<Synth>>,
+    /// How long the last synthesis took.
+    pub synth_ms: Option<f64>,
+    /// The current frame.
+    pub frame: Option<Arc<Frame>>,
+    /// What keeps the scene from being shown.
+    pub problem: Option<String>,
+    /// Long work that runs: what, and how far it is.
+    pub work: Option<String>,
+    /// How the window is doing.
+    pub window: String,
+    /// Where the pointer is in it, in pixels of the picture.
+    pub pointer: Option<(f64, f64)>,
+}
+
+impl State {
+    /// The editor as it opens: the tree has the focus, the first zone is shown.
+    pub fn new(door: Door, size: (u16, u16), depth: Depth) -> Self {
+        let node = tree::first(door.document());
+        let placing = Placing::new(tree::picture_centre(door.document()));
+        let mode = door.offered().map_or(Mode::Normal, |offer| Mode::Choice(Choice::recovery(offer)));
+        State {
+            door,
+            size,
+            depth,
+            focus: Pane::Tree,
+            node,
+            folded: BTreeSet::new(),
+            row: 0,
+            column: 0,
+            selected_from: None,
+            mode,
+            count: None,
+            pressed: String::new(),
+            step: 0,
+            placing,
+            picture_size: None,
+            time: 0.0,
+            playing: false,
+            message: None,
+            lines: Vec::new(),
+            sought: String::new(),
+            seen: Seen::default(),
+            effects: VecDeque::new(),
+        }
+    }
+
+    /// The scene as it is now.
+    pub fn document(&self) -> &Document {
+        self.door.document()
+    }
+
+    /// The node in the middle, as rows.
+    pub fn sheet(&self) -> Sheet {
+        Sheet::of(self.document(), &self.node)
+    }
+
+    /// Says something.
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.message = Some(Message { text: text.into(), bad: false });
+    }
+
+    /// Says that something could not be done.
+    pub fn complain(&mut self, text: impl Into<String>) {
+        self.message = Some(Message { text: text.into(), bad: true });
+    }
+
+    /// Asks for something outside.
+    pub fn ask(&mut self, effect: Effect) {
+        self.effects.push_back(effect);
+    }
+
+    /// Applies an edit through the one door. One of a held key joins the one before it into one step of undo.
+    pub fn edit(&mut self, edit: Edit, held: bool) -> Result<(), String> {
+        if edit.is_empty() {
+            return Ok(());
+        }
+        if let Some(change) = self.door.apply(edit, held).map_err(|problems| first(&problems))? {
+            self.changed(change);
+        }
+        Ok(())
+    }
+
+    /// Goes on from a document that has changed.
+    pub fn changed(&mut self, change: Change) {
+        self.settle();
+        self.ask(Effect::Publish(Box::new(change)));
+    }
+
+    /// Shows another node, its first row under the cursor.
+    pub fn show(&mut self, node: impl Into<String>) {
+        let node = node.into();
+        if node != self.node {
+            (self.node, self.row, self.column, self.selected_from) = (node, 0, 0, None);
+            self.ask(Effect::Show);
+        }
+    }
+
+    /// Brings the cursor back to something that is there, after the scene has changed.
+    pub fn settle(&mut self) {
+        while !self.node.is_empty() && field::value(self.document(), &self.node).is_none_or(|v| v == Value::Null) {
+            let parent = self.node.rsplit_once('/').map_or("", |(parent, _)| parent).to_string();
+            self.show(parent);
+        }
+        let sheet = self.sheet();
+        self.row = self.row.min(sheet.rows.len().saturating_sub(1));
+        self.column = self.column.min(sheet.rows.get(self.row).map_or(0, |row| row.cells.len().saturating_sub(1)));
+        self.selected_from = self.selected_from.map(|row| row.min(sheet.rows.len().saturating_sub(1)));
+    }
+
+    /// The contexts of the key table that are in force, the innermost first.
+    pub fn contexts(&self) -> Vec<&'static str> {
+        match (&self.mode, self.focus) {
+            (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
+            (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
+            (Mode::Choice(_), _) => vec![keys::LIST],
+            (Mode::Pages(_), _) => vec![keys::HELP],
+            (Mode::Aim, _) => vec![keys::AIM, keys::PICTURE],
+            (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
+            (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
+            (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],
+        }
+    }
+
+    /// The frame that is shown, and how many there are.
+    pub fn frame(&self) -> (u64, u64) {
+        let timeline = &self.document().scene().timeline;
+        let frames = timeline.frames();
+        let nearest = (self.time / timeline.time_of(1)).round() as u64;
+        (nearest.min(frames - 1), frames)
+    }
+}
+
+/// The first problem, and how many more there are.
+fn first(problems: &[Problem]) -> String {
+    let one = problems.first().map(Problem::to_string).unwrap_or_default();
+    if problems.len() > 1 { format!("{one} (and {} more)", problems.len() - 1) } else { one }
+}

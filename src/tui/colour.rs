@@ -1,0 +1,145 @@
+//! What the terminal can show: true colour, 256, 16 colours or none at all, and pictures reduced to each of them. Roles
+//! have names, so that a light background and NO_COLOR are matters of this file alone.
+
+use ratatui::style::{Color, Modifier, Style};
+
+/// How many colours the terminal shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Depth {
+    /// None: pictures become shades of characters.
+    None,
+    /// The 16 ANSI colours.
+    #[default]
+    Ansi,
+    /// The 256 of xterm.
+    Indexed,
+    /// 24 bits.
+    True,
+}
+
+impl Depth {
+    /// As the environment says: NO_COLOR, COLORTERM, TERM.
+    pub fn of_environment(get: impl Fn(&str) -> Option<String>) -> Depth {
+        let is = |name: &str, part: &str| get(name).is_some_and(|value| value.contains(part));
+        if get("NO_COLOR").is_some_and(|value| !value.is_empty()) {
+            Depth::None
+        } else if is("COLORTERM", "truecolor") || is("COLORTERM", "24bit") || is("TERM", "direct") {
+            Depth::True
+        } else if is("TERM", "256color") {
+            Depth::Indexed
+        } else {
+            Depth::Ansi
+        }
+    }
+
+    /// The nearest colour that the terminal has; `None` where it has none.
+    pub fn colour(self, [r, g, b]: [u8; 3]) -> Option<Color> {
+        match self {
+            Depth::None => None,
+            Depth::Ansi => Some(ansi([r, g, b])),
+            Depth::Indexed => Some(Color::Indexed(indexed([r, g, b]))),
+            Depth::True => Some(Color::Rgb(r, g, b)),
+        }
+    }
+
+    /// `style` with a foreground, where there are colours.
+    pub fn ink(self, style: Style, colour: Color) -> Style {
+        if self == Depth::None { style } else { style.fg(colour) }
+    }
+}
+
+/// The style of what has the focus: never told by colour alone.
+pub fn focus() -> Style {
+    Style::new().add_modifier(Modifier::REVERSED)
+}
+
+/// The style of what is less important.
+pub fn faint() -> Style {
+    Style::new().add_modifier(Modifier::DIM)
+}
+
+/// The style of headings.
+pub fn strong() -> Style {
+    Style::new().add_modifier(Modifier::BOLD)
+}
+
+/// Shades from dark to light, for terminals without colours.
+const SHADES: [char; 10] = [' ', '.', ':', '-', '=', '+', '*', '#', '%', '@'];
+
+/// The shade of a colour.
+pub fn shade(colour: [u8; 3]) -> char {
+    SHADES[luminance(colour) as usize * (SHADES.len() - 1) / 255]
+}
+
+/// Perceived brightness, 0 to 255 (Rec. 601 weights on the code values).
+pub fn luminance([r, g, b]: [u8; 3]) -> u8 {
+    ((u32::from(r) * 299 + u32::from(g) * 587 + u32::from(b) * 114) / 1000) as u8
+}
+
+/// xterm's 6 x 6 x 6 cube and its 24 greys.
+fn indexed([r, g, b]: [u8; 3]) -> u8 {
+    const STEPS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+    let nearest = |v: u8| (0..6).min_by_key(|&i| STEPS[i].abs_diff(v)).unwrap_or(0);
+    let (i, j, k) = (nearest(r), nearest(g), nearest(b));
+    let cube = [STEPS[i], STEPS[j], STEPS[k]];
+    let grey = (u16::from(luminance([r, g, b])).saturating_sub(3) / 10).min(23) as u8;
+    let level = 8 + 10 * grey;
+    if distance([level; 3], [r, g, b]) < distance(cube, [r, g, b]) {
+        232 + grey
+    } else {
+        (16 + 36 * i + 6 * j + k) as u8
+    }
+}
+
+fn ansi(rgb: [u8; 3]) -> Color {
+    const COLOURS: [(Color, [u8; 3]); 16] = [
+        (Color::Black, [0, 0, 0]),
+        (Color::Red, [170, 0, 0]),
+        (Color::Green, [0, 170, 0]),
+        (Color::Yellow, [170, 85, 0]),
+        (Color::Blue, [0, 0, 170]),
+        (Color::Magenta, [170, 0, 170]),
+        (Color::Cyan, [0, 170, 170]),
+        (Color::Gray, [170, 170, 170]),
+        (Color::DarkGray, [85, 85, 85]),
+        (Color::LightRed, [255, 85, 85]),
+        (Color::LightGreen, [85, 255, 85]),
+        (Color::LightYellow, [255, 255, 85]),
+        (Color::LightBlue, [85, 85, 255]),
+        (Color::LightMagenta, [255, 85, 255]),
+        (Color::LightCyan, [85, 255, 255]),
+        (Color::White, [255, 255, 255]),
+    ];
+    COLOURS.iter().min_by_key(|(_, known)| distance(*known, rgb)).map_or(Color::Reset, |&(colour, _)| colour)
+}
+
+fn distance(a: [u8; 3], b: [u8; 3]) -> u32 {
+    a.iter().zip(b).map(|(&x, y)| u32::from(x.abs_diff(y)).pow(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_follows_the_environment() {
+        for (environment, depth) in [
+            (&[("TERM", "xterm-256color"), ("COLORTERM", "truecolor")][..], Depth::True),
+            (&[("TERM", "screen-256color")], Depth::Indexed),
+            (&[("TERM", "linux")], Depth::Ansi),
+            (&[("TERM", "xterm-256color"), ("NO_COLOR", "1")], Depth::None),
+            (&[("TERM", "linux"), ("NO_COLOR", "")], Depth::Ansi),
+        ] {
+            let get = |name: &str| environment.iter().find(|(key, _)| *key == name).map(|(_, v)| v.to_string());
+            assert_eq!(Depth::of_environment(get), depth, "{environment:?}");
+        }
+    }
+
+    #[test]
+    fn reduced_colours_are_the_nearest() {
+        assert_eq!(indexed([255, 0, 0]), 196);
+        assert_eq!(indexed([128, 128, 128]), 244);
+        assert_eq!(ansi([250, 250, 250]), Color::White);
+        assert_eq!((shade([0; 3]), shade([255; 3])), (' ', '@'));
+    }
+}

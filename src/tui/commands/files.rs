@@ -1,0 +1,88 @@
+//! Files, leaving, and what is outside the editor.
+
+use std::path::PathBuf;
+
+use super::{Call, Command, Done, command};
+use crate::preview::keys as window;
+use crate::tui::app::{Mode, Pages, State};
+use crate::tui::terminal::plain;
+use crate::tui::update::Effect;
+
+pub const COMMANDS: &[Command] = &[
+    command("w", "[PATH]", "Save; with a path, save elsewhere", |state, call| save(state, call.text, false, false)),
+    command("w!", "", "Save over what another program wrote", |state, _| save(state, "", true, false)),
+    command("wq", "", "Save and leave", |state, _| save(state, "", false, true)),
+    command("q", "", "Leave; refused with unsaved edits", quit),
+    command("q!", "", "Leave without saving", |state, _| {
+        state.ask(Effect::Quit);
+        Ok(())
+    }),
+    command("e", "[PATH]", "Open another scene; refused with unsaved edits", |state, call| {
+        refuse_unsaved(state, ":e!")?;
+        open(state, call)
+    }),
+    command("e!", "[PATH]", "Open another scene, or take this one as its file has it", open),
+    command("view", "[COMMAND]", "Open the preview window, or change what it shows", view),
+    command("problems", "", "Say what is wrong in the scene", problems),
+    command("redraw", "", "Draw the screen anew", |state, _| {
+        state.ask(Effect::Redraw);
+        Ok(())
+    }),
+    command("suspend", "", "Go to the shell", |state, _| {
+        state.ask(Effect::Suspend);
+        Ok(())
+    }),
+];
+
+fn refuse_unsaved(state: &State, instead: &str) -> Done {
+    if state.door.is_saved() {
+        return Ok(());
+    }
+    Err(format!("there are unsaved edits: :w saves them, {instead} leaves them"))
+}
+
+fn save(state: &mut State, path: &str, overwrite: bool, leave: bool) -> Done {
+    let to = (!path.is_empty()).then(|| PathBuf::from(path));
+    if state.door.read_only() && to.is_none() {
+        return Err("the scene is open for reading only: :w PATH saves elsewhere".into());
+    }
+    state.ask(Effect::Save { to, overwrite, leave });
+    Ok(())
+}
+
+fn quit(state: &mut State, _: &Call) -> Done {
+    refuse_unsaved(state, ":q!")?;
+    state.ask(Effect::Quit);
+    Ok(())
+}
+
+fn open(state: &mut State, call: &Call) -> Done {
+    if !call.text.is_empty() {
+        state.ask(Effect::Open(PathBuf::from(call.text)));
+    } else if let Some(change) = state.door.revert().map_err(|error| error.to_string())? {
+        state.changed(change);
+        state.say("the scene is as its file has it; u takes it back");
+    }
+    Ok(())
+}
+
+fn view(state: &mut State, call: &Call) -> Done {
+    let known = |name: &str| window::KEYS.iter().any(|row| row.context == window::VIEW && row.command == name);
+    match call.text {
+        "" => state.ask(Effect::View(None)),
+        name if known(name) => state.ask(Effect::View(Some(name.to_owned()))),
+        name => return Err(format!("the window knows no {name}")),
+    }
+    Ok(())
+}
+
+fn problems(state: &mut State, _: &Call) -> Done {
+    let warnings = state.document().warnings().iter().map(|problem| plain(&problem.to_string()));
+    let lines: Vec<String> = state.seen.problem.iter().map(|problem| plain(problem)).chain(warnings).collect();
+    match lines.as_slice() {
+        [] => state.say("nothing is wrong in the scene"),
+        [one] => state.say(one.clone()),
+        _ => state.mode = Mode::Pages(Pages { title: "problems".into(), lines, scroll: 0 }),
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+//! The picture: its cursor, its zoom, and what the cursor places.
+
+use kurbo::Vec2;
+
+use super::editing::go_to;
+use super::{Call, Command, Done, command};
+use crate::tui::app::{Mode, Pane, State};
+use crate::tui::numbers::short;
+use crate::tui::place;
+use crate::tui::update::Effect;
+
+pub const COMMANDS: &[Command] = &[
+    command("cursor", "DX DY", "Move the picture's cursor", cursor),
+    command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed),
+    command("zoom", "in|out|fit", "Zoom the picture", zoom),
+    command("pointer", "", "Take the window's pointer into the field, else into the picture's cursor", pointer),
+    command("probe", "[X,Y]", "Say what a pixel does", probe),
+];
+
+fn cursor(state: &mut State, call: &Call) -> Done {
+    let wrong = || "cursor takes DX DY".to_string();
+    let (dx, dy) = call.text.split_once(' ').ok_or_else(wrong)?;
+    let by = Vec2::new(dx.parse().map_err(|_| wrong())?, dy.parse().map_err(|_| wrong())?);
+    state.placing.step(by * call.times() as f64, state.picture_size);
+    Ok(())
+}
+
+fn placed(state: &mut State, call: &Call) -> Done {
+    match call.text {
+        "add" => {
+            let (edit, pointer) = place::add_here(state)?;
+            state.edit(edit, false)?;
+            go_to(state, &pointer);
+            Ok(())
+        }
+        "move" => {
+            let edit = place::move_here(state)?;
+            state.edit(edit, false)
+        }
+        "aim" => {
+            place::aim_here(state)?;
+            state.mode = Mode::Aim;
+            Ok(())
+        }
+        "jump" => {
+            state.mode = Mode::Normal;
+            let edit = place::aim_here(state)?;
+            state.edit(edit, false)
+        }
+        way => {
+            let by = if way == "previous" { -call.times() } else { call.times() };
+            let (row, at) = place::next_point(state, by).ok_or("no row here has a place")?;
+            state.row = row;
+            state.settle();
+            state.placing.cursor = at;
+            state.ask(Effect::Show);
+            Ok(())
+        }
+    }
+}
+
+fn zoom(state: &mut State, call: &Call) -> Done {
+    let times = call.times() as i32;
+    state.placing.zoom = match call.text {
+        "in" => state.placing.zoom + times,
+        "out" => state.placing.zoom - times,
+        _ => 0,
+    }
+    .clamp(0, 12);
+    let all = [("in", "zoom-in"), ("out", "zoom-out"), ("fit", "zoom-fit")];
+    let same = all.iter().find(|(way, _)| *way == call.text).map(|(_, name)| name.to_string());
+    same.into_iter().for_each(|name| state.ask(Effect::View(Some(name))));
+    Ok(())
+}
+
+/// Where the row under the cursor has a place, it goes to the window's pointer; the picture's cursor does always.
+fn pointer(state: &mut State, _: &Call) -> Done {
+    let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
+    state.placing.cursor = (x, y).into();
+    state.placing.step(Vec2::ZERO, state.picture_size);
+    if state.focus == Pane::Table {
+        let edit = place::move_here(state)?;
+        state.edit(edit, false)?;
+    }
+    Ok(())
+}
+
+/// Asks `plica probe` about the pixel under the cursor, or about X,Y, at the time that is shown.
+fn probe(state: &mut State, call: &Call) -> Done {
+    if !call.text.is_empty() {
+        let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+        let [x, y] = numbers[..] else { return Err("probe takes X,Y".into()) };
+        state.placing.cursor = (x, y).into();
+        state.placing.step(Vec2::ZERO, state.picture_size);
+    }
+    if state.focus != Pane::Picture && call.text.is_empty() {
+        state.focus = Pane::Picture;
+    }
+    let at = state.placing.cursor;
+    let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.time.to_string()];
+    state.ask(Effect::Run(words.map(str::to_owned).to_vec()));
+    Ok(())
+}

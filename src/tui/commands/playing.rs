@@ -1,0 +1,44 @@
+//! Time: playing and going from frame to frame.
+
+use super::{Call, Command, Done, command};
+use crate::tui::app::State;
+use crate::tui::update::Effect;
+
+pub const COMMANDS: &[Command] = &[
+    command("play", "", "Play or pause", play),
+    command("frame", "next|previous|first|last|NUMBER", "Go to a frame", frame),
+    command("time", "T", "Go to a scene time t, 0 to 1", time),
+];
+
+fn play(state: &mut State, _: &Call) -> Done {
+    state.playing = !state.playing;
+    state.ask(Effect::Show);
+    Ok(())
+}
+
+fn frame(state: &mut State, call: &Call) -> Done {
+    let (at, frames) = state.frame();
+    let by = |steps: i64| (at as i64 + steps).rem_euclid(frames as i64) as u64;
+    let to = match call.text {
+        "next" => by(call.times()),
+        "previous" => by(-call.times()),
+        "first" => 0,
+        "last" => frames - 1,
+        number => number.parse().map_err(|_| format!("there is no frame {number}"))?,
+    };
+    if to >= frames {
+        return Err(format!("there are {frames} frames, from 0"));
+    }
+    state.playing = false;
+    state.time = state.document().scene().timeline.time_of(to);
+    state.ask(Effect::Show);
+    Ok(())
+}
+
+fn time(state: &mut State, call: &Call) -> Done {
+    let time = call.text.parse::<f64>().ok().filter(|time| (0.0..=1.0).contains(time));
+    state.time = time.ok_or("time takes a number from 0 to 1")?;
+    state.playing = false;
+    state.ask(Effect::Show);
+    Ok(())
+}

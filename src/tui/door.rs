@@ -1,0 +1,217 @@
+//! The one door through which the editor changes a scene: a session (document, history, journal, file) and what the
+//! editor says about it.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::update::Change;
+use crate::base::error::{Error, Result};
+use crate::base::problem::Problem;
+use crate::files::session::{Mode, Overwrite, Session};
+use crate::files::{self, picture, write};
+use crate::scene::history::Applied;
+use crate::scene::{Document, Edit};
+
+/// A scene that is open.
+pub struct Door {
+    session: Session,
+    options: files::Options,
+    read_only: bool,
+    made: bool,
+}
+
+impl Door {
+    /// Opens a scene; or a picture, whose scene lies beside it and is made where it is not there.
+    ///
+    /// # Errors
+    /// The scene or the picture cannot be read, or somebody else edits the scene.
+    pub fn open(path: &Path, read_only: bool, options: &files::Options) -> Result<Door> {
+        let is_scene = path.extension().is_some_and(|extension| extension == "json");
+        let (scene, made) = if is_scene { (path.to_owned(), false) } else { beside(path, read_only, options)? };
+        let mode = if read_only { Mode::ReadOnly } else { Mode::Edit };
+        Ok(Door { session: Session::open(&scene, options, mode)?, options: options.clone(), read_only, made })
+    }
+
+    /// The scene as it is now.
+    pub fn document(&self) -> &Document {
+        self.session.document()
+    }
+
+    /// The scene's file.
+    pub fn path(&self) -> &Path {
+        self.session.path()
+    }
+
+    /// How files are read.
+    pub fn options(&self) -> &files::Options {
+        &self.options
+    }
+
+    /// Whether the scene may only be looked at.
+    pub fn read_only(&self) -> bool {
+        self.read_only
+    }
+
+    /// How many changes there were.
+    pub fn revision(&self) -> u64 {
+        self.session.history().revision()
+    }
+
+    /// Whether the file holds the scene as it is now.
+    pub fn is_saved(&self) -> bool {
+        self.session.safety().saved
+    }
+
+    /// Whether every edit is safe in the journal, as far as there is one.
+    pub fn is_synced(&self) -> bool {
+        let safety = self.session.safety();
+        safety.journaled || self.read_only || safety.failing.is_some()
+    }
+
+    /// Why edits do not reach the journal.
+    pub fn failing(&self) -> Option<String> {
+        self.session.safety().failing.filter(|_| !self.read_only)
+    }
+
+    /// How long the screen may stay as it is: a mark that will go is looked after soon.
+    pub fn patience(&self) -> Duration {
+        Duration::from_millis(if self.is_synced() { 60_000 } else { 15 })
+    }
+
+    /// What is said when the scene has been opened.
+    pub fn greeting(&self) -> String {
+        let name = self.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let made = if self.made { "made, " } else { "" };
+        match self.session.kept_aside() {
+            Some(aside) => format!("{name}: the journal was damaged, what could not be read is in {}", aside.display()),
+            None => format!("{name}: {made}? shows the keys, :q leaves"),
+        }
+    }
+
+    /// Unsaved edits that a session left behind, in words.
+    pub fn offered(&self) -> Option<String> {
+        let offer = self.session.recovery()?;
+        let also = if offer.file_changed { ", and the file has changed since" } else { "" };
+        Some(format!("{} unsaved changes were left behind{also}", offer.changes))
+    }
+
+    /// Takes the unsaved edits that are offered, or leaves them; undo still gives them.
+    pub fn recover(&mut self, take: bool) -> Option<Change> {
+        let before = self.document().clone();
+        if take {
+            self.session.recover();
+        } else {
+            self.session.discard_recovery();
+        }
+        let edit = Edit::between(&before, self.document());
+        (!edit.is_empty()).then(|| Change { document: self.document().clone(), revision: self.revision(), edit })
+    }
+
+    /// Applies an edit; one of a held key joins the one before it. None where it changes nothing.
+    ///
+    /// # Errors
+    /// What would be wrong in the scene.
+    pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Change>, Vec<Problem>> {
+        if self.read_only {
+            return Err(vec![Problem::error("", "the scene is open for reading only")]);
+        }
+        let applied = self.session.apply(edit, held)?;
+        Ok(applied.map(|applied| self.change(applied)))
+    }
+
+    fn change(&self, applied: Applied) -> Change {
+        Change { document: self.document().clone(), revision: applied.revision, edit: applied.edit }
+    }
+
+    /// Takes the last step back; none where there is none.
+    pub fn undo(&mut self) -> Option<Change> {
+        let applied = self.session.undo()?;
+        Some(self.change(applied))
+    }
+
+    /// Does the last undone step again; none where there is none.
+    pub fn redo(&mut self) -> Option<Change> {
+        let applied = self.session.redo()?;
+        Some(self.change(applied))
+    }
+
+    /// Ends a held key.
+    pub fn close_step(&mut self) {
+        self.session.close_step();
+    }
+
+    /// Saves; to another file where one is given, which must not be there yet. Gives what to say.
+    ///
+    /// # Errors
+    /// It is not saved then.
+    pub fn save(&mut self, to: Option<&Path>, overwrite: bool) -> Result<String> {
+        if let Some(to) = to {
+            write::write_new(to, self.document().to_text().as_bytes())?;
+            return Ok(format!("{} is written", to.display()));
+        }
+        self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
+        Ok(format!("{} is saved", self.path().display()))
+    }
+
+    /// The scene as its file has it, as one edit. None where there is no difference.
+    ///
+    /// # Errors
+    /// The file cannot be read, or has errors in it.
+    pub fn revert(&mut self) -> Result<Option<Change>> {
+        if let Some(applied) = self.session.reload()? {
+            return Ok(Some(self.change(applied)));
+        }
+        let file = files::scene::open(self.path(), &self.options)?;
+        let edit = Edit::between(self.document(), &file);
+        let place = self.path().display().to_string();
+        self.apply(edit, false).map_err(|problems| Error::Scene { file: place, problems })
+    }
+
+    /// Takes another program's version of the file in, where nothing here is unsaved. None where the file is as we left it.
+    ///
+    /// # Errors
+    /// What is to be said otherwise.
+    pub fn follow(&mut self) -> std::result::Result<Option<Change>, String> {
+        if self.is_saved() {
+            let applied = self.session.reload().map_err(|error| error.to_string())?;
+            return Ok(applied.map(|applied| self.change(applied)));
+        }
+        if !self.session.file_changed() {
+            return Ok(None);
+        }
+        Err("the file differs on the disk: :e! takes its version (undo takes it back), :w! overwrites it".into())
+    }
+
+    /// Waits until every edit is in the journal.
+    pub fn flush(&self) {
+        if let Err(reason) = self.session.flush() {
+            tracing::warn!("leaving without a journal: {reason}");
+        }
+    }
+}
+
+/// The scene beside a picture, and whether it had to be made.
+fn beside(picture: &Path, read_only: bool, options: &files::Options) -> Result<(PathBuf, bool)> {
+    let scene = picture.with_extension("plica.json");
+    if read_only || scene.exists() {
+        return Ok((scene, false));
+    }
+    let (width, height) = picture::size(picture, &options.limits)?;
+    let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (name, file) = (text(picture.file_stem()), text(picture.file_name()));
+    let place = || scene.display().to_string();
+    let document =
+        Document::new(&[(&name, &file, width, height)]).map_err(|problems| Error::Scene { file: place(), problems })?;
+    write::write_new(&scene, document.to_text().as_bytes())?;
+    Ok((scene, true))
+}
+
+#[cfg(test)]
+impl Door {
+    /// A scene whose edits stay in memory.
+    pub fn in_memory(path: &Path) -> Door {
+        let options = files::Options::default();
+        let session = Session::open(path, &options, Mode::ReadOnly).expect("a scene of the tests");
+        Door { session, options, read_only: false, made: false }
+    }
+}

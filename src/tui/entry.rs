@@ -1,0 +1,132 @@
+//! A value being typed into a cell. The raw text is kept until it is taken; what it says is computed over the columns of
+//! the row, once for every selected row, and all of it is one edit.
+
+use serde_json::Value;
+
+use super::app::State;
+use super::numbers;
+use super::sheet::{Cell, Part, Row, Sheet};
+use super::text::Text;
+use crate::base::expression::{self, Variables};
+use crate::scene::field::{self, Kind};
+use crate::scene::{Document, Edit};
+
+/// A value being typed.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What has been typed.
+    pub text: Text,
+}
+
+impl Entry {
+    /// Begins with the cell's value, all of its decimals; or from nothing.
+    pub fn new(document: &Document, cell: &Cell, clear: bool) -> Self {
+        let text = match cell.number(document) {
+            _ if clear => String::new(),
+            Some(number) if cell.is_number() => numbers::exact(number),
+            _ => field::value(document, &cell.pointer).and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default(),
+        };
+        Entry { text: Text::new(text, true) }
+    }
+}
+
+/// The rows that an edit applies to: the selection, else the row under the cursor.
+pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
+    let from = state.selected_from.unwrap_or(state.row);
+    from.min(state.row)..=from.max(state.row)
+}
+
+/// The cells that an edit of the cell under the cursor applies to: the like ones of every selected row.
+pub fn cells<'a>(state: &State, sheet: &'a Sheet) -> Vec<(&'a Row, &'a Cell)> {
+    let Some(model) = sheet.rows.get(state.row).and_then(|row| row.cells.get(state.column)) else { return Vec::new() };
+    let like =
+        |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
+    let of_row = |i: usize| {
+        let row = sheet.rows.get(i)?;
+        Some((row, row.cells.get(state.column).filter(like)?))
+    };
+    rows(state).filter_map(of_row).collect()
+}
+
+/// The edit that `text` says for the cell under the cursor and the like ones of the selection.
+pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
+    let sheet = state.sheet();
+    let cells = cells(state, &sheet);
+    let n = cells.len();
+    let each = cells.into_iter().enumerate().map(|(i, (row, cell))| {
+        if !cell.is_number() {
+            return Ok(set(state.document(), &cell.pointer, Value::from(text)));
+        }
+        let value = evaluate(state, &sheet, row, cell, (i, n), text)?;
+        number(state.document(), cell, value)
+    });
+    Ok(Edit::all(each.collect::<Result<Vec<_>, _>>()?))
+}
+
+/// What `text` comes to for one cell, the `i`th of `n`.
+pub fn evaluate(
+    state: &State,
+    sheet: &Sheet,
+    row: &Row,
+    cell: &Cell,
+    (i, n): (usize, usize),
+    text: &str,
+) -> Result<f64, String> {
+    let known = variables(state, sheet, row, cell, (i, n));
+    let known: Vec<(&str, f64)> = known.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    expression::evaluate(text, &Variables(&known)).map_err(|mistake| mistake.to_string())
+}
+
+fn variables(state: &State, sheet: &Sheet, row: &Row, cell: &Cell, (i, n): (usize, usize)) -> Vec<(String, f64)> {
+    let document = state.document();
+    let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
+    let others = sheet.rows.iter().filter(|other| !other.item && !row.item);
+    for row in std::iter::once(row).chain(others) {
+        for cell in row.cells.iter().filter(|cell| cell.is_number()) {
+            let name = match cell.part {
+                Part::Length => "r",
+                Part::Degrees => "a",
+                _ if cell.head.is_empty() => &row.label,
+                _ => &cell.head,
+            };
+            if let (Some(value), false) = (cell.number(document), known.iter().any(|(known, _)| known == name)) {
+                known.push((name.to_string(), value));
+            }
+        }
+    }
+    if let Some((width, height)) = state.picture_size {
+        known.extend([("w".to_string(), width as f64), ("h".to_string(), height as f64)]);
+    }
+    known.extend([("i".to_string(), i as f64), ("n".to_string(), n as f64)]);
+    known
+}
+
+/// The edit that gives a cell this number; refused where it is out of the field's range.
+pub fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
+    let field = &cell.field;
+    let whole = matches!(field.kind, Kind::Number { integer: true });
+    if whole && value != value.trunc() {
+        return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
+    }
+    let counts = !matches!(cell.part, Part::Length | Part::Degrees);
+    if let (Some((min, max)), true) = (field.range, counts)
+        && !(min..=max).contains(&value)
+    {
+        let range = field.range_text().unwrap_or_default();
+        return Err(format!("{} is out of range: {} takes {range}", numbers::exact(value), field.name));
+    }
+    if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
+        return Err("a vector without a length has no direction: set |J| first".into());
+    }
+    let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
+    Ok(set(document, &pointer, value))
+}
+
+fn length(document: &Document, cell: &Cell) -> f64 {
+    Cell { part: Part::Length, ..cell.clone() }.number(document).unwrap_or(0.0)
+}
+
+/// The edit that sets one place. A pair inside a list of numbers is set as a whole.
+pub fn set(document: &Document, pointer: &str, value: Value) -> Edit {
+    Edit::set(document, pointer, value)
+}

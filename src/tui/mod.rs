@@ -1,0 +1,28 @@
+//! The terminal editor. State is a value and `update` a function (app.rs); drawing changes nothing (view.rs); one table of
+//! keys and one of commands (keys.rs, commands/); whatever is slow or outside happens in runner.rs and worker.rs.
+
+mod app;
+mod choice;
+mod colour;
+mod commands;
+mod door;
+mod entry;
+mod keys;
+mod line;
+mod numbers;
+mod panes;
+mod place;
+mod runner;
+mod sheet;
+mod terminal;
+mod text;
+mod tree;
+mod update;
+mod view;
+mod worker;
+
+pub use keys::manual;
+pub use runner::{Options, run};
+
+#[cfg(test)]
+mod tests;

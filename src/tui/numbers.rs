@@ -1,0 +1,84 @@
+//! Numbers and vectors as people read them: short decimals, polar columns (length, and degrees counter-clockwise from
+//! x as on paper, so that a jump of (0, -18) points up at 90 degrees).
+
+use kurbo::Vec2;
+
+use crate::base::maths;
+
+/// The most decimals that a table shows; an entry shows all of them.
+const DECIMALS: usize = 3;
+
+/// `value` with at most three decimals and no needless zeros.
+pub fn short(value: f64) -> String {
+    let text = format!("{value:.DECIMALS$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// `value` with all its decimals, as it is written in the file.
+pub fn exact(value: f64) -> String {
+    if value == value.trunc() && value.abs() < 1e15 { format!("{value:.0}") } else { value.to_string() }
+}
+
+/// Length and direction in degrees of (dx, dy); direction 0 where there is no length.
+pub fn polar(vector: Vec2) -> (f64, f64) {
+    let length = tidy(vector.hypot2().sqrt());
+    let degrees = if length == 0.0 { 0.0 } else { tidy(maths::atan2(0.0 - vector.y, vector.x).to_degrees()) };
+    (length, degrees + 0.0)
+}
+
+/// The vector of a length and a direction in degrees; quarter turns are exact.
+pub fn cartesian(length: f64, degrees: f64) -> Vec2 {
+    let turn = degrees.rem_euclid(360.0);
+    let (x, y) = match turn {
+        0.0 => (1.0, 0.0),
+        90.0 => (0.0, -1.0),
+        180.0 => (-1.0, 0.0),
+        270.0 => (0.0, 1.0),
+        _ => (maths::cos(turn.to_radians()), -maths::sin(turn.to_radians())),
+    };
+    Vec2::new(tidy(length * x), tidy(length * y))
+}
+
+/// `vector` with another length in its own direction; along x where it has none.
+pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
+    let (old, _) = polar(vector);
+    if old == 0.0 {
+        Vec2::new(length, 0.0)
+    } else {
+        Vec2::new(tidy(vector.x * length / old), tidy(vector.y * length / old))
+    }
+}
+
+/// A number computed by the editor, without the last noise of floating point.
+pub fn tidy(value: f64) -> f64 {
+    let rounded = (value * 1e9).round() / 1e9;
+    if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_kinds_of_columns_tell_the_same_vector() {
+        for (x, y, length, degrees) in
+            [(0.0, -18.0, 18.0, 90.0), (3.0, 4.0, 5.0, -53.130102354), (-1.0, 0.0, 1.0, 180.0), (0.0, 0.0, 0.0, 0.0)]
+        {
+            assert_eq!(polar(Vec2::new(x, y)), (length, degrees));
+            let back = cartesian(length, degrees);
+            assert!((back - Vec2::new(x, y)).hypot() < 1e-8, "{back:?}");
+        }
+        assert_eq!(cartesian(18.0, 90.0), Vec2::new(0.0, -18.0));
+        assert_eq!(with_length(Vec2::new(0.0, -18.0), 20.0), Vec2::new(0.0, -20.0));
+        assert_eq!(with_length(Vec2::ZERO, 20.0), Vec2::new(20.0, 0.0));
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in [(150.0, "150"), (0.12345, "0.123"), (-0.0001, "0"), (-0.0, "0"), (2.5, "2.5")] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!((exact(0.1 + 0.2).as_str(), exact(-18.0).as_str()), ("0.30000000000000004", "-18"));
+    }
+}

@@ -1,0 +1,49 @@
+//! The last line: what is being typed after `:` or `/`, else what was said last.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::{Color, Modifier, Style};
+
+use super::{width, write};
+use crate::tui::app::{Mode, State};
+use crate::tui::{colour, terminal};
+
+/// Draws it; the cursor is in the line being typed.
+pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    if let Mode::Line(line) = &state.mode {
+        let x = write(buffer, area, 0, 0, &line.kind.to_string(), Style::new());
+        let column = x + line.text.column() as i32;
+        let hidden = (column + 1 - i32::from(area.width)).max(0);
+        let text = terminal::plain(line.text.value());
+        let end = write(buffer, area, x - hidden, 0, &text, Style::new());
+        if let Some((offered, at)) = line.offered() {
+            draw_offered(offered, at, area, end + 2, buffer);
+        }
+        return Some(Position::new(area.x + (column - hidden) as u16, area.y));
+    }
+    let Some(message) = &state.message else {
+        if let Some(problem) = &state.seen.problem {
+            write(buffer, area, 1, 0, &terminal::plain(problem), colour::faint());
+        }
+        return None;
+    };
+    let style = match message.bad {
+        true => state.depth.ink(Style::new().add_modifier(Modifier::BOLD), Color::Red),
+        false => Style::new(),
+    };
+    write(buffer, area, 1, 0, &terminal::plain(&message.text), style);
+    None
+}
+
+fn draw_offered(offered: &[String], at: usize, area: Rect, mut x: i32, buffer: &mut Buffer) {
+    if offered.is_empty() {
+        write(buffer, area, x, 0, "(nothing to complete)", colour::faint());
+    }
+    for (i, word) in offered.iter().enumerate().skip(at.saturating_sub(2)) {
+        if x + i32::from(width(word)) > i32::from(area.width) {
+            break;
+        }
+        let style = if i == at { colour::focus() } else { colour::faint() };
+        x = write(buffer, area, x, 0, &terminal::plain(word), style) + 2;
+    }
+}

@@ -1,0 +1,61 @@
+//! The panes: each draws one part of the state into its area and says where the real cursor stands, if it is there.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::Span;
+
+pub mod detail;
+pub mod field;
+pub mod line;
+pub mod picture;
+pub mod popup;
+pub mod position;
+pub mod status;
+pub mod table;
+pub mod tree;
+
+/// Width of a text in terminal columns.
+pub fn width(text: &str) -> u16 {
+    Span::raw(text).width().min(usize::from(u16::MAX)) as u16
+}
+
+/// Writes `text` at column `x` of a row of `area`, which may lie left of it or beyond; gives the column after it.
+pub fn write(buffer: &mut Buffer, area: Rect, x: i32, y: u16, text: &str, style: Style) -> i32 {
+    let end = x + i32::from(width(text));
+    if y >= area.height || x >= i32::from(area.width) || end <= 0 {
+        return end;
+    }
+    let skipped: String = text.chars().skip((-x).max(0) as usize).collect();
+    let from = x.max(0) as u16;
+    buffer.set_stringn(area.x + from, area.y + y, skipped, usize::from(area.width - from), style);
+    end
+}
+
+/// The first of `count` rows that is shown in `height` lines, so that row `at` stands in the middle where it can.
+pub fn first_row(at: usize, count: usize, height: u16) -> usize {
+    let height = usize::from(height);
+    at.saturating_sub(height / 2).min(count.saturating_sub(height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_scroll_around_the_cursor() {
+        for (at, count, height, first) in [(0, 100, 10, 0), (50, 100, 10, 45), (99, 100, 10, 90), (3, 5, 10, 0)] {
+            assert_eq!(first_row(at, count, height), first);
+        }
+    }
+
+    #[test]
+    fn text_is_clipped_on_both_sides() {
+        let area = Rect::new(1, 0, 4, 1);
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 8, 1));
+        assert_eq!(write(&mut buffer, area, -2, 0, "abcdefgh", Style::new()), 6);
+        write(&mut buffer, area, 0, 5, "below", Style::new());
+        let text: String = buffer.content().iter().map(|cell| cell.symbol()).collect();
+        assert_eq!(text, " cdef   ");
+    }
+}

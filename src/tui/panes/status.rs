@@ -1,0 +1,98 @@
+//! The status line: mode, place, what is not saved, time, the last synthesis, the window, the step.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+
+use super::{width, write};
+use crate::layers::Layer;
+use crate::layers::folding::position::Clock;
+use crate::tui::app::{Mode, Pane, State};
+use crate::tui::commands::step_of;
+use crate::tui::numbers::short;
+use crate::tui::{terminal, tree};
+
+/// Draws it.
+pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
+    let bar = Style::new().add_modifier(Modifier::REVERSED);
+    buffer.set_style(area, bar);
+    let left = format!(" {}  {}{}", mode(state), place(state), marks(state));
+    write(buffer, area, 0, 0, &left, bar);
+    let right = right(state);
+    let x = (i32::from(area.width) - i32::from(width(&right)) - 1).max(i32::from(width(&left)) + 2);
+    write(buffer, area, x, 0, &right, bar);
+}
+
+/// Three letters for what the keys do.
+fn mode(state: &State) -> &'static str {
+    match (&state.mode, state.focus) {
+        (Mode::Entry(_), _) => "INS",
+        (Mode::Line(line), _) if line.kind == '/' => "SEA",
+        (Mode::Line(_), _) => "CMD",
+        (Mode::Choice(_), _) => "CHO",
+        (Mode::Pages(_), _) => "HLP",
+        (Mode::Aim, _) => "AIM",
+        (Mode::Normal, _) if state.selected_from.is_some() => "SEL",
+        (Mode::Normal, Pane::Picture) => "PIC",
+        (Mode::Normal, _) => "NOR",
+    }
+}
+
+/// The layer and the zone that is shown.
+fn place(state: &State) -> String {
+    let (layer, zone) = tree::place(&state.node);
+    let Some(Layer::Picture(layer)) = layer.and_then(|i| state.document().scene().layers.get(i)) else {
+        return "scene".into();
+    };
+    let zone = zone.and_then(|i| layer.zones.get(i)).map(|zone| format!("/{}", zone.name));
+    terminal::plain(&format!("{}{}", layer.name, zone.unwrap_or_default()))
+}
+
+fn marks(state: &State) -> String {
+    let failing = state.door.failing().map(|why| format!("  no journal: {}", terminal::plain(&why)));
+    let mark = |on: bool, text: &'static str| if on { text } else { "" };
+    [
+        mark(!state.door.is_saved(), "  *"),
+        mark(!state.door.is_synced(), " ~"),
+        mark(state.door.read_only(), "  [read only]"),
+        failing.as_deref().unwrap_or_default(),
+    ]
+    .concat()
+}
+
+fn right(state: &State) -> String {
+    let mut parts = Vec::new();
+    if let Some(count) = state.count {
+        parts.push(count.to_string());
+    }
+    if !state.pressed.is_empty() {
+        parts.push(format!("{}-", state.pressed));
+    }
+    if let Some(work) = &state.seen.work {
+        parts.push(terminal::plain(work));
+    }
+    parts.push(format!("{}t {}", if state.playing { "> " } else { "" }, short(state.time)));
+    if let Some(s) = place_on_path(state) {
+        parts.push(format!("s {}", short(s)));
+    }
+    if let Some(ms) = state.seen.synth_ms {
+        parts.push(format!("field {ms:.0} ms"));
+    }
+    parts.push(format!("step {}", short(step_of(state.step))));
+    if !state.seen.window.is_empty() {
+        parts.push(terminal::plain(&state.seen.window));
+    }
+    parts.join("  ")
+}
+
+/// The clock of the zone that is shown.
+pub fn clock(state: &State) -> Option<Clock> {
+    let (layer, zone) = tree::place(&state.node);
+    let scene = state.document().scene();
+    let Layer::Picture(layer) = scene.layers.get(layer?)?;
+    Some(Clock::of(layer.zones.get(zone?)?, scene.timeline.wrap))
+}
+
+fn place_on_path(state: &State) -> Option<f64> {
+    clock(state).map(|clock| clock.s(state.time))
+}

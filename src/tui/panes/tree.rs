@@ -1,0 +1,35 @@
+//! The tree of the scene.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::{Modifier, Style};
+
+use super::{first_row, width, write};
+use crate::tui::app::{Pane, State};
+use crate::tui::{colour, tree};
+
+/// Draws it; the cursor is on the node that is shown, where the tree has the focus.
+pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let rows = tree::rows(state.document(), &state.folded);
+    let at = tree::row_of(&rows, &state.node);
+    let first = first_row(at, rows.len(), area.height);
+    let mut cursor = None;
+    for (y, (i, row)) in rows.iter().enumerate().skip(first).take(usize::from(area.height)).enumerate() {
+        let y = y as u16;
+        let mark = row.folded.map_or("  ", |folded| if folded { "▸ " } else { "▾ " });
+        let style = match i == at {
+            true if state.focus == Pane::Tree => colour::focus(),
+            true => Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED),
+            false => Style::new(),
+        };
+        let indent = (row.depth as i32 * 2).min(i32::from(area.width) / 2);
+        let x = write(buffer, area, indent, y, mark, Style::new());
+        let end = write(buffer, area, x, y, &row.label, style);
+        let room = i32::from(area.width) - i32::from(width(&row.note));
+        write(buffer, area, (end + 1).max(room.min(end + 2)), y, &row.note, colour::faint());
+        if i == at && state.focus == Pane::Tree {
+            cursor = Some(Position::new(area.x + (x as u16).min(area.width.saturating_sub(1)), area.y + y));
+        }
+    }
+    cursor
+}

@@ -1,0 +1,308 @@
+//! Runs the editor: events in, effects out. The only place that knows the terminal, the threads, the files and the window.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use ratatui::crossterm::event::{self, Event as Input, KeyEventKind, MouseEventKind};
+
+use super::app::State;
+use super::colour::Depth;
+use super::door::Door;
+use super::update::{Effect, Event, update};
+use super::worker::{Job, Request, Worker};
+use super::{keys, terminal, view};
+use crate::base::error::{Error, Result};
+use crate::base::system::signals::{self, Answer, Signal};
+use crate::files::watch::Watch;
+use crate::preview::editor::{self, Preview, Status};
+use crate::{files, ops};
+
+/// How the editor is opened.
+pub struct Options {
+    /// A scene, or a picture whose scene lies beside it.
+    pub path: PathBuf,
+    /// Whether to open the preview window where there is a display.
+    pub window: bool,
+    /// Whether the scene may only be looked at.
+    pub read_only: bool,
+    /// How files are read.
+    pub files: files::Options,
+}
+
+impl Options {
+    /// As `plica edit` without options.
+    pub fn new(path: PathBuf) -> Options {
+        Options { path, window: true, read_only: false, files: files::Options::default() }
+    }
+
+    /// As the command line says.
+    ///
+    /// # Errors
+    /// A wrong limit.
+    pub fn of(args: &ops::edit::Args) -> Result<Options> {
+        let files = args.scene.options()?;
+        Ok(Options { path: args.path.clone(), window: !args.no_view, read_only: args.read_only, files })
+    }
+}
+
+/// How long the editor has to end by itself once the system asks for it.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// Opens the scene, edits it until the person leaves, and gives the terminal back.
+///
+/// # Errors
+/// The scene cannot be opened, or there is no terminal.
+pub fn run(options: Options) -> Result<()> {
+    let door = Door::open(&options.path, options.read_only, &options.files)?;
+    let (sender, events) = mpsc::channel();
+    let _signals = end_on_signals(sender.clone())?;
+    terminal::restore_on_panic();
+    let screen = terminal::enter()?;
+    let result = Editor::new(options, door, screen, sender).and_then(|editor| editor.run(&events));
+    terminal::restore();
+    result
+}
+
+/// The signal thread asks the editor to end, and ends the process where that takes too long: a terminal that went away
+/// can hold a write for ever.
+fn end_on_signals(sender: mpsc::Sender<Event>) -> Result<signals::Registration> {
+    let handler = move |signal| match signal {
+        Signal::Hangup | Signal::Terminate | Signal::Interrupt => {
+            // Where nobody listens any more the editor is leaving already.
+            let _ = sender.send(Event::End);
+            std::thread::spawn(|| {
+                std::thread::sleep(GRACE);
+                terminal::restore();
+                std::process::exit(i32::from(Error::Interrupted.exit_status()));
+            });
+            Answer::Done
+        }
+        Signal::Stop => {
+            // As above.
+            let _ = sender.send(Event::Stop);
+            Answer::Done
+        }
+        Signal::Continue => Answer::Pass,
+    };
+    signals::handle(handler).map_err(|error| Error::at("signals", error))
+}
+
+struct Editor {
+    options: Options,
+    state: State,
+    screen: terminal::Screen,
+    sender: mpsc::Sender<Event>,
+    worker: Worker,
+    job: Option<Job>,
+    preview: Preview,
+    watch: Option<Watch>,
+    leaving: bool,
+}
+
+impl Editor {
+    fn new(options: Options, door: Door, screen: terminal::Screen, sender: mpsc::Sender<Event>) -> Result<Self> {
+        let size = screen.size().map_err(|e| Error::at("the terminal", e))?;
+        let depth = Depth::of_environment(|name| std::env::var(name).ok());
+        read_input(sender.clone());
+        let worker = Worker::start(options.files.clone(), sender.clone());
+        let preview = listen(&door, sender.clone());
+        let changed = sender.clone();
+        // Without it changes from outside are met at the next save.
+        let watch = Watch::new(move |files| drop(changed.send(Event::FilesChanged(files))));
+        let watch = watch.inspect_err(|error| tracing::warn!("{error}")).ok();
+        let state = State::new(door, (size.width, size.height), depth);
+        let mut editor = Editor { options, state, screen, sender, worker, job: None, preview, watch, leaving: false };
+        editor.begin();
+        if editor.options.window && editor::opens_by_itself() {
+            editor.preview.open_window();
+        }
+        Ok(editor)
+    }
+
+    /// What is done once for every scene that is opened.
+    fn begin(&mut self) {
+        self.state.picture_size = picture_size(&self.state);
+        let greeting = self.state.door.greeting();
+        self.state.say(greeting);
+        self.watch_files();
+        self.show(false);
+    }
+
+    fn watch_files(&mut self) {
+        let Some(watch) = &mut self.watch else { return };
+        let path = self.state.door.path();
+        let mut all = files::materials::files(path, self.state.document().scene());
+        all.push(path.to_owned());
+        if let Err(error) = watch.set(&all) {
+            tracing::warn!("{error}");
+        }
+    }
+
+    fn run(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
+        let mut ticked = Instant::now();
+        while !self.leaving {
+            self.draw()?;
+            self.wait(events, &mut ticked);
+        }
+        self.job.iter().for_each(Job::cancel);
+        self.state.door.flush();
+        Ok(())
+    }
+
+    fn draw(&mut self) -> Result<()> {
+        let state = &self.state;
+        self.screen.draw(|frame| view::draw(frame, state)).map(drop).map_err(|e| Error::at("the terminal", e))
+    }
+
+    /// Waits for an event and takes all that are there, so that many cost one drawing.
+    fn wait(&mut self, events: &mpsc::Receiver<Event>, ticked: &mut Instant) {
+        let first = match self.state.playing {
+            true => events.recv_timeout(Duration::from_millis(33)).ok(),
+            false => events.recv_timeout(self.state.door.patience()).ok(),
+        };
+        for event in first.into_iter().chain(events.try_iter()) {
+            self.take(event);
+        }
+        self.state.seen.window = match self.preview.status() {
+            Status::Off => String::new(),
+            status => format!("window: {status}"),
+        };
+        let passed = ticked.elapsed().as_secs_f64();
+        *ticked = Instant::now();
+        if self.state.playing {
+            self.take(Event::Tick(passed));
+        }
+    }
+
+    fn take(&mut self, event: Event) {
+        for effect in update(&mut self.state, event) {
+            self.perform(effect);
+        }
+    }
+
+    fn perform(&mut self, effect: Effect) {
+        match effect {
+            Effect::Publish(change) => {
+                self.preview.publish(&change.document, change.revision, &change.edit);
+                self.watch_files();
+                self.show(false);
+            }
+            Effect::Show => {
+                let row = self.state.sheet().rows.get(self.state.row).map(|row| row.pointer.clone());
+                self.preview.select(row.or_else(|| Some(self.state.node.clone())));
+                let duration = self.state.document().scene().timeline.duration;
+                self.preview.transport(self.state.playing, self.state.time * duration);
+                self.show(false);
+            }
+            Effect::Reload => self.show(true),
+            Effect::Save { to, overwrite, leave } => {
+                let result = self.state.door.save(to.as_deref(), overwrite);
+                self.leaving = leave && result.is_ok();
+                self.take(Event::Saved(result.map_err(|error| error.to_string())));
+            }
+            Effect::Open(path) => self.open(&path),
+            Effect::Run(words) => self.start(&words),
+            Effect::Cancel => self.job.iter().for_each(Job::cancel),
+            Effect::View(None) => self.preview.open_window(),
+            Effect::View(Some(command)) => self.preview.view(&command),
+            Effect::Redraw => drop(self.screen.clear()),
+            Effect::Suspend => self.suspend(),
+            Effect::Quit => self.leaving = true,
+        }
+    }
+
+    /// Asks for the synthesis and the frame of the present.
+    fn show(&self, fresh: bool) {
+        let scene = self.state.document().scene().clone();
+        let path = self.state.door.path().to_owned();
+        self.worker.ask(Request { scene, path, time: self.state.time, fresh });
+    }
+
+    fn open(&mut self, path: &Path) {
+        match Door::open(path, self.options.read_only, &self.options.files) {
+            Ok(door) => {
+                self.preview = listen(&door, self.sender.clone());
+                self.state = State::new(door, self.state.size, self.state.depth);
+                self.begin();
+            }
+            Err(error) => self.state.complain(error.to_string()),
+        }
+    }
+
+    /// Runs a subcommand on the scene that is open, as it is now.
+    fn start(&mut self, words: &[String]) {
+        if self.state.seen.work.is_some() {
+            return self.state.complain("something runs already: Esc ends it");
+        }
+        let path = self.state.door.path().to_owned();
+        let mut with = words.to_vec();
+        with.insert(1, path.to_string_lossy().into_owned());
+        let command = ops::parse(&with).or_else(|error| ops::parse(words).map_err(|_| error));
+        match command {
+            Ok(command) => {
+                let name = words[0].clone();
+                let open = Some(ops::Open { path, document: self.state.document().clone() });
+                self.state.seen.work = Some(name.clone());
+                self.job = Some(Job::start(command, name, open, self.sender.clone()));
+            }
+            Err(error) => self.state.complain(error.to_string()),
+        }
+    }
+
+    /// Gives the terminal back, stops as Ctrl-Z does, and comes back with a fresh screen.
+    fn suspend(&mut self) {
+        terminal::restore();
+        signals::default_action(Signal::Stop);
+        match terminal::enter() {
+            Ok(screen) => self.screen = screen,
+            Err(_) => self.leaving = true,
+        }
+    }
+}
+
+/// Listens for windows of the scene; what they say comes as events.
+fn listen(door: &Door, sender: mpsc::Sender<Event>) -> Preview {
+    Preview::start(door.path(), door.document(), door.revision(), move |said| {
+        let event = match said {
+            editor::Event::Command(line) => Event::Command(line),
+            editor::Event::Pointer { x, y } => Event::Pointer(x, y),
+            editor::Event::Status => Event::WindowChanged,
+            editor::Event::Edit(asked) => Event::Asked(asked),
+        };
+        // Nobody listens once the editor has left.
+        let _ = sender.send(event);
+    })
+}
+
+/// Reads the terminal for as long as there is one.
+fn read_input(sender: mpsc::Sender<Event>) {
+    std::thread::spawn(move || {
+        while let Ok(input) = event::read() {
+            let events = match input {
+                Input::Key(key) if key.kind != KeyEventKind::Release => keys::name(key).map(Event::Key),
+                Input::Paste(text) => Some(Event::Paste(text)),
+                Input::Resize(width, height) => Some(Event::Resize(width, height)),
+                Input::Mouse(mouse) => match mouse.kind {
+                    MouseEventKind::ScrollDown => Some(Event::Key("Down".into())),
+                    MouseEventKind::ScrollUp => Some(Event::Key("Up".into())),
+                    MouseEventKind::Down(_) => Some(Event::Click(mouse.column, mouse.row)),
+                    _ => None,
+                },
+                _ => None,
+            };
+            if events.is_some_and(|event| sender.send(event).is_err()) {
+                return;
+            }
+        }
+        // The terminal is gone; the signal thread usually notices first.
+        let _ = sender.send(Event::End);
+    });
+}
+
+/// The size of the first layer's picture, from its header.
+fn picture_size(state: &State) -> Option<(usize, usize)> {
+    let crate::layers::Layer::Picture(layer) = state.document().scene().layers.first()?;
+    let (sizes, _) = files::materials::sizes(state.door.path(), state.document().scene(), state.door.options());
+    sizes.get(&layer.image).copied()
+}

@@ -1,0 +1,94 @@
+//! The terminal itself: every mode that the editor sets, and the one function that undoes all of them, used by the normal
+//! exit, errors, panics and signals alike.
+
+use std::io::{Stdout, Write, stdout};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+use ratatui::crossterm::{cursor, event, execute, terminal};
+
+use crate::base::error::{Error, Result};
+
+/// The terminal that the editor draws on.
+pub type Screen = Terminal<CrosstermBackend<Stdout>>;
+
+/// Whether any mode is set; only then is there something to undo.
+static SET: AtomicBool = AtomicBool::new(false);
+
+/// Sets every mode and gives the screen.
+pub fn enter() -> Result<Screen> {
+    let failed = |e: std::io::Error| Error::at("the terminal", e).cure("`plica edit` needs an interactive terminal");
+    terminal::enable_raw_mode().map_err(failed)?;
+    SET.store(true, Ordering::SeqCst);
+    let modes =
+        execute!(stdout(), terminal::EnterAlternateScreen, event::EnableBracketedPaste, event::EnableMouseCapture);
+    let screen = modes.and_then(|()| Terminal::new(CrosstermBackend::new(stdout())));
+    screen.map_err(|e| {
+        restore();
+        failed(e)
+    })
+}
+
+/// Undoes every mode, shows the cursor and gives the screen back. May be called at any time, from any thread, twice.
+pub fn restore() {
+    if SET.swap(false, Ordering::SeqCst) {
+        let mut out = stdout();
+        // A terminal that has gone away cannot be restored; there is nobody to tell.
+        let _ = execute!(
+            out,
+            event::DisableMouseCapture,
+            event::DisableBracketedPaste,
+            terminal::LeaveAlternateScreen,
+            cursor::SetCursorStyle::DefaultUserShape,
+            cursor::Show
+        );
+        let _ = out.flush();
+        let _ = terminal::disable_raw_mode();
+    }
+}
+
+/// Makes a panic restore the terminal before its message is printed.
+pub fn restore_on_panic() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        restore();
+        print(panic);
+    }));
+}
+
+/// `text` without anything that could command a terminal: control characters become their pictures, direction marks and
+/// the like a replacement character.
+pub fn plain(text: &str) -> String {
+    text.chars()
+        .map(|c| match c {
+            '\u{0}'..='\u{1f}' => char::from_u32(0x2400 + u32::from(c)).unwrap_or('\u{fffd}'),
+            '\u{7f}' => '\u{2421}',
+            '\u{80}'..='\u{9f}'
+            | '\u{200b}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{feff}' => '\u{fffd}',
+            _ => c,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_commands_a_terminal_gets_through() {
+        for (text, safe) in [
+            ("left eye", "left eye"),
+            ("\u{1b}[2J", "␛[2J"),
+            ("a\nb\tc", "a␊b␉c"),
+            ("\u{9b}31m", "\u{fffd}31m"),
+            ("\u{202e}abc", "\u{fffd}abc"),
+            ("größe 目", "größe 目"),
+        ] {
+            assert_eq!(plain(text), safe);
+        }
+    }
+}

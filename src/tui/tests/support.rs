@@ -1,0 +1,65 @@
+//! What the tests of the editor share: a scene, and keys typed as the manual writes them.
+
+use std::sync::LazyLock;
+
+use crate::tui::app::State;
+use crate::tui::colour::Depth;
+use crate::tui::door::Door;
+use crate::tui::update::{Effect, Event, update};
+
+/// A scene with one of everything that the keys meet.
+pub const SCENE: &str = r#"{
+  "plica": 1,
+  "timeline": { "duration": 2, "fps": 10 },
+  "images": { "cat": { "path": "cat.png" } },
+  "layers": [
+    {
+      "kind": "picture", "name": "face", "image": "cat",
+      "zones": [
+        {
+          "name": "left eye",
+          "outline": { "kind": "polygon", "points": [[10, 10], [50, 10], [50, 40], [10, 40]] },
+          "motion": [
+            { "tool": "point", "at": [20, 20], "jump": [0, -18] },
+            { "tool": "point", "at": [30, 25], "jump": [3, 4] },
+            { "tool": "point", "at": [40, 30] },
+            { "tool": "scale", "center": [30, 25], "factor": [1.1, 1] }
+          ],
+          "interpolation": { "method": "modified-shepard", "radius": 60 },
+          "position": { "function": "sine", "cycles": 0.5 }
+        },
+        { "name": "mouth", "outline": { "kind": "rectangle", "x": 20, "y": 45, "width": 30, "height": 10 } }
+      ]
+    }
+  ]
+}"#;
+
+/// The editor with [`SCENE`] open on a terminal of 80 x 24. Edits stay in memory.
+pub fn state() -> State {
+    static FOLDER: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("cat.plica.json"), SCENE).unwrap();
+        folder
+    });
+    let door = Door::in_memory(&FOLDER.path().join("cat.plica.json"));
+    let mut state = State::new(door, (80, 24), Depth::None);
+    state.picture_size = Some((64, 64));
+    state
+}
+
+/// Presses keys, written with spaces between them; `"text"` types text. Gives all effects.
+pub fn press(state: &mut State, keys: &str) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for (i, part) in keys.split('"').enumerate() {
+        if i % 2 == 1 {
+            for c in part.chars() {
+                effects.extend(update(state, Event::Key(if c == ' ' { "Space".into() } else { c.to_string() })));
+            }
+        } else {
+            for key in part.split_whitespace() {
+                effects.extend(update(state, Event::Key(key.into())));
+            }
+        }
+    }
+    effects
+}

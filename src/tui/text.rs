@@ -1,0 +1,148 @@
+//! A line of text under the cursor, as entries, `:` and `/` need it: what is typed, where the cursor is. Kept apart from
+//! any meaning, so that one table of keys serves all three.
+
+use tui_input::{Input, InputRequest};
+
+use crate::base::maths;
+
+/// A line being typed.
+#[derive(Clone, Debug, Default)]
+pub struct Text {
+    input: Input,
+    /// The text was there before; the first character typed takes its place.
+    fresh: bool,
+}
+
+impl Text {
+    /// Starts from `text`, the cursor behind it. Where `fresh`, the first character typed replaces all of it.
+    pub fn new(text: impl Into<String>, fresh: bool) -> Self {
+        Text { input: Input::new(text.into()), fresh }
+    }
+
+    /// The text.
+    pub fn value(&self) -> &str {
+        self.input.value()
+    }
+
+    /// Where the cursor is, in terminal columns from the start.
+    pub fn column(&self) -> usize {
+        self.input.visual_cursor()
+    }
+
+    /// Where the cursor is, in characters from the start.
+    pub fn cursor(&self) -> usize {
+        self.input.cursor()
+    }
+
+    /// Whether the next character typed replaces the text.
+    pub fn is_fresh(&self) -> bool {
+        self.fresh
+    }
+
+    /// Types `typed` at the cursor. Control characters are left out.
+    pub fn insert(&mut self, typed: &str) {
+        if std::mem::take(&mut self.fresh) {
+            self.input.reset();
+        }
+        for c in typed.chars().filter(|c| !c.is_control()) {
+            self.input.handle(InputRequest::InsertChar(c));
+        }
+    }
+
+    /// Replaces the text and sets the cursor, in characters.
+    pub fn set(&mut self, text: String, cursor: usize) {
+        self.fresh = false;
+        self.input = Input::new(text).with_cursor(cursor);
+    }
+
+    /// One of the edits that the key table names (`text left`, ...); false where it is not known.
+    pub fn change(&mut self, what: &str) -> bool {
+        let request = match what {
+            "left" => InputRequest::GoToPrevChar,
+            "right" => InputRequest::GoToNextChar,
+            "start" => InputRequest::GoToStart,
+            "end" => InputRequest::GoToEnd,
+            "word-left" => InputRequest::GoToPrevWord,
+            "word-right" => InputRequest::GoToNextWord,
+            "rub" => InputRequest::DeletePrevChar,
+            "delete" => InputRequest::DeleteNextChar,
+            "rub-word" => InputRequest::DeletePrevWord,
+            "clear" => InputRequest::DeleteLine,
+            _ => return false,
+        };
+        self.fresh = false;
+        self.input.handle(request);
+        true
+    }
+
+    /// Steps the digit under (or just before) the cursor by `steps`, carrying as arithmetic does; the cursor stays on its
+    /// place value. False where the text is not a plain number with a digit there.
+    pub fn step_digit(&mut self, steps: i64) -> bool {
+        let text = self.value().to_string();
+        let Some((decimals, place)) = digit_at(&text, self.cursor()) else { return false };
+        let power = maths::powi(10.0, place.unsigned_abs());
+        let unit = if place >= 0 { power } else { 1.0 / power };
+        let Ok(value) = text.trim().parse::<f64>() else { return false };
+        let stepped = format!("{:.decimals$}", value + steps as f64 * unit);
+        let from_end = text.chars().count() - self.cursor().min(text.chars().count());
+        let cursor = stepped.chars().count().saturating_sub(from_end);
+        self.set(stepped, cursor);
+        true
+    }
+}
+
+/// The number of decimals of a plain number, and the place value (power of ten) of its digit under the cursor.
+fn digit_at(text: &str, cursor: usize) -> Option<(usize, i32)> {
+    if text.is_empty() || !text.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c)) {
+        return None;
+    }
+    let point = text.find('.').unwrap_or(text.len());
+    let decimals = text.len().saturating_sub(point + 1);
+    let mut at = cursor.min(text.len() - 1);
+    if !text.as_bytes()[at].is_ascii_digit() {
+        at = at.checked_sub(1)?;
+    }
+    if !text.as_bytes()[at].is_ascii_digit() {
+        return None;
+    }
+    let place = if at < point { (point - at - 1) as i32 } else { -((at - point) as i32) };
+    Some((decimals, place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_character_replaces_a_fresh_text() {
+        let mut text = Text::new("150", true);
+        text.insert("7");
+        assert_eq!(text.value(), "7");
+        let mut text = Text::new("150", true);
+        text.change("left");
+        text.insert("7");
+        assert_eq!(text.value(), "1570");
+        text.insert("\u{1b}\n");
+        assert_eq!(text.value(), "1570");
+    }
+
+    #[test]
+    fn digits_step_with_carry() {
+        for (text, cursor, steps, stepped) in [
+            ("150", 3, 1, "151"),
+            ("150", 0, 1, "250"),
+            ("150", 1, -6, "90"),
+            ("0.95", 2, 1, "1.05"),
+            ("0.95", 3, 1, "0.96"),
+            ("0.95", 4, 1, "0.96"),
+            ("-18", 2, -1, "-19"),
+            ("9", 1, 1, "10"),
+        ] {
+            let mut line = Text::new(text, true);
+            line.set(text.into(), cursor);
+            assert!(line.step_digit(steps), "{text}");
+            assert_eq!(line.value(), stepped, "{text} at {cursor}");
+        }
+        assert!(!Text::new("w/2", false).step_digit(1));
+    }
+}

@@ -1,0 +1,251 @@
+//! What comes in and what goes out: `update` takes an event, changes the state and gives effects, for others to perform.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use ratatui::layout::{Position, Rect};
+
+use super::app::{Mode, Pages, Pane, State};
+use super::keys::{self, Found};
+use super::panes::first_row;
+use super::{commands, tree, view};
+use crate::base::pixels::Frame;
+use crate::preview::editor::Asked;
+use crate::render::Synth;
+use crate::scene::{Document, Edit};
+
+/// Something that happened.
+pub enum Event {
+    /// A key, by its name in the table.
+    Key(String),
+    /// Text pasted by the terminal.
+    Paste(String),
+    /// The terminal has another size.
+    Resize(u16, u16),
+    /// This much time has passed while playing, in seconds.
+    Tick(f64),
+    /// A synthesis has ended: what it made and how long it took, or what kept it.
+    Synthesised(Result<(Arc<Synth>, f64), String>),
+    /// A frame is there.
+    Framed(Arc<Frame>),
+    /// Long work has got on.
+    Progress(String),
+    /// Long work has ended; what it said last.
+    Done(Result<String, String>),
+    /// A save has ended.
+    Saved(Result<String, String>),
+    /// The windows have something new to say about themselves.
+    WindowChanged,
+    /// The pointer in a window, in pixels of the picture.
+    Pointer(f64, f64),
+    /// A window asks for a command, by its name in the window's table.
+    Command(String),
+    /// A script asks for an edit.
+    Asked(Asked),
+    /// Files of the scene have changed on the disk.
+    FilesChanged(Vec<PathBuf>),
+    /// The system asks for an end, or the terminal has gone away.
+    End,
+    /// The shell's Ctrl-Z came from outside.
+    Stop,
+    /// A click, in cells of the terminal.
+    Click(u16, u16),
+}
+
+/// A change of the document, as the windows want it.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The document after it.
+    pub document: Document,
+    /// Its revision.
+    pub revision: u64,
+    /// What was changed.
+    pub edit: Edit,
+}
+
+/// Something to be done outside.
+#[derive(Clone, Debug)]
+pub enum Effect {
+    /// The document has changed: show it everywhere.
+    Publish(Box<Change>),
+    /// The time or the selection has changed.
+    Show,
+    /// Write the document; to the scene's own file where no other is given.
+    Save {
+        /// Another file.
+        to: Option<PathBuf>,
+        /// Whether another program's version may be lost.
+        overwrite: bool,
+        /// Whether to leave once it is safe.
+        leave: bool,
+    },
+    /// Open another scene.
+    Open(PathBuf),
+    /// Load the pictures again.
+    Reload,
+    /// Run a subcommand of the command line with these arguments.
+    Run(Vec<String>),
+    /// End long work.
+    Cancel,
+    /// Open the preview window, or give it a command of its table.
+    View(Option<String>),
+    /// Draw everything anew.
+    Redraw,
+    /// Stop the process as Ctrl-Z does in a shell.
+    Suspend,
+    /// Leave.
+    Quit,
+}
+
+/// Takes an event and gives what is to be done outside.
+pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
+    match event {
+        Event::Key(key) => press(state, &key),
+        Event::Paste(text) => paste(state, &text),
+        Event::Resize(width, height) => state.size = (width, height),
+        Event::Tick(seconds) => tick(state, seconds),
+        Event::Synthesised(Ok((synth, ms))) => {
+            state.picture_size = Some(synth.size);
+            state.seen.synth = Some(synth);
+            state.seen.synth_ms = Some(ms);
+            state.seen.problem = None;
+        }
+        Event::Synthesised(Err(problem)) => state.seen.problem = Some(problem),
+        Event::Framed(frame) => state.seen.frame = Some(frame),
+        Event::Progress(line) => state.seen.work = Some(line),
+        Event::Done(result) => {
+            state.seen.work = None;
+            report(state, result);
+        }
+        Event::Saved(result) => report(state, result),
+        Event::WindowChanged => {}
+        Event::Pointer(x, y) => state.seen.pointer = Some((x, y)),
+        Event::Click(x, y) => click(state, x, y),
+        Event::Command(name) => commands::run_of_window(state, &name),
+        Event::Asked(asked) => answer(state, asked),
+        Event::FilesChanged(files) => follow(state, &files),
+        Event::End => state.ask(Effect::Quit),
+        Event::Stop => state.ask(Effect::Suspend),
+    }
+    state.effects.drain(..).collect()
+}
+
+/// Another program wrote the scene or one of its pictures.
+fn follow(state: &mut State, files: &[PathBuf]) {
+    if files.iter().any(|file| file != state.door.path()) {
+        state.ask(Effect::Reload);
+    }
+    match state.door.follow() {
+        Ok(Some(change)) => {
+            state.changed(change);
+            state.say("the file was changed by another program: its version is here, u takes it back");
+        }
+        Ok(None) => {}
+        Err(why) => state.complain(why),
+    }
+}
+
+/// An edit that a script asks for goes through the same door.
+fn answer(state: &mut State, asked: Asked) {
+    match state.door.apply(asked.edit.clone(), false) {
+        Ok(change) => {
+            change.into_iter().for_each(|change| state.changed(change));
+            asked.answer(Vec::new());
+        }
+        Err(problems) => asked.answer(problems),
+    }
+}
+
+/// Says how something ended: in the line, or in pages of its own where it is longer.
+fn report(state: &mut State, result: Result<String, String>) {
+    match result {
+        Ok(text) if text.trim_end().contains('\n') => {
+            let lines = text.lines().map(super::terminal::plain).collect();
+            state.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
+        }
+        Ok(text) => state.say(text.trim_end()),
+        Err(text) => state.complain(text),
+    }
+}
+
+/// Pasted text is typed where something is typed; a line end ends it.
+fn paste(state: &mut State, text: &str) {
+    let first = text.lines().next().unwrap_or_default();
+    match &mut state.mode {
+        Mode::Entry(entry) => entry.text.insert(first),
+        Mode::Line(line) => {
+            line.typed();
+            line.text.insert(first);
+        }
+        _ => state.complain("paste into an entry (i) or a command (:)"),
+    }
+}
+
+/// A click goes to the pane under it, and in the tree to the row.
+fn click(state: &mut State, x: u16, y: u16) {
+    if !matches!(state.mode, Mode::Normal) {
+        return;
+    }
+    let areas = view::areas(Rect::new(0, 0, state.size.0, state.size.1));
+    let at = Position::new(x, y);
+    if areas.tree.contains(at) {
+        let rows = tree::rows(state.document(), &state.folded);
+        let first = first_row(tree::row_of(&rows, &state.node), rows.len(), areas.tree.height.saturating_sub(2));
+        let row = rows.get(first + usize::from(y.saturating_sub(areas.tree.y + 1))).map(|row| row.pointer.clone());
+        state.focus = Pane::Tree;
+        state.show(row.unwrap_or(state.node.clone()));
+    } else if areas.right.is_some_and(|[.., picture]| picture.contains(at)) {
+        state.focus = Pane::Picture;
+    } else if areas.table.contains(at) {
+        state.focus = Pane::Table;
+    }
+}
+
+fn tick(state: &mut State, seconds: f64) {
+    let duration = state.document().scene().timeline.duration;
+    if state.playing && duration > 0.0 {
+        let time = state.time + seconds / duration;
+        state.time = time - time.floor();
+        state.ask(Effect::Show);
+    }
+}
+
+fn press(state: &mut State, key: &str) {
+    let counting = matches!(state.mode, Mode::Normal | Mode::Aim) && state.pressed.is_empty();
+    if let (true, Some(digit)) =
+        (counting, key.parse::<usize>().ok().filter(|&d| d < 10 && (d > 0 || state.count.is_some())))
+    {
+        state.count = Some((state.count.unwrap_or(0) * 10 + digit).min(1_000_000));
+        return;
+    }
+    let pressed = if state.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.pressed) };
+    state.pressed.clear();
+    match keys::find(&state.contexts(), &pressed) {
+        Found::Prefix => state.pressed = pressed,
+        Found::Row(row) => {
+            let count = state.count.take();
+            state.message = None;
+            commands::run(state, row.command, count);
+        }
+        Found::Nothing => {
+            state.count = None;
+            unbound(state, key, &pressed);
+        }
+    }
+}
+
+/// A key without a binding: typed where something is typed, else said to mean nothing.
+fn unbound(state: &mut State, key: &str, pressed: &str) {
+    let typed = if key == "Space" { " " } else { key };
+    let one = typed.chars().count() == 1;
+    match &mut state.mode {
+        Mode::Entry(entry) if one => entry.text.insert(typed),
+        Mode::Line(line) if one => {
+            line.typed();
+            line.text.insert(typed);
+        }
+        Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
+        Mode::Normal | Mode::Aim => state.complain(format!("{pressed} means nothing here (? shows the keys)")),
+        _ => {}
+    }
+}

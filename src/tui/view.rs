@@ -1,0 +1,126 @@
+//! The screen: where the panes stand, at every size from 80 x 24 on. Draws the state and changes nothing.
+
+use ratatui::Frame;
+use ratatui::layout::{Alignment, Constraint, Layout, Position, Rect, Spacing};
+use ratatui::symbols::merge::MergeStrategy;
+use ratatui::text::{Line, Text};
+use ratatui::widgets::{Block, Clear, Paragraph, Widget};
+
+use super::app::{Mode, Pane, State};
+use super::colour;
+use super::panes;
+
+/// The least terminal that the editor draws on.
+pub const LEAST: (u16, u16) = (80, 24);
+/// From this width on there are panes at the right.
+const WIDE: u16 = 112;
+
+/// Where the panes stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Areas {
+    /// The tree of the scene.
+    pub tree: Rect,
+    /// The form or table.
+    pub table: Rect,
+    /// What is told about the field under the cursor.
+    pub detail: Rect,
+    /// The field, the position function and the picture, where there is room.
+    pub right: Option<[Rect; 3]>,
+    /// The status line.
+    pub status: Rect,
+    /// The command line.
+    pub line: Rect,
+}
+
+/// The areas of a screen.
+pub fn areas(screen: Rect) -> Areas {
+    let [body, status, line] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
+    let right = if screen.width >= WIDE { screen.width * 2 / 5 } else { 0 };
+    let tree = (screen.width / 5).clamp(20, 30);
+    let columns = [Constraint::Length(tree), Constraint::Fill(1), Constraint::Length(right)];
+    let [tree, middle, right] = Layout::horizontal(columns).spacing(overlap(right > 0)).areas(body);
+    let [table, detail] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(5)]).spacing(Spacing::Overlap(1)).areas(middle);
+    let stack = [Constraint::Fill(3), Constraint::Length((body.height / 5).max(6)), Constraint::Fill(5)];
+    let right = (right.width > 0).then(|| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
+    Areas { tree, table, detail, right, status, line }
+}
+
+/// Borders that meet are drawn once; without a third column there is nothing for it to overlap with.
+fn overlap(right: bool) -> Spacing {
+    if right { Spacing::Overlap(1) } else { Spacing::Space(0) }
+}
+
+/// Draws the screen.
+pub fn draw(frame: &mut Frame, state: &State) {
+    let screen = frame.area();
+    if screen.width < LEAST.0 || screen.height < LEAST.1 {
+        return too_small(frame, screen);
+    }
+    let areas = areas(screen);
+    let mut cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
+    let in_middle = areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim));
+    if in_middle {
+        let whole = areas.table.union(areas.detail);
+        let inner = pane(frame, state, whole, Pane::Picture, &panes::picture::title(state));
+        cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
+    } else {
+        let inner = pane(frame, state, areas.table, Pane::Table, &panes::table::title(state));
+        cursor = panes::table::draw(state, inner, frame.buffer_mut()).or(cursor);
+        let inner = block(frame, areas.detail, "");
+        panes::detail::draw(state, inner, frame.buffer_mut());
+    }
+    if let Some([field, position, picture]) = areas.right {
+        let inner = block(frame, field, "field");
+        panes::field::draw(state, inner, frame.buffer_mut());
+        let inner = block(frame, position, "position");
+        panes::position::draw(state, inner, frame.buffer_mut());
+        let inner = pane(frame, state, picture, Pane::Picture, &panes::picture::title(state));
+        cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
+    }
+    panes::status::draw(state, areas.status, frame.buffer_mut());
+    cursor = panes::line::draw(state, areas.line, frame.buffer_mut()).or(cursor);
+    cursor = panes::popup::draw(state, screen, frame.buffer_mut()).or(cursor);
+    if let Some(cursor) = cursor {
+        frame.set_cursor_position(cursor);
+    }
+}
+
+/// The frame of a pane that can have the focus; the one that has it shows `>` and a bold title.
+fn pane(frame: &mut Frame, state: &State, area: Rect, which: Pane, title: &str) -> Rect {
+    let focused = state.focus == which;
+    let title = Line::from(format!("{}{title} ", if focused { ">" } else { " " }));
+    let title = if focused { title.style(colour::strong()) } else { title };
+    bordered(frame, area, title)
+}
+
+fn block(frame: &mut Frame, area: Rect, title: &str) -> Rect {
+    let title = if title.is_empty() { String::new() } else { format!(" {title} ") };
+    bordered(frame, area, Line::from(title))
+}
+
+fn bordered(frame: &mut Frame, area: Rect, title: Line) -> Rect {
+    let block = Block::bordered().title(title).merge_borders(MergeStrategy::Exact);
+    let inner = block.inner(area);
+    block.render(area, frame.buffer_mut());
+    inner
+}
+
+/// Clears a rectangle in the middle of the screen and frames it.
+pub fn window(screen: Rect, width: u16, height: u16, title: &str, buffer: &mut ratatui::buffer::Buffer) -> Rect {
+    let area =
+        screen.centered(Constraint::Length(width.min(screen.width)), Constraint::Length(height.min(screen.height)));
+    Clear.render(area, buffer);
+    let block = Block::bordered().title(format!(" {title} "));
+    let inner = block.inner(area);
+    block.render(area, buffer);
+    inner
+}
+
+fn too_small(frame: &mut Frame, screen: Rect) {
+    let text = format!("Plica needs {} x {}\nthis is {} x {}", LEAST.0, LEAST.1, screen.width, screen.height);
+    let middle = Rect { y: screen.y + screen.height.saturating_sub(2) / 2, height: screen.height.min(2), ..screen };
+    frame.render_widget(Paragraph::new(Text::from(text)).alignment(Alignment::Center), middle);
+    frame.set_cursor_position(Position::new(screen.x, screen.y));
+}

@@ -1,0 +1,182 @@
+//! Threads beside the editor: one synthesises the scene and makes its frames, always for the newest request; one runs a
+//! subcommand. Neither ever keeps a key waiting; what they find out comes back as events.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError, mpsc};
+use std::time::{Duration, Instant};
+
+use super::update::Event;
+use crate::base::error::Error;
+use crate::files;
+use crate::ops;
+use crate::render::{self, Synth};
+use crate::scene::Scene;
+
+/// What the panes want to show.
+#[derive(Clone)]
+pub struct Request {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Its file, which its pictures are relative to.
+    pub path: PathBuf,
+    /// Scene time.
+    pub time: f64,
+    /// Whether files may have changed since the last time.
+    pub fresh: bool,
+}
+
+/// The thread that synthesises.
+pub struct Worker {
+    slot: Arc<(Mutex<Option<Request>>, Condvar)>,
+}
+
+impl Worker {
+    /// Starts it.
+    pub fn start(options: files::Options, events: mpsc::Sender<Event>) -> Worker {
+        let slot = Arc::new((Mutex::new(None), Condvar::new()));
+        let shared = slot.clone();
+        std::thread::spawn(move || {
+            let mut studio = Studio { options, cache: files::materials::Cache::default(), shown: None };
+            while let Some(request) = next(&shared) {
+                if !studio.serve(&request, &events) {
+                    return;
+                }
+            }
+        });
+        Worker { slot }
+    }
+
+    /// Asks for this; what was asked for before and not begun yet is forgotten.
+    pub fn ask(&self, request: Request) {
+        let mut slot = self.slot.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let fresh = request.fresh || slot.as_ref().is_some_and(|waiting| waiting.fresh);
+        *slot = Some(Request { fresh, ..request });
+        drop(slot);
+        self.slot.1.notify_one();
+    }
+}
+
+/// Waits for a request.
+fn next((slot, wake): &(Mutex<Option<Request>>, Condvar)) -> Option<Request> {
+    let guard = slot.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut guard = wake.wait_while(guard, |request| request.is_none()).unwrap_or_else(PoisonError::into_inner);
+    guard.take()
+}
+
+/// What the thread keeps from one request to the next.
+struct Studio {
+    options: files::Options,
+    cache: files::materials::Cache,
+    shown: Option<(Arc<Scene>, Arc<Synth>)>,
+}
+
+impl Studio {
+    /// Serves a request; false where nobody listens any more.
+    fn serve(&mut self, request: &Request, events: &mpsc::Sender<Event>) -> bool {
+        if request.fresh || !self.shown.as_ref().is_some_and(|(scene, _)| Arc::ptr_eq(scene, &request.scene)) {
+            let begun = Instant::now();
+            let result = self.synthesise(request);
+            let ms = begun.elapsed().as_secs_f64() * 1000.0;
+            if events.send(Event::Synthesised(result.map(|synth| (synth, ms)))).is_err() {
+                return false;
+            }
+        }
+        let Some((_, synth)) = &self.shown else { return true };
+        events.send(Event::Framed(Arc::new(render::cpu::frame(synth, request.time)))).is_ok()
+    }
+
+    fn synthesise(&mut self, request: &Request) -> Result<Arc<Synth>, String> {
+        let (materials, problems) =
+            files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
+        let previous = self.shown.as_ref().map(|(_, synth)| &**synth);
+        let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
+            // A picture that could not be read says more than that it is not there.
+            problems.first().unwrap_or(&problem).to_string()
+        })?;
+        let synth = Arc::new(synth);
+        self.shown = Some((request.scene.clone(), synth.clone()));
+        problems.first().map_or(Ok(synth), |problem| Err(problem.to_string()))
+    }
+}
+
+/// A subcommand that runs.
+pub struct Job {
+    cancel: Arc<AtomicBool>,
+}
+
+impl Job {
+    /// Runs `command`, whose words were `words`; says how it gets on and how it ended.
+    pub fn start(command: ops::Command, name: String, open: Option<ops::Open>, events: mpsc::Sender<Event>) -> Job {
+        let cancel = Arc::new(AtomicBool::new(false));
+        let shared = cancel.clone();
+        std::thread::spawn(move || {
+            let out = Buffer::default();
+            let said = Buffer::default();
+            let messages = Messages { name: name.clone(), said: said.clone(), events: events.clone(), shown: None };
+            let mut context =
+                ops::Context { out: Box::new(out.clone()), messages: Box::new(messages), cancel: shared, open };
+            let result = command.run(&mut context);
+            let printed = format!("{}{}", out.text(), said.text());
+            let result = match result {
+                Ok(()) if printed.trim().is_empty() => Ok(format!("{name}: done")),
+                Ok(()) => Ok(printed),
+                Err(Error::Interrupted) => Err(format!("{name}: interrupted, nothing half-written is left")),
+                Err(error) => Err(format!("{name}: {error}")),
+            };
+            // Nobody listens once the editor has left.
+            let _ = events.send(Event::Done(result));
+        });
+        Job { cancel }
+    }
+
+    /// Asks it to end.
+    pub fn cancel(&self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+/// What a subcommand prints, kept in memory.
+#[derive(Clone, Default)]
+struct Buffer(Arc<Mutex<Vec<u8>>>);
+
+impl Buffer {
+    fn text(&self) -> String {
+        String::from_utf8_lossy(&self.0.lock().unwrap_or_else(PoisonError::into_inner)).into_owned()
+    }
+}
+
+impl std::io::Write for Buffer {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Progress for the status line.
+struct Messages {
+    name: String,
+    said: Buffer,
+    events: mpsc::Sender<Event>,
+    shown: Option<Instant>,
+}
+
+impl ops::Progress for Messages {
+    fn say(&mut self, line: &str) {
+        use std::io::Write;
+        // A buffer in memory takes everything.
+        let _ = writeln!(self.said, "{line}");
+    }
+
+    fn step(&mut self, what: &str, done: u64, total: u64) {
+        if self.shown.is_none_or(|at| at.elapsed() > Duration::from_millis(100)) {
+            self.shown = Some(Instant::now());
+            // Nobody listens once the editor has left.
+            let _ = self.events.send(Event::Progress(format!("{}: {what} {done}/{total}", self.name)));
+        }
+    }
+}
