@@ -55,13 +55,15 @@ impl Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let path = if self.path.is_empty() { "/" } else { &self.path };
         let kind = match self.severity {
             Severity::Warning => "warning: ",
             Severity::Error => "",
         };
         // Keys and names come from files: none of them may steer a terminal.
-        write!(f, "{}: {kind}{}", printable(path), printable(&self.message))?;
+        if !self.path.is_empty() {
+            write!(f, "{}: ", printable(&self.path))?;
+        }
+        write!(f, "{kind}{}", printable(&self.message))?;
         match &self.hint {
             Some(hint) => write!(f, " ({})", printable(hint)),
             None => Ok(()),
@@ -82,7 +84,7 @@ pub fn there_are<'a>(known: impl Iterator<Item = &'a str>) -> String {
     if names.len() > 20 {
         names[20] = "…".into();
     }
-    format!("there are {}", names.join(", "))
+    format!("there {} {}", if names.len() == 1 { "is" } else { "are" }, names.join(", "))
 }
 
 /// `text` in quotes, with control characters escaped, and not longer than a line bears.

@@ -7,14 +7,14 @@ use crate::base::problem::{Problem, quoted};
 /// Names of siblings, each with its pointer: not empty, without control characters, none twice.
 pub fn names<'a>(siblings: impl Iterator<Item = (String, &'a str)>) -> Vec<Problem> {
     let mut problems = Vec::new();
-    let mut first: HashMap<&str, String> = HashMap::new();
-    for (path, name) in siblings {
+    let mut first: HashMap<&str, usize> = HashMap::new();
+    for (i, (path, name)) in siblings.enumerate() {
         if let Some(earlier) = first.get(name) {
             let message = format!("the name {} is taken", quoted(name));
-            problems.push(Problem::error(&path, message).hint(format!("{earlier} has it; names are unique")));
+            problems.push(Problem::error(&path, message).hint(format!("number {earlier} of the list has it")));
         }
         problems.extend(plain_text(name, &path));
-        first.entry(name).or_insert(path);
+        first.entry(name).or_insert(i);
     }
     problems
 }

@@ -71,7 +71,7 @@ pub fn parse(setting: &str) -> Result<(&str, Value)> {
     // A number that JSON cannot hold must not become text.
     match crate::scene::json::parse(value) {
         Ok(json) => Ok((&setting[..at], json)),
-        Err(problem) if problem.message.contains("out of range") => {
+        Err(problem) if problem.message.contains("too large") => {
             Err(Error::at(&setting[..at], format!("{value} is not a finite number")))
         }
         Err(_) => Ok((&setting[..at], Value::from(value))),

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::check::Rules;
 use super::edit::Edit;
 use super::{Scene, VERSION, check, json, migrate};
-use crate::base::problem::Problem;
+use crate::base::problem::{Problem, Severity};
 
 /// A scene as written and as meant. A clone shares both.
 #[derive(Clone, Debug)]
@@ -84,10 +84,13 @@ impl Document {
         &self.warnings
     }
 
-    /// The document after an edit, or why there is none.
+    /// The document after an edit, or the errors that it would bring.
     pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
         let mut json = Value::clone(&self.json);
         edit.patch(&mut json).map_err(|problem| vec![problem])?;
-        Document::from_json_under(json, self.rules)
+        Document::from_json_under(json, self.rules).map_err(|mut problems| {
+            problems.retain(|problem| problem.severity == Severity::Error);
+            problems
+        })
     }
 }

@@ -23,11 +23,22 @@ pub fn parse(text: &str) -> Result<Value, Problem> {
     value.and_then(|value| deserializer.end().map(|()| value)).map_err(|error| place(&error))
 }
 
+/// What serde_json says, and the same in plain words.
+const PLAINER: [(&str, &str); 6] = [
+    ("EOF while parsing a value", "the text ends where a value was expected"),
+    ("EOF while parsing an object", "the text ends within an object: a } is missing"),
+    ("EOF while parsing a list", "the text ends within a list: a ] is missing"),
+    ("EOF while parsing a string", "the text ends within a text: a \" is missing"),
+    ("number out of range", "the number is too large"),
+    ("expected value", "expected a value: a number, a text in quotes, a list, an object"),
+];
+
 fn place(error: &serde_json::Error) -> Problem {
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
     let what = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
-    Problem::error("", format!("line {line}, column {column}: {what}"))
+    let plainer = PLAINER.iter().find(|(theirs, _)| *theirs == what).map_or(what, |(_, ours)| ours);
+    Problem::error("", format!("line {line}, column {column}: {plainer}"))
 }
 
 /// Reads one value at a depth.
@@ -237,10 +248,10 @@ mod tests {
     fn broken_text_is_refused_with_its_place() {
         for (text, expected) in [
             ("{ \"a\": 1,\n  \"a\": 2 }", "line 2, column 5: \"a\" stands twice in one object"),
-            ("[1e999]", "line 1, column 6: number out of range"),
-            ("{ \"a\": NaN }", "line 1, column 8: expected value"),
+            ("[1e999]", "line 1, column 6: the number is too large"),
+            ("{ \"a\": NaN }", "line 1, column 8: expected a value: a number, a text in quotes, a list, an object"),
             ("{ \"a\": 1 } x", "line 1, column 12: trailing characters"),
-            ("", "line 1, column 0: EOF while parsing a value"),
+            ("", "line 1, column 0: the text ends where a value was expected"),
         ] {
             assert_eq!(parse(text).unwrap_err().message, expected, "{text}");
         }

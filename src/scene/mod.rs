@@ -12,8 +12,6 @@ pub mod build;
 pub mod check;
 mod document;
 pub mod edit;
-#[cfg(test)]
-mod edit_tests;
 pub mod field;
 pub mod history;
 pub mod json;
@@ -57,3 +55,6 @@ pub struct Image {
     #[schemars(length(min = 1))]
     pub path: String,
 }
+
+#[cfg(test)]
+mod tests;

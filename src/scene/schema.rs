@@ -11,6 +11,9 @@ use super::pointer;
 /// of them stays finite.
 const LARGEST: f64 = 1e9;
 
+/// The ranges of numbers that have none of their own; messages about other things leave them out.
+pub const WIDEST: [(f64, f64); 2] = [(-LARGEST, LARGEST), (0.0, u32::MAX as f64)];
+
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     let mut schema = Value::from(schemars::schema_for!(super::Scene));
     bound(&mut schema, None);

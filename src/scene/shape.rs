@@ -2,11 +2,11 @@
 //! missing field, wrong type, unknown word and number out of range at once. (Reading into the types would stop at the
 //! first, and would not say where.)
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Number, Value};
 
 use super::field::range_text;
 use super::pointer;
-use super::schema::{Body, Shape};
+use super::schema::{Body, Shape, WIDEST};
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 
 /// No more problems than this are listed.
@@ -56,8 +56,11 @@ impl Walk {
         }
         match (shape.body(), value) {
             (Body::Number { integer }, Value::Number(number)) => {
-                let number = number.as_f64().unwrap_or(f64::NAN);
-                self.number(shape, number, integer && !(value.is_u64() || value.is_i64()));
+                if integer && number.is_f64() {
+                    self.report(format!("expected a whole number, found {number}"), None);
+                } else {
+                    self.in_range(number, shape.range(), shape.unit());
+                }
             }
             (Body::Text, Value::String(text)) if text.chars().count() < shape.min_length() => {
                 self.report("is empty".into(), Some(format!("expected {}", expected(shape))));
@@ -69,9 +72,9 @@ impl Walk {
             }
             (Body::Numbers(count), Value::Array(items)) if items.len() == count => {
                 let range = shape.range();
-                self.items(items, |walk, item| match item.as_f64() {
-                    Some(number) => walk.in_range(number, range, shape.unit()),
-                    None => walk.report(format!("expected a number, found {}", found(item)), None),
+                self.items(items, |walk, item| match item {
+                    Value::Number(number) => walk.in_range(number, range, shape.unit()),
+                    _ => walk.report(format!("expected a number, found {}", found(item)), None),
                 });
             }
             (Body::List(item, min, max), Value::Array(items)) => self.list(item, items, min, max),
@@ -86,20 +89,12 @@ impl Walk {
         }
     }
 
-    fn number(&mut self, shape: Shape, number: f64, fraction: bool) {
-        if fraction {
-            self.report(format!("expected a whole number, found {number}"), None);
-        } else {
-            self.in_range(number, shape.range(), shape.unit());
-        }
-    }
-
-    fn in_range(&mut self, number: f64, range: Option<(f64, f64)>, unit: Option<&str>) {
-        let Some((min, max)) = range else { return };
+    fn in_range(&mut self, written: &Number, range: Option<(f64, f64)>, unit: Option<&str>) {
+        let (Some((min, max)), Some(number)) = (range, written.as_f64()) else { return };
         if !(min..=max).contains(&number) {
             let side = if number < min { "small" } else { "large" };
             let range = range_text(range, unit).unwrap_or_default();
-            self.report(format!("{number} is too {side}: {range}"), None);
+            self.report(format!("{written} is too {side}: {range}"), None);
         }
     }
 
@@ -113,7 +108,8 @@ impl Walk {
         if !(min..=max).contains(&items.len()) {
             let count = items.len();
             let wanted = if min == max { format!("{min}") } else { format!("at least {min}") };
-            self.report(format!("expected {wanted} of these, found {count}"), None);
+            let items = if min == 1 { "item" } else { "items" };
+            self.report(format!("expected {wanted} {items}, found {count}"), None);
         }
         self.items(items, |walk, item| walk.value(shape, item));
     }
@@ -155,7 +151,8 @@ impl Walk {
 
 /// What a shape wants, in words.
 pub fn expected(shape: Shape) -> String {
-    let range = range_text(shape.range(), shape.unit()).map(|range| format!(", {range}")).unwrap_or_default();
+    let range = shape.range().filter(|range| !WIDEST.contains(range));
+    let range = range_text(range, shape.unit()).map(|range| format!(", {range}")).unwrap_or_default();
     match shape.body() {
         Body::Number { integer: false } => format!("a number{range}"),
         Body::Number { integer: true } => format!("a whole number{range}"),

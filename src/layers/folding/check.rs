@@ -117,10 +117,11 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
 /// An outline encloses something; where it crosses itself, that deserves a word.
 fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
     let polygon = outline.polygon();
+    let drawn = matches!(outline, Outline::Polygon { .. } | Outline::Path { .. });
     if let Some(what) = emptiness(&polygon) {
+        let what = if drawn { what } else { "has no area: it is too narrow" };
         return vec![Problem::error(path, format!("the outline {what}"))];
     }
-    let drawn = matches!(outline, Outline::Polygon { .. } | Outline::Path { .. });
     let crossing = if drawn { self_crossing(&polygon) } else { None };
     let message = |Point { x, y }| format!("the outline crosses itself near ({x:.1}, {y:.1})");
     let hint = "what it encloses twice is outside (even-odd)";

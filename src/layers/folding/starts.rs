@@ -94,7 +94,8 @@ pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<
             let at = |i: usize| items[i].pointer(key).and_then(Value::as_f64).unwrap_or(0.0);
             let full = at(items.len() - 1) >= 1.0;
             let index = if full { index.min(items.len() - 1) } else { index };
-            let low = if index == 0 { at(0).min(0.0) } else { at(index - 1) };
+            let index = if at(0) <= 0.0 { index.max(1) } else { index };
+            let low = if index == 0 { 0.0 } else { at(index - 1) };
             let high = if index == items.len() { 1.0 } else { at(index) };
             let mut item = items.get(index).unwrap_or(last).clone();
             if let Some(from) = item.get("from").cloned() {

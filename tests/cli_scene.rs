@@ -1,0 +1,150 @@
+//! The commands that make, read and change scenes: the real program in a fresh folder.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use image::RgbaImage;
+
+/// What one run gave.
+#[derive(Debug, PartialEq)]
+struct Ran {
+    status: i32,
+    out: String,
+    messages: String,
+}
+
+fn plica(folder: &Path, args: &[&str]) -> Ran {
+    let run = Command::new(env!("CARGO_BIN_EXE_plica"))
+        .args(args)
+        .current_dir(folder)
+        .env("XDG_STATE_HOME", folder.join("state"))
+        .env("XDG_RUNTIME_DIR", folder.join("run"))
+        .env("HOME", folder)
+        .output()
+        .unwrap();
+    let Output { status, stdout, stderr } = run;
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Ran { status: status.code().unwrap(), out: text(stdout), messages: text(stderr) }
+}
+
+/// A folder with a picture of 8 x 6 pixels.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    RgbaImage::new(8, 6).save(folder.path().join("cat.png")).unwrap();
+    folder
+}
+
+fn ok(ran: Ran) -> String {
+    assert_eq!(ran.status, 0, "{ran:?}");
+    ran.out
+}
+
+#[test]
+fn nothing_is_the_short_help() {
+    let folder = folder();
+    let help = ok(plica(folder.path(), &[]));
+    assert!(help.contains("Usage: plica") && help.contains("Examples:"), "{help}");
+    assert_eq!(plica(folder.path(), &["frobnicate"]).status, 2);
+}
+
+#[test]
+fn new_makes_a_scene_and_never_overwrites() {
+    let folder = folder();
+    assert_eq!(ok(plica(folder.path(), &["new", "cat.png"])), "cat.plica.json\n");
+    let outline = "layers.cat.zones.all.outline";
+    let outline = ok(plica(folder.path(), &["get", "cat.plica.json", outline]));
+    let outline: serde_json::Value = serde_json::from_str(&outline).unwrap();
+    assert_eq!(outline, serde_json::json!({ "kind": "rectangle", "x": 0, "y": 0, "width": 8, "height": 6 }));
+    let again = plica(folder.path(), &["new", "cat.png"]);
+    assert_eq!(again.status, 1);
+    assert!(again.messages.contains("is there already"), "{again:?}");
+    assert!(ok(plica(folder.path(), &["check", "cat.plica.json"])).contains("nothing moves"));
+}
+
+#[test]
+fn new_copies_pictures_of_other_folders() {
+    let folder = folder();
+    let scenes = folder.path().join("scenes");
+    std::fs::create_dir(&scenes).unwrap();
+    ok(plica(folder.path(), &["new", "cat.png", "-o", "scenes/a.plica.json"]));
+    assert_eq!(std::fs::read(scenes.join("cat.png")).unwrap(), std::fs::read(folder.path().join("cat.png")).unwrap());
+    assert_eq!(ok(plica(&scenes, &["get", "a.plica.json", "images.cat.path"])), "\"cat.png\"\n");
+    // The same picture may lie there already; another one of its name is not touched.
+    ok(plica(folder.path(), &["new", "cat.png", "-o", "scenes/b.plica.json"]));
+    std::fs::write(scenes.join("cat.png"), "other").unwrap();
+    let refused = plica(folder.path(), &["new", "cat.png", "-o", "scenes/c.plica.json"]);
+    assert_eq!((refused.status, std::fs::read(scenes.join("cat.png")).unwrap()), (1, b"other".to_vec()));
+    assert!(!scenes.join("c.plica.json").exists());
+    std::fs::write(folder.path().join("no.png"), "no picture").unwrap();
+    assert_eq!(plica(folder.path(), &["new", "no.png"]).status, 1);
+    assert!(!folder.path().join("no.plica.json").exists());
+}
+
+#[test]
+fn set_takes_all_or_nothing() {
+    let folder = folder();
+    let at = folder.path();
+    ok(plica(at, &["new", "cat.png"]));
+    let zone = "layers.cat.zones.all";
+    let set = |settings: &[&str]| {
+        let settings: Vec<_> = settings.iter().map(|one| one.replace('Z', zone)).collect();
+        let args: Vec<_> = ["set", "cat.plica.json"].into_iter().chain(settings.iter().map(String::as_str)).collect();
+        plica(at, &args)
+    };
+    ok(set(&[
+        "Z.motion=[{\"tool\": \"point\", \"at\": [4, 3], \"jump\": [0, -2]}]",
+        "Z.interpolation.method=rigid",
+        "title=Cat",
+    ]));
+    assert_eq!(ok(plica(at, &["get", "cat.plica.json", "/layers/0/zones/0/motion/0/jump"])), "[0, -2]\n");
+    assert_eq!(ok(plica(at, &["get", "cat.plica.json", "title"])), "\"Cat\"\n");
+    let before = std::fs::read_to_string(at.join("cat.plica.json")).unwrap();
+    for (settings, status, part) in [
+        (&["title=Dog", "Z.feather=-1"][..], 1, "-1 is too small: 0 to 1000000 px"),
+        (&["title=Dog", "Z.feathr=1"], 1, "did you mean \"feather\"?"),
+        (&["Z.feather=1e999"], 1, "is not a finite number"),
+        (&["Z.feather"], 2, "PATH=VALUE"),
+    ] {
+        let ran = set(settings);
+        assert_eq!(ran.status, status, "{ran:?}");
+        assert!(ran.messages.contains(part), "{ran:?}");
+        assert_eq!(std::fs::read_to_string(at.join("cat.plica.json")).unwrap(), before);
+    }
+    assert_eq!(plica(at, &["check", "cat.plica.json"]).messages, "no problems\n");
+}
+
+#[test]
+fn check_lists_every_problem() {
+    let folder = folder();
+    let scene = r#"{ "plica": 1, "images": { "cat": { "path": "cat.png" }, "dog": { "path": "dog.png" } }, "layers": [
+        { "kind": "picture", "name": "face", "image": "cat", "zones": [
+            { "name": "far", "outline": { "kind": "rectangle", "x": 100, "y": 0, "width": 5, "height": 5 } } ] } ] }"#;
+    std::fs::write(folder.path().join("a.plica.json"), scene).unwrap();
+    let ran = plica(folder.path(), &["check", "a.plica.json"]);
+    let lines: Vec<_> = ran.out.lines().collect();
+    assert_eq!((ran.status, lines.len()), (1, 3), "{ran:?}");
+    assert!(lines[0].starts_with("/images/dog"), "{lines:?}");
+    assert!(ran.messages.contains("1 error, 2 warnings"), "{ran:?}");
+    let json = plica(folder.path(), &["check", "--json", "a.plica.json"]);
+    let list: Vec<serde_json::Value> = serde_json::from_str(&json.out).unwrap();
+    assert_eq!((json.status, list.len(), &list[0]["severity"]), (1, 3, &"error".into()));
+    let broken = scene.replace("\"zones\"", "\"zonse\"");
+    std::fs::write(folder.path().join("a.plica.json"), broken).unwrap();
+    let ran = plica(folder.path(), &["check", "a.plica.json"]);
+    assert_eq!(ran.out, "/layers/0/zonse: unknown field \"zonse\" (did you mean \"zones\"?)\n");
+    assert_eq!(plica(folder.path(), &["check", "none.plica.json"]).status, 1);
+}
+
+#[test]
+fn what_tools_ask_for() {
+    let folder = folder();
+    let schema: serde_json::Value = serde_json::from_str(&ok(plica(folder.path(), &["schema"]))).unwrap();
+    assert!(schema["$defs"]["Zone"]["properties"]["feather"]["description"].is_string());
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(ok(plica(folder.path(), &["completions", shell])).contains("plica"), "{shell}");
+    }
+    let manual = ok(plica(folder.path(), &["man"]));
+    for command in ["NEW", "SET", "GET", "CHECK", "SCHEMA", "COMPLETIONS", "MAN"] {
+        assert!(manual.contains(&format!(".SH \"PLICA {command}\"")), "{command}");
+    }
+}
