@@ -1,5 +1,7 @@
 //! The process among others: signals, closed and full outputs, the log, and what reaches a terminal.
 
+#![allow(clippy::unwrap_used, reason = "a test fails where its helpers do")]
+
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -45,6 +47,38 @@ fn a_signal_ends_with_130_even_where_work_is_stuck() {
             std::thread::sleep(Duration::from_millis(20));
         }
         assert_eq!(child.wait().unwrap().code(), Some(130), "{name}");
+    }
+}
+
+#[test]
+fn an_interrupted_render_leaves_nothing_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = image::RgbImage::from_pixel(64, 64, image::Rgb([9, 9, 9]));
+    image.save(folder.path().join("cat.png")).unwrap();
+    // An hour of it: nobody waits for the end.
+    let scene = serde_json::json!({
+        "plica": 1, "timeline": { "duration": 3000 }, "images": { "cat": { "path": "cat.png" } },
+        "layers": [{ "kind": "picture", "name": "face", "image": "cat" }]
+    });
+    std::fs::write(folder.path().join("cat.plica.json"), scene.to_string()).unwrap();
+    let names = || -> Vec<String> {
+        let entries = std::fs::read_dir(folder.path()).unwrap().flatten();
+        let mut names: Vec<_> = entries.map(|entry| entry.file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    let before = names();
+    for (signals, out) in [(1, "out.apng"), (1, "out.gif"), (1, "%05d.png"), (2, "out.apng")] {
+        let mut child = plica(&["render", "cat.plica.json", "-o", out], folder.path()).spawn().unwrap();
+        while names() == before {
+            assert_eq!(child.try_wait().unwrap(), None, "{out}");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        for _ in 0..signals {
+            signal(&child, "INT");
+        }
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{out}");
+        assert_eq!(names(), before, "{out}");
     }
 }
 
