@@ -1,89 +1,32 @@
-//! The demo scenes: those that ship, over pictures drawn by the project's own code, and those over real photographs,
-//! which are looked for in `shared/` and skipped where that is missing. Beside small golden pictures stand checks that say
-//! what a fold means: the eyeball is covered, nothing moves outside the zones, no seam opens at a zone's edge.
+//! The demo scenes that ship, over pictures drawn by the project's own code. Beside small golden pictures stand checks that
+//! say what a fold means: the eyeball is covered, nothing moves outside the zones, no seam opens at a zone's edge.
 //!
 //! `PLICA_UPDATE=1 cargo test --test profiles` writes pictures, golden frames and the scenes' own form anew.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use plica::base::pixels::Frame;
-use plica::files::{self, profiles};
-use plica::layers::{Layer, Materials};
+use plica::files::profiles;
+use plica::layers::folding::anchors::anchors;
 use plica::render;
-use plica::scene::{Document, check};
+use plica::scene::Document;
+use show::{Show, TIMES, at, no_seam, step, still_outside};
 
 #[path = "../profiles/draw/pictures/mod.rs"]
 mod pictures;
+mod show;
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
+fn shipped(name: &str) -> Show {
+    Show::open(&root().join(format!("profiles/{name}/{name}.plica.json")))
+}
+
 fn updating() -> bool {
     std::env::var_os("PLICA_UPDATE").is_some()
 }
-
-/// A scene ready to be shown.
-struct Show {
-    document: Document,
-    materials: Materials,
-    synth: render::Synth,
-}
-
-impl Show {
-    fn open(scene: &Path) -> Show {
-        let options = files::Options::default();
-        let document = files::scene::open(scene, &options).unwrap();
-        assert!(document.warnings().is_empty(), "{}: {:?}", scene.display(), document.warnings());
-        let materials = files::materials::load(scene, document.scene(), &options, &mut Default::default()).unwrap();
-        let sizes = materials.pictures.iter().map(|(name, p)| (name.clone(), (p.width(), p.height()))).collect();
-        let problems = check::check_images(document.scene(), &sizes);
-        assert!(problems.is_empty(), "{}: {problems:?}", scene.display());
-        let synth = render::synth(document.scene(), &materials, None).unwrap();
-        Show { document, materials, synth }
-    }
-
-    fn shipped(name: &str) -> Show {
-        Show::open(&root().join(format!("profiles/{name}/{name}.plica.json")))
-    }
-
-    fn frame(&self, time: f64) -> Frame {
-        render::cpu::frame(&self.synth, time)
-    }
-
-    /// The layer's own picture, as a frame.
-    fn still(&self) -> Frame {
-        let Layer::Picture(layer) = &self.document.scene().layers[0];
-        render::cpu::finish(&self.materials.pictures[&layer.image])
-    }
-
-    /// For every pixel, how many zones hold it.
-    fn zones(&self) -> Vec<u32> {
-        let (width, height) = self.synth.size;
-        let render::LayerSynth::Picture(layer) = &self.synth.layers[0];
-        let mut count = vec![0; width * height];
-        for field in layer.zones.iter().map(|zone| &zone.field) {
-            for y in 0..field.inside.height() {
-                for x in 0..field.inside.width() {
-                    count[(field.y0 + y) * width + field.x0 + x] += u32::from(*field.inside.get(x, y));
-                }
-            }
-        }
-        count
-    }
-}
-
-/// The largest difference of two colours in any channel, in 8-bit steps.
-fn step(a: [u8; 4], b: [u8; 4]) -> u8 {
-    (0..4).map(|i| a[i].abs_diff(b[i])).max().unwrap()
-}
-
-fn at(frame: &Frame, x: usize, y: usize) -> [u8; 4] {
-    *frame.get(x, y)
-}
-
-/// A time that shows the scene well moved, and two others.
-const TIMES: [f64; 3] = [0.1, 0.4, 0.75];
 
 #[test]
 fn pictures_are_what_the_program_draws() {
@@ -122,14 +65,14 @@ fn shipped_scenes_are_written_as_the_program_writes_them() {
 #[test]
 fn shipped_frames_are_golden() {
     for profile in profiles::TABLE {
-        golden(profile.name, &Show::shipped(profile.name));
+        golden(profile.name, &shipped(profile.name));
     }
 }
 
 #[test]
 fn shipped_scenes_are_still_outside_their_zones_and_have_no_seam() {
     for profile in profiles::TABLE {
-        let show = Show::shipped(profile.name);
+        let show = shipped(profile.name);
         still_outside(profile.name, &show);
         no_seam(profile.name, &show);
     }
@@ -157,78 +100,9 @@ fn golden(name: &str, show: &Show) {
     assert!(worst <= 1, "{name}: frames differ from tests/golden by {worst}: PLICA_UPDATE=1 writes them anew");
 }
 
-fn still_outside(name: &str, show: &Show) {
-    let (still, zones) = (show.still(), show.zones());
-    let mut moves = false;
-    for time in TIMES {
-        let frame = show.frame(time);
-        let changed = (0..zones.len()).filter(|&i| frame.cells()[i] != still.cells()[i]);
-        let (inside, outside): (Vec<usize>, Vec<usize>) = changed.partition(|&i| zones[i] > 0);
-        assert!(outside.is_empty(), "{name}: {} pixels outside every zone change at {time}", outside.len());
-        moves |= !inside.is_empty();
-    }
-    assert!(moves, "{name}: nothing moves");
-}
-
-/// Across a zone's outline a moved picture steps no more than it would step anyway: than the still picture does within a
-/// few pixels. Where a zone ends on purpose at an edge that is seen (the lower lid, a sign before the car) is left out:
-/// there one thing covers another.
-fn no_seam(name: &str, show: &Show) {
-    let (width, height) = show.synth.size;
-    let zones = show.zones();
-    let covers = occluding(show);
-    let still = show.still();
-    let mut worst = (0, 0, 0, 0.0);
-    for frame_time in (0..12).map(|k| k as f64 / 12.0) {
-        let frame = show.frame(frame_time);
-        for (x, y, dx, dy) in
-            (0..height - 1).flat_map(|y| (0..width - 1).flat_map(move |x| [(x, y, 1, 0), (x, y, 0, 1)]))
-        {
-            let (a, b) = (y * width + x, (y + dy) * width + x + dx);
-            if zones[a] == zones[b] || covers[a] || covers[b] {
-                continue;
-            }
-            let moved = step(frame.cells()[a], frame.cells()[b]);
-            let excess = moved.saturating_sub(roughness(&still, x, y));
-            if excess > worst.0 {
-                worst = (excess, x, y, frame_time);
-            }
-        }
-    }
-    assert!(worst.0 <= 12, "{name}: a seam of {} at ({}, {}) at time {}", worst.0, worst.1, worst.2, worst.3);
-}
-
-/// The largest step between neighbours within 3 pixels.
-fn roughness(frame: &Frame, x: usize, y: usize) -> u8 {
-    let rows = y.saturating_sub(3)..=(y + 3).min(frame.height() - 2);
-    let columns = x.saturating_sub(3)..=(x + 3).min(frame.width() - 2);
-    let steps = rows.flat_map(|v| columns.clone().map(move |u| (u, v)));
-    steps
-        .map(|(u, v)| step(at(frame, u, v), at(frame, u + 1, v)).max(step(at(frame, u, v), at(frame, u, v + 1))))
-        .max()
-        .unwrap()
-}
-
-/// Pixels near a fold region's edge or in a zone with a sampler image of its own: there covering is what is meant.
-fn occluding(show: &Show) -> Vec<bool> {
-    let (width, height) = show.synth.size;
-    let Layer::Picture(layer) = &show.document.scene().layers[0];
-    let mut found = vec![false; width * height];
-    for zone in &layer.zones {
-        let regions: Vec<_> = zone.fold.iter().flat_map(|fold| fold.regions()).map(|region| region.polygon()).collect();
-        let outline = zone.outline.polygon();
-        for (i, cell) in found.iter_mut().enumerate() {
-            let q = kurbo::Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-            let near = |p: &plica::base::geometry::Polygon| p.contains(q) || p.distance(q) < 4.0;
-            *cell |= if zone.sampler.is_some() { near(&outline) } else { regions.iter().any(near) };
-        }
-    }
-    found
-}
-
 #[test]
 fn the_lid_covers_the_pupil_and_gives_it_back() {
-    let show = Show::shipped("blink");
+    let show = shipped("blink");
     let (open, closed) = (show.frame(0.0), show.frame(0.44));
     assert!(at(&open, 243, 190)[..3].iter().all(|&c| c < 40), "the pupil is black");
     // Lid skin, as it is at its crown above the open eye.
@@ -247,7 +121,7 @@ fn the_lid_covers_the_pupil_and_gives_it_back() {
 
 #[test]
 fn the_lid_slides_over_an_eyeball_that_keeps_still() {
-    let show = Show::shipped("blink");
+    let show = shipped("blink");
     let (still, half) = (show.still(), show.frame(0.372));
     // In the column of the pupil: skin of the lid down to its edge, and below it the eyeball unchanged.
     let same = |y: usize| at(&half, 243, y) == at(&still, 243, y);
@@ -260,7 +134,7 @@ fn the_lid_slides_over_an_eyeball_that_keeps_still() {
 
 #[test]
 fn the_cat_squints_with_both_eyes() {
-    let show = Show::shipped("cat");
+    let show = shipped("cat");
     let green = |frame: &Frame, x0: usize| {
         let eye = (150..230).flat_map(|y| (x0..x0 + 100).map(move |x| (x, y)));
         eye.filter(|&(x, y)| at(frame, x, y)[1] > at(frame, x, y)[0].saturating_add(8)).count()
@@ -274,12 +148,11 @@ fn the_cat_squints_with_both_eyes() {
 
 #[test]
 fn the_wound_closes() {
-    let show = Show::shipped("wound");
+    let show = shipped("wound");
     let flesh = |frame: &Frame| frame.cells().iter().filter(|c| c[0] < 150 && c[1] < 45).count();
     let (open, closed) = (flesh(&show.frame(0.0)), flesh(&show.frame(0.5)));
     assert!(open > 4000 && closed * 2 < open, "flesh {open} -> {closed}");
-    let Layer::Picture(layer) = &show.document.scene().layers[0];
-    assert_eq!(plica::layers::folding::anchors::anchors(&layer.zones[0]).len(), 62);
+    assert_eq!(anchors(&show.layer().zones[0]).len(), 62);
     let render::LayerSynth::Picture(synth) = &show.synth.layers[0];
     let folds = synth.zones[0].field.folds.as_ref().unwrap();
     let thresholds = |i: usize| folds.ahead.of(i).iter().filter(|&&s| s > 0.0 && s <= 1.0).count();
@@ -289,7 +162,7 @@ fn the_wound_closes() {
 
 #[test]
 fn water_covers_the_sand() {
-    let show = Show::shipped("waves");
+    let show = shipped("waves");
     let white = |frame: &Frame, x: usize| (180..330).rev().find(|&y| at(frame, x, y)[2] > 215).unwrap_or(0);
     let (low, high) = (show.frame(0.0), show.frame(0.42));
     for x in [60, 140, 240, 330, 420] {
@@ -302,7 +175,7 @@ fn water_covers_the_sand() {
 
 #[test]
 fn the_pecs_bounce_in_turn() {
-    let show = Show::shipped("pecs");
+    let show = shipped("pecs");
     let still = show.still();
     let moved = |frame: &Frame, from: usize| {
         let half = (90..260).flat_map(|y| (from..from + 200).map(move |x| (x, y)));
@@ -315,7 +188,7 @@ fn the_pecs_bounce_in_turn() {
 
 #[test]
 fn the_car_flies_from_left_to_right_behind_the_sign() {
-    let show = Show::shipped("car");
+    let show = shipped("car");
     let still = show.still();
     let middle = |time: f64| {
         let frame = show.frame(time);

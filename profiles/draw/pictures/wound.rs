@@ -38,9 +38,9 @@ pub fn flesh_for_hand() -> Canvas {
     c
 }
 
-const HAND_CUT: &str = "M14 84 C40 40 90 22 136 30 C110 62 60 84 14 84 Z";
-const HAND_UPPER: &str = "M14 84 C40 40 90 22 136 30";
-const HAND_LOWER: &str = "M14 84 C60 84 110 62 136 30";
+const HAND_CUT: &str = "M14 84 C44 50 92 28 136 30 C106 58 58 80 14 84 Z";
+const HAND_UPPER: &str = "M14 84 C44 50 92 28 136 30";
+const HAND_LOWER: &str = "M14 84 C58 80 106 58 136 30";
 
 fn veins(c: &mut Canvas) {
     for (svg, strength) in [
