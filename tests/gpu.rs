@@ -3,9 +3,11 @@
 //! printed; in CI that is a failure.
 #![cfg(feature = "window")]
 
+use std::path::Path;
 use std::sync::Arc;
 
 use plica::base::pixels::{Frame, Grid, Picture, decode};
+use plica::files;
 use plica::layers::Materials;
 use plica::render::{self, Synth, cpu, gpu::Gpu};
 use serde_json::{Value, json};
@@ -134,6 +136,24 @@ fn the_gpu_shows_what_the_cpu_shows() {
 }
 
 #[test]
+fn the_gpu_shows_the_demo_scenes_as_the_cpu_does() {
+    let Some(mut gpu) = gpu() else { return };
+    let profiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
+    let scenes = std::fs::read_dir(profiles).unwrap().map(|e| e.unwrap().path());
+    let scenes = scenes.map(|p| p.join(p.file_name().unwrap()).with_extension("plica.json")).filter(|p| p.exists());
+    let mut checked = 0;
+    for path in scenes {
+        let options = files::Options::default();
+        let document = files::scene::open(&path, &options).unwrap();
+        let loaded = files::materials::load(&path, document.scene(), &options, &mut Default::default()).unwrap();
+        let synth = render::synth(document.scene(), &loaded, None).unwrap();
+        check(&mut gpu, &path.display().to_string(), &synth);
+        checked += 1;
+    }
+    assert!(checked > 0);
+}
+
+#[test]
 fn the_scenes_move() {
     for (name, synth) in scenes().iter().skip(1) {
         let (_, share) = difference(&cpu::frame(synth, 0.0), &cpu::frame(synth, 0.25));
@@ -168,6 +188,7 @@ fn every_shader_is_valid() {
     for (name, source) in [
         ("frame.wgsl", include_str!("../src/layers/folding/frame.wgsl")),
         ("compose.wgsl", include_str!("../src/render/gpu/compose.wgsl")),
+        ("screen.wgsl", include_str!("../src/preview/window/screen.wgsl")),
     ] {
         let module = wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));
         let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty());

@@ -34,7 +34,6 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let (path, mut cache) = (args.scene.clone(), materials::Cache::default());
     window::run(window::Setup {
         title: format!("{} - plica", args.scene.file_name().unwrap_or_default().to_string_lossy()),
-        size: None,
         updates: link.updates,
         replies: link.replies,
         cancel: context.cancel.clone(),

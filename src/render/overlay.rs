@@ -6,11 +6,11 @@ use kurbo::{Point, Vec2};
 
 use super::{LayerSynth, Synth};
 use crate::layers::Layer;
-use crate::layers::folding::anchors::anchors;
 use crate::layers::folding::field::Field;
 use crate::layers::folding::model::{PictureLayer, Zone};
 use crate::layers::folding::outline::{Node, bezier, point, vector};
 use crate::layers::folding::tools::Tool;
+use crate::layers::folding::{self, anchors::anchors};
 use crate::scene::Scene;
 
 /// What to show.
@@ -26,7 +26,7 @@ pub struct View {
     pub curves: bool,
     /// The names of zones and the numbers of anchors, beside them.
     pub labels: bool,
-    /// The vector field, an arrow every so many pixels.
+    /// The vector field, an arrow every so many pixels, drawn at [`field_scale`].
     pub field: Option<f64>,
     /// JSON pointer of what is selected.
     pub selection: Option<String>,
@@ -152,14 +152,23 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     for (i, layer) in scene.layers.iter().enumerate() {
         let Layer::Picture(layer) = layer;
         if let (Some(spacing), Some(LayerSynth::Picture(synth))) = (view.field, synth.and_then(|s| s.layers.get(i))) {
+            let scale = field_scale(synth, spacing);
             for zone in &synth.zones {
-                drawing.field(&zone.field, spacing, &zone_pointer(i, zone.index));
+                drawing.field(&zone.field, spacing, scale, &zone_pointer(i, zone.index));
             }
         }
         drawing.layer(layer, i);
     }
     drawing.marks.sort_by_key(|mark| mark.kind);
     drawing.marks
+}
+
+/// By how much the arrows of a layer's field are shorter than its jump vectors, so that they keep apart: the longest
+/// covers the distance of two.
+pub fn field_scale(synth: &folding::synth::Synth, spacing: f64) -> f64 {
+    let jumps = synth.zones.iter().flat_map(|zone| zone.field.jumps.cells());
+    let longest = jumps.map(|&[x, y]| f64::from(x * x + y * y)).fold(0.0, f64::max).sqrt();
+    (2.0 * spacing.max(1.0) / longest).min(1.0)
 }
 
 fn zone_pointer(layer: usize, zone: usize) -> String {
@@ -254,7 +263,7 @@ impl Drawing<'_> {
     }
 
     /// An arrow every `spacing` pixels, at the same pixels whatever the zone's box is.
-    fn field(&mut self, field: &Field, spacing: f64, at: &str) {
+    fn field(&mut self, field: &Field, spacing: f64, scale: f64, at: &str) {
         let spacing = spacing.max(1.0);
         let steps = |from: usize, n: usize| {
             let first = ((from as f64) / spacing - 0.5).ceil().max(0.0) as usize;
@@ -269,7 +278,7 @@ impl Drawing<'_> {
                 if *field.inside.get(i, j) {
                     let q = Point::new(x as f64 + 0.5, y as f64 + 0.5);
                     let [jx, jy] = field.jumps.get(i, j).map(f64::from);
-                    self.add(Kind::Field, at, Shape::Arrow(q, q + Vec2::new(jx, jy)));
+                    self.add(Kind::Field, at, Shape::Arrow(q, q + Vec2::new(jx, jy) * scale));
                 }
             }
         }
@@ -367,8 +376,8 @@ mod tests {
         };
         let view = View::default();
         let mut drawing = Drawing { view: &view, marks: Vec::new() };
-        drawing.field(&field, 4.0, "");
-        let arrow = |x: f64| Shape::Arrow(Point::new(x, 2.5), Point::new(x + 2.0, 2.5));
+        drawing.field(&field, 4.0, 0.5, "");
+        let arrow = |x: f64| Shape::Arrow(Point::new(x, 2.5), Point::new(x + 1.0, 2.5));
         let shapes: Vec<_> = drawing.marks.into_iter().map(|m| m.shape).collect();
         assert_eq!(shapes, [arrow(6.5), arrow(10.5)]);
     }

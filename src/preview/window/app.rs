@@ -21,7 +21,7 @@ use crate::base::error::{Error, Result};
 use crate::preview::keys::{KEYS, PLAY};
 use crate::preview::{Reply, Update};
 use crate::render::gpu::Gpu;
-use crate::render::overlay::{View, overlay};
+use crate::render::overlay::{View, field_scale, overlay};
 use crate::render::reduce::reduced;
 use crate::render::{LayerSynth, Synth};
 use crate::scene::Scene;
@@ -41,7 +41,6 @@ const WHEEL_PX: f64 = 60.0;
 /// The window and all that it shows.
 pub struct App {
     title: String,
-    size: Option<(u32, u32)>,
     replies: Sender<Reply>,
     instance: Option<wgpu::Instance>,
     state: State,
@@ -80,6 +79,7 @@ struct Show {
 struct Cached {
     made_for: Option<(View, super::camera::Camera, Size, bool, u64)>,
     canvas: Canvas,
+    arrow_scale: f64,
     revision: u64,
 }
 
@@ -101,11 +101,10 @@ struct Clock {
 
 impl App {
     /// A window that opens with the first scene or the first problem.
-    pub fn new(instance: wgpu::Instance, title: String, size: Option<(u32, u32)>, replies: Sender<Reply>) -> App {
+    pub fn new(instance: wgpu::Instance, title: String, replies: Sender<Reply>) -> App {
         let now = Instant::now();
         App {
             title,
-            size,
             replies,
             instance: Some(instance),
             state: State { scale: 1.0, ..State::default() },
@@ -135,9 +134,7 @@ impl App {
     /// Opens the window where it is not open yet.
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let Some(instance) = self.instance.take() else { return Ok(()) };
-        let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
-        let (scale, room) = monitor.map_or((1.0, None), |m| (m.scale_factor(), Some(m.size())));
-        let size = self.size.unwrap_or_else(|| first_size(self.state.picture, scale, room));
+        let size = self.first_size(event_loop);
         let attributes = Window::default_attributes()
             .with_title(self.title.clone())
             .with_inner_size(PhysicalSize::new(size.0, size.1));
@@ -146,6 +143,13 @@ impl App {
         self.opened = Some(Opened { window, gpu, screen, hidden: false });
         self.resized();
         Ok(())
+    }
+
+    /// The size that the window opens with.
+    fn first_size(&self, event_loop: &ActiveEventLoop) -> (u32, u32) {
+        let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+        let (scale, room) = monitor.map_or((1.0, None), |m| (m.scale_factor(), Some(m.size())));
+        first_size(self.state.picture, scale, room)
     }
 
     fn resized(&mut self) {
@@ -170,6 +174,10 @@ impl App {
         self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
         self.open(event_loop)?;
         let Some(opened) = &self.opened else { return Ok(()) };
+        if self.shown.is_none() {
+            let (width, height) = self.first_size(event_loop);
+            let _ = opened.window.request_inner_size(PhysicalSize::new(width, height)); // answered by Resized
+        }
         let factor = width.max(height).div_ceil(opened.gpu.device().max_side()).max(1);
         let frames = if factor > 1 { reduced(&ready.synth, factor) } else { ready.synth.clone() };
         self.state.problem = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
@@ -284,7 +292,7 @@ impl App {
         self.state.transport.advance((now - self.clock.last).as_secs_f64(), &self.state.timeline);
         self.clock.last = now;
         let Some(opened) = &mut self.opened else { return Ok(()) };
-        match opened.paint(&self.state, self.shown.as_ref(), &mut self.marks) {
+        match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks) {
             Ok(Drawn::Yes) => opened.hidden = false,
             Ok(Drawn::Again) => opened.window.request_redraw(),
             Ok(Drawn::Hidden) => opened.hidden = true,
@@ -324,7 +332,7 @@ impl Clock {
 }
 
 impl Opened {
-    fn paint(&mut self, state: &State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
+    fn paint(&mut self, state: &mut State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
         if self.gpu.device().is_lost() {
             self.screen.reopen(&mut self.gpu)?;
         }
@@ -333,6 +341,7 @@ impl Opened {
                 let synth = if state.shown.still { &show.still } else { &show.frames };
                 let time = state.transport.scene_time(&state.timeline);
                 marks.follow(state, show);
+                state.arrow_scale = marks.arrow_scale;
                 (self.gpu.texture(synth, time)?, show.frame_scale)
             }
             None => (self.gpu.texture(&Synth { size: (1, 1), layers: Vec::new() }, 0.0)?, 1.0),
@@ -363,6 +372,8 @@ impl Cached {
             marks::grid(&mut self.canvas, state.picture, &state.camera, state.area());
         }
         self.canvas.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
+        let scale = |spacing| show.synth.layers.iter().map(move |LayerSynth::Picture(l)| field_scale(l, spacing));
+        self.arrow_scale = key.0.field.map_or(1.0, |spacing| scale(spacing).fold(1.0, f64::min));
         self.made_for = Some(key);
     }
 }

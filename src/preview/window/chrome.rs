@@ -1,12 +1,14 @@
 //! What stands around the picture: the bar at the bottom with the time, and the lists of keys.
 
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 
 use super::canvas::{Canvas, Color};
 use super::glyphs;
 use super::state::{BAR_PX, Panel, State};
 use crate::base::keys::KeyRow;
+use crate::base::maths::pow;
 use crate::preview::keys::{KEYS, VIEW};
+use crate::render::overlay::Kind;
 
 /// The ground around the picture.
 pub const GROUND: Color = [18, 20, 24, 255];
@@ -28,6 +30,9 @@ pub fn draw(state: &State) -> Canvas {
         Panel::None => {}
         Panel::Menu => panel(&mut canvas, state, &mut KEYS.iter().filter(|row| row.context == VIEW)),
         Panel::Help => panel(&mut canvas, state, &mut KEYS.iter()),
+    }
+    if state.shown.field {
+        scale_bar(&mut canvas, state);
     }
     bar(&mut canvas, state);
     canvas
@@ -125,25 +130,50 @@ fn shortened(text: &str, room: f64) -> String {
     if kept.is_empty() { kept } else { kept + "..." }
 }
 
-/// A list of keys in the upper left corner.
+/// An arrow of a round length, and what that is in pixels of the picture: the legend of the vector field.
+fn scale_bar(canvas: &mut Canvas, state: &State) {
+    let scale = state.scale;
+    let screen_from_jump = state.arrow_scale * state.camera.zoom / scale;
+    let Some(jump) = round_length(screen_from_jump) else { return };
+    let y = state.area().height - 20.0 * scale;
+    let from = Point::new(2.0 * MARGIN_PX * scale, y);
+    let to = from + Vec2::new(jump * screen_from_jump * scale, 0.0);
+    let text = format!("{jump} px");
+    let right = to.x + 12.0 * scale + glyphs::width(&text) * TEXT_PX * scale / glyphs::BASE;
+    let back = Rect::new(MARGIN_PX * scale, y - 10.0 * scale, right + MARGIN_PX * scale, y + 10.0 * scale);
+    canvas.rect(back, 4.0 * scale, PANEL);
+    canvas.arrow(from, to, 1.2 * scale, 7.0 * scale, Kind::Field.style().color);
+    canvas.text(&text, Point::new(to.x + 12.0 * scale, y - TEXT_PX * scale / 2.0), TEXT_PX * scale, TEXT);
+}
+
+/// The largest of 1, 2, 5, 10, 20 ... pixels that is at most 90 logical pixels long on the screen.
+fn round_length(screen_from_jump: f64) -> Option<f64> {
+    let steps = (-2..7).flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * pow(10.0, f64::from(power))));
+    steps.filter(|length| length * screen_from_jump <= 90.0).reduce(f64::max)
+}
+
+/// A list of keys in the upper left corner, in as many columns as it needs.
 fn panel(canvas: &mut Canvas, state: &State, rows: &mut dyn Iterator<Item = &KeyRow>) {
     let rows: Vec<_> = rows.collect();
     let (scale, size) = (state.scale, TEXT_PX * state.scale / glyphs::BASE);
     let widest = |text: fn(&KeyRow) -> &str| rows.iter().map(|r| glyphs::width(text(r))).fold(0.0, f64::max) * size;
-    let (keys, helps) = (widest(|r| r.key), widest(|r| r.help));
-    let line = glyphs::LINE * size * 1.35;
     let margin = MARGIN_PX * scale;
+    let (keys, line) = (widest(|r| r.key) + 1.5 * margin, glyphs::LINE * size * 1.35);
+    let column = keys + widest(|r| r.help) + 2.0 * margin;
+    let room = ((state.area().height - 4.0 * margin) / line).floor().max(1.0) as usize;
+    let columns = rows.len().div_ceil(room);
+    let height = rows.len().div_ceil(columns.max(1));
     let frame = Rect::new(
         margin,
         margin,
-        margin + keys + helps + 4.5 * margin,
-        margin * 3.0 + line * (rows.len() as f64 - 1.0) + TEXT_PX * scale,
+        margin + column * columns as f64,
+        3.0 * margin + line * (height as f64 - 1.0) + TEXT_PX * scale,
     );
     canvas.rect(frame, 6.0 * scale, PANEL);
     for (i, row) in rows.iter().enumerate() {
-        let y = frame.y0 + margin + line * i as f64;
-        canvas.text(row.key, Point::new(frame.x0 + margin, y), TEXT_PX * scale, ACCENT);
-        canvas.text(row.help, Point::new(frame.x0 + 2.5 * margin + keys, y), TEXT_PX * scale, TEXT);
+        let at = frame.origin() + Vec2::new(margin + column * (i / height) as f64, margin + line * (i % height) as f64);
+        canvas.text(row.key, at, TEXT_PX * scale, ACCENT);
+        canvas.text(row.help, at + Vec2::new(keys, 0.0), TEXT_PX * scale, TEXT);
     }
 }
 
@@ -177,6 +207,22 @@ mod tests {
         assert_eq!(shortened("the scene", room), "the scene");
         let short = shortened("the scene cannot be read", room);
         assert!(short.ends_with("...") && glyphs::width(&short) <= room + 2.0, "{short}");
+    }
+
+    #[test]
+    fn the_scale_bar_has_a_round_length_that_fits() {
+        for (screen_from_jump, length) in [(1.0, 50.0), (0.9, 100.0), (8.0, 10.0), (0.031, 2000.0)] {
+            assert_eq!(round_length(screen_from_jump), Some(length), "{screen_from_jump}");
+        }
+        assert_eq!(round_length(f64::NAN), None);
+    }
+
+    #[test]
+    fn all_keys_fit_a_small_window() {
+        let mut state = State { panel: Panel::Help, ..state() };
+        state.resize(Size::new(640.0, 320.0), 1.0);
+        let low = draw(&state).strokes.iter().fold(0.0, |low: f32, s| low.max(s.a[1]));
+        assert!(low <= 320.0, "{low}");
     }
 
     #[test]

@@ -29,8 +29,6 @@ pub use worker::Load;
 pub struct Setup {
     /// What to call it.
     pub title: String,
-    /// Its size in physical pixels; none: that of the picture, as far as the display has room.
-    pub size: Option<(u32, u32)>,
     /// What it shows.
     pub updates: Receiver<Update>,
     /// What it has to say.
@@ -53,7 +51,7 @@ pub fn run(setup: Setup) -> Result<()> {
     let proxy = event_loop.create_proxy();
     worker::start(setup.updates, setup.load, setup.cancel, move |event| proxy.send_event(event).is_ok());
     let instance = crate::render::gpu::device::instance(Some(Box::new(event_loop.owned_display_handle())));
-    let mut app = app::App::new(instance, setup.title, setup.size, setup.replies);
+    let mut app = app::App::new(instance, setup.title, setup.replies);
     quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|e| Error::at(PLACE, e))?;
     app.ended()
 }

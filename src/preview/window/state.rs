@@ -41,6 +41,8 @@ pub struct State {
     pub problem: Option<String>,
     /// What lies over the picture.
     pub panel: Panel,
+    /// Length of the field's arrows on the picture, as a share of the jump vectors.
+    pub arrow_scale: f64,
 }
 
 /// What can be switched on and off.
