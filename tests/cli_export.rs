@@ -1,5 +1,7 @@
 //! The binary in a fresh folder: what it renders, writes and plots, what it says, and what it leaves.
 
+#![allow(clippy::unwrap_used, reason = "a failing test says so by a panic, in its helpers too")]
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -148,6 +150,7 @@ fn textures_and_plots_are_written() {
     good(dir, "field s.plica.json -o f.png");
     assert!(pixels(&dir.join("f.png")).0 > 300);
     let csv = fs::read_to_string(dir.join("f.csv")).unwrap();
+    assert_eq!(good(dir, "field s.plica.json -o - --step 4"), csv.as_bytes());
     assert!(csv.starts_with("x,y,dx,dy,length,degrees\n") && csv.lines().count() > 10);
     assert_eq!(made(dir), ["f.csv", "f.png", "f.svg", "out16", "out32", "out8"]);
 }

@@ -9,7 +9,7 @@ const ORDER: [&str; 11] =
     ["base", "layers", "scene", "files", "render", "export", "preview", "ops", "tui", "cli", "main"];
 
 /// Outside crates and where each may be named. Tests may use what they like.
-const DOORS: [(&[&str], &[&str]); 9] = [
+const DOORS: [(&[&str], &[&str]); 10] = [
     (&["wgpu"], &["render/gpu", "preview/window"]),
     (&["winit", "raw_window_handle"], &["preview/window"]),
     (&["ratatui", "crossterm", "tui_input"], &["tui/"]),
@@ -20,6 +20,7 @@ const DOORS: [(&[&str], &[&str]); 9] = [
     (&["rustix", "signal_hook"], &["base/system"]),
     (&["naga"], &["render/wgsl"]),
     (&["image", "png", "gif", "webp"], &["files/", "export/"]),
+    (&["tiny_skia"], &["export/field"]),
 ];
 
 /// A technique's folder: deleting it must break `layers/mod.rs` and no other slice.

@@ -1,5 +1,6 @@
 //! `plica field`: the vector field of a scene or a zone as a plot or a table.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::{Context, opened::Opened, scene_options::SceneOptions};
@@ -24,7 +25,7 @@ pub struct Args {
     /// Leave the faint picture out of a plot
     #[arg(long)]
     no_picture: bool,
-    /// Where to: .svg and .png are plots, .csv is x,y,dx,dy,length,degrees
+    /// Where to: .svg and .png are plots, .csv is x,y,dx,dy,length,degrees, - is that table on standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
@@ -56,10 +57,16 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         Kind::Png => png(&plot())?,
     };
     context.check_cancelled()?;
+    if args.output == Path::new("-") {
+        return context.out.write_all(&bytes).map_err(|e| Error::at("standard output", e));
+    }
     write_atomic(&args.output, &bytes)
 }
 
 fn kind(path: &Path) -> Result<Kind> {
+    if path == Path::new("-") {
+        return Ok(Kind::Csv);
+    }
     match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
         Some("svg") => Ok(Kind::Svg),
         Some("png") => Ok(Kind::Png),

@@ -1,9 +1,12 @@
 //! Animated lossless WebP. libwebp (the webp crate) compresses one image at a time; the container around the images is
-//! written here, so that frames need not wait in memory and only the moving rectangle of each is written.
+//! written here, so that only the moving rectangle of each frame is written, and as many frames as there are threads are
+//! compressed at once and no more wait in memory.
 //!
 //! Container: <https://developers.google.com/speed/webp/docs/riff_container>.
 
 use std::io::{Seek, SeekFrom, Write};
+
+use rayon::prelude::*;
 
 use super::delta::{Rect, moved};
 use super::{Out, Show, Sink};
@@ -26,6 +29,8 @@ struct WebP {
     count: u64,
     length: u64,
     before: Option<Frame>,
+    /// Rectangles to be compressed, and their pixels.
+    waiting: Vec<(Rect, Vec<u8>)>,
 }
 
 /// Begins a WebP; a single frame makes a still one.
@@ -34,7 +39,7 @@ pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
         let what = format!("WebP holds at most {MOST} x {MOST} pixels, not {} x {}", show.width, show.height);
         return Err(Error::at(&show.place, what).cure("--size makes frames smaller"));
     }
-    let mut webp = WebP { out, show, count: 0, length: 0, before: None };
+    let mut webp = WebP { out, show, count: 0, length: 0, before: None, waiting: Vec::new() };
     webp.write(b"RIFF\0\0\0\0WEBP")?; // the length is known at the end
     if webp.show.frames > 1 {
         let mut canvas = vec![ANIMATED_WITH_ALPHA, 0, 0, 0];
@@ -59,16 +64,16 @@ impl WebP {
         self.write(&[0][..payload.len() % 2])
     }
 
-    /// The chunk of one losslessly compressed image, its header included.
-    fn image(&self, rect: Rect, frame: &Frame) -> Result<Vec<u8>> {
-        let mut config = webp::WebPConfig::new().map_err(|()| self.show.failed("libwebp has another version"))?;
-        config.lossless = 1;
-        config.exact = 1; // colours under alpha 0 too
-        config.quality = 75.0; // effort
-        let pixels = rect.cut(frame);
-        let encoder = webp::Encoder::from_rgba(&pixels, rect.width() as u32, rect.height() as u32);
-        let file = encoder.encode_advanced(&config).map_err(|e| self.show.failed(format!("{e:?}")))?;
-        Ok(file[12..].to_vec()) // behind "RIFF", length, "WEBP"
+    /// Compresses and writes the frames that wait.
+    fn flush(&mut self) -> Result<()> {
+        let waiting = std::mem::take(&mut self.waiting);
+        let images: Vec<_> = waiting.par_iter().map(|(rect, pixels)| compress(*rect, pixels)).collect();
+        for ((rect, _), image) in waiting.into_iter().zip(images) {
+            let image = image.map_err(|what| self.show.failed(what))?;
+            if self.show.frames > 1 { self.animated(rect, &image) } else { self.write(&image) }?;
+            self.count += 1;
+        }
+        Ok(())
     }
 
     fn animated(&mut self, rect: Rect, image: &[u8]) -> Result<()> {
@@ -87,20 +92,30 @@ impl Sink for WebP {
     fn frame(&mut self, _: u64, frame: Frame) -> Result<()> {
         let mut rect = self.before.as_ref().map_or(Rect::whole(&frame), |before| moved(before, &frame));
         (rect.x0, rect.y0) = (rect.x0 & !1, rect.y0 & !1); // places are even
-        let image = self.image(rect, &frame)?;
-        if self.show.frames > 1 { self.animated(rect, &image) } else { self.write(&image) }?;
-        self.count += 1;
+        self.waiting.push((rect, rect.cut(&frame)));
         self.before = Some(frame);
-        Ok(())
+        if self.waiting.len() >= rayon::current_num_threads() { self.flush() } else { Ok(()) }
     }
 
     fn finish(mut self: Box<Self>) -> Result<Vec<String>> {
+        self.flush()?;
         let length = u32::try_from(self.length - 8).map_err(|_| self.show.failed("a WebP holds at most 4 GiB"))?;
         let put = |out: &mut Out| out.seek(SeekFrom::Start(4)).and_then(|_| out.write_all(&length.to_le_bytes()));
         put(&mut self.out).map_err(|e| self.show.failed(e))?;
         self.out.keep(&self.show)?;
         Ok(Vec::new())
     }
+}
+
+/// The chunk of one losslessly compressed image, its header included.
+fn compress(rect: Rect, pixels: &[u8]) -> std::result::Result<Vec<u8>, String> {
+    let mut config = webp::WebPConfig::new().map_err(|()| "libwebp has another version")?;
+    config.lossless = 1;
+    config.exact = 1; // colours under alpha 0 too
+    config.quality = 75.0; // effort
+    let encoder = webp::Encoder::from_rgba(pixels, rect.width() as u32, rect.height() as u32);
+    let file = encoder.encode_advanced(&config).map_err(|e| format!("{e:?}"))?;
+    Ok(file[12..].to_vec()) // behind "RIFF", length, "WEBP"
 }
 
 /// The lowest 24 bits, little-endian.

@@ -115,7 +115,7 @@ fn degrees(vector: Vec2) -> f64 {
 pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) -> Plot {
     let shown = shown(synth);
     let long = shown.width().max(shown.height());
-    let scale = (LONG / long).max(1.0).min(16.0);
+    let scale = (LONG / long).clamp(1.0, 16.0);
     let step = step.unwrap_or((long / ARROWS).round().max(1.0) as usize);
     let frame = Rect::new(MARGIN, MARGIN, MARGIN + shown.width() * scale, MARGIN + shown.height() * scale);
     let arrows = arrows(synth, step);

@@ -469,4 +469,19 @@ mod tests {
         let clock = Clock { position: Position::Linear, speed: -1.0, shift: 0.25, wrap: Wrap::Repeat };
         assert_eq!(clock.s(0.25), 0.5);
     }
+
+    #[test]
+    fn breaks_are_where_s_jumps() {
+        let of = |json: &str| parse(json).breaks().into_iter().map(|b| (b.tau, b.holds)).collect::<Vec<_>>();
+        assert_eq!(of(r#"{"function":"sine"}"#), []);
+        let steps = r#"{"function":"keyframes","points":[[0,1],[0.5,3],[0.75,3],[1,4]],"between":"step"}"#;
+        assert_eq!(of(steps), [(0.5, Side::After), (1.0, Side::After)]);
+        let teleport = format!(
+            r#"{{"function":"piecewise","segments":[{{"until":0.25,"from":0,"to":1}},{{"until":0.5,"from":1,"to":2}},
+              {{"until":0.75,"from":0,"to":1}},{{"until":1,"from":1,"to":2,"ease":{steps}}}]}}"#
+        );
+        let inner = [(0.875, Side::After), (1.0, Side::After)];
+        // The eased segment begins at its `from` and once more its way: a jump of its own.
+        assert_eq!(of(&teleport), [[(0.5, Side::Before), (0.75, Side::Before)], inner].concat());
+    }
 }
