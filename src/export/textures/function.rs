@@ -41,8 +41,12 @@ fn read(texels: &[f64], breaks: &[Break], tau: f64) -> f64 {
     let within = breaks.iter().find(|b| at(b.tau) >= i as f64 && at(b.tau) <= (i + 1) as f64);
     let from = match within {
         None => i,
-        Some(b) if tau < b.tau || (tau == b.tau && b.holds == Side::Before) => i.saturating_sub(1),
-        Some(_) => (i + 1).min(last - 1),
+        Some(b) if tau < b.tau || (tau == b.tau && b.holds == Side::Before) => match i {
+            0 => return texels[0],
+            _ => i - 1,
+        },
+        Some(_) if i + 1 == last => return texels[last],
+        Some(_) => i + 1,
     };
     texels[from] + (texels[from + 1] - texels[from]) * (x - from as f64)
 }

@@ -150,13 +150,16 @@ impl Player {
         let place = tau * last as f64;
         let i = (place.floor() as usize).min(last - 1);
         let breaks = zone["breaks"].as_array().unwrap();
+        let s = |column: usize| self.function.at(column, row)[0];
         let within = breaks.iter().find(|b| (i as f64..=(i + 1) as f64).contains(&(number(b, "tau") * last as f64)));
+        let before = |b: &Value| tau < number(b, "tau") || (tau == number(b, "tau") && b["holds"] == "before");
         let from = match within {
             None => i,
-            Some(b) if tau < number(b, "tau") || (tau == number(b, "tau") && b["holds"] == "before") => i - 1,
+            Some(b) if before(b) && i == 0 => return s(0),
+            Some(b) if before(b) => i - 1,
+            Some(_) if i + 1 == last => return s(last),
             Some(_) => i + 1,
         };
-        let s = |column: usize| self.function.at(column, row)[0];
         s(from) + (s(from + 1) - s(from)) * (place - from as f64)
     }
 
