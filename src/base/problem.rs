@@ -71,11 +71,17 @@ impl fmt::Display for Problem {
     }
 }
 
-/// `did you mean "this"?` where one is near, else all there are.
+/// `did you mean "this"?` where one is near, else all there are. Long words and long lists, which only a hostile file has,
+/// are not compared.
 pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
-    let scored = known.clone().map(|name| (strsim::normalized_damerau_levenshtein(word, name), name));
-    let best = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(if best.0 >= 0.5 { format!("did you mean {}?", quoted(best.1)) } else { there_are(known) })
+    const LONGEST: usize = 100;
+    const MOST: usize = 1000;
+    let comparable = known.clone().take(MOST).filter(|name| name.len().max(word.len()) <= LONGEST);
+    let scored = comparable.map(|name| (strsim::normalized_damerau_levenshtein(word, name), name));
+    match scored.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((likeness, name)) if likeness >= 0.5 => Some(format!("did you mean {}?", quoted(name))),
+        _ => known.clone().next().map(|_| there_are(known)),
+    }
 }
 
 /// All the names there are, or the first twenty.

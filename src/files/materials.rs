@@ -69,7 +69,7 @@ pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut C
     (Materials { pictures, fields }, problems)
 }
 
-/// Width and height of every picture that `scene` names, from the headers alone, and what cannot be read.
+/// Width and height of every picture that `scene` names, from the headers alone, and which files cannot be read.
 pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<String, (usize, usize)>, Vec<Problem>) {
     let measure = |named: &Named| {
         let file = paths::open(scene_path, named.path, options)?;
@@ -82,6 +82,9 @@ pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<S
             Ok(size) => drop(sizes.insert(named.key.to_owned(), size)),
             Err(error) => problems.push(problem(&named, error)),
         }
+    }
+    for named in named_fields(scene) {
+        problems.extend(paths::open(scene_path, named.path, options).err().map(|error| problem(&named, error)));
     }
     (sizes, problems)
 }

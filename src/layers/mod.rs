@@ -95,6 +95,11 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     folding::starts::start(variant, field, bounds)
 }
 
+/// Where in its items a list of a `variant` ascends (a JSON pointer), if it does.
+pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
+    folding::starts::ascending(variant, list)
+}
+
 /// A new item of a list before item `index`, and the index it gets, where it depends on its neighbours.
 pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
     folding::starts::item(variant, list, items, index)

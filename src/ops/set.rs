@@ -10,6 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::session::{Mode, Overwrite, Session};
 use crate::preview::script;
+use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, address};
 
 /// Set values in a scene, all of them or none.
@@ -46,11 +47,17 @@ pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Ed
     for setting in settings {
         let (path, value) = parse(setting)?;
         let pointer = address::resolve(&document, path)?;
-        let edit = Edit::set(&document, &pointer, value);
+        let edit = Edit::set(&document, &pointer, meant(&document, &pointer, value, setting, path));
         document = document.apply(&edit).map_err(|problems| refused(scene, problems))?;
         edits.push(edit);
     }
     Ok(Edit::all(edits))
+}
+
+/// What looks like another JSON value is text where only text fits (`title=2024`).
+fn meant(document: &Document, pointer: &str, value: Value, setting: &str, path: &str) -> Value {
+    let text = field::field(document, pointer).is_some_and(|field| field.kind == Kind::Text);
+    if text && !value.is_string() && !value.is_null() { Value::from(&setting[path.len() + 1..]) } else { value }
 }
 
 fn refused(scene: &Path, problems: Vec<Problem>) -> Error {

@@ -24,13 +24,13 @@ pub fn address(document: &Document, pointer: &str) -> String {
     let mut address = String::new();
     for token in pointer::tokens(pointer) {
         let Some(below) = place.step(&token) else { return pointer.to_owned() };
-        let in_list = matches!(place.shape.body(), Body::List(..));
-        let name = if in_list { name_of(below.value) } else { None };
         address.push_str(if address.is_empty() { "" } else { "." });
-        match name {
-            Some(name) => address.push_str(&spelled(&name, true)),
-            None => address.push_str(&spelled(&token, false)),
-        }
+        let step = match place.shape.body() {
+            Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
+            Body::Numbers(_) => pointer::index(&token).and_then(|i| place.shape.column(i)).map(str::to_owned),
+            _ => None,
+        };
+        address.push_str(&step.unwrap_or_else(|| spelled(&token, false)));
         place = below;
     }
     address
@@ -99,7 +99,9 @@ fn key(place: Place, token: &Token) -> Option<String> {
             index.or_else(|| named().map(|index| index.to_string()))
         }
         Body::Numbers(count) => {
+            // x and y are understood also where the columns have other names (dx, dy).
             let named = (0..count).find(|&i| place.shape.column(i) == Some(&token.text));
+            let named = named.or_else(|| ["x", "y"].iter().position(|axis| *axis == token.text && count == 2));
             Some(named.map_or_else(|| token.text.clone(), |index| index.to_string()))
         }
         _ => Some(token.text.clone()),

@@ -10,12 +10,12 @@ use super::{Document, field, pointer, shape};
 use crate::layers;
 
 impl Edit {
-    /// Writes `value` at `path`. Missing parents are made from their defaults; `null` takes an optional thing away; a new
-    /// tag (another kind of outline, another method) takes the new kind's defaults and keeps the fields that both have.
+    /// Writes `value` at `path`. Missing parents are made from their defaults; `null` takes away what need not be written,
+    /// so that its default counts; a new tag (another kind of outline, another method) takes the new kind's defaults and keeps the fields that both have.
     pub fn set(document: &Document, path: &str, value: Value) -> Edit {
         let json = document.json();
         let Some(place) = Place::of(json, path) else { return Edit::add(path, value) };
-        if value.is_null() && place.shape.allows_null() {
+        if value.is_null() && (place.shape.allows_null() || !place.required) {
             return if place.set { Edit::remove(path) } else { Edit::default() };
         }
         if let (Some((parent, last)), Some(name)) = (pointer::split(path), value.as_str())
@@ -55,7 +55,15 @@ impl Edit {
         if let Some(name) = field::name_of(Some(&copy)) {
             copy["name"] = unique(&name, items).into();
         }
-        let to = pointer::join(list, index + 1);
+        let (holder, name) = pointer::split(list)?;
+        let variant = variant_of(Place::of(document.json(), holder)?);
+        let mut to = index + 1;
+        if let Some(key) = layers::ascending(variant, &name) {
+            let (near, placed) = layers::item(variant, &name, items, to)?;
+            *copy.pointer_mut(key)? = placed.pointer(key)?.clone();
+            to = near;
+        }
+        let to = pointer::join(list, to);
         Some((Edit::add(&to, copy), to))
     }
 
@@ -128,11 +136,7 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     let items = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
     let index = index.min(items.len());
     let (holder, name) = pointer::split(list)?;
-    let holder = Place::of(json, holder)?;
-    let variant = match holder.shape.body() {
-        Body::Tagged(tag) => holder.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default(),
-        _ => "",
-    };
+    let variant = variant_of(Place::of(json, holder)?);
     if let Some(between) = layers::item(variant, &name, items, index) {
         return Some(between);
     }
@@ -141,6 +145,14 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
         value["name"] = unique(name.trim_end_matches('s'), items).into();
     }
     Some((index, value))
+}
+
+/// The tag of what stands at a place; empty where it has none.
+fn variant_of(place: Place<'_>) -> &str {
+    match place.shape.body() {
+        Body::Tagged(tag) => place.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default(),
+        _ => "",
+    }
 }
 
 fn unique(name: &str, items: &[Value]) -> String {

@@ -8,6 +8,9 @@ use super::{Scene, pointer, shape};
 use crate::base::problem::{Problem, Severity, nearest, quoted};
 use crate::layers::{Sizes, check as rules};
 
+/// So many unknown references of a layer are listed.
+const MAX_REFERENCES: usize = 100;
+
 /// What a person allows a scene to ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rules {
@@ -126,6 +129,6 @@ fn references(scene: &Scene) -> Vec<Problem> {
             let hint = hint.unwrap_or_else(|| "add it to the scene's images".into());
             Problem::error(path, format!("there is no image {}", quoted(image))).hint(hint)
         };
-        unknown.map(problem).collect()
+        unknown.take(MAX_REFERENCES).map(problem).collect()
     })
 }

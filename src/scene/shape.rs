@@ -51,7 +51,8 @@ impl Walk {
     }
 
     fn value(&mut self, shape: Shape, value: &Value) {
-        if value.is_null() && shape.allows_null() {
+        let full = self.problems.len() >= MAX_PROBLEMS;
+        if full || (value.is_null() && shape.allows_null()) {
             return;
         }
         match (shape.body(), value) {

@@ -1,5 +1,8 @@
 //! What can be wrong in a picture layer beyond its shape. Paths are relative to the layer.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use kurbo::{Point, Rect};
 
 use super::{anchors, counts, fold::Fold, interpolation::Interpolation, outline::Outline, position::Position};
@@ -135,15 +138,15 @@ fn coincident(zone: &Zone) -> Vec<Problem> {
         return Vec::new();
     }
     let anchors = anchors::anchors(zone);
-    let mut order: Vec<usize> = (0..anchors.len()).collect();
-    order.sort_by(|&i, &j| anchors[i].at.x.total_cmp(&anchors[j].at.x).then(i.cmp(&j)));
+    let cell = |at: Point| ((at.x / SAME_PX).round() as i64, (at.y / SAME_PX).round() as i64);
+    let mut first = HashMap::new();
     let mut pairs = Vec::new();
-    for (k, &i) in order.iter().enumerate() {
-        let near = order[k + 1..].iter().take_while(|&&j| anchors[j].at.x - anchors[i].at.x < SAME_PX);
-        let same = near.filter(|&&j| (anchors[j].at - anchors[i].at).hypot() < SAME_PX);
-        pairs.extend(same.map(|&j| (i.min(j), i.max(j))).take(MAX_PAIRS));
+    for (j, anchor) in anchors.iter().enumerate() {
+        match first.entry(cell(anchor.at)) {
+            Entry::Occupied(taken) => pairs.push((*taken.get(), j)),
+            Entry::Vacant(free) => drop(free.insert(j)),
+        }
     }
-    pairs.sort_unstable();
     let named = pairs.iter().take(MAX_PAIRS).map(|&(i, j)| {
         let (first, second) = (&anchors[i], &anchors[j]);
         let Point { x, y } = first.at;

@@ -72,19 +72,27 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     })
 }
 
+/// Where in its items a list ascends: the numbers that must grow from one to the next.
+pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
+    match (variant, list) {
+        ("curve", "jumps") => Some("/along"),
+        ("keyframes", "points") => Some("/0"),
+        ("piecewise", "segments") => Some("/until"),
+        _ => None,
+    }
+}
+
 /// A new item of the list `list` of a `variant`, to stand before item `index`, and the index it gets; none where an item
 /// does not depend on its neighbours.
 pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
-    let (closed, ascending) = match (variant, list) {
-        ("polygon" | "path" | "lasso", "points" | "nodes" | "vertices") => (true, None),
-        ("curve", "nodes") => (false, None),
-        ("curve", "jumps") => (false, Some("/along")),
-        ("keyframes", "points") => (false, Some("/0")),
-        ("piecewise", "segments") => (false, Some("/until")),
+    let closed = match (variant, list) {
+        ("polygon" | "path" | "lasso", "points" | "nodes" | "vertices") => true,
+        ("curve", "nodes") => false,
+        _ if ascending(variant, list).is_some() => false,
         _ => return None,
     };
     let last = items.last()?;
-    match ascending {
+    match ascending(variant, list) {
         None => {
             let before = index.checked_sub(1).map_or(if closed { last } else { &items[0] }, |i| &items[i]);
             let after = items.get(index).unwrap_or(if closed { &items[0] } else { last });

@@ -36,6 +36,7 @@ fn set_makes_parents_and_keeps_what_fits() {
         ),
         ("sampler.offset", json!([1, 2]), "sampler", json!({ "image": "cat", "offset": [1, 2] })),
         ("fold", json!(null), "fold", json!(null)),
+        ("feather", json!(null), "feather", json!(0.0)),
         ("motion.0.jump.y", json!(-20), "motion.0", json!({ "tool": "point", "at": [150, 100], "jump": [0, -20] })),
         ("position.function", json!("cosine"), "position", json!({ "function": "cosine", "cycles": 0.5 })),
     ] {
@@ -132,6 +133,16 @@ fn items_are_duplicated_moved_and_taken_away() {
     }
     assert!(Edit::move_item(&document, "/layers/0/zones/0", 10).is_none());
     assert!(Edit::duplicate(&document, "/title").is_none());
+    let mut duplicated = 0;
+    for (path, field) in places(&document) {
+        let in_list = pointer::split(&path).is_some_and(|(list, _)| !list.is_empty() && !list.ends_with("/matrix"));
+        let Some((edit, _)) = Edit::duplicate(&document, &path).filter(|_| in_list) else { continue };
+        if !matches!(field.kind, Kind::Number { .. }) {
+            there_and_back(&document, &edit).unwrap_or_else(|problems| panic!("{path}: {problems:?}"));
+            duplicated += 1;
+        }
+    }
+    assert!(duplicated > 60, "{duplicated}");
     let changed = there_and_back(&document, &Edit::remove("/layers/0/zones/0")).unwrap();
     assert_eq!(names(&changed).len(), 9);
     // Keys come back to where they were, also from before others and also where the schema has another order.

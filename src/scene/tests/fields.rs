@@ -105,6 +105,8 @@ fn addresses() {
         ("/layers/0/name", Ok("/layers/0/name")),
         ("layers.face.zones.\"left eye\".interpolation.radius", Ok("/layers/0/zones/0/interpolation/radius")),
         ("layers.0.zones.0.motion.1.nodes.0.at.y", Ok("/layers/0/zones/0/motion/1/nodes/0/at/1")),
+        ("layers.0.zones.0.motion.0.jump.dy", Ok("/layers/0/zones/0/motion/0/jump/1")),
+        ("layers.0.zones.0.motion.0.jump.y", Ok("/layers/0/zones/0/motion/0/jump/1")),
         ("layers.face.zones.\"left eye\".sampler.offset", Ok("/layers/0/zones/0/sampler/offset")),
         ("images.dog", Ok("/images/dog")),
         ("timeline.fps", Ok("/timeline/fps")),
@@ -133,7 +135,7 @@ fn fields_tell_what_a_form_needs() {
     let fps = field("/timeline/fps");
     assert_eq!((fps.default, fps.optional), (Some(json!(30.0)), true));
     let jump = field("/layers/0/zones/0/motion/0/jump");
-    assert_eq!((jump.kind, jump.unit), (Kind::Numbers(vec!["x".into(), "y".into()]), Some("px")));
+    assert_eq!((jump.kind, jump.unit), (Kind::Numbers(vec!["dx".into(), "dy".into()]), Some("px")));
     assert_eq!(field("/layers/0/image").kind, Kind::Reference("images"));
     assert_eq!(field("/layers/0/zones/0").name, "left eye");
     let Kind::Choice(methods) = field("/layers/0/zones/0/interpolation/method").kind else { panic!() };
