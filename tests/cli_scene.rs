@@ -58,7 +58,10 @@ fn new_makes_a_scene_and_never_overwrites() {
     let again = plica(folder.path(), &["new", "cat.png"]);
     assert_eq!(again.status, 1);
     assert!(again.messages.contains("is there already"), "{again:?}");
-    assert!(ok(plica(folder.path(), &["check", "cat.plica.json"])).contains("nothing moves"));
+    // Nothing moves yet, which a check tells.
+    let strict = plica(folder.path(), &["check", "cat.plica.json"]);
+    assert!(strict.status == 1 && strict.out.contains("nothing moves"), "{strict:?}");
+    assert!(ok(plica(folder.path(), &["check", "--lenient", "cat.plica.json"])).contains("nothing moves"));
 }
 
 #[test]
@@ -111,6 +114,16 @@ fn set_takes_all_or_nothing() {
         assert_eq!(std::fs::read_to_string(at.join("cat.plica.json")).unwrap(), before);
     }
     assert_eq!(plica(at, &["check", "cat.plica.json"]).messages, "no problems\n");
+}
+
+#[test]
+fn check_reads_all_of_every_file() {
+    let folder = folder();
+    ok(plica(folder.path(), &["new", "cat.png"]));
+    let whole = std::fs::read(folder.path().join("cat.png")).unwrap();
+    std::fs::write(folder.path().join("cat.png"), &whole[..whole.len() - 20]).unwrap();
+    let ran = plica(folder.path(), &["check", "cat.plica.json"]);
+    assert!(ran.status == 1 && ran.out.starts_with("/images/cat/path"), "{ran:?}");
 }
 
 #[test]

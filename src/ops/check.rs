@@ -1,12 +1,14 @@
 //! `plica check`: every problem of a scene, with its path.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
+use crate::base::pixels::Picture;
 use crate::base::problem::{Problem, Severity};
-use crate::files;
+use crate::files::{self, materials::Cache};
 use crate::scene::check;
 
 /// Find every problem of a scene.
@@ -17,11 +19,14 @@ pub struct Args {
     /// Print one list of JSON objects: severity, path, message, hint
     #[arg(long)]
     json: bool,
+    /// Let warnings alone be no failure
+    #[arg(long)]
+    lenient: bool,
     #[command(flatten)]
     reading: SceneOptions,
 }
 
-/// Prints the problems; fails when one of them is an error.
+/// Prints the problems; fails when there are any (with `--lenient`, when one of them is an error).
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let problems = problems(&args, context)?;
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
@@ -33,15 +38,16 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     }
     let warnings = problems.len() - errors;
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    match (errors, warnings) {
-        (0, 0) => context.messages.say("no problems"),
-        (0, _) => context.messages.say(&counted(warnings, "warning")),
-        _ => {
-            let what = [counted(errors, "error"), counted(warnings, "warning")];
-            let what = if warnings == 0 { what[0].clone() } else { what.join(", ") };
-            return Err(Error::at(args.scene.display(), what));
-        }
+    let what = match (errors, warnings) {
+        (0, 0) => "no problems".to_owned(),
+        (0, _) => counted(warnings, "warning"),
+        (_, 0) => counted(errors, "error"),
+        _ => format!("{}, {}", counted(errors, "error"), counted(warnings, "warning")),
+    };
+    if errors > 0 || warnings > 0 && !args.lenient {
+        return Err(Error::at(args.scene.display(), what));
     }
+    context.messages.say(&what);
     Ok(())
 }
 
@@ -53,7 +59,10 @@ fn problems(args: &Args, context: &Context) -> Result<Vec<Problem>> {
         Err(error) => return Err(error),
     };
     let scene = document.scene();
-    let (sizes, unreadable) = files::materials::sizes(&args.scene, scene, &options);
+    // All of each file is read, not only its header: a picture that is cut short is a problem too.
+    let (materials, unreadable) = files::materials::gather(&args.scene, scene, &options, &mut Cache::default());
+    let size = |(name, picture): (&String, &Arc<Picture>)| (name.clone(), (picture.width(), picture.height()));
+    let sizes = materials.pictures.iter().map(size).collect();
     let mut problems = document.warnings().to_vec();
     problems.extend(unreadable);
     problems.extend(check::check_images(scene, &sizes));

@@ -60,6 +60,10 @@ pub fn check(scene: &Scene, rules: &Rules) -> Vec<Problem> {
         problems.extend(below_layers(scene, |layer| layer.check()));
     }
     problems.extend(scene.images.keys().filter_map(|name| rules::plain_text(name, &pointer::join("/images", name))));
+    if scene.layers.is_empty() {
+        let problem = Problem::warning("/layers", "a scene without layers has nothing to show");
+        problems.push(problem.hint("add a picture layer"));
+    }
     problems.extend(names(scene));
     problems.extend(paths(scene, rules));
     problems.extend(references(scene));
