@@ -86,5 +86,5 @@ impl Write for Output {
 #[cfg(feature = "tui")]
 pub fn is_interactive() -> bool {
     use std::io::IsTerminal;
-    std::io::stdin().is_terminal() && std::io::stdout().is_terminal()
+    io::stdin().is_terminal() && io::stdout().is_terminal()
 }

@@ -17,6 +17,7 @@ pub struct Door {
     session: Session,
     options: files::Options,
     read_only: bool,
+    journaled: bool,
     made: bool,
 }
 
@@ -29,7 +30,8 @@ impl Door {
         let is_scene = path.extension().is_some_and(|extension| extension == "json");
         let (scene, made) = if is_scene { (path.to_owned(), false) } else { beside(path, read_only, options)? };
         let mode = if read_only { Mode::ReadOnly } else { Mode::Edit };
-        Ok(Door { session: Session::open(&scene, options, mode)?, options: options.clone(), read_only, made })
+        let session = Session::open(&scene, options, mode)?;
+        Ok(Door { session, options: options.clone(), read_only, journaled: !read_only, made })
     }
 
     /// The scene as it is now.
@@ -65,7 +67,7 @@ impl Door {
     /// Whether every edit is safe in the journal, as far as there is one.
     pub fn is_synced(&self) -> bool {
         let safety = self.session.safety();
-        safety.journaled || self.read_only || safety.failing.is_some()
+        safety.journaled || !self.journaled || safety.failing.is_some()
     }
 
     /// Why edits do not reach the journal.
@@ -212,6 +214,6 @@ impl Door {
     pub fn in_memory(path: &Path) -> Door {
         let options = files::Options::default();
         let session = Session::open(path, &options, Mode::ReadOnly).expect("a scene of the tests");
-        Door { session, options, read_only: false, made: false }
+        Door { session, options, read_only: false, journaled: false, made: false }
     }
 }

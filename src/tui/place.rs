@@ -34,9 +34,9 @@ impl Placing {
     }
 }
 
-/// A pair of numbers with these names at `pointer`?
+/// Whether a field is a pair of lengths with these names.
 fn is_pair(field: &Field, names: [&str; 2]) -> bool {
-    matches!(&field.kind, Kind::Numbers(all) if *all == names)
+    field.unit == Some("px") && matches!(&field.kind, Kind::Numbers(all) if *all == names)
 }
 
 fn read(document: &Document, pointer: &str) -> Option<Point> {

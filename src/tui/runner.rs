@@ -145,8 +145,8 @@ impl Editor {
             self.draw()?;
             self.wait(events, &mut ticked);
         }
-        self.job.iter().for_each(Job::cancel);
         self.state.door.flush();
+        self.job.take().into_iter().for_each(Job::end);
         Ok(())
     }
 

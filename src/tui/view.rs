@@ -37,19 +37,16 @@ pub fn areas(screen: Rect) -> Areas {
     let [body, status, line] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
     let right = if screen.width >= WIDE { screen.width * 2 / 5 } else { 0 };
-    let tree = (screen.width / 5).clamp(20, 30);
+    let tree = (screen.width / 5).clamp(24, 30);
     let columns = [Constraint::Length(tree), Constraint::Fill(1), Constraint::Length(right)];
-    let [tree, middle, right] = Layout::horizontal(columns).spacing(overlap(right > 0)).areas(body);
+    let columns = &columns[..if right > 0 { 3 } else { 2 }];
+    let columns = Layout::horizontal(columns).spacing(Spacing::Overlap(1)).split(body);
+    let (tree, middle, right) = (columns[0], columns[1], columns.get(2).copied().unwrap_or_default());
     let [table, detail] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(5)]).spacing(Spacing::Overlap(1)).areas(middle);
     let stack = [Constraint::Fill(3), Constraint::Length((body.height / 5).max(6)), Constraint::Fill(5)];
     let right = (right.width > 0).then(|| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
     Areas { tree, table, detail, right, status, line }
-}
-
-/// Borders that meet are drawn once; without a third column there is nothing for it to overlap with.
-fn overlap(right: bool) -> Spacing {
-    if right { Spacing::Overlap(1) } else { Spacing::Space(0) }
 }
 
 /// Draws the screen.

@@ -103,6 +103,7 @@ impl Studio {
 /// A subcommand that runs.
 pub struct Job {
     cancel: Arc<AtomicBool>,
+    thread: std::thread::JoinHandle<()>,
 }
 
 impl Job {
@@ -110,7 +111,7 @@ impl Job {
     pub fn start(command: ops::Command, name: String, open: Option<ops::Open>, events: mpsc::Sender<Event>) -> Job {
         let cancel = Arc::new(AtomicBool::new(false));
         let shared = cancel.clone();
-        std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             let out = Buffer::default();
             let said = Buffer::default();
             let messages = Messages { name: name.clone(), said: said.clone(), events: events.clone(), shown: None };
@@ -127,12 +128,20 @@ impl Job {
             // Nobody listens once the editor has left.
             let _ = events.send(Event::Done(result));
         });
-        Job { cancel }
+        Job { cancel, thread }
     }
 
     /// Asks it to end.
     pub fn cancel(&self) {
         self.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// Asks it to end and waits until it has, so that nothing half-written is left.
+    pub fn end(self) {
+        self.cancel();
+        if self.thread.join().is_err() {
+            tracing::warn!("a subcommand panicked");
+        }
     }
 }
 

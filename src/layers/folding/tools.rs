@@ -60,6 +60,7 @@ pub enum Tool {
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// Factors along x and y; 1 changes nothing, 3 gives twice the distance to the centre.
+        #[schemars(extend("columns" = ["x", "y"]))]
         factor: Xy,
     },
     /// Dense: turned about a centre.
@@ -77,6 +78,7 @@ pub enum Tool {
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// [a, b]: a times y is added to x, and b times x to y.
+        #[schemars(extend("columns" = ["a", "b"]))]
         factor: Xy,
     },
     /// Dense: an affine map about the image's origin.

@@ -43,8 +43,10 @@ fn enter(state: &mut State, call: &Call) -> Done {
     if cell.is_node() && missing {
         return add(state, call);
     }
-    if cell.is_node() {
-        state.show(cell.pointer);
+    // The kind of an item with an inside of its own stands for the item; its form has the kind again.
+    let into = row.item && state.column == 0 && row.cells.iter().any(Cell::is_node);
+    if cell.is_node() || into {
+        state.show(if into { row.pointer } else { cell.pointer });
         return Ok(());
     }
     let sheet = state.sheet();

@@ -4,9 +4,14 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::write;
+use super::{width, write};
+use crate::scene::field::Kind;
 use crate::tui::app::{Mode, State};
+use crate::tui::sheet::{Cell, Part};
 use crate::tui::{colour, entry, numbers, terminal};
+
+/// Ranges as wide as this only keep sums finite: they are not worth a word.
+const UNTOLD: f64 = 1e9;
 
 /// Draws it: name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
@@ -17,23 +22,69 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let number = cell.number(state.document()).filter(|_| cell.is_number());
     let value = number.map_or(cell.text.clone(), numbers::exact);
     let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };
-    let range = cell.field.range_text().map(|range| format!("   {range}")).unwrap_or_default();
-    let unit = cell.field.unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+    let polar = matches!(cell.part, Part::Length | Part::Degrees);
+    let told = cell.field.range.is_some_and(|(min, max)| !polar && (min > -UNTOLD || max < UNTOLD));
+    let range = cell.field.range_text().filter(|_| told).map(|range| format!("   {range}")).unwrap_or_default();
+    let unit = if cell.part == Part::Degrees { Some("degrees") } else { cell.field.unit };
+    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
     let set = if row.set { "" } else { "   (default)" };
     let label = terminal::plain(&row.label);
     let mut x = write(buffer, area, 0, 0, &format!("{label}{name}"), colour::strong());
     x = write(buffer, area, x, 0, &format!("   {value}{unit}"), Style::new());
     x = write(buffer, area, x, 0, &range, colour::faint());
     write(buffer, area, x, 0, set, colour::faint());
-    write(buffer, area, 0, 1, cell.field.help, Style::new());
-    let Mode::Entry(typed) = &state.mode else { return };
-    if !cell.is_number() || typed.text.value().trim().is_empty() {
-        return;
+    let entry = match &state.mode {
+        Mode::Entry(typed) if cell.is_number() && !typed.text.value().trim().is_empty() => Some(typed),
+        _ => None,
+    };
+    let lines = if entry.is_some() { 1 } else { 2 };
+    for (y, line) in wrapped(help(cell), area.width).iter().take(lines).enumerate() {
+        write(buffer, area, 0, 1 + y as u16, line, Style::new());
     }
+    let Some(typed) = entry else { return };
     let n = entry::cells(state, &sheet).len();
     let (text, style) = match entry::evaluate(state, &sheet, row, cell, (0, n), typed.text.value()) {
         Ok(value) => (format!("= {}", numbers::exact(numbers::tidy(value))), colour::strong()),
         Err(mistake) => (mistake, Style::new().add_modifier(Modifier::ITALIC)),
     };
     write(buffer, area, 0, 2, &text, style);
+}
+
+/// What is told about a cell: about the word it has, where it is one of several.
+fn help(cell: &Cell) -> &'static str {
+    let all = match &cell.field.kind {
+        Kind::Choice(all) | Kind::Tagged { variants: all, .. } => all.as_slice(),
+        _ => &[],
+    };
+    let word = all.iter().find(|one| one.name == cell.text && !one.help.is_empty());
+    word.map_or(cell.field.help, |one| one.help)
+}
+
+/// `text` in lines that fit.
+fn wrapped(text: &str, room: u16) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().filter(|line| line.is_empty() || width(line) + 1 + width(word) <= room);
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_is_wrapped_at_words() {
+        assert_eq!(wrapped("one two  three", 8), ["one two", "three"]);
+        assert_eq!(wrapped("", 8), [""]);
+        assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
+    }
 }

@@ -7,6 +7,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::{first_row, width, write};
 use crate::scene::address;
+use crate::scene::field::Kind;
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::sheet::{Cell, Row, Sheet};
 use crate::tui::{colour, entry, terminal};
@@ -126,9 +127,11 @@ fn lay<'a>(sheet: &Sheet, row: &'a Row, heads: &[&str]) -> Vec<Placed<'a>> {
     let under_heads = row.item && row.cells.iter().map(|cell| cell.head.as_str()).eq(heads.iter().copied());
     let mut x = 0;
     let place = |(c, cell): (usize, &'a Cell)| {
+        // What an item is says itself.
+        let says_itself = c == 0 && matches!(cell.field.kind, Kind::Choice(_));
         let widest = like.iter().map(|row| i32::from(width(&row.cells[c].text))).max().unwrap_or(0);
         let own = i32::from(width(&cell.text));
-        let named = !under_heads && !cell.head.is_empty() && (row.cells.len() > 1 || sheet.table);
+        let named = !under_heads && !says_itself && !cell.head.is_empty() && (row.cells.len() > 1 || sheet.table);
         let head = named.then_some(x);
         let name = i32::from(width(&cell.head));
         let wide = if under_heads { widest.max(name) } else { widest };

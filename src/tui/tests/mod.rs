@@ -6,6 +6,7 @@ use self::support::{press, state};
 use super::app::Mode;
 use super::update::Effect;
 
+mod screens;
 pub mod support;
 
 /// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them.

@@ -1,0 +1,96 @@
+//! The screens of the main states as text, held against tests/screens. PLICA_UPDATE=1 writes them anew.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use super::support::{press, state};
+use crate::base::pixels::{Frame, Picture};
+use crate::layers::Materials;
+use crate::tui::app::State;
+use crate::tui::update::{Event, update};
+use crate::tui::view;
+
+/// The states: a name, and the keys that lead there.
+const STATES: &[(&str, &str)] = &[
+    ("start", ""),
+    ("motion", "/ \"motion\" Enter Enter j 2 l"),
+    ("entry", "/ \"motion\" Enter Enter 5 l i \"*1.1\""),
+    ("selection", "/ \"motion\" Enter Enter l v j"),
+    ("outline", "/ \"outline\" Enter Enter"),
+    ("choice", "/ \"interpolation\" Enter Enter Enter j"),
+    ("optional", "/ \"fold\" Enter o"),
+    ("refused", "/ \"radius\" Enter i \"-5\" Enter"),
+    ("picture", "/ \"motion\" Enter g i w s 5 l 8 k"),
+    ("command", ": \"und\" Tab"),
+    ("hints", "z"),
+    ("help", "?"),
+    ("unsaved", "/ \"speed\" Enter +"),
+];
+
+/// The state with a synthesis and a frame, as the worker would have brought them.
+fn opened(size: (u16, u16)) -> State {
+    let mut state = state();
+    let shade = |i: usize| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, 0.3, 1.0];
+    let picture = Arc::new(Picture::from_cells(64, 64, (0..64 * 64).map(shade).collect()));
+    let materials = Materials { pictures: [("cat".to_string(), picture)].into(), ..Materials::default() };
+    let synth = crate::render::synth(state.document().scene(), &materials, None).unwrap();
+    let frame: Frame = crate::render::cpu::frame(&synth, 0.25);
+    update(&mut state, Event::Synthesised(Ok((Arc::new(synth), 12.0))));
+    update(&mut state, Event::Framed(Arc::new(frame)));
+    update(&mut state, Event::Resize(size.0, size.1));
+    state.time = 0.25;
+    state
+}
+
+/// What is on the screen, the cursor's place below.
+fn screen(state: &State) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
+    terminal.draw(|frame| view::draw(frame, state)).unwrap();
+    let cursor = terminal.get_cursor_position().unwrap();
+    let buffer = terminal.backend().buffer();
+    let mut text = String::new();
+    for row in buffer.content().chunks(usize::from(state.size.0)) {
+        let line: String = row.iter().map(|cell| cell.symbol()).collect();
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    format!("{text}cursor {} {}\n", cursor.x, cursor.y)
+}
+
+#[test]
+fn screens_are_as_kept() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens");
+    let mut old = Vec::new();
+    for size in [(80, 24), (160, 48)] {
+        for (name, keys) in STATES {
+            let mut state = opened(size);
+            press(&mut state, keys);
+            let path = folder.join(format!("{name}-{}x{}.txt", size.0, size.1));
+            let found = screen(&state);
+            if std::env::var_os("PLICA_UPDATE").is_some() {
+                std::fs::create_dir_all(&folder).unwrap();
+                std::fs::write(&path, &found).unwrap();
+            }
+            if std::fs::read_to_string(&path).unwrap_or_default() != found {
+                old.push(format!("{}:\n{found}", path.display()));
+            }
+        }
+    }
+    assert!(old.is_empty(), "PLICA_UPDATE=1 writes these anew:\n{}", old.join("\n"));
+}
+
+#[test]
+fn every_size_is_drawn_and_small_ones_say_so() {
+    for (width, height) in [(1, 1), (20, 5), (79, 24), (80, 23), (80, 24), (112, 30), (400, 120)] {
+        for (_, keys) in STATES {
+            let mut state = opened((width, height));
+            press(&mut state, keys);
+            let small = width < 80 || height < 24;
+            let text = screen(&state);
+            assert!(!small || width < 20 || text.contains("Plica needs 80 x 24"), "{width} x {height}:\n{text}");
+        }
+    }
+}

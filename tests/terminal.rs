@@ -1,0 +1,226 @@
+//! The real binary under a pseudo-terminal: keys in, screen out, and the terminal as it was afterwards.
+#![cfg(feature = "tui")]
+
+use std::io::{Read, Write};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
+
+/// Longer than anything here takes on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The editor in a terminal.
+struct Editor {
+    child: Box<dyn Child + Send + Sync>,
+    master: Option<Box<dyn MasterPty + Send>>,
+    keys: Option<Box<dyn Write + Send>>,
+    seen: Arc<Mutex<vt100::Parser>>,
+}
+
+impl Editor {
+    fn open(folder: &Path, arguments: &[&str]) -> Editor {
+        let size = PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 };
+        let pair = native_pty_system().openpty(size).unwrap();
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_plica"));
+        command.args(["edit", "--no-view"]);
+        command.args(arguments);
+        command.cwd(folder);
+        for (name, value) in [("TERM", "xterm-256color"), ("XDG_RUNTIME_DIR", "run"), ("XDG_STATE_HOME", "state")] {
+            let value = if name == "TERM" { value.into() } else { folder.join(value).into_os_string() };
+            command.env(name, value);
+        }
+        std::fs::create_dir_all(folder.join("run")).unwrap();
+        let child = pair.slave.spawn_command(command).unwrap();
+        drop(pair.slave);
+        let seen = Arc::new(Mutex::new(vt100::Parser::new(24, 80, 0)));
+        let mut output = pair.master.try_clone_reader().unwrap();
+        let parser = seen.clone();
+        std::thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while let Ok(n @ 1..) = output.read(&mut bytes) {
+                parser.lock().unwrap().process(&bytes[..n]);
+            }
+        });
+        let keys = pair.master.take_writer().unwrap();
+        Editor { child, master: Some(pair.master), keys: Some(keys), seen }
+    }
+
+    fn press(&mut self, keys: &str) {
+        let writer = self.keys.as_mut().unwrap();
+        writer.write_all(keys.as_bytes()).unwrap();
+        writer.flush().unwrap();
+    }
+
+    fn screen(&self) -> String {
+        self.seen.lock().unwrap().screen().contents()
+    }
+
+    fn wait_for(&self, text: &str) {
+        let begun = Instant::now();
+        while !self.screen().contains(text) {
+            assert!(begun.elapsed() < PATIENCE, "no {text:?} on the screen:\n{}", self.screen());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    fn signal(&self, name: &str) {
+        let pid = self.child.process_id().unwrap().to_string();
+        assert!(std::process::Command::new("kill").args([&format!("-{name}"), &pid]).status().unwrap().success());
+    }
+
+    /// Waits for the end; gives the exit status.
+    fn end(&mut self) -> u32 {
+        let begun = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status.exit_code();
+            }
+            assert!(begun.elapsed() < PATIENCE, "it does not end:\n{}", self.screen());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Whether every mode that the editor sets is undone.
+    fn assert_restored(&self) {
+        let begun = Instant::now();
+        loop {
+            let parser = self.seen.lock().unwrap();
+            let screen = parser.screen();
+            let restored = !screen.alternate_screen()
+                && !screen.hide_cursor()
+                && !screen.bracketed_paste()
+                && screen.mouse_protocol_mode() == vt100::MouseProtocolMode::None;
+            if restored {
+                return;
+            }
+            assert!(begun.elapsed() < PATIENCE, "the terminal is not as it was");
+            drop(parser);
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+impl Drop for Editor {
+    fn drop(&mut self) {
+        // It has ended, or the test has failed.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A folder with a picture in it.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mut picture = image::RgbImage::new(64, 48);
+    picture.enumerate_pixels_mut().for_each(|(x, y, pixel)| pixel.0 = [x as u8 * 4, y as u8 * 5, 90]);
+    picture.save(folder.path().join("photo.png")).unwrap();
+    folder
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_picture_becomes_a_scene_that_is_edited_and_saved() {
+    let folder = folder();
+    let scene = folder.path().join("photo.plica.json");
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("photo.plica.json: made");
+    assert!(scene.exists());
+    editor.press("/outline\r");
+    editor.wait_for("zones.all.outline");
+    editor.press("\rjji+=5.5\r");
+    editor.wait_for("  *");
+    editor.press(":q\r");
+    editor.wait_for("unsaved edits");
+    editor.press(":wq\r");
+    assert_eq!(editor.end(), 0);
+    editor.assert_restored();
+    assert_eq!(json(&scene).pointer("/layers/0/zones/0/outline/y"), Some(&serde_json::json!(5.5)));
+}
+
+#[test]
+fn signals_end_the_editor_and_lose_nothing() {
+    for name in ["TERM", "HUP", "INT"] {
+        let folder = folder();
+        let mut editor = Editor::open(folder.path(), &["photo.png"]);
+        editor.wait_for("made");
+        editor.press("/speed\r+");
+        editor.wait_for("  *");
+        editor.signal(name);
+        editor.end();
+        editor.assert_restored();
+        let mut editor = Editor::open(folder.path(), &["photo.png"]);
+        editor.wait_for("1 unsaved changes were left behind");
+        editor.press("\r:wq\r");
+        assert_eq!(editor.end(), 0, "{name}");
+        let scene = json(&folder.path().join("photo.plica.json"));
+        assert_eq!(scene.pointer("/layers/0/zones/0/speed"), Some(&serde_json::json!(2)), "{name}");
+    }
+}
+
+#[test]
+fn a_terminal_that_goes_away_ends_the_editor() {
+    let folder = folder();
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("made");
+    editor.press("/speed\r+");
+    editor.wait_for("  *");
+    editor.keys = None;
+    editor.master = None;
+    editor.signal("HUP");
+    editor.end();
+}
+
+#[test]
+fn help_comes_from_the_table_and_small_terminals_are_waited_for() {
+    let folder = folder();
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("made");
+    editor.press("?");
+    editor.wait_for("-- tree --");
+    editor.press("q");
+    let size = |rows, cols| PtySize { rows, cols, pixel_width: 0, pixel_height: 0 };
+    editor.master.as_ref().unwrap().resize(size(10, 40)).unwrap();
+    editor.wait_for("Plica needs 80 x 24");
+    editor.master.as_ref().unwrap().resize(size(24, 80)).unwrap();
+    editor.wait_for("zones.all");
+    editor.press(":q\r");
+    assert_eq!(editor.end(), 0);
+    editor.assert_restored();
+}
+
+#[test]
+fn subcommands_run_beside_the_editor_on_the_scene_as_it_is_there() {
+    let folder = folder();
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("made");
+    editor.press("/speed\r+:render -o out.png --frames 0\r");
+    editor.wait_for("  *");
+    let begun = Instant::now();
+    while std::fs::read_dir(folder.path())
+        .unwrap()
+        .all(|file| !file.unwrap().file_name().to_string_lossy().starts_with("out"))
+    {
+        assert!(begun.elapsed() < PATIENCE, "nothing is rendered:\n{}", editor.screen());
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    editor.press(":q!\r");
+    assert_eq!(editor.end(), 0);
+    editor.assert_restored();
+}
+
+#[test]
+fn what_cannot_be_opened_is_said_on_a_terminal_left_alone() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bad.plica.json"), "{").unwrap();
+    for name in ["bad.plica.json", "missing.png"] {
+        let mut editor = Editor::open(folder.path(), &[name]);
+        assert_eq!(editor.end(), 1, "{name}");
+        editor.wait_for(name);
+        editor.assert_restored();
+    }
+}
