@@ -131,6 +131,7 @@ pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) ->
     marks.extend(anchors(scene, &plot_from_image));
     let height = frame.y1 + LEGEND;
     let width = (frame.x1 + MARGIN).max(360.0);
+    marks.extend(margins(frame, Rect::new(0.0, 0.0, width, height)));
     legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), stretch, longest, scale, &mut marks);
     let title =
         format!("Vector field: {} arrows, one every {step} px; the longest jump is {longest:.2} px", arrows.len());
@@ -155,6 +156,18 @@ fn part(synth: &Synth, shown: Rect) -> Frame {
     let (x0, x1) = (shown.x0 as usize, shown.x1 as usize);
     let rows = (shown.y0 as usize..shown.y1 as usize).flat_map(|y| frame.row(y)[x0..x1].iter().copied());
     Frame::from_cells(x1 - x0, (shown.y1 - shown.y0) as usize, rows.collect())
+}
+
+/// White over what reaches out of the picture.
+fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = Mark> {
+    let sides = [
+        Rect::new(all.x0, all.y0, all.x1, frame.y0),
+        Rect::new(all.x0, frame.y1, all.x1, all.y1),
+        Rect::new(all.x0, frame.y0, frame.x0, frame.y1),
+        Rect::new(frame.x1, frame.y0, all.x1, frame.y1),
+    ];
+    let corners = |r: Rect| vec![r.origin(), (r.x1, r.y0).into(), (r.x1, r.y1).into(), (r.x0, r.y1).into()];
+    sides.into_iter().map(move |side| fill(corners(side), [255; 4]))
 }
 
 /// Zone outlines and fold regions, in the look they have everywhere.

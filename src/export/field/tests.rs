@@ -63,6 +63,17 @@ fn the_png_shows_arrows_and_picture() {
 }
 
 #[test]
+fn nothing_reaches_out_of_the_picture() {
+    let (mut scene, synth) = scene();
+    let crate::layers::Layer::Picture(layer) = &mut scene.layers[0];
+    layer.zones[0].outline =
+        serde_json::from_str(r#"{"kind":"rectangle","x":-99,"y":-99,"width":150,"height":115}"#).unwrap();
+    let image = image::load_from_memory(&png(&plot(&scene, &synth, None, false)).unwrap()).unwrap().to_rgba8();
+    assert!((0..image.width()).all(|x| image.get_pixel(x, 5).0 == [255; 4]));
+    assert!((0..image.height()).all(|y| image.get_pixel(5, y).0 == [255; 4]));
+}
+
+#[test]
 fn round_lengths() {
     for (most, round) in [(7.3, 5.0), (1.0, 1.0), (0.034, 0.02), (250.0, 200.0)] {
         assert!((round_below(most) / round - 1.0).abs() < 1e-9, "{most}: {}", round_below(most));
