@@ -182,6 +182,23 @@ impl Preview {
         self.shared.lock().status()
     }
 
+    /// Says goodbye to the windows and ends the one it started. From here on the scene is free for another editor.
+    pub fn close(&mut self) {
+        self.shared.change(|state| state.closing = true);
+        self.door = None;
+        let state = self.shared.wait(FAREWELL, |state| state.peers.is_empty());
+        state.peers.values().for_each(|peer| peer.hang_up.now());
+        drop(state);
+        if let Some(keeper) = self.keeper.take() {
+            keeper.wait_for_end(FAREWELL);
+        }
+    }
+
+    /// Whether a window was opened from here and is still wanted.
+    pub fn has_window(&self) -> bool {
+        self.shared.lock().life == Some(Life::Running)
+    }
+
     /// Opens a window and keeps it open; does nothing where one of ours is.
     pub fn open_window(&mut self) {
         if let Some(reason) = no_window(&self.scene) {
@@ -193,10 +210,7 @@ impl Preview {
 
     /// Keeps a process alive that joins as a window.
     fn keep(&mut self, command: impl Fn() -> Command + Send + 'static) {
-        let Some(door) = &mut self.door else { return };
-        if self.shared.lock().life == Some(Life::Running) {
-            return;
-        }
+        let Some(door) = self.door.as_mut().filter(|_| self.shared.lock().life != Some(Life::Running)) else { return };
         let orphans = std::mem::take(&mut door.orphans);
         self.keeper = None;
         let (shared, waiting) = (self.shared.clone(), self.shared.clone());
@@ -211,14 +225,7 @@ impl Preview {
 
 impl Drop for Preview {
     fn drop(&mut self) {
-        self.shared.change(|state| state.closing = true);
-        self.door = None;
-        let state = self.shared.wait(FAREWELL, |state| state.peers.is_empty());
-        state.peers.values().for_each(|peer| peer.hang_up.now());
-        drop(state);
-        if let Some(keeper) = &self.keeper {
-            keeper.wait_for_end(FAREWELL);
-        }
+        self.close();
     }
 }
 

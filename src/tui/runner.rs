@@ -106,7 +106,7 @@ impl Editor {
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
         read_input(sender.clone());
         let worker = Worker::start(options.files.clone(), sender.clone());
-        let preview = listen(&door, sender.clone());
+        let preview = listen(&door, &options.files, sender.clone());
         let changed = sender.clone();
         // Without it changes from outside are met at the next save.
         let watch = Watch::new(move |files| drop(changed.send(Event::FilesChanged(files))));
@@ -222,7 +222,13 @@ impl Editor {
     fn open(&mut self, path: &Path) {
         match Door::open(path, self.options.read_only, &self.options.files) {
             Ok(door) => {
-                self.preview = listen(&door, self.sender.clone());
+                let window = self.preview.has_window();
+                // First, for it may be the same scene, and a scene has one editor.
+                self.preview.close();
+                self.preview = listen(&door, &self.options.files, self.sender.clone());
+                if window {
+                    self.preview.open_window();
+                }
                 self.state = State::new(door, self.state.size, self.state.depth);
                 self.begin();
             }
@@ -262,8 +268,8 @@ impl Editor {
 }
 
 /// Listens for windows of the scene; what they say comes as events.
-fn listen(door: &Door, sender: mpsc::Sender<Event>) -> Preview {
-    Preview::start(door.path(), door.document(), door.revision(), move |said| {
+fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
+    let preview = Preview::start(door.path(), door.document(), door.revision(), move |said| {
         let event = match said {
             editor::Event::Command(line) => Event::Command(line),
             editor::Event::Pointer { x, y } => Event::Pointer(x, y),
@@ -272,7 +278,8 @@ fn listen(door: &Door, sender: mpsc::Sender<Event>) -> Preview {
         };
         // Nobody listens once the editor has left.
         let _ = sender.send(event);
-    })
+    });
+    preview.with_options(options)
 }
 
 /// Reads the terminal for as long as there is one.
