@@ -1,9 +1,13 @@
 //! From a journal back to a history: its records are done again, one after another, from the document it starts from.
 
 use super::journal::{Contents, Kind, Record};
+use crate::base::problem::Problem;
 use crate::scene::check::Rules;
-use crate::scene::history::Stamp;
+use crate::scene::history::{Replay, Stamp};
 use crate::scene::{Document, History};
+
+/// How many records may be left out at the end because of what they lead to.
+const MOST_TRIES: usize = 100;
 
 /// What a journal tells.
 #[derive(Debug)]
@@ -22,58 +26,50 @@ pub struct Replayed {
     pub next_step: u64,
 }
 
-/// Does the records of a journal again, as far as they can be done. None where it does not start from a document that
-/// this program understands.
+/// Does the records of a journal again, as far as they can be done and lead to a document without errors. None where it
+/// does not start from a document that this program understands.
 pub fn replay(contents: &Contents) -> Option<Replayed> {
     let document = Document::from_json_under(contents.header.document.clone(), Rules::NONE).ok()?;
-    let history = History::new(document);
-    let file = contents.header.file.clone();
-    let mut replayed = Replayed { history, records: 0, file, unsaved: 0, time_ms: 0, next_step: 0 };
-    // Only the file's hash tells whether the first document is the file's.
-    replayed.history.mark_unsaved();
-    let mut last_edit = None;
-    for (record, _) in &contents.records {
-        if !replayed.again(record, last_edit == Some(record.step)) {
-            break;
+    let mut count = contents.records.len();
+    for _ in 0..MOST_TRIES {
+        match attempt(&document, contents, count) {
+            Ok(replayed) => return Some(replayed),
+            Err(fewer) => count = fewer?,
         }
+    }
+    None
+}
+
+/// Does the first `count` records. Fails with how many to try instead.
+fn attempt(document: &Document, contents: &Contents, count: usize) -> Result<Replayed, Option<usize>> {
+    let mut replay = Replay::new(document.clone());
+    let mut file = contents.header.file.clone();
+    let (mut unsaved, mut time_ms, mut next_step, mut last_edit) = (0, 0, 0, None);
+    for (index, (record, _)) in contents.records[..count].iter().enumerate() {
+        let held = last_edit == Some(record.step);
+        again(&mut replay, record, held).map_err(|_| Some(index))?;
         last_edit = (record.kind == Kind::Edit).then_some(record.step);
-        replayed.records += 1;
-        replayed.time_ms = record.time;
-        replayed.next_step = replayed.next_step.max(record.step + 1);
+        unsaved += 1;
+        if let Kind::Saved(hash) = &record.kind {
+            (file, unsaved) = (hash.clone(), 0);
+        }
+        time_ms = record.time;
+        next_step = next_step.max(record.step + 1);
     }
-    replayed.history.close_step();
-    Some(replayed)
+    let history = replay.finish(Rules::NONE).map_err(|_| count.checked_sub(1))?;
+    Ok(Replayed { history, records: count, file, unsaved, time_ms, next_step })
 }
 
-impl Replayed {
-    fn again(&mut self, record: &Record, held: bool) -> bool {
-        let stamp = Stamp { time_ms: record.time, held };
-        let done = match &record.kind {
-            Kind::Saved(file) => {
-                self.history.mark_saved();
-                (self.file, self.unsaved) = (file.clone(), 0);
-                return true;
-            }
-            Kind::Edit => false,
-            Kind::Undo => self.as_recorded(record, History::undo, History::redo),
-            Kind::Redo => self.as_recorded(record, History::redo, History::undo),
-        };
-        self.unsaved += 1;
-        // The step that an undo takes back may have been dropped from the journal: then it is an edit like others.
-        done || self.history.apply(record.patch.clone(), stamp).is_ok()
-    }
-
-    /// Goes a step, and back again where it is not the one recorded.
-    fn as_recorded(&mut self, record: &Record, go: Go, back: Go) -> bool {
-        match go(&mut self.history) {
-            Some(applied) if applied.edit == record.patch => true,
-            Some(_) => {
-                back(&mut self.history);
-                false
-            }
-            None => false,
+fn again(replay: &mut Replay, record: &Record, held: bool) -> Result<(), Problem> {
+    let stamp = Stamp { time_ms: record.time, held };
+    let Record { kind, patch, inverse, .. } = record;
+    match kind {
+        Kind::Edit => replay.edit(patch, inverse, stamp),
+        Kind::Undo => replay.undo(patch, inverse, stamp),
+        Kind::Redo => replay.redo(patch, inverse, stamp),
+        Kind::Saved(_) => {
+            replay.saved();
+            Ok(())
         }
     }
 }
-
-type Go = fn(&mut History) -> Option<crate::scene::history::Applied>;

@@ -1,6 +1,8 @@
 //! Undo and redo, without end: the present document, and every edit that led to it with its inverse. A value: no files,
 //! no clock; times come in.
 
+use serde_json::Value;
+
 use super::check::Rules;
 use super::{Document, Edit};
 use crate::base::problem::Problem;
@@ -84,26 +86,31 @@ impl History {
             return Ok(None);
         }
         self.document = document;
+        let step = self.note(edit.clone(), inverse.clone(), stamp);
+        Ok(Some(Applied { revision: self.revision, step, edit, inverse }))
+    }
+
+    /// Notes an edit that was applied; gives its step.
+    fn note(&mut self, edit: Edit, inverse: Edit, stamp: Stamp) -> u64 {
         self.revision += 1;
         self.undone.clear();
         let before = std::mem::replace(&mut self.state, self.revision);
         let joins = |last: &&mut Step| {
             stamp.held && last.open && edit.replaced().is_some() && edit.replaced() == last.edit.replaced()
         };
-        let step = match self.done.last_mut().filter(joins) {
+        match self.done.last_mut().filter(joins) {
             Some(last) => {
-                (last.edit, last.time_ms, last.after) = (edit.clone(), stamp.time_ms, self.state);
+                (last.edit, last.time_ms, last.after) = (edit, stamp.time_ms, self.state);
                 last.id
             }
             None => {
                 let id = self.next_step;
                 self.next_step += 1;
-                let (edit, inverse, time_ms) = (edit.clone(), inverse.clone(), stamp.time_ms);
+                let time_ms = stamp.time_ms;
                 self.done.push(Step { id, edit, inverse, time_ms, open: true, before, after: self.state });
                 id
             }
-        };
-        Ok(Some(Applied { revision: self.revision, step, edit, inverse }))
+        }
     }
 
     /// Ends the step: a held key that follows begins another.
@@ -175,5 +182,81 @@ impl History {
     /// Whether the document is what was last written; undo comes back to it.
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.state)
+    }
+}
+
+/// A history made again from what a journal recorded. The changes were checked when they were made: only the document
+/// they lead to is checked again, once, so that thousands of them cost no more than a moment.
+#[derive(Debug)]
+pub struct Replay {
+    json: Value,
+    history: History,
+}
+
+impl Replay {
+    /// Begins with the document before the first change; whether a file holds it is not known.
+    pub fn new(document: Document) -> Replay {
+        let json = document.json().clone();
+        let mut history = History::new(document);
+        history.mark_unsaved();
+        Replay { json, history }
+    }
+
+    /// An edit and its inverse.
+    ///
+    /// # Errors
+    /// When it cannot be applied; the replay is of no use any more.
+    pub fn edit(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp) -> Result<(), Problem> {
+        edit.patch(&mut self.json)?;
+        self.history.note(edit.clone(), inverse.clone(), stamp);
+        Ok(())
+    }
+
+    /// The undo that `edit` records. Where it takes back no step that is known, it is an edit like others.
+    ///
+    /// # Errors
+    /// As [`Replay::edit`].
+    pub fn undo(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp) -> Result<(), Problem> {
+        let history = &mut self.history;
+        let Some(mut step) = history.done.pop_if(|last| last.inverse == *edit) else {
+            return self.edit(edit, inverse, stamp);
+        };
+        edit.patch(&mut self.json)?;
+        step.open = false;
+        (history.revision, history.state) = (history.revision + 1, step.before);
+        history.undone.push(step);
+        history.close_step();
+        Ok(())
+    }
+
+    /// The redo that `edit` records; as [`Replay::undo`].
+    ///
+    /// # Errors
+    /// As [`Replay::edit`].
+    pub fn redo(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp) -> Result<(), Problem> {
+        let history = &mut self.history;
+        let Some(step) = history.undone.pop_if(|last| last.edit == *edit) else {
+            return self.edit(edit, inverse, stamp);
+        };
+        edit.patch(&mut self.json)?;
+        (history.revision, history.state) = (history.revision + 1, step.after);
+        history.done.push(step);
+        Ok(())
+    }
+
+    /// The document was written to its file.
+    pub fn saved(&mut self) {
+        self.history.mark_saved();
+    }
+
+    /// The history, its last step closed.
+    ///
+    /// # Errors
+    /// What is wrong with the document that the changes lead to.
+    pub fn finish(self, rules: Rules) -> Result<History, Vec<Problem>> {
+        let Replay { json, mut history } = self;
+        history.document = Document::from_json_under(json, rules)?;
+        history.close_step();
+        Ok(history)
     }
 }
