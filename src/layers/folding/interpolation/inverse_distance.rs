@@ -6,23 +6,26 @@ use crate::layers::folding::anchors::Anchor;
 
 /// Weighted sums over the places of a run.
 struct Sums {
+    /// Image coordinates of the places.
+    xs: [f64; RUN],
+    at_y: f64,
     weight: [f64; RUN],
     x: [f64; RUN],
     y: [f64; RUN],
 }
 
 impl Sums {
-    fn new() -> Self {
-        Sums { weight: [0.0; RUN], x: [0.0; RUN], y: [0.0; RUN] }
+    fn new(run: &Run) -> Self {
+        Sums { xs: run.xs(), at_y: run.y(), weight: [0.0; RUN], x: [0.0; RUN], y: [0.0; RUN] }
     }
 
     /// Adds `anchor` with the weight that `weight` gives for a place's number and its squared distance.
     #[inline(always)]
-    fn add(&mut self, run: &Run, anchor: &Anchor, weight: impl Fn(usize, f64) -> f64) {
-        let (x0, dy) = (run.x(0) - anchor.at.x, run.y() - anchor.at.y);
+    fn add(&mut self, anchor: &Anchor, weight: impl Fn(usize, f64) -> f64) {
+        let dy = self.at_y - anchor.at.y;
         let dy2 = dy * dy;
         for k in 0..RUN {
-            let dx = x0 + k as f64;
+            let dx = self.xs[k] - anchor.at.x;
             let w = weight(k, dx * dx + dy2);
             self.weight[k] += w;
             self.x[k] += w * anchor.jump.x;
@@ -42,28 +45,22 @@ impl Sums {
 
 /// Every anchor counts with d^-power. Places at an anchor come out odd and are mended by the caller.
 pub fn shepard(anchors: &[Anchor], power: f64, run: &Run, out: &mut Jumps) {
-    let mut sums = Sums::new();
+    let mut sums = Sums::new(run);
     if power == 2.0 {
-        anchors.iter().for_each(|anchor| sums.add(run, anchor, |_, d2| 1.0 / d2));
+        anchors.iter().for_each(|anchor| sums.add(anchor, |_, d2| 1.0 / d2));
     } else {
         // Relative to the nearest anchor, so that no power overflows or vanishes.
         let mut nearest2 = [f64::INFINITY; RUN];
         for anchor in anchors {
-            let (x0, dy) = (run.x(0) - anchor.at.x, run.y() - anchor.at.y);
-            for (k, nearest) in nearest2.iter_mut().enumerate() {
-                let dx = x0 + k as f64;
+            let dy = run.y() - anchor.at.y;
+            for (nearest, x) in nearest2.iter_mut().zip(sums.xs) {
+                let dx = x - anchor.at.x;
                 *nearest = nearest.min(dx * dx + dy * dy);
             }
         }
         let half = power / 2.0;
         anchors.iter().for_each(|anchor| {
-            sums.add(
-                run,
-                anchor,
-                |k, d2| {
-                    if k < run.len && d2 > 0.0 { maths::pow(nearest2[k] / d2, half) } else { 0.0 }
-                },
-            );
+            sums.add(anchor, |k, d2| if k < run.len && d2 > 0.0 { maths::pow(nearest2[k] / d2, half) } else { 0.0 });
         });
     }
     sums.write(out);
@@ -80,12 +77,12 @@ pub struct Modified {
 impl Modified {
     /// Looks only at the anchors that reach the run.
     pub fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
-        let mut sums = Sums::new();
+        let mut sums = Sums::new(run);
         let radius2 = self.radius * self.radius;
         for (index, anchor) in anchors.iter().enumerate().filter(|(_, anchor)| run.reach2(anchor) < radius2) {
             match self.ring {
-                None => sums.add(run, anchor, |_, d2| self.weight(d2)),
-                Some((ring, seed)) => sums.add(run, anchor, |k, d2| {
+                None => sums.add(anchor, |_, d2| self.weight(d2)),
+                Some((ring, seed)) => sums.add(anchor, |k, d2| {
                     let d = d2.sqrt();
                     let in_ring = self.radius - ring < d && d < self.radius;
                     if in_ring && !counts(run, k, index, seed) { 0.0 } else { self.weight(d2) }

@@ -87,6 +87,11 @@ impl Run {
         f64::from(self.pixel.0) + k as f64 + self.place.x
     }
 
+    /// Image coordinates x of all places, and of those that would follow.
+    fn xs(&self) -> [f64; RUN] {
+        std::array::from_fn(|k| self.x(k))
+    }
+
     /// Image coordinate y of all places.
     pub fn y(&self) -> f64 {
         f64::from(self.pixel.1) + self.place.y
