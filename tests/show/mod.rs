@@ -93,7 +93,7 @@ pub fn still_outside(name: &str, show: &Show) {
 /// there one thing covers another.
 pub fn no_seam(name: &str, show: &Show) {
     let (seams, still) = (seams(show), show.still());
-    for time in (0..12).map(|k| f64::from(k) / 12.0) {
+    for time in (0..8).map(|k| f64::from(k) / 8.0) {
         let frame = show.frame(time);
         for &((x, y), (u, v)) in &seams {
             let excess = step(at(&frame, x, y), at(&frame, u, v)).saturating_sub(roughness(&still, x, y));
