@@ -2,13 +2,13 @@
 //! looks sees the old file or the new one, whole, whatever happens in between.
 
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::{MetadataExt, fchown};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::disk;
+use super::{disk, paths};
 use crate::base::error::{Error, Result};
 use crate::base::system;
 
@@ -42,7 +42,8 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
 /// # Errors
 /// When something else of that name is there, or as [`write_atomic`].
 pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
-    let bytes = std::fs::read(from).map_err(|error| Error::at(from.display(), error))?;
+    let mut bytes = Vec::new();
+    paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
     if std::fs::read(to).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
 }
 
