@@ -118,22 +118,27 @@ impl Player {
         let (x0, y0, w, h) = (index(bounds, "x"), index(bounds, "y"), index(bounds, "width"), index(bounds, "height"));
         let columns = shown.width();
         let rows = index(&self.manifest["function"], "height") as f64;
+        let (piece, rule, speed) = (self.piece(zone), zone["rule"].as_str().unwrap(), number(zone, "speed"));
+        let slot_ends = thresholds.as_ref().map(|_| {
+            let slots = &zone["thresholds"]["slots"];
+            (1 + index(slots, "ahead"), 1 + index(slots, "ahead") + index(slots, "behind"))
+        });
+        let mut known = None;
         for (x, y) in (0..w * h).map(|i| (i % w, i / w)) {
             let [u, v, shift, row] = init.at(x, y);
             if row == 0.0 {
                 continue;
             }
-            let s = self.s(zone, (row * rows) as usize, number(zone, "speed") * (t + shift));
+            // One zone has one shift and one row.
+            let s = *known.get_or_insert_with(|| self.s(zone, (row * rows) as usize, speed * (t + shift)));
             let [jx, jy, s0, s1] = jump.at(x, y);
-            let slots = thresholds.as_ref().map(|texture| {
+            let slots = thresholds.as_ref().zip(slot_ends).map(|(texture, (ahead, behind))| {
                 let slot = |n: usize| texture.at(x, y + n / 4 * h)[n % 4];
-                let (ahead, behind) =
-                    (index(&zone["thresholds"]["slots"], "ahead"), index(&zone["thresholds"]["slots"], "behind"));
-                let side = if s < 0.0 { 1 + ahead..1 + ahead + behind } else { 1..1 + ahead };
+                let side = if s < 0.0 { ahead..behind } else { 1..ahead };
                 (slot(0), side.map(slot).collect::<Vec<f64>>(), number(&zone["thresholds"], "tolerance"))
             });
-            let Some(e) = effective(zone["rule"].as_str().unwrap(), s, (s0, s1), slots) else { continue };
-            let read = self.read(self.piece(zone), u + e * jx, v + e * jy);
+            let Some(e) = effective(rule, s, (s0, s1), slots) else { continue };
+            let read = self.read(piece, u + e * jx, v + e * jy);
             let beneath = &mut shown.cells_mut()[(y0 + y) * columns + x0 + x];
             *beneath = if zone["lay"] == "over" { over(read, *beneath) } else { read };
         }
