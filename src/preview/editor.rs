@@ -201,7 +201,7 @@ impl Preview {
 
     /// Opens a window and keeps it open; does nothing where one of ours is.
     pub fn open_window(&mut self) {
-        if let Some(reason) = no_window(&self.scene) {
+        if let Some(reason) = no_window() {
             return self.shared.tell(|state| state.refused = Some(reason));
         }
         let (scene, options) = (self.scene.clone(), self.options.clone());
@@ -240,12 +240,11 @@ fn has_display() -> bool {
 }
 
 /// Why no window can be opened here, and what to do instead.
-fn no_window(scene: &Path) -> Option<String> {
+fn no_window() -> Option<String> {
     if !cfg!(feature = "window") {
         return Some("this plica was built without the window".into());
     }
-    let how = format!("no display; `plica view {}` in a session with one (ssh -X has one) joins", scene.display());
-    (!has_display()).then_some(how)
+    (!has_display()).then(|| "no display here; plica view where there is one (or ssh -X) joins".into())
 }
 
 /// The window's process, in a group of its own: what the terminal does to the editor's group is not meant for it.

@@ -164,14 +164,25 @@ impl Editor {
         for event in first.into_iter().chain(events.try_iter()) {
             self.take(event);
         }
-        self.state.seen.window = match self.preview.status() {
-            Status::Off => String::new(),
-            status => format!("window: {status}"),
-        };
+        self.see_window();
         let passed = ticked.elapsed().as_secs_f64();
         *ticked = Instant::now();
         if self.state.playing {
             self.take(Event::Tick(passed));
+        }
+    }
+
+    /// The status line says how the window is doing; why there is none is told once, where there is room for it.
+    fn see_window(&mut self) {
+        let seen = match self.preview.status() {
+            Status::Off => String::new(),
+            status => format!("window: {status}"),
+        };
+        if seen != self.state.seen.window {
+            if let Status::OffBecause(_) = self.preview.status() {
+                self.state.complain(seen.clone());
+            }
+            self.state.seen.window = seen;
         }
     }
 
