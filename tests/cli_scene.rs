@@ -1,4 +1,5 @@
 //! The commands that make, read and change scenes: the real program in a fresh folder.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,5 +1,6 @@
 //! Scenes as files: good ones are read and written back to the letter, bad ones have exactly the problems that stand
 //! beside them. `PLICA_UPDATE=1 cargo test --test scenes` writes what is found.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

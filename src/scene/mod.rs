@@ -35,6 +35,7 @@ pub struct Scene {
     pub plica: u32,
     /// What the scene is called.
     #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schemars(extend("default" = ""))]
     pub title: String,
     /// Length, frame rate and what follows the end.
     #[serde(default)]

@@ -1,11 +1,13 @@
 //! How many anchors and outline points a zone asks for, told from the document before any of them is made: ten digits in
 //! a file must not cost gigabytes. Estimates from above.
 
+use kurbo::Vec2;
+
 use super::model::Zone;
 use super::outline::{Node, Outline, vector};
 use super::tools::Tool;
 use crate::base::geometry::FLATNESS_PX;
-use crate::base::maths::TAU;
+use crate::base::maths::{TAU, pow};
 
 /// Anchors of one tool of a zone with this outline.
 pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
@@ -30,8 +32,26 @@ fn flattened(outline: &Outline) -> f64 {
         Outline::Rectangle { .. } => 4.0,
         Outline::Ellipse { radii: [x, y], .. } => 16.0 + TAU * (x.abs().max(y.abs()) / FLATNESS_PX).sqrt() / 4.0,
         Outline::Polygon { points } => points.len() as f64,
-        Outline::Path { nodes } => sides(nodes).map(|(a, b)| 1.0 + (control_length(a, b) / FLATNESS_PX).sqrt()).sum(),
+        Outline::Path { nodes } => sides(nodes).map(|(a, b)| flattened_side(a, b)).sum(),
     }
+}
+
+/// Points of one cubic: it goes through quadratics, by the third difference of its control points and a tenth of the
+/// tolerance, and each becomes straight sides, by the second differences (Wang 1984) and the rest.
+fn flattened_side(a: &Node, b: &Node) -> f64 {
+    let (out, back, across) = (vector(a.handle_out), vector(b.handle_in), vector(b.at) - vector(a.at));
+    if out == Vec2::ZERO && back == Vec2::ZERO {
+        return 1.0;
+    }
+    let third = (across - (across + back) * 3.0 + out * 3.0).length();
+    let quadratics = pow(third * third / (432.0 * 0.01 * FLATNESS_PX * FLATNESS_PX), 1.0 / 6.0).ceil();
+    let straight = |handle: Vec2| handle.cross(across).abs() <= 1e-9 * across.hypot2();
+    let bend = if straight(out) && straight(back) {
+        0.0
+    } else {
+        (across + back - out * 2.0).length().max((out - back * 2.0 - across).length())
+    };
+    1.0 + quadratics + (0.75 * bend / (0.9 * FLATNESS_PX)).sqrt()
 }
 
 fn perimeter(outline: &Outline) -> f64 {
@@ -62,12 +82,16 @@ mod tests {
     fn the_estimate_is_from_above() {
         for outline in [
             json!({ "kind": "ellipse", "center": [0, 0], "radii": [300, 20] }),
+            json!({ "kind": "path", "nodes": [{ "at": [0, 0] }, { "at": [1000, 50] }, { "at": [9, 50], "in": [20, 0] }] }),
+            json!({ "kind": "path", "nodes": [{ "at": [0, 0] }, { "at": [100, 0], "out": [50, 50], "in": [-30, 0] }] }),
+            json!({ "kind": "path", "nodes": [{ "at": [0, 0], "out": [500, 900] }, { "at": [0, 1], "in": [-500, 900] }] }),
             json!({ "kind": "path", "nodes": [
                 { "at": [0, 0], "out": [90, 0] }, { "at": [100, 50], "in": [0, -90], "out": [-300, 70] }] }),
         ] {
             let outline: Outline = serde_json::from_value(outline).unwrap();
             let polygon = outline.polygon();
-            assert!(flattened(&outline) >= polygon.vertices().len() as f64);
+            let (estimate, exact) = (flattened(&outline), polygon.vertices().len() as f64);
+            assert!(estimate >= exact && estimate < 20.0 * exact.max(50.0), "{outline:?}: {estimate} for {exact}");
             assert!(perimeter(&outline) >= polygon.perimeter());
         }
     }

@@ -58,11 +58,11 @@ pub struct Node {
     pub at: Xy,
     /// Handle towards the node before, relative to the node.
     #[serde(default, rename = "in", skip_serializing_if = "is_zero")]
-    #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
+    #[schemars(extend("default" = [0, 0], "unit" = "px", "columns" = ["dx", "dy"]))]
     pub handle_in: Xy,
     /// Handle towards the next node, relative to the node.
     #[serde(default, rename = "out", skip_serializing_if = "is_zero")]
-    #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
+    #[schemars(extend("default" = [0, 0], "unit" = "px", "columns" = ["dx", "dy"]))]
     pub handle_out: Xy,
 }
 

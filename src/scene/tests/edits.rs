@@ -226,7 +226,7 @@ fn values() -> impl Strategy<Value = Value> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
     fn edits_go_there_and_back(
@@ -249,5 +249,48 @@ proptest! {
         prop_assert!(history.is_saved());
         while history.redo().is_some() {}
         prop_assert_eq!(history.document().to_text(), end.to_text());
+    }
+}
+
+/// What a hostile or broken program may write.
+fn nasty() -> impl Strategy<Value = Value> {
+    let number = prop::sample::select(&[0.0, -0.0, -1.0, 1e-300, 0.5, 1.0, 1e6, 1e9, -1e9, 1e300, -1e308][..]);
+    prop_oneof![
+        number.clone().prop_map(Value::from),
+        (number.clone(), number).prop_map(|(x, y)| json!([x, y])),
+        Just(json!([])),
+        Just(json!({})),
+        Just(Value::Null),
+        Just(json!("\u{202e}\u{7}")),
+        Just(json!([[[[1]]]])),
+        Just(json!(u64::MAX)),
+        Just(json!(true)),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn nothing_makes_a_check_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), nasty()), 1..6),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let start = everything();
+        let places = places(&start);
+        let mut json = start.json().clone();
+        for (place, value) in &changes {
+            if let Some(target) = json.pointer_mut(&place.get(&places).0) {
+                *target = value.clone();
+            }
+        }
+        if let Err(problems) = Document::from_json(json) {
+            prop_assert!(!problems.is_empty());
+            let steers = |problem: &Problem| problem.to_string().contains(char::from(7));
+            prop_assert!(!problems.iter().any(steers));
+        }
+        let text = start.to_text();
+        let end = cut.index(text.len());
+        prop_assert!(!text.is_char_boundary(end) || end + 1 >= text.len() || Document::parse(&text[..end]).is_err());
     }
 }

@@ -85,6 +85,18 @@ fn every_default_has_the_shape_of_its_field() {
 }
 
 #[test]
+fn what_need_not_be_written_has_a_default() {
+    for document in [squint(), everything()] {
+        for (pointer, field) in places(&document) {
+            let is_tag = matches!(field.kind, Kind::Choice(_)) && field.default.is_none();
+            if field.optional && !is_tag && !pointer.starts_with("/images/") {
+                assert!(field::value(&document, &pointer).is_some(), "{pointer}");
+            }
+        }
+    }
+}
+
+#[test]
 fn every_place_has_an_address_that_leads_back() {
     for document in [squint(), everything()] {
         let places = places(&document);
