@@ -1,5 +1,6 @@
 //! The real binary under a pseudo-terminal: keys in, screen out, and the terminal as it was afterwards.
 #![cfg(feature = "tui")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::io::{Read, Write};
 use std::path::Path;

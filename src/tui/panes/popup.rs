@@ -42,7 +42,10 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
 
 fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = format!("{} (j k scroll, q closes)", pages.title);
-    let area = view::window(screen, screen.width - 6, screen.height - 4, &title, buffer);
+    let widest = pages.lines.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
+    let wide = (widest + 6).clamp(40, screen.width - 6);
+    let tall = (pages.lines.len().min(1000) as u16 + 2).clamp(5, screen.height - 4);
+    let area = view::window(screen, wide, tall, &title, buffer);
     let last = pages.lines.len().saturating_sub(usize::from(area.height));
     for (y, line) in pages.lines.iter().skip(pages.scroll.min(last)).take(usize::from(area.height)).enumerate() {
         let style = if line.starts_with("--") { colour::strong() } else { Style::new() };
