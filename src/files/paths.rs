@@ -11,7 +11,14 @@ use crate::base::system::beneath;
 
 /// Where a path written in a scene points: relative to the scene's folder.
 pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
-    disk::folder_of(scene_path).join(path)
+    folder_of_scene(scene_path).join(path)
+}
+
+/// The folder that the scene really lies in: one opened through a link shows the same pictures.
+fn folder_of_scene(scene_path: &Path) -> PathBuf {
+    let is_link = scene_path.symlink_metadata().is_ok_and(|found| found.is_symlink());
+    let real = if is_link { std::fs::canonicalize(scene_path).ok() } else { None };
+    disk::folder_of(&real.unwrap_or_else(|| scene_path.to_owned())).to_owned()
 }
 
 /// Opens a file that the scene at `scene_path` names by `path`.
@@ -23,7 +30,7 @@ pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
     let opened = if options.allow_outside {
         beneath::open_anywhere(&beside(scene_path, path))
     } else {
-        beneath::open(disk::folder_of(scene_path), Path::new(path))
+        beneath::open(&folder_of_scene(scene_path), Path::new(path))
     };
     let file = File::from(opened.map_err(|error| explain(path, error))?);
     regular(file, path)
@@ -102,5 +109,9 @@ mod tests {
             }
         }
         assert_eq!(beside(Path::new("scene.plica.json"), "cat.png"), Path::new("./cat.png"));
+        std::fs::write(&scene, "").unwrap();
+        let link = outer.path().join("link.plica.json");
+        symlink(&scene, &link).unwrap();
+        open(&link, "sub/cat.png", &Options::default()).unwrap();
     }
 }
