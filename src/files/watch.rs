@@ -140,10 +140,10 @@ mod tests {
         watch.set(&[scene.clone(), link.clone()]).unwrap();
         std::fs::write(folder.path().join("other"), "not watched").unwrap();
         std::fs::write(&scene, "made").unwrap();
-        assert_eq!(told.recv_timeout(LONG).unwrap(), [scene.clone()]);
+        assert_eq!(told.recv_timeout(LONG).unwrap(), std::slice::from_ref(&scene));
         std::fs::write(folder.path().join("new"), "renamed").unwrap();
         std::fs::rename(folder.path().join("new"), &scene).unwrap();
-        assert_eq!(told.recv_timeout(LONG).unwrap(), [scene.clone()]);
+        assert_eq!(told.recv_timeout(LONG).unwrap(), std::slice::from_ref(&scene));
         std::fs::write(elsewhere.join("target"), "2").unwrap();
         assert_eq!(told.recv_timeout(LONG).unwrap(), [link]);
         let mut chunks = std::fs::File::create(&scene).unwrap();
@@ -151,7 +151,7 @@ mod tests {
             std::io::Write::write_all(&mut chunks, b"piece").unwrap();
         }
         drop(chunks);
-        assert_eq!(told.recv_timeout(LONG).unwrap(), [scene.clone()]);
+        assert_eq!(told.recv_timeout(LONG).unwrap(), std::slice::from_ref(&scene));
         assert_eq!(std::fs::read(&scene).unwrap().len(), 250);
         std::fs::remove_file(&scene).unwrap();
         assert_eq!(told.recv_timeout(LONG).unwrap(), [scene]);

@@ -107,13 +107,14 @@ fn some_of(ragged: &Ragged, kept: &[usize]) -> Ragged {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::maths;
     use crate::layers::Materials;
     use crate::render::{cpu, synth};
 
     #[test]
     fn a_reduced_frame_looks_like_the_frame_reduced() {
         let cell = |i: usize| {
-            let wave = |x: usize| (0.5 + 0.5 * (x as f64 / 23.0).sin()) as f32;
+            let wave = |x: usize| (0.5 + 0.5 * maths::sin(x as f64 / 23.0)) as f32;
             [wave(i % 200), wave(i / 200), 0.4, 1.0]
         };
         let picture = Arc::new(Grid::from_cells(200, 160, (0..200 * 160).map(cell).collect()));

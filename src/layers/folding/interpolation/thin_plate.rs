@@ -4,7 +4,7 @@
 use faer::{Mat, linalg::solvers::Solve};
 use kurbo::{Point, Vec2};
 
-use super::{Jumps, RUN, Run};
+use super::{Jumps, Run};
 use crate::base::maths;
 use crate::layers::folding::anchors::Anchor;
 
@@ -56,14 +56,14 @@ impl Plate {
     pub fn run(&self, run: &Run, out: &mut Jumps) {
         let xs = run.xs().map(|x| (x - self.center.x) / self.scale);
         let y = (run.y() - self.center.y) / self.scale;
-        for k in 0..RUN {
-            let flat = self.affine[0] + self.affine[1] * xs[k] + self.affine[2] * y;
+        for (k, x) in xs.into_iter().enumerate() {
+            let flat = self.affine[0] + self.affine[1] * x + self.affine[2] * y;
             (out.x[k], out.y[k]) = (flat.x, flat.y);
         }
         for (at, weight) in &self.kernels {
             let dy = y - at.y;
-            for k in 0..RUN {
-                let dx = xs[k] - at.x;
+            for (k, x) in xs.into_iter().enumerate() {
+                let dx = x - at.x;
                 let u = kernel(dx * dx + dy * dy);
                 out.x[k] += weight.x * u;
                 out.y[k] += weight.y * u;
