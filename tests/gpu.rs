@@ -1,11 +1,17 @@
 //! The GPU shows what the CPU shows: every pixel within 2/255, but for at most 0.1 % on silhouette edges, where single
 //! precision may fall on the other side. Runs on Mesa's software driver as well. Where there is no adapter the reason is
 //! printed; in CI that is a failure.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on fails, and says what it leaves out"
+)]
 #![cfg(feature = "window")]
 
 use std::path::Path;
 use std::sync::Arc;
 
+use plica::base::maths;
 use plica::base::pixels::{Frame, Grid, Picture, decode};
 use plica::files;
 use plica::layers::Materials;
@@ -30,7 +36,7 @@ fn gpu() -> Option<Gpu> {
 fn waves(width: usize, height: usize, seed: usize, alpha: bool) -> Arc<Picture> {
     let cells = (0..width * height).map(|i| {
         let (x, y) = (i % width + seed * 7, i / width + seed * 13);
-        let wave = |period: usize| (127.0 + 127.0 * ((x * 3 + y * seed) as f64 / period as f64).sin()) as u8;
+        let wave = |period: usize| (127.0 + 127.0 * maths::sin((x * 3 + y * seed) as f64 / period as f64)) as u8;
         let opacity = if alpha { (((x / 5 + y / 7) % 4) * 85) as u8 } else { 255 };
         decode([wave(17), if (x / 9 + y / 6) % 2 == 0 { 230 } else { 20 }, wave(29), opacity])
     });

@@ -1,5 +1,10 @@
 //! Scenes over real photographs: `tests/photos/NAME.plica.json`, with the photographs of `shared/data/photos` in any folder
 //! above this one. They are not part of the project; where they are missing, each test says so and is skipped.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on fails, and says what it leaves out"
+)]
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,10 @@
 //! The window, as a person meets it: a real window on a display of its own (Xvfb), real keys (xdotool), real screenshots
 //! (ImageMagick's import). Where a tool is missing the reason is printed; in CI that is a failure.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on fails, and says what it leaves out"
+)]
 #![cfg(feature = "window")]
 
 use std::io::{BufRead, BufReader, Read};
