@@ -107,7 +107,7 @@ fn prose(probe: Option<&Probe>, [r, g, b, a]: [u8; 4], (x, y): (usize, usize), t
     let place = format!("pixel {x},{y} at t {time}");
     let Some(p) = probe else { return format!("{place}: in no zone\n  {color}") };
     let length = p.jump.hypot2().sqrt();
-    let degrees = maths::atan2(-p.jump.y, p.jump.x).to_degrees();
+    let degrees = maths::atan2(0.0 - p.jump.y, p.jump.x).to_degrees() + 0.0;
     let thresholds = match &p.thresholds[..] {
         [] => "none".to_owned(),
         some => some.iter().map(|t| format!("{t:.4}")).collect::<Vec<_>>().join(", "),
