@@ -140,6 +140,7 @@ impl App {
             .with_inner_size(PhysicalSize::new(size.0, size.1));
         let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
         let (gpu, screen) = Screen::open(instance, window.clone())?;
+        self.reply(Reply::Report { fps: 0.0, adapter: gpu.device().name(), notice: String::new() });
         self.opened = Some(Opened { window, gpu, screen, hidden: false });
         self.resized();
         Ok(())
@@ -293,16 +294,26 @@ impl App {
         self.clock.last = now;
         let Some(opened) = &mut self.opened else { return Ok(()) };
         match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks) {
+            _ if opened.gpu.device().is_lost() => self.reopen()?,
             Ok(Drawn::Yes) => opened.hidden = false,
             Ok(Drawn::Again) => opened.window.request_redraw(),
             Ok(Drawn::Hidden) => opened.hidden = true,
-            Err(_) if opened.gpu.device().is_lost() => {
-                opened.screen.reopen(&mut opened.gpu)?;
-                opened.window.request_redraw();
-            }
+            Ok(Drawn::Lost) => self.reopen()?,
             Err(error) => return Err(error),
         }
         self.count(now);
+        Ok(())
+    }
+
+    /// Goes on after device or surface were lost, with new ones in the same window.
+    fn reopen(&mut self) -> Result<()> {
+        if let Some(Opened { window, gpu, screen, .. }) = self.opened.take() {
+            let instance = gpu.instance().clone();
+            drop((gpu, screen)); // a window has one surface at a time
+            let (gpu, screen) = Screen::open(instance, window.clone())?;
+            self.opened = Some(Opened { window, gpu, screen, hidden: false });
+            self.redraw();
+        }
         Ok(())
     }
 
@@ -333,9 +344,6 @@ impl Clock {
 
 impl Opened {
     fn paint(&mut self, state: &mut State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
-        if self.gpu.device().is_lost() {
-            self.screen.reopen(&mut self.gpu)?;
-        }
         let (frame, frame_scale) = match show {
             Some(show) => {
                 let synth = if state.shown.still { &show.still } else { &show.frames };

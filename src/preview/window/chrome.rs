@@ -155,14 +155,18 @@ fn round_length(screen_from_jump: f64) -> Option<f64> {
 /// A list of keys in the upper left corner, in as many columns as it needs.
 fn panel(canvas: &mut Canvas, state: &State, rows: &mut dyn Iterator<Item = &KeyRow>) {
     let rows: Vec<_> = rows.collect();
-    let (scale, size) = (state.scale, TEXT_PX * state.scale / glyphs::BASE);
-    let widest = |text: fn(&KeyRow) -> &str| rows.iter().map(|r| glyphs::width(text(r))).fold(0.0, f64::max) * size;
-    let margin = MARGIN_PX * scale;
-    let (keys, line) = (widest(|r| r.key) + 1.5 * margin, glyphs::LINE * size * 1.35);
-    let column = keys + widest(|r| r.help) + 2.0 * margin;
-    let room = ((state.area().height - 4.0 * margin) / line).floor().max(1.0) as usize;
+    let widest = |text: fn(&KeyRow) -> &str| {
+        rows.iter().map(|r| glyphs::width(text(r))).fold(0.0, f64::max) * TEXT_PX / glyphs::BASE
+    };
+    // In logical pixels; then as much smaller as the window asks for.
+    let (keys, line) = (widest(|r| r.key) + 1.5 * MARGIN_PX, glyphs::LINE * TEXT_PX / glyphs::BASE * 1.35);
+    let column = keys + widest(|r| r.help) + 2.0 * MARGIN_PX;
+    let room = ((state.area().height / state.scale - 4.0 * MARGIN_PX) / line).floor().max(1.0) as usize;
     let columns = rows.len().div_ceil(room);
     let height = rows.len().div_ceil(columns.max(1));
+    let width = column * columns as f64 + 2.0 * MARGIN_PX;
+    let scale = state.scale * (state.area().width / state.scale / width).min(1.0);
+    let [margin, keys, line, column] = [MARGIN_PX, keys, line, column].map(|length| length * scale);
     let frame = Rect::new(
         margin,
         margin,
@@ -220,9 +224,9 @@ mod tests {
     #[test]
     fn all_keys_fit_a_small_window() {
         let mut state = State { panel: Panel::Help, ..state() };
-        state.resize(Size::new(640.0, 320.0), 1.0);
-        let low = draw(&state).strokes.iter().fold(0.0, |low: f32, s| low.max(s.a[1]));
-        assert!(low <= 320.0, "{low}");
+        state.resize(Size::new(480.0, 320.0), 1.0);
+        let furthest = |axis: usize| draw(&state).strokes.iter().fold(0.0, |f: f32, s| f.max(s.a[axis]).max(s.b[axis]));
+        assert!(furthest(0) <= 480.0 && furthest(1) <= 320.0, "{} {}", furthest(0), furthest(1));
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! The window's surface and what is drawn to it: the frame, scaled, then strokes. A surface that is outdated or lost is
-//! made anew; a window without size is not drawn.
+//! The window's surface and what is drawn to it: the frame, scaled, then strokes. An outdated surface is configured anew;
+//! a window without size is not drawn.
 
 use std::sync::Arc;
 
@@ -25,10 +25,12 @@ const CHECK_PX: f64 = 8.0;
 pub enum Drawn {
     /// It is on the screen.
     Yes,
-    /// The surface was made anew: draw again.
+    /// The surface has changed: draw again.
     Again,
     /// The window cannot be seen.
     Hidden,
+    /// Surface or device are gone: open the screen again.
+    Lost,
 }
 
 /// The surface of a window, with its pipelines.
@@ -65,20 +67,11 @@ struct ScreenUniform {
 impl Screen {
     /// A GPU that can show in the window, and the window's surface.
     pub fn open(instance: wgpu::Instance, window: Arc<Window>) -> Result<(Gpu, Screen)> {
-        let surface = surface(&instance, &window)?;
+        let surface = instance.create_surface(window.clone()).map_err(|e| Error::at("window", e))?;
         let gpu = Gpu::open(instance, Some(&surface))?;
         let format = format(&surface, &gpu)?;
         let pipelines = Pipelines::new(&gpu, format)?;
         Ok((gpu, Screen { window, surface, format, configured: (0, 0), pipelines }))
-    }
-
-    /// Goes on after the device was lost: a new device and all that was made with the old one.
-    pub fn reopen(&mut self, gpu: &mut Gpu) -> Result<()> {
-        gpu.reopen(Some(&self.surface))?;
-        self.format = format(&self.surface, gpu)?;
-        self.pipelines = Pipelines::new(gpu, self.format)?;
-        self.configured = (0, 0);
-        Ok(())
     }
 
     /// Draws `frame`, whose pixels are `frame_scale` of the picture's, with strokes over it.
@@ -99,16 +92,13 @@ impl Screen {
         }
         let texture = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(texture) | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => texture,
-            wgpu::CurrentSurfaceTexture::Timeout | wgpu::CurrentSurfaceTexture::Occluded => return Ok(Drawn::Hidden),
+            wgpu::CurrentSurfaceTexture::Timeout => return Ok(Drawn::Again),
+            wgpu::CurrentSurfaceTexture::Occluded => return Ok(Drawn::Hidden),
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Validation => {
                 self.configured = (0, 0);
                 return Ok(Drawn::Again);
             }
-            wgpu::CurrentSurfaceTexture::Lost => {
-                self.surface = surface(gpu.instance(), &self.window)?;
-                self.configured = (0, 0);
-                return Ok(Drawn::Again);
-            }
+            wgpu::CurrentSurfaceTexture::Lost => return Ok(Drawn::Lost),
         };
         let uniform = uniform(state, (frame.width(), frame.height()), frame_scale);
         self.paint(gpu, &texture.texture, &uniform, frame, layers)?;
@@ -308,10 +298,6 @@ fn instances(device: &crate::render::gpu::device::Device, strokes: &[Stroke]) ->
     });
     device.queue.write_buffer(&buffer, 0, bytes);
     Some(buffer)
-}
-
-fn surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgpu::Surface<'static>> {
-    instance.create_surface(window.clone()).map_err(|e| Error::at("window", e))
 }
 
 /// One that takes sRGB codes as they are, where there is one.

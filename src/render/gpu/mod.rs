@@ -57,12 +57,6 @@ impl Gpu {
         &self.parts.device
     }
 
-    /// Opens a new device in place of a lost one; everything made with the old one is gone.
-    pub fn reopen(&mut self, surface: Option<&wgpu::Surface<'_>>) -> Result<()> {
-        self.parts = Parts::open(&self.instance, surface)?;
-        Ok(())
-    }
-
     /// Draws the frame at `scene_time` in [0, 1] into a texture: linear, premultiplied, [`FRAME`].
     pub fn texture(&mut self, synth: &Synth, scene_time: f64) -> Result<wgpu::Texture> {
         let Parts { device, painter, textures } = &mut self.parts;
@@ -75,7 +69,7 @@ impl Gpu {
         if !self.parts.device.is_lost() {
             return frame;
         }
-        self.reopen(None)?;
+        self.parts = Parts::open(&self.instance, None)?;
         self.frame_once(synth, scene_time)
     }
 
