@@ -173,6 +173,7 @@ fn a_lost_device_is_replaced() {
     let (_, synth) = &scenes()[2];
     let before = gpu.frame(synth, 0.3).unwrap();
     gpu.device().raw.destroy();
+    assert!(gpu.device().is_lost());
     assert_eq!(gpu.frame(synth, 0.3).unwrap(), before);
 }
 

@@ -31,7 +31,7 @@ impl Device {
             ..Default::default()
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|e| failed(format!("no adapter was found: {}", first_line(&e))))?;
+            .map_err(|e| failed(format!("no adapter was found: {}", one_line(&e))))?;
         let own = adapter.limits();
         let limits = wgpu::Limits { max_buffer_size: own.max_buffer_size, ..wgpu::Limits::downlevel_defaults() }
             .using_resolution(own);
@@ -42,7 +42,7 @@ impl Device {
             ..Default::default()
         };
         let (raw, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .map_err(|e| failed(format!("{} gave no device: {}", adapter.get_info().name, first_line(&e))))?;
+            .map_err(|e| failed(format!("{} gave no device: {}", adapter.get_info().name, one_line(&e))))?;
         let device = Device { raw, queue, adapter, lost: Arc::default(), uncaught: Arc::default() };
         device.listen();
         Ok(device)
@@ -54,13 +54,14 @@ impl Device {
         let uncaught = self.uncaught.clone();
         self.raw.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut kept) = uncaught.lock() {
-                kept.get_or_insert_with(|| first_line(&error));
+                kept.get_or_insert_with(|| one_line(&error));
             }
         }));
     }
 
-    /// Whether the device is gone: a new one is needed.
+    /// Whether the device is gone: a new one is needed. Asks the device, which tells of a loss only when it is polled.
     pub fn is_lost(&self) -> bool {
+        let _ = self.raw.poll(wgpu::PollType::Poll); // an error here is the loss that the callback tells of
         self.lost.load(Ordering::Acquire)
     }
 
@@ -82,7 +83,7 @@ impl Device {
         let validation = pollster::block_on(validation.pop());
         let memory = pollster::block_on(memory.pop());
         match memory.or(validation) {
-            Some(error) => Err(failed(first_line(&error))),
+            Some(error) => Err(failed(one_line(&error))),
             None => Ok(done),
         }
     }
@@ -114,6 +115,9 @@ pub fn failed(what: impl std::fmt::Display) -> Error {
     Error::at(PLACE, what).cure(CURE)
 }
 
-fn first_line(error: &dyn std::fmt::Display) -> String {
-    error.to_string().lines().next().unwrap_or_default().trim().to_owned()
+/// An error with its causes, as one line.
+fn one_line(error: &dyn std::fmt::Display) -> String {
+    let text = error.to_string();
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && *line != "Caused by:");
+    lines.collect::<Vec<_>>().join(": ")
 }
