@@ -61,13 +61,24 @@ impl Ragged {
         &self.values[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
-    fn collect<'a>(lists: impl Iterator<Item = &'a [f64]>) -> Self {
+    fn of_lists<'a>(lists: impl Iterator<Item = &'a [f64]>) -> Self {
         let mut ragged = Ragged { starts: vec![0], values: Vec::new() };
         for list in lists {
             ragged.values.extend_from_slice(list);
             ragged.starts.push(ragged.values.len() as u32);
         }
         ragged
+    }
+
+    /// One after the other.
+    fn concat<'a>(parts: impl Iterator<Item = &'a Ragged>) -> Self {
+        let mut all = Ragged { starts: vec![0], values: Vec::new() };
+        for part in parts {
+            let before = all.values.len() as u32;
+            all.values.extend_from_slice(&part.values);
+            all.starts.extend(part.starts[1..].iter().map(|start| before + start));
+        }
+        all
     }
 }
 
@@ -78,6 +89,9 @@ impl Folds {
         self.rule.effective(self.inside.cells()[i], crossings, s)
     }
 }
+
+/// Pixels whose paths share one look at the sides of regions.
+const FEW: usize = 16;
 
 /// All that a field depends on; equal inputs make equal fields.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,19 +186,34 @@ impl Prepared {
         self.interpolator.run(run, &mut jumps);
         let q = |k: usize| Point::new(run.x(k), run.y());
         let feather = self.feather_of(Rect::from_points(q(0), q(run.len - 1)));
-        let mut reach: Option<Rect> = None;
         for (k, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.inside) {
             let interpolated = Vec2::new(jumps.x[k], jumps.y[k]);
             pixel.jump = self.dense.iter().fold(interpolated, |sum, dense| sum + dense.at(q(k))) * feather(q(k));
-            let path = Rect::from_points(q(k) + pixel.jump * self.range.0, q(k) + pixel.jump * self.range.1);
-            reach = Some(reach.map_or(path, |reach| reach.union(path)));
         }
-        let (Some((_, regions)), Some(reach)) = (&self.fold, reach) else { return };
+        if let Some((_, regions)) = &self.fold {
+            let members = regions.memberships(q(0), run.len);
+            for (i, few) in pixels.chunks_mut(FEW).enumerate() {
+                self.cross(regions, |k| q(i * FEW + k), |region, k| members[region][i * FEW + k], few);
+            }
+        }
+    }
+
+    /// Crossings of a few neighbouring pixels: only the sides within reach of their paths are looked at.
+    fn cross(
+        &self,
+        regions: &Regions,
+        q: impl Fn(usize) -> Point,
+        member_of: impl Fn(usize, usize) -> bool,
+        pixels: &mut [Pixel],
+    ) {
+        let (low, high) = self.range;
+        let path = |(k, pixel): (usize, &Pixel)| Rect::from_points(q(k) + pixel.jump * low, q(k) + pixel.jump * high);
+        let paths = pixels.iter().enumerate().filter(|(_, pixel)| pixel.inside).map(path);
+        let Some(reach) = paths.reduce(|reach, path| reach.union(path)) else { return };
         let sides = regions.sides_within(reach);
-        let members = regions.memberships(q(0), run.len);
-        let mut member = vec![false; members.len()];
+        let mut member = vec![false; regions.count()];
         for (k, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.inside) {
-            member.iter_mut().zip(&members).for_each(|(one, all)| *one = all[k]);
+            member.iter_mut().enumerate().for_each(|(region, one)| *one = member_of(region, k));
             pixel.crossings = regions.crossings(q(k), pixel.jump, self.range, &sides, &member);
         }
     }
@@ -203,23 +232,46 @@ impl Field {
     pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Option<Arc<Field>> {
         let prepared = Prepared::new(zone, inputs, materials);
         let (x0, y0, width, height) = pixel_box(prepared.outline.bounds(), inputs.size)?;
-        let rows: Vec<Vec<Pixel>> = (y0..y0 + height).into_par_iter().map(|y| prepared.row(x0, y, width)).collect();
-        let pixels = || rows.iter().flatten();
-        let grid_of = |cells| Grid::from_cells(width, height, cells);
-        let jump = |pixel: &Pixel| [pixel.jump.x as f32, pixel.jump.y as f32];
+        let row = |y: usize| Row::of(&prepared.row(x0, y, width));
+        let rows: Vec<Row> = (y0..y0 + height).into_par_iter().map(row).collect();
         Some(Arc::new(Field {
             x0,
             y0,
-            inside: grid_of(pixels().map(|p| p.inside).collect()),
-            jumps: Grid::from_cells(width, height, pixels().map(jump).collect()),
+            inside: Grid::from_cells(width, height, joined(&rows, |row| &row.inside)),
+            jumps: Grid::from_cells(width, height, joined(&rows, |row| &row.jumps)),
             folds: prepared.fold.as_ref().map(|(rule, _)| Folds {
                 rule: *rule,
-                inside: grid_of(pixels().map(|p| p.crossings.inside).collect()),
-                ahead: Ragged::collect(pixels().map(|p| p.crossings.ahead.as_slice())),
-                behind: Ragged::collect(pixels().map(|p| p.crossings.behind.as_slice())),
+                inside: Grid::from_cells(width, height, joined(&rows, |row| &row.in_region)),
+                ahead: Ragged::concat(rows.iter().map(|row| &row.ahead)),
+                behind: Ragged::concat(rows.iter().map(|row| &row.behind)),
             }),
         }))
     }
+}
+
+/// A row of a field as it is kept, without the room that its pixels took while they were made.
+struct Row {
+    inside: Vec<bool>,
+    jumps: Vec<[f32; 2]>,
+    in_region: Vec<bool>,
+    ahead: Ragged,
+    behind: Ragged,
+}
+
+impl Row {
+    fn of(pixels: &[Pixel]) -> Self {
+        Row {
+            inside: pixels.iter().map(|p| p.inside).collect(),
+            jumps: pixels.iter().map(|p| [p.jump.x as f32, p.jump.y as f32]).collect(),
+            in_region: pixels.iter().map(|p| p.crossings.inside).collect(),
+            ahead: Ragged::of_lists(pixels.iter().map(|p| p.crossings.ahead.as_slice())),
+            behind: Ragged::of_lists(pixels.iter().map(|p| p.crossings.behind.as_slice())),
+        }
+    }
+}
+
+fn joined<T: Copy>(rows: &[Row], of: impl Fn(&Row) -> &Vec<T>) -> Vec<T> {
+    rows.iter().map(|row| of(row).as_slice()).collect::<Vec<_>>().concat()
 }
 
 /// The pixels that `bounds` touches in a picture: first column and row, width, height.

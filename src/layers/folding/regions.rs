@@ -39,6 +39,11 @@ impl Regions {
         Regions { polygons: outlines.iter().map(Outline::polygon).collect() }
     }
 
+    /// Number of regions.
+    pub fn count(&self) -> usize {
+        self.polygons.len()
+    }
+
     /// The sides that can meet paths within `bounds`; most runs of pixels have none.
     pub fn sides_within(&self, bounds: Rect) -> Vec<Side> {
         let bounds = bounds.inflate(1e-6, 1e-6);
@@ -77,6 +82,9 @@ impl Regions {
             .filter_map(|side| side_crossing(side.from, side.to, q, jump).map(|s| (s, side.region)))
             .filter(|(s, _)| *s >= low - SAME && *s <= high + SAME)
             .collect();
+        if events.is_empty() {
+            return Crossings { inside, ..Crossings::default() };
+        }
         events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let first_ahead = events.partition_point(|(s, _)| *s < -SAME);
         let first_beyond = events.partition_point(|(s, _)| *s <= SAME);
