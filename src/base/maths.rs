@@ -32,10 +32,12 @@ pub fn ln_in_loops(x: f64) -> f64 {
     /// The bits of the square root of 1/2: mantissas go from there to the square root of 2.
     const LOW: u64 = 0x3FE6_A09E_667F_3BCD;
     const MANTISSA: u64 = (1 << 52) - 1;
-    /// 2^52 + 2^51: added to a small whole number as bits and taken off as a float, it converts without a conversion.
-    const WHOLE: f64 = 6_755_399_441_055_744.0;
-    let above = x.to_bits().wrapping_sub(LOW);
-    let exponent = f64::from_bits(((above as i64) >> 52).wrapping_add(WHOLE.to_bits() as i64) as u64) - WHOLE;
+    /// The bits of 2^52: a small whole number in the place of its mantissa reads as 2^52 and that number.
+    const WHOLE: u64 = 0x4330_0000_0000_0000;
+    const BIAS: u64 = 1023;
+    // Shifts of unsigned numbers only: those are what every vector unit has.
+    let above = x.to_bits().wrapping_sub(LOW).wrapping_add(BIAS << 52);
+    let exponent = f64::from_bits(above >> 52 | WHOLE) - (f64::from_bits(WHOLE) + BIAS as f64);
     let m = f64::from_bits((above & MANTISSA).wrapping_add(LOW));
     // ln m = 2 artanh f, by its series: |f| is at most 0.1716.
     let f = (m - 1.0) / (m + 1.0);
