@@ -1,5 +1,5 @@
 //! The terminal editor. State is a value and `update` a function (app.rs); drawing changes nothing (view.rs); one table of
-//! keys and one of commands (keys.rs, commands/); whatever is slow or outside happens in runner.rs and worker.rs.
+//! keys and one of commands (keys/table.rs, commands/); whatever is slow or outside happens in runner.rs and worker.rs.
 
 mod app;
 mod choice;

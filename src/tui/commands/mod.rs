@@ -8,13 +8,15 @@ use crate::base::problem;
 use crate::ops;
 use crate::preview::keys as window;
 
-mod editing;
-pub use editing::step_of;
+mod cells;
+pub use cells::step_of;
 mod files;
+mod items;
 mod moving;
 mod placing;
 mod playing;
 mod typing;
+mod values;
 
 /// How a command ends: what to say where it could not be done.
 pub type Done = Result<(), String>;
@@ -55,12 +57,20 @@ const fn command(
     Command { name, args, help, run }
 }
 
-const TABLES: [&[Command]; 6] =
-    [files::COMMANDS, editing::COMMANDS, moving::COMMANDS, placing::COMMANDS, playing::COMMANDS, typing::COMMANDS];
+const TABLES: &[&[Command]] = &[
+    files::COMMANDS,
+    cells::COMMANDS,
+    items::COMMANDS,
+    values::COMMANDS,
+    moving::COMMANDS,
+    placing::COMMANDS,
+    playing::COMMANDS,
+    typing::COMMANDS,
+];
 
 /// Every command of the editor.
 pub fn all() -> impl Iterator<Item = &'static Command> {
-    TABLES.into_iter().flatten()
+    TABLES.iter().copied().flatten()
 }
 
 /// The command of this name.

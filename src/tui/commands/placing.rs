@@ -2,7 +2,7 @@
 
 use kurbo::Vec2;
 
-use super::editing::go_to;
+use super::items::go_to;
 use super::{Call, Command, Done, command};
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::numbers::short;

@@ -1,0 +1,165 @@
+//! The cell under the cursor and the selected rows: entries, choices, steps.
+
+use serde_json::Value;
+
+use super::items::add;
+use super::{Call, Command, Done, command};
+use crate::base::maths;
+use crate::scene::Edit;
+use crate::scene::field::{self, Kind};
+use crate::tui::app::{Mode, State};
+use crate::tui::choice::{self, Choice, Then};
+use crate::tui::entry::{self, Entry};
+use crate::tui::sheet::{Cell, Row};
+
+pub const COMMANDS: &[Command] = &[
+    command("enter", "[clear]", "Edit the cell, or go into the node", enter),
+    command("commit", "[next]", "Take the value being typed", commit),
+    command("digit", "BY", "Step the digit under the cursor", digit),
+    command("choice", "next|previous|take", "Move in the list of choices, or take one", choose),
+    command("step", "BY", "Step the number by the step", step),
+    command("step-size", "smaller|larger|POWER", "Change the step tenfold", step_size),
+    command("select", "", "Begin or end a selection of rows", select),
+];
+
+fn current(state: &State) -> Option<(Row, Cell)> {
+    let row = state.sheet().rows.get(state.row)?.clone();
+    let cell = row.cells.get(state.column)?.clone();
+    Some((row, cell))
+}
+
+fn enter(state: &mut State, call: &Call) -> Done {
+    let (row, cell) = current(state).ok_or("there is nothing to edit here: o adds an item")?;
+    let missing = field::value(state.document(), &cell.pointer).is_none_or(|value| value.is_null());
+    if cell.is_node() && missing {
+        return add(state, call);
+    }
+    // The kind of an item with an inside of its own stands for the item; its form has the kind again.
+    let into = row.item && state.column == 0 && row.cells.iter().any(Cell::is_node);
+    if cell.is_node() || into {
+        state.show(if into { row.pointer } else { cell.pointer });
+        return Ok(());
+    }
+    let sheet = state.sheet();
+    let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
+    if cell.is_number() || matches!(cell.field.kind, Kind::Text) {
+        state.mode = Mode::Entry(Entry::new(state.document(), &cell, call.text == "clear"));
+    } else if let Some(choice) = choice::of_cell(state, &cell, others) {
+        state.mode = Mode::Choice(choice);
+    } else {
+        return Err(format!("{} cannot be edited here", row.label));
+    }
+    Ok(())
+}
+
+/// Takes the entry. Where it cannot be taken it stays as it was typed.
+fn commit(state: &mut State, call: &Call) -> Done {
+    let Mode::Entry(typed) = &state.mode else { return Ok(()) };
+    let text = typed.text.value().to_string();
+    let edit = entry::edit(state, &text)?;
+    state.edit(edit, false)?;
+    state.mode = Mode::Normal;
+    if call.text == "next" {
+        let cells = state.sheet().rows.get(state.row).map_or(0, |row| row.cells.len());
+        if state.column + 1 < cells {
+            state.column += 1;
+        } else {
+            state.row += 1;
+            state.column = 0;
+            state.settle();
+        }
+        let typed = current(state).is_some_and(|(_, cell)| cell.is_number() || matches!(cell.field.kind, Kind::Text));
+        if typed {
+            return enter(state, &Call { text: "", count: None });
+        }
+    }
+    Ok(())
+}
+
+fn digit(state: &mut State, call: &Call) -> Done {
+    let by = call.text.parse().unwrap_or(1);
+    let Mode::Entry(entry) = &mut state.mode else { return Ok(()) };
+    if entry.text.step_digit(by) { Ok(()) } else { Err("there is no digit under the cursor".into()) }
+}
+
+fn choose(state: &mut State, call: &Call) -> Done {
+    let Mode::Choice(choice) = &mut state.mode else { return Ok(()) };
+    match call.text {
+        "next" => choice.step(call.times()),
+        "previous" => choice.step(-call.times()),
+        _ => {
+            let (then, word) = (choice.then.clone(), choice.taken().map(str::to_owned));
+            state.mode = Mode::Normal;
+            if let Some(word) = word {
+                return take(state, then, &word);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn take(state: &mut State, then: Then, word: &str) -> Done {
+    let document = state.document();
+    let edit = match &then {
+        Then::Set(pointers) => {
+            let bool = |pointer: &str| field::field(document, pointer).is_some_and(|field| field.kind == Kind::Bool);
+            let value = |pointer: &str| if bool(pointer) { Value::from(word == "true") } else { Value::from(word) };
+            Edit::all(pointers.iter().map(|pointer| entry::set(document, pointer, value(pointer))))
+        }
+        Then::Become(pointer) => match field::field(document, pointer).map(|field| field.kind) {
+            Some(Kind::Tagged { tag, .. }) => entry::set(document, &format!("{pointer}/{tag}"), word.into()),
+            _ => return Err(format!("{pointer} has no kinds")),
+        },
+        Then::Recover => {
+            let change = state.door.recover(word == choice::RECOVER);
+            change.into_iter().for_each(|change| state.changed(change));
+            return Ok(());
+        }
+    };
+    state.edit(edit, false)
+}
+
+/// Steps every selected cell from its own value: numbers by the step, choices by one.
+fn step(state: &mut State, call: &Call) -> Done {
+    let by = call.text.parse::<i64>().unwrap_or(1) * call.times();
+    let sheet = state.sheet();
+    let (_, cell) = current(state).ok_or("there is nothing to step here")?;
+    if !cell.is_number() {
+        let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
+        let mut choice: Choice = choice::of_cell(state, &cell, others).ok_or("only numbers and choices step")?;
+        choice.step(by);
+        let word = choice.taken().unwrap_or_default().to_string();
+        return take(state, choice.then, &word);
+    }
+    let unit = step_of(state.step);
+    let edits = entry::cells(state, &sheet).into_iter().map(|(_, cell)| {
+        let old = cell.number(state.document()).unwrap_or(0.0);
+        let value = crate::tui::numbers::tidy(old + by as f64 * unit);
+        entry::number(state.document(), cell, value)
+    });
+    let edit = Edit::all(edits.collect::<Result<Vec<_>, _>>()?);
+    state.edit(edit, true)
+}
+
+/// The step of a power of ten.
+pub fn step_of(power: i32) -> f64 {
+    let size = maths::powi(10.0, power.unsigned_abs());
+    if power < 0 { 1.0 / size } else { size }
+}
+
+fn step_size(state: &mut State, call: &Call) -> Done {
+    let times = call.times() as i32;
+    let power = match call.text {
+        "smaller" => state.step - times,
+        "larger" => state.step + times,
+        text => text.parse().map_err(|_| "step-size takes smaller, larger or a power of ten")?,
+    };
+    state.step = power.clamp(-3, 3);
+    state.say(format!("step {}", step_of(state.step)));
+    Ok(())
+}
+
+fn select(state: &mut State, _: &Call) -> Done {
+    state.selected_from = if state.selected_from.is_some() { None } else { Some(state.row) };
+    Ok(())
+}
