@@ -19,6 +19,7 @@ pub mod migrate;
 pub mod pointer;
 pub mod schema;
 mod shape;
+pub mod words;
 
 pub use document::Document;
 pub use edit::Edit;

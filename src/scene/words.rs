@@ -1,0 +1,224 @@
+//! An edit in words, for people who ask what was done: `left eye · radius 60 → 80`. Made from the schema, so that a new
+//! field needs nothing here.
+
+use json_patch::PatchOperation;
+use serde_json::Value;
+
+use super::edit::Edit;
+use super::field::name_of;
+use super::pointer;
+use super::schema::{Body, Place, Shape};
+
+/// A value in words is no longer than this, in characters.
+const LONGEST: usize = 40;
+
+/// What `edit` does to the document `before`, a line an operation: where, what, the old value and the new one. Names in it
+/// are as in the document, control characters and all.
+pub fn describe(before: &Value, edit: &Edit) -> Vec<String> {
+    let operations = &edit.0.0;
+    let mut now = (operations.len() > 1).then(|| before.clone());
+    let mut lines = Vec::new();
+    for operation in operations {
+        lines.extend(one(now.as_ref().unwrap_or(before), operation));
+        if let Some(json) = &mut now
+            && Edit(json_patch::Patch(vec![operation.clone()])).patch(json).is_err()
+        {
+            break;
+        }
+    }
+    lines
+}
+
+/// The same on one line: the first, and how many more there are.
+pub fn in_short(before: &Value, edit: &Edit) -> String {
+    let lines = describe(before, edit);
+    match lines.as_slice() {
+        [] => "nothing".into(),
+        [one] => one.clone(),
+        [first, rest @ ..] => format!("{first} (and {} more)", rest.len()),
+    }
+}
+
+/// One operation; none for a test.
+fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
+    let path = operation.path().as_str();
+    Some(match operation {
+        PatchOperation::Add(add) if is_item(json, path) => {
+            let at = if path.ends_with("/-") { end_of(json, path) } else { path.to_owned() };
+            format!("{} added{}", place(json, &at, Some(&add.value)), kind(json, &at, &add.value))
+        }
+        PatchOperation::Add(add) => change(json, path, &add.value),
+        PatchOperation::Replace(replace) => change(json, path, &replace.value),
+        PatchOperation::Remove(_) => removal(json, path),
+        PatchOperation::Move(moved) => {
+            let from = moved.from.as_str();
+            let (old, new) = (pointer::split(from), pointer::split(path));
+            match (old, new) {
+                (Some((a, _)), Some((b, last))) if a == b => match pointer::index(&last) {
+                    Some(index) => format!("{} moved to place {}", place(json, from, None), index + 1),
+                    None => format!("{} renamed to {last}", place(json, from, None)),
+                },
+                _ => format!("{} moved to {}", place(json, from, None), place(json, path, None)),
+            }
+        }
+        PatchOperation::Copy(copy) => format!("{} copied", place(json, copy.from.as_str(), None)),
+        PatchOperation::Test(_) => return None,
+    })
+}
+
+fn is_item(json: &Value, path: &str) -> bool {
+    pointer::split(path).and_then(|(parent, _)| Place::of(json, parent)).is_some_and(|parent| {
+        matches!(parent.shape.body(), Body::List(..)) && parent.value.is_some_and(Value::is_array)
+    })
+}
+
+fn end_of(json: &Value, path: &str) -> String {
+    let parent = pointer::split(path).map_or("", |(parent, _)| parent);
+    pointer::join(parent, json.pointer(parent).and_then(Value::as_array).map_or(0, Vec::len))
+}
+
+/// A value that becomes another, or that counts instead of its default.
+fn change(json: &Value, path: &str, new: &Value) -> String {
+    let found = Place::of(json, path);
+    let old = found.and_then(|place| place.value).filter(|value| !value.is_null());
+    let (shape, at) = (found.map(|place| place.shape), place(json, path, None));
+    let new_words = words(shape, new);
+    match old.map(|old| words(shape, old)) {
+        None if new_words.is_empty() => format!("{at} added"),
+        None => format!("{at} {new_words}"),
+        Some(old) if old == new_words => format!("{at} changed"),
+        Some(old) => format!("{at} {old} → {new_words}"),
+    }
+}
+
+fn removal(json: &Value, path: &str) -> String {
+    let at = place(json, path, None);
+    let Some(found) = Place::of(json, path) else { return format!("{at} deleted") };
+    match found.shape.default().filter(|default| !default.is_null() && !is_item(json, path)) {
+        Some(default) => {
+            let old = found.value.map(|value| words(Some(found.shape), value)).unwrap_or_default();
+            let default = words(Some(found.shape), default);
+            if old == default { format!("{at} back to its default") } else { format!("{at} {old} → {default}") }
+        }
+        None => format!("{at} deleted"),
+    }
+}
+
+/// The place that a pointer leads to: the innermost thing with a name, and what it is there. `new` is what will stand there.
+fn place(json: &Value, path: &str, new: Option<&Value>) -> String {
+    let mut here = Some(Place::root(json));
+    let mut owner = "scene".to_owned();
+    let mut steps: Vec<(String, bool)> = Vec::new();
+    let tokens: Vec<String> = pointer::tokens(path).collect();
+    for (depth, token) in tokens.iter().enumerate() {
+        let below = here.and_then(|place| place.step(token));
+        let last = depth + 1 == tokens.len();
+        let value =
+            if last { new.or(below.and_then(|below| below.value)) } else { below.and_then(|below| below.value) };
+        match (here.map(|place| place.shape.body()), name_of(value)) {
+            (Some(Body::List(..)), Some(name)) => {
+                owner = name;
+                steps.clear();
+            }
+            (Some(Body::List(..)), None) => {
+                let index = pointer::index(token).map_or_else(|| token.clone(), |index| (index + 1).to_string());
+                steps.push((index, true));
+            }
+            (Some(Body::Numbers(_)), _) => {
+                let column = pointer::index(token).and_then(|i| here?.shape.column(i));
+                steps.push((column.map_or_else(|| token.clone(), str::to_owned), true));
+            }
+            (Some(Body::Map(_)), _) => steps.push((token.clone(), true)),
+            _ => steps.push((token.clone(), false)),
+        }
+        here = below;
+    }
+    if steps.is_empty() { owner } else { format!("{owner} · {}", spoken(&steps)) }
+}
+
+/// The steps below the named thing; an object that is only passed through needs no word.
+fn spoken(steps: &[(String, bool)]) -> String {
+    let needed = |i: usize| i + 1 >= steps.len() || steps[i].1 || steps[i + 1].1;
+    let kept: Vec<&str> = (0..steps.len()).filter(|&i| needed(i)).map(|i| steps[i].0.as_str()).collect();
+    kept.join(" ")
+}
+
+/// The kind of a new item, in brackets, where it has one.
+fn kind(json: &Value, path: &str, value: &Value) -> String {
+    let words = words(Place::of(json, path).map(|place| place.shape), value);
+    if words.is_empty() || name_of(Some(value)).is_some() { String::new() } else { format!(" ({words})") }
+}
+
+/// A value in a few words: numbers and texts as they are, an object by its tag, a long list by its length.
+fn words(shape: Option<Shape>, value: &Value) -> String {
+    let text = match (shape.map(Shape::body), value) {
+        (Some(Body::Tagged(tag)), Value::Object(map)) => map.get(tag).and_then(Value::as_str).unwrap_or("?").to_owned(),
+        (_, Value::Object(_)) => String::new(),
+        (_, Value::Array(items)) if items.iter().all(Value::is_number) && items.len() <= 4 => {
+            items.iter().map(Value::to_string).collect::<Vec<_>>().join(", ")
+        }
+        (_, Value::Array(items)) => format!("{} items", items.len()),
+        (_, Value::String(text)) if text.is_empty() => "\"\"".into(),
+        (_, Value::String(text)) => text.clone(),
+        (_, Value::Null) => "none".into(),
+        (_, other) => other.to_string(),
+    };
+    match text.char_indices().nth(LONGEST) {
+        Some((at, _)) => format!("{}…", &text[..at]),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::super::{Document, address};
+    use super::*;
+
+    fn squint() -> Document {
+        Document::parse(include_str!("../../tests/scenes/good/squint.plica.json")).unwrap()
+    }
+
+    #[test]
+    fn edits_are_told_in_words() {
+        let document = squint();
+        let zone = "/layers/0/zones/0";
+        let set = |address: &str, value| Edit::set(&document, &address::resolve(&document, address).unwrap(), value);
+        let eye = |rest: &str| format!("layers.face.zones.\"left eye\".{rest}");
+        for (edit, expected) in [
+            (set(&eye("interpolation.radius"), json!(80)), "left eye · radius 60 → 80"),
+            (set(&eye("motion.0.jump"), json!([0, -20])), "left eye · motion 1 jump 0, -18 → 0, -20"),
+            (set(&eye("motion.0.at.x"), json!(151)), "left eye · motion 1 at x 150 → 151"),
+            (set(&eye("motion.1.jumps.1.along"), json!(0.6)), "left eye · motion 2 jumps 2 along 0.5 → 0.6"),
+            (set(&eye("outline.kind"), json!("rectangle")), "left eye · outline polygon → rectangle"),
+            (set(&eye("position.function"), json!("linear")), "left eye · position sine → linear"),
+            (set(&eye("name"), json!("right eye")), "left eye · name left eye → right eye"),
+            (set(&eye("fold"), json!(null)), "left eye · fold deleted"),
+            (set(&eye("feather"), json!(null)), "left eye · feather 4.0 → 0.0"),
+            (set("timeline.fps", json!(24)), "scene · fps 30 → 24"),
+            (Edit::remove(&format!("{zone}/motion/1")), "left eye · motion 2 deleted"),
+            (Edit::remove(zone), "left eye deleted"),
+            (Edit::duplicate(&document, zone).unwrap().0, "left eye 2 added"),
+            (
+                Edit::insert(&document, &format!("{zone}/motion"), 1, json!({ "tool": "point", "at": [1, 2] })),
+                "left eye · motion 2 added (point)",
+            ),
+            (
+                Edit::move_item(&document, &format!("{zone}/motion/0"), 2).unwrap().0,
+                "left eye · motion 1 moved to place 3",
+            ),
+            (Edit::default(), "nothing"),
+            (Edit::rename_image(&document, "cat", "dog"), "scene · images cat renamed to dog (and 1 more)"),
+        ] {
+            assert_eq!(in_short(document.json(), &edit), expected);
+        }
+    }
+
+    #[test]
+    fn an_edit_that_does_not_fit_is_told_as_far_as_it_goes() {
+        let document = squint();
+        let edit = Edit::all([Edit::remove("/layers/7"), Edit::remove("/layers/0")]);
+        assert_eq!(describe(document.json(), &edit).len(), 1);
+    }
+}
