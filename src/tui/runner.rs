@@ -1,17 +1,15 @@
 //! Runs the editor: events in, effects out. The only place that knows the terminal, the threads, the files and the window.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
-
-use ratatui::crossterm::event::{self, Event as Input, KeyEventKind, MouseEventKind};
 
 use super::app::State;
 use super::colour::Depth;
 use super::door::Door;
-use super::update::{Effect, Event, update};
-use super::worker::{Job, Request, Worker};
-use super::{keys, terminal, view};
+use super::update::{Event, update};
+use super::worker::{Job, Worker};
+use super::{input, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::files::watch::Watch;
@@ -88,23 +86,33 @@ fn end_on_signals(sender: mpsc::Sender<Event>) -> Result<signals::Registration> 
     signals::handle(handler).map_err(|error| Error::at("signals", error))
 }
 
-struct Editor {
-    options: Options,
-    state: State,
-    screen: terminal::Screen,
-    sender: mpsc::Sender<Event>,
-    worker: Worker,
-    job: Option<Job>,
-    preview: Preview,
-    watch: Option<Watch>,
-    leaving: bool,
+/// An editor at work.
+pub struct Editor {
+    /// How it was opened.
+    pub(super) options: Options,
+    /// What is shown and changed.
+    pub(super) state: State,
+    /// The terminal.
+    pub(super) screen: terminal::Screen,
+    /// Where events come in.
+    pub(super) sender: mpsc::Sender<Event>,
+    /// The thread that synthesises.
+    pub(super) worker: Worker,
+    /// The subcommand that runs.
+    pub(super) job: Option<Job>,
+    /// The windows.
+    pub(super) preview: Preview,
+    /// The files of the scene; none where they cannot be watched.
+    pub(super) watch: Option<Watch>,
+    /// Whether it ends.
+    pub(super) leaving: bool,
 }
 
 impl Editor {
     fn new(options: Options, door: Door, screen: terminal::Screen, sender: mpsc::Sender<Event>) -> Result<Self> {
         let size = screen.size().map_err(|e| Error::at("the terminal", e))?;
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
-        read_input(sender.clone());
+        input::read(sender.clone());
         let worker = Worker::start(options.files.clone(), sender.clone());
         let preview = listen(&door, &options.files, sender.clone());
         let changed = sender.clone();
@@ -121,7 +129,7 @@ impl Editor {
     }
 
     /// What is done once for every scene that is opened.
-    fn begin(&mut self) {
+    pub fn begin(&mut self) {
         self.state.picture_size = picture_size(&self.state);
         let greeting = self.state.door.greeting();
         self.state.say(greeting);
@@ -129,7 +137,8 @@ impl Editor {
         self.show(false);
     }
 
-    fn watch_files(&mut self) {
+    /// Watches the scene and all that it names.
+    pub fn watch_files(&mut self) {
         let Some(watch) = &mut self.watch else { return };
         let path = self.state.door.path();
         let mut all = files::materials::files(path, self.state.document().scene());
@@ -186,100 +195,16 @@ impl Editor {
         }
     }
 
-    fn take(&mut self, event: Event) {
+    /// Takes an event, and does what it asks for.
+    pub fn take(&mut self, event: Event) {
         for effect in update(&mut self.state, event) {
             self.perform(effect);
-        }
-    }
-
-    fn perform(&mut self, effect: Effect) {
-        match effect {
-            Effect::Publish(change) => {
-                self.preview.publish(&change.document, change.revision, &change.edit);
-                self.watch_files();
-                self.show(false);
-            }
-            Effect::Show => {
-                let row = self.state.sheet().rows.get(self.state.row).map(|row| row.pointer.clone());
-                self.preview.select(row.or_else(|| Some(self.state.node.clone())));
-                let duration = self.state.document().scene().timeline.duration;
-                self.preview.transport(self.state.playing, self.state.time * duration);
-                self.show(false);
-            }
-            Effect::Reload => self.show(true),
-            Effect::Save { to, overwrite, leave } => {
-                let result = self.state.door.save(to.as_deref(), overwrite);
-                self.leaving = leave && result.is_ok();
-                self.take(Event::Saved(result.map_err(|error| error.to_string())));
-            }
-            Effect::Open(path) => self.open(&path),
-            Effect::Run(words) => self.start(&words),
-            Effect::Cancel => self.job.iter().for_each(Job::cancel),
-            Effect::View(None) => self.preview.open_window(),
-            Effect::View(Some(command)) => self.preview.view(&command),
-            Effect::Redraw => drop(self.screen.clear()),
-            Effect::Suspend => self.suspend(),
-            Effect::Quit => self.leaving = true,
-        }
-    }
-
-    /// Asks for the synthesis and the frame of the present.
-    fn show(&self, fresh: bool) {
-        let scene = self.state.document().scene().clone();
-        let path = self.state.door.path().to_owned();
-        self.worker.ask(Request { scene, path, time: self.state.time, fresh });
-    }
-
-    fn open(&mut self, path: &Path) {
-        match Door::open(path, self.options.read_only, &self.options.files) {
-            Ok(door) => {
-                let window = self.preview.has_window();
-                // First, for it may be the same scene, and a scene has one editor.
-                self.preview.close();
-                self.preview = listen(&door, &self.options.files, self.sender.clone());
-                if window {
-                    self.preview.open_window();
-                }
-                self.state = State::new(door, self.state.size, self.state.depth);
-                self.begin();
-            }
-            Err(error) => self.state.complain(error.to_string()),
-        }
-    }
-
-    /// Runs a subcommand on the scene that is open, as it is now.
-    fn start(&mut self, words: &[String]) {
-        if self.state.seen.work.is_some() {
-            return self.state.complain("something runs already: Esc ends it");
-        }
-        let path = self.state.door.path().to_owned();
-        let mut with = words.to_vec();
-        with.insert(1, path.to_string_lossy().into_owned());
-        let command = ops::parse(&with).or_else(|error| ops::parse(words).map_err(|_| error));
-        match command {
-            Ok(command) => {
-                let name = words[0].clone();
-                let open = Some(ops::Open { path, document: self.state.document().clone() });
-                self.state.seen.work = Some(name.clone());
-                self.job = Some(Job::start(command, name, open, self.sender.clone()));
-            }
-            Err(error) => self.state.complain(error.to_string()),
-        }
-    }
-
-    /// Gives the terminal back, stops as Ctrl-Z does, and comes back with a fresh screen.
-    fn suspend(&mut self) {
-        terminal::restore();
-        signals::default_action(Signal::Stop);
-        match terminal::enter() {
-            Ok(screen) => self.screen = screen,
-            Err(_) => self.leaving = true,
         }
     }
 }
 
 /// Listens for windows of the scene; what they say comes as events.
-fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
+pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
     let preview = Preview::start(door.path(), door.document(), door.revision(), move |said| {
         let event = match said {
             editor::Event::Command(line) => Event::Command(line),
@@ -291,31 +216,6 @@ fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) ->
         let _ = sender.send(event);
     });
     preview.with_options(options)
-}
-
-/// Reads the terminal for as long as there is one.
-fn read_input(sender: mpsc::Sender<Event>) {
-    std::thread::spawn(move || {
-        while let Ok(input) = event::read() {
-            let events = match input {
-                Input::Key(key) if key.kind != KeyEventKind::Release => keys::name(key).map(Event::Key),
-                Input::Paste(text) => Some(Event::Paste(text)),
-                Input::Resize(width, height) => Some(Event::Resize(width, height)),
-                Input::Mouse(mouse) => match mouse.kind {
-                    MouseEventKind::ScrollDown => Some(Event::Key("Down".into())),
-                    MouseEventKind::ScrollUp => Some(Event::Key("Up".into())),
-                    MouseEventKind::Down(_) => Some(Event::Click(mouse.column, mouse.row)),
-                    _ => None,
-                },
-                _ => None,
-            };
-            if events.is_some_and(|event| sender.send(event).is_err()) {
-                return;
-            }
-        }
-        // The terminal is gone; the signal thread usually notices first.
-        let _ = sender.send(Event::End);
-    });
 }
 
 /// The size of the first layer's picture, from its header.

@@ -1,0 +1,100 @@
+//! What `update` asks for, done: the editor's hands in files, threads, window and terminal.
+
+use std::path::Path;
+
+use super::app::State;
+use super::door::Door;
+use super::runner::{Editor, listen};
+use super::terminal;
+use super::update::{Effect, Event};
+use super::worker::{Job, Request};
+use crate::base::system::signals::{self, Signal};
+use crate::ops;
+
+impl Editor {
+    /// Does one.
+    pub fn perform(&mut self, effect: Effect) {
+        match effect {
+            Effect::Publish(change) => {
+                self.preview.publish(&change.document, change.revision, &change.edit);
+                self.watch_files();
+                self.show(false);
+            }
+            Effect::Show => {
+                let row = self.state.sheet().rows.get(self.state.row).map(|row| row.pointer.clone());
+                self.preview.select(row.or_else(|| Some(self.state.node.clone())));
+                let duration = self.state.document().scene().timeline.duration;
+                self.preview.transport(self.state.playing, self.state.time * duration);
+                self.show(false);
+            }
+            Effect::Reload => self.show(true),
+            Effect::Save { to, overwrite, leave } => {
+                let result = self.state.door.save(to.as_deref(), overwrite);
+                self.leaving = leave && result.is_ok();
+                self.take(Event::Saved(result.map_err(|error| error.to_string())));
+            }
+            Effect::Open(path) => self.open(&path),
+            Effect::Run(words) => self.start(&words),
+            Effect::Cancel => self.job.iter().for_each(Job::cancel),
+            Effect::View(None) => self.preview.open_window(),
+            Effect::View(Some(command)) => self.preview.view(&command),
+            Effect::Redraw => drop(self.screen.clear()),
+            Effect::Suspend => self.suspend(),
+            Effect::Quit => self.leaving = true,
+        }
+    }
+
+    /// Asks for the synthesis and the frame of the present.
+    pub fn show(&self, fresh: bool) {
+        let scene = self.state.document().scene().clone();
+        let path = self.state.door.path().to_owned();
+        self.worker.ask(Request { scene, path, time: self.state.time, fresh });
+    }
+
+    fn open(&mut self, path: &Path) {
+        match Door::open(path, self.options.read_only, &self.options.files) {
+            Ok(door) => {
+                let window = self.preview.has_window();
+                // First, for it may be the same scene, and a scene has one editor.
+                self.preview.close();
+                self.preview = listen(&door, &self.options.files, self.sender.clone());
+                if window {
+                    self.preview.open_window();
+                }
+                self.state = State::new(door, self.state.size, self.state.depth);
+                self.begin();
+            }
+            Err(error) => self.state.complain(error.to_string()),
+        }
+    }
+
+    /// Runs a subcommand on the scene that is open, as it is now.
+    fn start(&mut self, words: &[String]) {
+        if self.state.seen.work.is_some() {
+            return self.state.complain("something runs already: Esc ends it");
+        }
+        let path = self.state.door.path().to_owned();
+        let mut with = words.to_vec();
+        with.insert(1, path.to_string_lossy().into_owned());
+        let command = ops::parse(&with).or_else(|error| ops::parse(words).map_err(|_| error));
+        match command {
+            Ok(command) => {
+                let name = words[0].clone();
+                let open = Some(ops::Open { path, document: self.state.document().clone() });
+                self.state.seen.work = Some(name.clone());
+                self.job = Some(Job::start(command, name, open, self.sender.clone()));
+            }
+            Err(error) => self.state.complain(error.to_string()),
+        }
+    }
+
+    /// Gives the terminal back, stops as Ctrl-Z does, and comes back with a fresh screen.
+    fn suspend(&mut self) {
+        terminal::restore();
+        signals::default_action(Signal::Stop);
+        match terminal::enter() {
+            Ok(screen) => self.screen = screen,
+            Err(_) => self.leaving = true,
+        }
+    }
+}
