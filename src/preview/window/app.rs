@@ -12,29 +12,20 @@ use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, Wind
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::{Window, WindowId};
 
-use super::canvas::Canvas;
+use super::clock::Clock;
+use super::opened::{Opened, first_size};
 use super::screen::{Drawn, Screen};
-use super::state::{BAR_PX, Outcome, State};
+use super::show::{Cached, Show, still};
+use super::state::{Outcome, State};
 use super::worker::{Event, Ready};
-use super::{PLACE, chrome, input, marks};
+use super::{PLACE, chrome, input};
 use crate::base::error::{Error, Result};
 use crate::preview::keys::{KEYS, PLAY};
 use crate::preview::{Reply, Update};
-use crate::render::gpu::Gpu;
-use crate::render::overlay::{View, field_scale, overlay};
 use crate::render::reduce::reduced;
-use crate::render::{LayerSynth, Synth};
-use crate::scene::Scene;
 
-/// Smallest and first size of a window, in logical pixels.
-const SMALLEST: (f64, f64) = (480.0, 320.0);
-const FIRST: (f64, f64) = (960.0, 640.0);
-/// A window opens on at most this share of the monitor.
-const MOST_OF_MONITOR: f64 = 0.85;
 /// A scene is given so long before the window opens with a notice alone.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// Frames a second where the monitor does not tell.
-const RATE: f64 = 60.0;
 /// A line of a mouse wheel is one step; a touchpad gives pixels.
 const WHEEL_PX: f64 = 60.0;
 
@@ -54,49 +45,12 @@ pub struct App {
     failed: Option<Error>,
 }
 
-/// What is open once there is something to show.
-struct Opened {
-    window: Arc<Window>,
-    gpu: Gpu,
-    screen: Screen,
-    hidden: bool,
-}
-
-/// A scene, ready to be drawn.
-struct Show {
-    scene: Arc<Scene>,
-    /// As large as the picture: for the overlay.
-    synth: Synth,
-    /// As large as the GPU can hold, moving and still.
-    frames: Synth,
-    still: Synth,
-    /// Pixels of the frames a pixel of the picture.
-    frame_scale: f64,
-}
-
-/// The overlay's strokes, and what they were made for.
-#[derive(Default)]
-struct Cached {
-    made_for: Option<(View, super::camera::Camera, Size, bool, u64)>,
-    canvas: Canvas,
-    arrow_scale: f64,
-    revision: u64,
-}
-
 /// What the pressed mouse button moves.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Drag {
     Nothing,
     Picture,
     Time,
-}
-
-/// When frames were and are due.
-struct Clock {
-    last: Instant,
-    due: Instant,
-    counted_from: Instant,
-    frames: u32,
 }
 
 impl App {
@@ -334,77 +288,6 @@ impl App {
     }
 }
 
-impl Clock {
-    /// Time runs from now.
-    fn start(&mut self) {
-        let now = Instant::now();
-        *self = Clock { last: now, due: now, counted_from: now, frames: 0 };
-    }
-}
-
-impl Opened {
-    fn paint(&mut self, state: &mut State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
-        let (frame, frame_scale) = match show {
-            Some(show) => {
-                let synth = if state.shown.still { &show.still } else { &show.frames };
-                let time = state.transport.scene_time(&state.timeline);
-                marks.follow(state, show);
-                state.arrow_scale = marks.arrow_scale;
-                (self.gpu.texture(synth, time)?, show.frame_scale)
-            }
-            None => (self.gpu.texture(&Synth { size: (1, 1), layers: Vec::new() }, 0.0)?, 1.0),
-        };
-        let chrome = chrome::draw(state);
-        let strokes = [&marks.canvas.strokes[..], &chrome.strokes[..]];
-        let drawn = self.screen.draw(&self.gpu, state, &frame, frame_scale, strokes);
-        self.gpu.device().take_uncaught()?;
-        drawn
-    }
-
-    fn interval(&self) -> Duration {
-        let rate = self.window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
-        Duration::from_secs_f64(1.0 / rate.map_or(RATE, |r| f64::from(r) / 1000.0).max(1.0))
-    }
-}
-
-impl Cached {
-    /// Makes the strokes again where anything that they show has changed.
-    fn follow(&mut self, state: &State, show: &Show) {
-        let key = (state.overlay_view(), state.camera.clone(), state.window, state.shown.grid, self.revision);
-        if self.made_for.as_ref() == Some(&key) {
-            return;
-        }
-        let found = overlay(&show.scene, Some(&show.synth), &key.0);
-        self.canvas = Canvas::default();
-        if state.shown.grid {
-            marks::grid(&mut self.canvas, state.picture, &state.camera, state.area());
-        }
-        self.canvas.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
-        let scale = |spacing| show.synth.layers.iter().map(move |LayerSynth::Picture(l)| field_scale(l, spacing));
-        self.arrow_scale = key.0.field.map_or(1.0, |spacing| scale(spacing).fold(1.0, f64::min));
-        self.made_for = Some(key);
-    }
-}
-
-/// The same picture, nothing moving.
-fn still(synth: &Synth) -> Synth {
-    let layers = synth.layers.iter().map(|LayerSynth::Picture(layer)| {
-        LayerSynth::Picture(crate::layers::folding::synth::Synth { picture: layer.picture.clone(), zones: Vec::new() })
-    });
-    Synth { size: synth.size, layers: layers.collect() }
-}
-
-/// The size of a window around a picture, in physical pixels.
-fn first_size(picture: Size, scale: f64, room: Option<PhysicalSize<u32>>) -> (u32, u32) {
-    let first = if picture == Size::ZERO { Size::from(FIRST) * scale } else { picture };
-    let side = |wanted: f64, least: f64, room: Option<u32>| {
-        let most = room.map_or(f64::INFINITY, |r| f64::from(r) * MOST_OF_MONITOR);
-        wanted.max(least * scale).min(most).round() as u32
-    };
-    let bar = (BAR_PX * scale).round();
-    (side(first.width, SMALLEST.0, room.map(|r| r.width)), side(first.height + bar, SMALLEST.1, room.map(|r| r.height)))
-}
-
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         event_loop.set_control_flow(ControlFlow::Wait);
@@ -470,24 +353,5 @@ impl ApplicationHandler<Event> for App {
             _ => ControlFlow::Wait,
         };
         event_loop.set_control_flow(flow);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_window_opens_around_its_picture_within_the_monitor() {
-        let room = Some(PhysicalSize::new(1000, 1000));
-        for (picture, scale, size) in [
-            (Size::ZERO, 1.0, (850, 674)),
-            (Size::new(600.0, 400.0), 1.0, (600, 434)),
-            (Size::new(10.0, 10.0), 1.0, (480, 320)),
-            (Size::new(5000.0, 10.0), 1.0, (850, 320)),
-            (Size::new(600.0, 400.0), 1.5, (720, 480)),
-        ] {
-            assert_eq!(first_size(picture, scale, room), size, "{picture:?}");
-        }
     }
 }
