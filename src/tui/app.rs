@@ -12,6 +12,7 @@ use super::entry::Entry;
 use super::keys;
 use super::line::Line;
 use super::place::Placing;
+use super::recorder::Recorder;
 use super::sheet::Sheet;
 use super::tree;
 use super::update::{Change, Effect};
@@ -60,6 +61,8 @@ pub struct State {
     pub message: Option<Message>,
     /// Commands that were run, the newest last.
     pub lines: Vec<String>,
+    /// Who listens to the lines that are run.
+    pub recorder: Recorder,
     /// What was searched for last.
     pub sought: String,
     /// What the threads have found out.
@@ -161,6 +164,7 @@ impl State {
             playing: false,
             message: None,
             lines: Vec::new(),
+            recorder: Recorder::default(),
             sought: String::new(),
             seen: Seen::default(),
             effects: VecDeque::new(),

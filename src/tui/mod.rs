@@ -14,6 +14,7 @@ mod line;
 mod numbers;
 mod panes;
 mod place;
+mod recorder;
 mod runner;
 mod sheet;
 mod terminal;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ratatui::layout::{Position, Rect};
 
-use super::app::{Mode, Pages, Pane, State};
+use super::app::{Mode, Pages, State};
 use super::keys::{self, Found};
 use super::panes::first_row;
 use super::{commands, tree, view};
@@ -171,14 +171,14 @@ fn report(state: &mut State, result: Result<String, String>) {
 /// Pasted text is typed where something is typed; a line end ends it.
 fn paste(state: &mut State, text: &str) {
     let first = text.lines().next().unwrap_or_default();
-    match &mut state.mode {
-        Mode::Entry(entry) => entry.text.insert(first),
-        Mode::Line(line) => {
-            line.typed();
-            line.text.insert(first);
-        }
+    match &state.mode {
+        Mode::Entry(_) | Mode::Line(_) => type_text(state, first),
         _ => state.complain("paste into an entry (i) or a command (:)"),
     }
+}
+
+fn type_text(state: &mut State, text: &str) {
+    commands::run(state, &format!("type {}", commands::quoted(text)), None);
 }
 
 /// A click goes to the pane under it, and in the tree to the row.
@@ -191,13 +191,13 @@ fn click(state: &mut State, x: u16, y: u16) {
     if areas.tree.contains(at) {
         let rows = tree::rows(state.document(), &state.folded);
         let first = first_row(tree::row_of(&rows, &state.node), rows.len(), areas.tree.height.saturating_sub(2));
-        let row = rows.get(first + usize::from(y.saturating_sub(areas.tree.y + 1))).map(|row| row.pointer.clone());
-        state.focus = Pane::Tree;
-        state.show(row.unwrap_or(state.node.clone()));
+        let row = rows.get(first + usize::from(y.saturating_sub(areas.tree.y + 1)));
+        let line = row.map_or("pane tree".to_owned(), |row| format!("go {}", row.pointer));
+        commands::run(state, &line, None);
     } else if areas.right.is_some_and(|[.., picture]| picture.contains(at)) {
-        state.focus = Pane::Picture;
+        commands::run(state, "pane picture", None);
     } else if areas.table.contains(at) {
-        state.focus = Pane::Table;
+        commands::run(state, "pane table", None);
     }
 }
 
@@ -222,10 +222,10 @@ fn press(state: &mut State, key: &str) {
     state.pressed.clear();
     match keys::find(&state.contexts(), &pressed) {
         Found::Prefix => state.pressed = pressed,
-        Found::Row(row) => {
+        Found::Line(line) => {
             let count = state.count.take();
             state.message = None;
-            commands::run(state, row.command, count);
+            commands::run(state, &line, count);
         }
         Found::Nothing => {
             state.count = None;
@@ -238,12 +238,8 @@ fn press(state: &mut State, key: &str) {
 fn unbound(state: &mut State, key: &str, pressed: &str) {
     let typed = if key == "Space" { " " } else { key };
     let one = typed.chars().count() == 1;
-    match &mut state.mode {
-        Mode::Entry(entry) if one => entry.text.insert(typed),
-        Mode::Line(line) if one => {
-            line.typed();
-            line.text.insert(typed);
-        }
+    match &state.mode {
+        Mode::Entry(_) | Mode::Line(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         Mode::Normal | Mode::Aim => state.complain(format!("{pressed} means nothing here (? shows the keys)")),
         _ => {}

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::items::add;
-use super::{Call, Command, Done, command};
-use crate::base::maths;
+use super::{Call, Command, Done, command, obey, quoted, unquoted};
+use crate::base::{maths, problem};
 use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
 use crate::tui::app::{Mode, State};
@@ -14,10 +14,12 @@ use crate::tui::sheet::{Cell, Row};
 
 pub const COMMANDS: &[Command] = &[
     command("enter", "[clear]", "Edit the cell, or go into the node", enter),
-    command("commit", "[next]", "Take the value being typed", commit),
-    command("digit", "BY", "Step the digit under the cursor", digit),
-    command("choice", "next|previous|take", "Move in the list of choices, or take one", choose),
-    command("step", "BY", "Step the number by the step", step),
+    command("put", "EXPRESSION", "Put a value into the cell, or into every selected row", put).change(),
+    command("commit", "[next]", "Take the value being typed", commit).inside(),
+    command("digit", "BY", "Step the digit under the cursor", digit).inside(),
+    command("choice", "next|previous|take", "Move in the list of choices, or take one", choice).inside(),
+    command("choose", "WORD", "Take a word of the list of choices", choose).answer(),
+    command("step", "BY", "Step the number by the step", step).change(),
     command("step-size", "smaller|larger|POWER", "Change the step tenfold", step_size),
     command("select", "", "Begin or end a selection of rows", select),
 ];
@@ -42,7 +44,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
     }
     let sheet = state.sheet();
     let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
-    if cell.is_number() || matches!(cell.field.kind, Kind::Text) {
+    if is_typed(&cell) {
         state.mode = Mode::Entry(Entry::new(state.document(), &cell, call.text == "clear"));
     } else if let Some(choice) = choice::of_cell(state, &cell, others) {
         state.mode = Mode::Choice(choice);
@@ -52,25 +54,40 @@ fn enter(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
+/// Gives the cell under the cursor, and the like ones of the selection, what the text says: a value, an expression over
+/// the row, or one of the words that the cell takes.
+fn put(state: &mut State, call: &Call) -> Done {
+    let text = unquoted(call.text);
+    let (row, cell) = current(state).ok_or("there is nothing to put it into: o adds an item")?;
+    if is_typed(&cell) {
+        let edit = entry::edit(state, &text)?;
+        state.edit(edit, false)?;
+    } else {
+        let sheet = state.sheet();
+        let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
+        let choice = choice::of_cell(state, &cell, others).filter(|_| !cell.is_node());
+        let choice = choice.ok_or_else(|| format!("{} takes no value: go into it", row.label))?;
+        let word = word_of(&choice, &text)?;
+        take(state, choice.then, &word)?;
+    }
+    state.mode = Mode::Normal;
+    Ok(())
+}
+
+/// Whether a value is typed into the cell; otherwise it is chosen, or has an inside of its own.
+fn is_typed(cell: &Cell) -> bool {
+    cell.is_number() || matches!(cell.field.kind, Kind::Text)
+}
+
 /// Takes the entry. Where it cannot be taken it stays as it was typed.
 fn commit(state: &mut State, call: &Call) -> Done {
     let Mode::Entry(typed) = &state.mode else { return Ok(()) };
-    let text = typed.text.value().to_string();
-    let edit = entry::edit(state, &text)?;
-    state.edit(edit, false)?;
-    state.mode = Mode::Normal;
+    let text = quoted(typed.text.value());
+    obey(state, &format!("put {text}"), None)?;
     if call.text == "next" {
-        let cells = state.sheet().rows.get(state.row).map_or(0, |row| row.cells.len());
-        if state.column + 1 < cells {
-            state.column += 1;
-        } else {
-            state.row += 1;
-            state.column = 0;
-            state.settle();
-        }
-        let typed = current(state).is_some_and(|(_, cell)| cell.is_number() || matches!(cell.field.kind, Kind::Text));
-        if typed {
-            return enter(state, &Call { text: "", count: None });
+        obey(state, "move next", None)?;
+        if current(state).is_some_and(|(_, cell)| is_typed(&cell)) {
+            return obey(state, "enter", None);
         }
     }
     Ok(())
@@ -82,20 +99,44 @@ fn digit(state: &mut State, call: &Call) -> Done {
     if entry.text.step_digit(by) { Ok(()) } else { Err("there is no digit under the cursor".into()) }
 }
 
-fn choose(state: &mut State, call: &Call) -> Done {
+fn choice(state: &mut State, call: &Call) -> Done {
     let Mode::Choice(choice) = &mut state.mode else { return Ok(()) };
     match call.text {
         "next" => choice.step(call.times()),
         "previous" => choice.step(-call.times()),
-        _ => {
-            let (then, word) = (choice.then.clone(), choice.taken().map(str::to_owned));
-            state.mode = Mode::Normal;
-            if let Some(word) = word {
-                return take(state, then, &word);
+        _ => match (choice.taken().map(str::to_owned), &choice.then) {
+            (Some(word), Then::Recover) => {
+                // A log begins with the scene as it is after this: elsewhere there is nothing to recover.
+                state.mode = Mode::Normal;
+                state.recorder.remark(&format!("unsaved edits of the session before: {word}"));
+                return take(state, Then::Recover, &word);
             }
-        }
+            (Some(word), _) => return obey(state, &format!("choose {}", quoted(&word)), None),
+            (None, _) => state.mode = Mode::Normal,
+        },
     }
     Ok(())
+}
+
+fn choose(state: &mut State, call: &Call) -> Done {
+    let Mode::Choice(choice) = &state.mode else {
+        return Err("there is no list to choose from: Enter opens one".into());
+    };
+    let word = word_of(choice, &unquoted(call.text))?;
+    let then = choice.then.clone();
+    state.mode = Mode::Normal;
+    take(state, then, &word)
+}
+
+/// The word, where the list has it.
+fn word_of(choice: &Choice, word: &str) -> Result<String, String> {
+    let mut words = choice.options.iter().map(|(word, _)| word.as_str());
+    if words.clone().any(|one| one == word) {
+        return Ok(word.to_owned());
+    }
+    let near = problem::nearest(word, words.clone()).map(|near| format!(": {near}"));
+    let all = || format!(": it takes {}", words.by_ref().collect::<Vec<_>>().join(", "));
+    Err(format!("{} cannot be {word}{}", choice.title, near.unwrap_or_else(all)))
 }
 
 fn take(state: &mut State, then: Then, word: &str) -> Done {

@@ -23,15 +23,17 @@ pub const COMMANDS: &[Command] = &[
     }),
     command("e!", "[PATH]", "Open another scene, or take this one as its file has it", open),
     command("view", "[COMMAND]", "Open the preview window, or change what it shows", view),
-    command("problems", "", "Say what is wrong in the scene", problems),
+    command("problems", "", "Say what is wrong in the scene", problems).inside(),
     command("redraw", "", "Draw the screen anew", |state, _| {
         state.ask(Effect::Redraw);
         Ok(())
-    }),
+    })
+    .inside(),
     command("suspend", "", "Go to the shell", |state, _| {
         state.ask(Effect::Suspend);
         Ok(())
-    }),
+    })
+    .inside(),
 ];
 
 fn refuse_unsaved(state: &State, instead: &str) -> Done {

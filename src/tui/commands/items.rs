@@ -10,10 +10,10 @@ use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry;
 
 pub const COMMANDS: &[Command] = &[
-    command("add", "", "Add an item to the list, or an optional node", add),
-    command("delete", "", "Delete the row, the selection or the node", delete),
-    command("duplicate", "", "Duplicate the row or the node", duplicate),
-    command("reorder", "down|up", "Move the row or the node among its siblings", reorder),
+    command("add", "", "Add an item to the list, or an optional node", add).change(),
+    command("delete", "", "Delete the row, the selection or the node", delete).change(),
+    command("duplicate", "", "Duplicate the row or the node", duplicate).change(),
+    command("reorder", "down|up", "Move the row or the node among its siblings", reorder).change(),
 ];
 
 /// What the node or the row under the cursor is: its pointer.

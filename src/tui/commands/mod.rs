@@ -1,8 +1,9 @@
 //! The one table of commands: what keys run and what is typed after `:`. What is not here but on the command line of
 //! `plica` (render, synth, ...) runs as there, with the same arguments.
 
-use super::app::State;
+use super::app::{Mode, State};
 use super::keys::{EVERYWHERE, KEYS};
+use super::recorder::{Ended, Kept};
 use super::update::Effect;
 use crate::base::problem;
 use crate::ops;
@@ -15,6 +16,9 @@ mod items;
 mod moving;
 mod placing;
 mod playing;
+mod said;
+pub use said::{Said, quoted, unquoted, words};
+mod scripts;
 mod typing;
 mod values;
 
@@ -44,9 +48,30 @@ pub struct Command {
     pub args: &'static str,
     /// What it does, in a few words.
     pub help: &'static str,
+    /// What is kept of it: in the log of the session, in macros, for `.`.
+    pub kept: Kept,
     /// Does it.
     pub run: fn(&mut State, &Call) -> Done,
 }
+
+impl Command {
+    /// One that changes the scene, which `.` repeats.
+    const fn change(self) -> Command {
+        Command { kept: Kept::Change, ..self }
+    }
+
+    /// One that answers a list of choices.
+    const fn answer(self) -> Command {
+        Command { kept: Kept::Answer, ..self }
+    }
+
+    /// One of which only the lines are kept that it runs itself, if any: it types, asks, or only shows.
+    const fn inside(self) -> Command {
+        Command { kept: Kept::Inside, ..self }
+    }
+}
+
+/// A command of which the line is kept; [`Command::change`] and [`Command::inside`] say otherwise.
 
 const fn command(
     name: &'static str,
@@ -54,7 +79,7 @@ const fn command(
     help: &'static str,
     run: fn(&mut State, &Call) -> Done,
 ) -> Command {
-    Command { name, args, help, run }
+    Command { name, args, help, kept: Kept::Line, run }
 }
 
 const TABLES: &[&[Command]] = &[
@@ -66,6 +91,7 @@ const TABLES: &[&[Command]] = &[
     placing::COMMANDS,
     playing::COMMANDS,
     typing::COMMANDS,
+    scripts::COMMANDS,
 ];
 
 /// Every command of the editor.
@@ -86,17 +112,57 @@ pub fn names() -> Vec<String> {
     names
 }
 
-/// Runs the command of a key.
+/// Runs a line, and says where it could not be done.
 pub fn run(state: &mut State, line: &str, count: Option<usize>) {
-    let (name, text) = line.split_once(' ').unwrap_or((line, ""));
-    let Some(command) = find(name) else { return state.complain(format!("there is no command {name}")) };
-    // Only a run of steps joins into one step of undo.
-    if name != "step" {
-        state.door.close_step();
-    }
-    if let Err(why) = (command.run)(state, &Call { text: text.trim(), count }) {
+    if let Err(why) = obey(state, line, count) {
         state.complain(why);
     }
+}
+
+/// Runs a line `[COUNT] NAME [ARGS]`: the one door that keys, what is typed after `:`, scripts, macros and windows pass.
+///
+/// # Errors
+/// What to say where it could not be done.
+pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
+    let said = Said::parse(line, count);
+    if said.name.is_empty() {
+        return Ok(());
+    }
+    #[cfg(test)]
+    super::tests::coverage::ran(said.name);
+    let command = find(said.name);
+    let kept = command.map_or(Kept::Line, |command| command.kept);
+    let asked = asks(state);
+    state.recorder.begin(kept);
+    let done = match command {
+        Some(command) => (command.run)(state, &Call { text: said.text, count: said.count }),
+        None => subcommand(state, &said),
+    };
+    let asks = asks(state) && !asked;
+    // Only a run of steps joins into one step of undo, whatever was looked at meanwhile.
+    if done.is_ok() && kept != Kept::Inside && !asks && said.name != "step" {
+        state.door.close_step();
+    }
+    let refused = done.as_ref().err().map(String::as_str);
+    state.recorder.end(Ended { line: said.to_string(), kept, refused, asks });
+    done
+}
+
+/// Whether something is being typed into a cell or chosen: a line that answers follows.
+fn asks(state: &State) -> bool {
+    matches!(state.mode, Mode::Entry(_) | Mode::Choice(_))
+}
+
+/// Asks for a subcommand of the command line, with the same arguments.
+fn subcommand(state: &mut State, said: &Said) -> Done {
+    let name = said.name;
+    if !ops::names().any(|known| known == name) {
+        let near = problem::nearest(name, names().iter().map(String::as_str)).map(|near| format!(": {near}"));
+        return Err(format!("there is no command {name}{}", near.unwrap_or_default()));
+    }
+    let words = words(&format!("{name} {}", said.text))?;
+    state.ask(Effect::Run(words));
+    Ok(())
 }
 
 /// Runs a command of the window's table: what the same key does here.
@@ -106,48 +172,6 @@ pub fn run_of_window(state: &mut State, name: &str) {
     if let Some(row) = here {
         run(state, row.command, None);
     }
-}
-
-/// Runs a line that was typed after `:`.
-pub fn run_line(state: &mut State, line: &str) {
-    let line = line.trim();
-    let name = line.split(' ').next().unwrap_or_default();
-    if name.is_empty() {
-        return;
-    }
-    if find(name).is_some() {
-        return run(state, line, None);
-    }
-    if let Ok(row) = name.parse::<usize>() {
-        return run(state, "move last", Some(row));
-    }
-    if !ops::names().any(|known| known == name) {
-        let near = problem::nearest(name, names().iter().map(String::as_str)).map(|near| format!(": {near}"));
-        return state.complain(format!("there is no command {name}{}", near.unwrap_or_default()));
-    }
-    match words(line) {
-        Ok(words) => state.ask(Effect::Run(words)),
-        Err(why) => state.complain(why),
-    }
-}
-
-/// The words of a line; double quotes keep spaces.
-pub fn words(line: &str) -> Result<Vec<String>, String> {
-    let mut words = Vec::new();
-    let mut word: Option<String> = None;
-    let mut quoted = false;
-    for c in line.chars() {
-        match c {
-            '"' => {
-                quoted = !quoted;
-                word.get_or_insert_default();
-            }
-            ' ' if !quoted => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(c),
-        }
-    }
-    words.extend(word);
-    if quoted { Err("a \" is not closed".into()) } else { Ok(words) }
 }
 
 #[cfg(test)]
@@ -164,14 +188,5 @@ mod tests {
         for command in all() {
             assert!(command.help.starts_with(char::is_uppercase) && !command.help.ends_with('.'), "{}", command.name);
         }
-    }
-
-    #[test]
-    fn quotes_keep_words_together() {
-        assert_eq!(
-            words("render -o \"my file.gif\"  x"),
-            Ok(vec!["render".into(), "-o".into(), "my file.gif".into(), "x".into()])
-        );
-        assert!(words("a \"b").is_err());
     }
 }

@@ -1,14 +1,14 @@
 //! Moving about: in the tree, in forms and tables, between panes, and by search.
 
-use super::{Call, Command, Done, command};
-use crate::scene::field;
+use super::{Call, Command, Done, command, unquoted};
+use crate::scene::{address, field};
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::sheet::is_node;
 use crate::tui::tree;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
-    command("move", "down|up|left|right|first|last|start|end|page-down|page-up", "Move the cursor", go),
+    command("move", "down|up|left|right|first|last|start|end|page-down|page-up|next", "Move the cursor", go),
     command("pane", "next|previous|tree|table|picture", "Go to another pane", pane),
     command("fold", "", "Fold the node of the tree, else go to its parent", fold),
     command("open", "", "Unfold the node of the tree, else edit it", open),
@@ -16,6 +16,7 @@ pub const COMMANDS: &[Command] = &[
     command("back", "", "End the selection, else running work, else go to the tree", back),
     command("leave", "", "As back, and say how to leave", leave),
     command("search", "next|previous|NAME", "Go to the node of that name", search),
+    command("go", "PATH", "Go to the node or the field at a path; without one, to the scene", go_to_path),
 ];
 
 /// Rows that a page holds, about.
@@ -35,6 +36,7 @@ fn go(state: &mut State, call: &Call) -> Done {
         "page-up" => by(-page(state) * call.times()),
         "first" => call.count.unwrap_or(0).min(rows.saturating_sub(1)),
         "last" => call.count.unwrap_or(usize::MAX).min(rows.saturating_sub(1)),
+        "next" => return move_on(state),
         sideways => return move_sideways(state, sideways, call.times()),
     };
     if tree {
@@ -60,6 +62,17 @@ fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
         "end" => by(i64::from(u16::MAX)),
         _ => return Err(format!("cannot move {way}")),
     };
+    Ok(())
+}
+
+/// Goes to the next cell, after the last of a row to the first of the row below.
+fn move_on(state: &mut State) -> Done {
+    let cells = state.sheet().rows.get(state.row).map_or(0, |row| row.cells.len());
+    (state.row, state.column) = match state.column + 1 < cells {
+        true => (state.row, state.column + 1),
+        false => (state.row + 1, 0),
+    };
+    state.settle();
     Ok(())
 }
 
@@ -123,11 +136,20 @@ fn leave(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
+fn go_to_path(state: &mut State, call: &Call) -> Done {
+    let pointer = match call.text {
+        "" => String::new(),
+        path => address::resolve(state.document(), path).map_err(|error| error.to_string())?,
+    };
+    reveal(state, &pointer);
+    Ok(())
+}
+
 /// Goes to the next node or field whose name holds the text, in the order of the document, around its end.
 fn search(state: &mut State, call: &Call) -> Done {
     match call.text {
         "next" | "previous" => {}
-        text => state.sought = text.to_lowercase(),
+        text => state.sought = unquoted(text).to_lowercase(),
     }
     if state.sought.is_empty() {
         return Err("nothing was searched for yet: / searches".into());

@@ -3,25 +3,28 @@
 use kurbo::Vec2;
 
 use super::items::go_to;
-use super::{Call, Command, Done, command};
+use super::{Call, Command, Done, command, obey};
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::numbers::short;
 use crate::tui::place;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
-    command("cursor", "DX DY", "Move the picture's cursor", cursor),
+    command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor),
     command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed),
     command("zoom", "in|out|fit", "Zoom the picture", zoom),
-    command("pointer", "", "Take the window's pointer into the field, else into the picture's cursor", pointer),
+    command("pointer", "", "Take the window's pointer into the field, else into the picture's cursor", pointer)
+        .inside(),
     command("probe", "[X,Y]", "Say what a pixel does", probe),
 ];
 
 fn cursor(state: &mut State, call: &Call) -> Done {
-    let wrong = || "cursor takes DX DY".to_string();
-    let (dx, dy) = call.text.split_once(' ').ok_or_else(wrong)?;
-    let by = Vec2::new(dx.parse().map_err(|_| wrong())?, dy.parse().map_err(|_| wrong())?);
-    state.placing.step(by * call.times() as f64, state.picture_size);
+    let (place, text) = call.text.strip_prefix("at ").map_or((false, call.text), |text| (true, text));
+    let numbers: Vec<f64> = text.split(' ').filter_map(|number| number.parse().ok()).collect();
+    let [x, y] = numbers[..] else { return Err("cursor takes X Y, or at X Y".into()) };
+    let to =
+        if place { Vec2::new(x, y) - state.placing.cursor.to_vec2() } else { Vec2::new(x, y) * call.times() as f64 };
+    state.placing.step(to, state.picture_size);
     Ok(())
 }
 
@@ -76,13 +79,8 @@ fn zoom(state: &mut State, call: &Call) -> Done {
 /// Where the row under the cursor has a place, it goes to the window's pointer; the picture's cursor does always.
 fn pointer(state: &mut State, _: &Call) -> Done {
     let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
-    state.placing.cursor = (x, y).into();
-    state.placing.step(Vec2::ZERO, state.picture_size);
-    if state.focus == Pane::Table {
-        let edit = place::move_here(state)?;
-        state.edit(edit, false)?;
-    }
-    Ok(())
+    obey(state, &format!("cursor at {x} {y}"), None)?;
+    if state.focus == Pane::Table { obey(state, "place move", None) } else { Ok(()) }
 }
 
 /// Asks `plica probe` about the pixel under the cursor, or about X,Y, at the time that is shown.

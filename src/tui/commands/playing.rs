@@ -5,7 +5,7 @@ use crate::tui::app::State;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
-    command("play", "", "Play or pause", play),
+    command("play", "", "Play or pause", play).inside(),
     command("frame", "next|previous|first|last|NUMBER", "Go to a frame", frame),
     command("time", "T", "Go to a scene time t, 0 to 1", time),
 ];

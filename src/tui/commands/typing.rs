@@ -1,6 +1,6 @@
 //! Typing: the command line, texts, and the pages of the help.
 
-use super::{Call, Command, Done, all, command, run, run_line};
+use super::{Call, Command, Done, all, command, obey, quoted, unquoted};
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::keys::KEYS;
 use crate::tui::line::{self, Line};
@@ -9,18 +9,35 @@ pub const COMMANDS: &[Command] = &[
     command("line", "[/]", "Type a command, or with / a search", |state, call| {
         state.mode = Mode::Line(Line::new(call.text.chars().next().unwrap_or(':')));
         Ok(())
-    }),
-    command("run", "", "Run the line being typed", run_typed),
-    command("complete", "", "Complete the line being typed", complete),
-    command("recall", "older|newer", "Recall a line typed before", recall),
-    command("text", "left|right|start|end|rub|delete|clear", "Change the text being typed", text),
+    })
+    .inside(),
+    command("type", "TEXT", "Type text where something is typed", type_text).inside(),
+    command("run", "", "Run the line being typed", run_typed).inside(),
+    command("complete", "", "Complete the line being typed", complete).inside(),
+    command("recall", "older|newer", "Recall a line typed before", recall).inside(),
+    command("text", "left|right|start|end|rub|delete|clear", "Change the text being typed", text).inside(),
     command("cancel", "", "Leave what is being done as it was", |state, _| {
         state.mode = Mode::Normal;
         Ok(())
-    }),
-    command("help", "[COMMAND]", "Show keys and commands", help),
-    command("scroll", "LINES", "Scroll the pages", scroll),
+    })
+    .inside(),
+    command("help", "[COMMAND]", "Show keys and commands", help).inside(),
+    command("scroll", "LINES", "Scroll the pages", scroll).inside(),
 ];
+
+/// Quotes, as JSON has them, keep spaces at the ends.
+fn type_text(state: &mut State, call: &Call) -> Done {
+    let typed = unquoted(call.text);
+    match &mut state.mode {
+        Mode::Entry(entry) => entry.text.insert(&typed),
+        Mode::Line(line) => {
+            line.typed();
+            line.text.insert(&typed);
+        }
+        _ => return Err("nothing is being typed: i edits a cell, : begins a command".into()),
+    }
+    Ok(())
+}
 
 fn run_typed(state: &mut State, _: &Call) -> Done {
     let Mode::Line(line) = &state.mode else { return Ok(()) };
@@ -30,13 +47,11 @@ fn run_typed(state: &mut State, _: &Call) -> Done {
         return Ok(());
     }
     if kind == '/' {
-        run(state, &format!("search {typed}"), None);
-        return Ok(());
+        return obey(state, &format!("search {}", quoted(&typed)), None);
     }
     state.lines.retain(|old| *old != typed);
     state.lines.push(typed.clone());
-    run_line(state, &typed);
-    Ok(())
+    obey(state, &typed, None)
 }
 
 fn complete(state: &mut State, _: &Call) -> Done {
@@ -129,7 +144,7 @@ mod tests {
     #[test]
     fn the_help_holds_every_key_and_command() {
         let mut state = crate::tui::tests::support::state();
-        run(&mut state, "help", None);
+        obey(&mut state, "help", None).unwrap();
         let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
         let text = pages.lines.join("\n");
         assert!(KEYS.iter().all(|row| text.contains(row.help)));

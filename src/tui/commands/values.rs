@@ -11,8 +11,8 @@ use crate::tui::entry;
 use crate::tui::update::Change;
 
 pub const COMMANDS: &[Command] = &[
-    command("set", "PATH=VALUE", "Set a value by its path", set),
-    command("get", "PATH", "Say the value at a path", get),
+    command("set", "PATH=VALUE", "Set a value by its path", set).change(),
+    command("get", "PATH", "Say the value at a path", get).inside(),
     command("undo", "[STEPS]", "Undo", undo),
     command("redo", "[STEPS]", "Redo", redo),
 ];

@@ -7,11 +7,14 @@ use crate::base::keys::KeyRow;
 mod table;
 pub use table::{AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, PICTURE, TABLE, TREE, TYPING};
 
+/// Stands in a row for any letter from a to z.
+const LETTER: &str = "{a-z}";
+
 /// What the keys pressed so far mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
-    /// This row.
-    Row(&'static KeyRow),
+    /// This line is to be run.
+    Line(String),
     /// The beginning of several.
     Prefix,
     /// Nothing.
@@ -22,14 +25,25 @@ pub enum Found {
 pub fn find(contexts: &[&str], pressed: &str) -> Found {
     for context in contexts {
         let mut rows = KEYS.iter().filter(|row| row.context == *context);
-        if let Some(row) = rows.clone().find(|row| row.key == pressed) {
-            return Found::Row(row);
+        if let Some(line) = rows.clone().find_map(|row| line(row, pressed)) {
+            return Found::Line(line);
         }
         if rows.any(|row| continues(row, pressed)) {
             return Found::Prefix;
         }
     }
     Found::Nothing
+}
+
+/// The line that a row runs where the keys pressed are its own. A key `{a-z}` at the end stands for any letter, and in the
+/// line for the one that was pressed.
+fn line(row: &KeyRow, pressed: &str) -> Option<String> {
+    if row.key == pressed {
+        return Some(row.command.to_owned());
+    }
+    let letter = pressed.strip_prefix(row.key.strip_suffix(LETTER)?)?;
+    let one = letter.len() == 1 && letter.starts_with(|c: char| c.is_ascii_lowercase());
+    one.then(|| row.command.replace(LETTER, letter))
 }
 
 /// The rows that begin with the keys pressed, for the hints.
@@ -123,11 +137,21 @@ mod tests {
     #[test]
     fn keys_are_found_from_the_inside_out() {
         let contexts = [PICTURE, EVERYWHERE];
-        assert!(matches!(find(&contexts, "J"), Found::Row(row) if row.command == "cursor 0 10"));
-        assert!(matches!(find(&contexts, "u"), Found::Row(row) if row.command == "undo"));
+        assert_eq!(find(&contexts, "J"), Found::Line("cursor 0 10".into()));
+        assert_eq!(find(&contexts, "u"), Found::Line("undo".into()));
         assert_eq!(find(&contexts, "g"), Found::Prefix);
         assert_eq!(find(&contexts, "Q"), Found::Nothing);
         assert!(continuations(&contexts, "g").any(|row| row.key == "g p"));
+    }
+
+    #[test]
+    fn a_row_may_take_any_letter() {
+        let row = KeyRow { context: TREE, key: "q {a-z}", command: "record {a-z}", help: "Record" };
+        for (pressed, expected) in
+            [("q a", Some("record a")), ("q z", Some("record z")), ("q A", None), ("q", None), ("q Esc", None)]
+        {
+            assert_eq!(line(&row, pressed).as_deref(), expected, "{pressed}");
+        }
     }
 
     #[test]

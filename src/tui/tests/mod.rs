@@ -2,20 +2,24 @@
 
 use serde_json::{Value, json};
 
-use self::support::{press, state};
+use self::support::{press, replayed, state};
 use super::app::Mode;
 use super::update::Effect;
 
+pub mod coverage;
+mod lines;
 mod screens;
 pub mod support;
 
-/// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them.
+/// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them. The
+/// log of these keys leads to the same scene.
 fn check(rows: &[(&str, &str, Value)]) {
     for (keys, pointer, expected) in rows {
         let mut state = state();
         press(&mut state, keys);
         let found = state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null);
         assert_eq!(&found, expected, "{keys}: {pointer}; said {:?}", state.message);
+        assert_eq!(replayed(&state).document().json(), state.document().json(), "{keys}: {:#?}", state.recorder.log());
     }
 }
 

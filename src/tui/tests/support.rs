@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use crate::tui::app::State;
 use crate::tui::colour::Depth;
+use crate::tui::commands::obey;
 use crate::tui::door::Door;
 use crate::tui::update::{Effect, Event, update};
 
@@ -62,4 +63,13 @@ pub fn press(state: &mut State, keys: &str) -> Vec<Effect> {
         }
     }
     effects
+}
+
+/// Another editor on [`SCENE`] that has run the lines of this one's log.
+pub fn replayed(state: &State) -> State {
+    let mut other = self::state();
+    for line in state.recorder.log().iter().filter(|line| !line.starts_with('#')) {
+        obey(&mut other, line, None).unwrap_or_else(|why| panic!("{line}: {why}\n{:#?}", state.recorder.log()));
+    }
+    other
 }

@@ -1,0 +1,117 @@
+//! A line as it is said: `[COUNT] NAME [ARGS]`. Keys run such lines, people type them after `:`, scripts, macros and the log
+//! hold them.
+
+/// The parts of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said<'a> {
+    /// How often, or which one.
+    pub count: Option<usize>,
+    /// The command; empty where there is none.
+    pub name: &'a str,
+    /// What stands after it.
+    pub text: &'a str,
+}
+
+impl<'a> Said<'a> {
+    /// Takes a line apart; a count typed before its key counts as well. A number alone is the row to go to, as in vim.
+    pub fn parse(line: &'a str, typed: Option<usize>) -> Said<'a> {
+        let (first, rest) = split(line);
+        let count = first.parse::<usize>().ok();
+        let (name, text) = if count.is_some() { split(rest) } else { (first, rest) };
+        let both = typed.zip(count).map(|(typed, count)| typed.saturating_mul(count));
+        let count = both.or(typed).or(count);
+        match (count, name) {
+            (Some(_), "") => Said { count, name: "move", text: "last" },
+            _ => Said { count, name, text },
+        }
+    }
+}
+
+impl std::fmt::Display for Said<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let count = self.count.map(|count| format!("{count} ")).unwrap_or_default();
+        let space = if self.text.is_empty() { "" } else { " " };
+        write!(f, "{count}{}{space}{}", self.name, self.text)
+    }
+}
+
+/// The first word, and what stands after it.
+fn split(line: &str) -> (&str, &str) {
+    let line = line.trim();
+    line.split_once(' ').map_or((line, ""), |(word, rest)| (word, rest.trim_start()))
+}
+
+/// A text as it stands in a line: in quotes, as JSON has them, where it would not be read back as it is.
+pub fn quoted(text: &str) -> String {
+    let bare = !text.is_empty() && !text.starts_with('"') && text.trim() == text && !text.contains(char::is_control);
+    if bare { text.to_owned() } else { serde_json::Value::from(text).to_string() }
+}
+
+/// The text that [`quoted`] was made of; one without quotes is itself.
+pub fn unquoted(text: &str) -> String {
+    serde_json::from_str(text).ok().filter(|_| text.starts_with('"')).unwrap_or_else(|| text.to_owned())
+}
+
+/// The words of a line; double quotes keep spaces.
+pub fn words(line: &str) -> Result<Vec<String>, String> {
+    let mut words = Vec::new();
+    let mut word: Option<String> = None;
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '"' => {
+                quoted = !quoted;
+                word.get_or_insert_default();
+            }
+            ' ' if !quoted => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(c),
+        }
+    }
+    words.extend(word);
+    if quoted { Err("a \" is not closed".into()) } else { Ok(words) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_count_stands_before_the_name() {
+        for (line, typed, said) in [
+            ("move down", None, "move down"),
+            (" 5  move  down ", None, "5 move down"),
+            ("move down", Some(3), "3 move down"),
+            ("2 move down", Some(3), "6 move down"),
+            ("12", None, "12 move last"),
+            ("put 5", None, "put 5"),
+            ("", None, ""),
+        ] {
+            assert_eq!(Said::parse(line, typed).to_string(), said, "{line:?}");
+        }
+    }
+
+    #[test]
+    fn quotes_keep_words_together() {
+        assert_eq!(
+            words("render -o \"my file.gif\"  x"),
+            Ok(vec!["render".into(), "-o".into(), "my file.gif".into(), "x".into()])
+        );
+        assert!(words("a \"b").is_err());
+    }
+
+    #[test]
+    fn what_is_quoted_is_read_back() {
+        for (text, line) in [
+            ("*1.1", "*1.1"),
+            ("two words", "two words"),
+            (" ", "\" \""),
+            ("", "\"\""),
+            ("\"a\"", "\"\\\"a\\\"\""),
+            ("a\nb", "\"a\\nb\""),
+        ] {
+            assert_eq!(quoted(text), line);
+            assert_eq!(unquoted(line), text);
+        }
+        assert_eq!(unquoted("\"open"), "\"open");
+    }
+}

@@ -1,0 +1,44 @@
+//! Every command has a case (scene, keys, scene). To add one: write a row into a table of `check` in a file of tests, in a
+//! test function of its own or of others, and name that function in [`TABLES`]. What the tables run is seen at the one
+//! door, so nobody writes down which command a row is about.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+use crate::tui::commands;
+
+/// The tests that are tables of (scene, keys, scene).
+const TABLES: &[fn()] = &[
+    super::numbers_are_entered_in_place,
+    super::polar_and_cartesian_columns_edit_the_same_jump,
+    super::numbers_step_and_counts_multiply,
+    super::rows_and_nodes_come_and_go,
+    super::kinds_and_optional_nodes_are_chosen,
+    super::points_are_placed_on_the_picture,
+    super::commands_set_and_say,
+    super::leaving_is_refused_with_unsaved_edits_only,
+    super::time_goes_by_frames,
+    super::escape_ends_one_thing_after_the_other,
+    super::lines::lines_say_what_keys_do,
+    super::lines::nodes_are_reached_by_folding_and_going_up,
+    super::lines::what_is_outside_is_asked_for,
+    super::lines::the_pointer_of_a_window_is_kept_as_a_place,
+    super::lines::what_lasts_of_no_key_changes_no_scene,
+];
+
+thread_local! {
+    static RAN: RefCell<BTreeSet<String>> = const { RefCell::new(BTreeSet::new()) };
+}
+
+/// A command was run, on this thread.
+pub fn ran(name: &str) {
+    RAN.with_borrow_mut(|ran| ran.insert(name.to_owned()));
+}
+
+#[test]
+fn every_command_has_a_case() {
+    TABLES.iter().for_each(|table| table());
+    let ran = RAN.take();
+    let without: Vec<_> = commands::all().map(|command| command.name).filter(|name| !ran.contains(*name)).collect();
+    assert!(without.is_empty(), "no case for {without:?}: see the first lines of this file");
+}

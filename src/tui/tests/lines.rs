@@ -1,0 +1,112 @@
+//! Lines: what keys do can be said, and the log of a session leads to the same scene.
+
+use serde_json::{Value, json};
+
+use super::support::{press, replayed, state};
+use super::{check, motion, zone};
+use crate::tui::app::State;
+use crate::tui::commands::obey;
+use crate::tui::update::{Event, update};
+
+fn log(state: &State) -> Vec<&str> {
+    state.recorder.log().iter().map(String::as_str).collect()
+}
+
+#[test]
+pub fn lines_say_what_keys_do() {
+    check(&[
+        (&motion("l : \"put *1.5\" Enter"), &zone("/motion/0/at"), json!([30, 20])),
+        (&motion("l v j : \"put +=1\" Enter"), &zone("/motion/1/at"), json!([31, 25])),
+        (": \"go layers.face.zones.mouth.name\" Enter : \"put lips\" Enter", "/layers/0/zones/1/name", json!("lips")),
+        ("/ \"method\" Enter : \"put thin-plate\" Enter", &zone("/interpolation/method"), json!("thin-plate")),
+        ("/ \"method\" Enter : \"put thin\" Enter", &zone("/interpolation/method"), json!("modified-shepard")),
+        (&motion(": \"2 move right\" Enter 3 +"), &zone("/motion/0/at"), json!([20, 23])),
+        (&motion(": \"2 move down\" Enter : \"2 step 3\" Enter"), &zone("/motion/2/tool"), json!("shear")),
+        (&motion("g i : \"cursor at 12 13\" Enter r"), &zone("/motion/0/at"), json!([12, 13])),
+    ]);
+}
+
+#[test]
+pub fn what_lasts_of_no_key_changes_no_scene() {
+    let title = |keys| (keys, "/title", Value::Null);
+    check(&[
+        title("? j Ctrl-d q"),
+        title(": \"problems\" Enter"),
+        title(": \"get title\" Enter"),
+        title(": \"log\" Enter"),
+        title("Ctrl-l Ctrl-z"),
+        title(": \"x\" Up Down Left Ctrl-u Esc"),
+    ]);
+}
+
+#[test]
+pub fn nodes_are_reached_by_folding_and_going_up() {
+    check(&[
+        ("h d", "/layers/0/zones/0/name", json!("mouth")),
+        ("h h D", "/layers/1/name", json!("face 2")),
+        ("h l l i \"x\" Enter", &zone("/name"), json!("x")),
+        (&motion("Backspace g g i \"x\" Enter"), &zone("/name"), json!("x")),
+        (&motion("g i + l r"), &zone("/motion/0/at"), json!([31.5, 25.5])),
+        ("d : \"und\" Tab Enter", &zone("/name"), json!("left eye")),
+        ("P d", &zone("/name"), json!("mouth")),
+        ("d : \"e!\" Enter", &zone("/name"), json!("left eye")),
+    ]);
+}
+
+#[test]
+pub fn what_is_outside_is_asked_for() {
+    for (line, effect) in [
+        ("w", "Save { to: None, overwrite: false, leave: false }"),
+        ("w b.json", "Save { to: Some(\"b.json\"), overwrite: false, leave: false }"),
+        ("w!", "Save { to: None, overwrite: true, leave: false }"),
+        ("wq", "Save { to: None, overwrite: false, leave: true }"),
+        ("e b.json", "Open(\"b.json\")"),
+        ("view", "View(None)"),
+        ("view view-field", "View(Some(\"view-field\"))"),
+        ("render -o \"a b.gif\"", "Run([\"render\", \"-o\", \"a b.gif\"])"),
+    ] {
+        let mut state = state();
+        obey(&mut state, line, None).unwrap();
+        assert_eq!(state.effects.iter().map(|effect| format!("{effect:?}")).collect::<Vec<_>>(), [effect], "{line}");
+    }
+}
+
+#[test]
+pub fn the_pointer_of_a_window_is_kept_as_a_place() {
+    let mut state = state();
+    update(&mut state, Event::Pointer(12.5, 13.0));
+    press(&mut state, &motion("M"));
+    assert_eq!(state.document().json().pointer(&zone("/motion/0/at")), Some(&json!([12.5, 13])));
+    assert_eq!(replayed(&state).document().json(), state.document().json());
+}
+
+#[test]
+fn the_log_is_short_and_says_what_was_meant() {
+    for (keys, expected) in [
+        ("j 3 k", &["move down", "3 move up"][..]),
+        ("/ \"motion\" Enter", &["search motion"]),
+        (": \"set title=12\" Enter", &["set title=12"]),
+        ("Enter i Esc", &["pane table"]),
+        ("Enter i \" a\" Enter", &["pane table", "put \" a\""]),
+        ("Enter i \"7\" Tab", &["pane table", "put 7", "move next"]),
+        ("/ \"method\" Enter i j Enter", &["search method", "enter", "choose modified-shepard-random"]),
+        ("/ \"method\" Enter i j Esc", &["search method"]),
+        ("? j q Ctrl-l", &[]),
+        ("/ \"nowhere\" Enter", &["# search nowhere: nothing here is called nowhere"]),
+        (": \"render -o a.gif\" Enter", &["render -o a.gif"]),
+    ] {
+        let mut state = state();
+        press(&mut state, keys);
+        assert_eq!(log(&state), expected, "{keys}");
+    }
+}
+
+#[test]
+fn a_step_of_undo_is_the_same_when_the_log_is_replayed() {
+    for keys in ["l + i Esc + ? q + u", "l + j k + u", "l i \"5\" Enter + + u", "l v 2 j i \"+=1\" Enter + u u Ctrl-r"]
+    {
+        let mut state = state();
+        press(&mut state, &motion(keys));
+        assert_eq!(replayed(&state).document().json(), state.document().json(), "{keys}");
+    }
+}
