@@ -96,31 +96,46 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
     place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
 }
 
+/// Whether something stands at `pointer`, be it by default.
+pub fn is_there(document: &Document, pointer: &str) -> bool {
+    Place::of(document.json(), pointer).is_some_and(|place| place.value.is_some_and(|value| !value.is_null()))
+}
+
 /// The places directly below `pointer`: the fields of an object in the schema's order, also those that are not written;
 /// the items of a list. None below plain values and lists of numbers.
 pub fn children(document: &Document, pointer: &str) -> Vec<Child> {
     let Some(place) = Place::of(document.json(), pointer) else { return Vec::new() };
-    let child = |token: String| {
-        let below = place.step(&token)?;
-        let name = name_of(below.value).unwrap_or_else(|| token.clone());
-        let field = Field::new(name.clone(), below);
-        Some(Child { name, pointer: pointer::join(pointer, token), set: below.set, field })
-    };
+    below(place, pointer).into_iter().map(|(child, _)| child).collect()
+}
+
+/// The places directly below `place`, which is at `pointer`: what each is, and its own place for its value.
+pub fn below<'a>(place: Place<'a>, pointer: &str) -> Vec<(Child, Place<'a>)> {
+    let child = |token: &str| child(place, pointer, token);
     let value = place.value.filter(|value| !value.is_null());
     match place.shape.body() {
-        Body::List(..) => {
-            let count = value.and_then(Value::as_array).map_or(0, Vec::len);
-            (0..count).filter_map(|i| child(i.to_string())).collect()
-        }
+        Body::List(..) => (0..count(place)).filter_map(|i| child(&i.to_string())).collect(),
         Body::Map(_) => {
             let keys = value.and_then(Value::as_object).into_iter().flat_map(|map| map.keys());
-            keys.filter_map(|key| child(key.clone())).collect()
+            keys.filter_map(|key| child(key)).collect()
         }
         Body::Object | Body::Tagged(_) if value.is_some() => {
-            place.shape.properties(value).into_iter().filter_map(|(name, _)| child(name.to_owned())).collect()
+            place.shape.properties(value).into_iter().filter_map(|(name, _)| child(name)).collect()
         }
         _ => Vec::new(),
     }
+}
+
+/// The place one token below `place`, which is at `pointer`.
+pub fn child<'a>(place: Place<'a>, pointer: &str, token: &str) -> Option<(Child, Place<'a>)> {
+    let below = place.step(token)?;
+    let name = name_of(below.value).unwrap_or_else(|| token.to_owned());
+    let field = Field::new(name.clone(), below);
+    Some((Child { name, pointer: pointer::join(pointer, token), set: below.set, field }, below))
+}
+
+/// How many items the list at a place has.
+pub fn count(place: Place) -> usize {
+    place.value.and_then(Value::as_array).map_or(0, Vec::len)
 }
 
 /// The name that an item of a list carries.

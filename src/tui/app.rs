@@ -3,8 +3,6 @@
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-use serde_json::Value;
-
 use super::choice::Choice;
 use super::colour::Depth;
 use super::door::Door;
@@ -181,6 +179,11 @@ impl State {
         Sheet::of(self.document(), &self.node)
     }
 
+    /// The pointer of the row under the cursor, else of the node.
+    pub fn focused(&self) -> String {
+        self.sheet().pointer(self.row).unwrap_or_else(|| self.node.clone())
+    }
+
     /// Says something.
     pub fn say(&mut self, text: impl Into<String>) {
         self.message = Some(Message { text: text.into(), bad: false });
@@ -224,14 +227,15 @@ impl State {
 
     /// Brings the cursor back to something that is there, after the scene has changed.
     pub fn settle(&mut self) {
-        while !self.node.is_empty() && field::value(self.document(), &self.node).is_none_or(|v| v == Value::Null) {
+        while !self.node.is_empty() && !field::is_there(self.document(), &self.node) {
             let parent = self.node.rsplit_once('/').map_or("", |(parent, _)| parent).to_string();
             self.show(parent);
         }
         let sheet = self.sheet();
-        self.row = self.row.min(sheet.rows.len().saturating_sub(1));
-        self.column = self.column.min(sheet.rows.get(self.row).map_or(0, |row| row.cells.len().saturating_sub(1)));
-        self.selected_from = self.selected_from.map(|row| row.min(sheet.rows.len().saturating_sub(1)));
+        let last = sheet.len().saturating_sub(1);
+        self.row = self.row.min(last);
+        self.column = self.column.min(sheet.row(self.row).map_or(0, |row| row.cells.len().saturating_sub(1)));
+        self.selected_from = self.selected_from.map(|row| row.min(last));
     }
 
     /// The contexts of the key table that are in force, the innermost first.

@@ -21,8 +21,7 @@ impl Editor {
                 self.show(false);
             }
             Effect::Show => {
-                let row = self.state.sheet().rows.get(self.state.row).map(|row| row.pointer.clone());
-                self.preview.select(row.or_else(|| Some(self.state.node.clone())));
+                self.preview.select(Some(self.state.focused()));
                 let duration = self.state.document().scene().timeline.duration;
                 self.preview.transport(self.state.playing, self.state.time * duration);
                 self.show(false);

@@ -37,15 +37,17 @@ pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
 }
 
 /// The cells that an edit of the cell under the cursor applies to: the like ones of every selected row.
-pub fn cells<'a>(state: &State, sheet: &'a Sheet) -> Vec<(&'a Row, &'a Cell)> {
-    let Some(model) = sheet.rows.get(state.row).and_then(|row| row.cells.get(state.column)) else { return Vec::new() };
+pub fn cells(state: &State, sheet: &Sheet) -> Vec<(Row, Cell)> {
+    let model = sheet.row(state.row).and_then(|row| row.cells.get(state.column).cloned());
+    let Some(model) = model else { return Vec::new() };
     let like =
         |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
-    let of_row = |i: usize| {
-        let row = sheet.rows.get(i)?;
-        Some((row, row.cells.get(state.column).filter(like)?))
+    let of_row = |row: Row| {
+        let cell = row.cells.get(state.column).filter(like)?.clone();
+        Some((row, cell))
     };
-    rows(state).filter_map(of_row).collect()
+    let (from, to) = rows(state).into_inner();
+    sheet.rows(from..to + 1).into_iter().filter_map(of_row).collect()
 }
 
 /// The edit that `text` says for the cell under the cursor and the like ones of the selection.
@@ -57,8 +59,8 @@ pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
         if !cell.is_number() {
             return Ok(set(state.document(), &cell.pointer, Value::from(text)));
         }
-        let value = evaluate(state, &sheet, row, cell, (i, n), text)?;
-        number(state.document(), cell, value)
+        let value = evaluate(state, &sheet, &row, &cell, (i, n), text)?;
+        number(state.document(), &cell, value)
     });
     Ok(Edit::all(each.collect::<Result<Vec<_>, _>>()?))
 }
@@ -80,8 +82,8 @@ pub fn evaluate(
 fn variables(state: &State, sheet: &Sheet, row: &Row, cell: &Cell, (i, n): (usize, usize)) -> Vec<(String, f64)> {
     let document = state.document();
     let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
-    let others = sheet.rows.iter().filter(|other| !other.item && !row.item);
-    for row in std::iter::once(row).chain(others) {
+    let others = if row.item { Vec::new() } else { sheet.fields() };
+    for row in std::iter::once(row).chain(&others) {
         for cell in row.cells.iter().filter(|cell| cell.is_number()) {
             let name = match cell.part {
                 Part::Length => "r",

@@ -82,14 +82,9 @@ fn upward(pointer: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(Some(pointer), |pointer| pointer.rsplit_once('/').map(|(parent, _)| parent))
 }
 
-/// The pointer of the row under the cursor, else of the node.
-fn focused(state: &State) -> String {
-    state.sheet().rows.get(state.row).map_or(state.node.clone(), |row| row.pointer.clone())
-}
-
 /// The thing in focus that has a place: the row, or what holds it.
 fn placed(state: &State) -> Option<(String, Place, Point)> {
-    let focused = focused(state);
+    let focused = state.focused();
     let document = state.document();
     upward(&focused).find_map(|pointer| place(document, pointer).map(|(place, at)| (pointer.to_string(), place, at)))
 }
@@ -106,8 +101,8 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
     let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     let children = field::children(document, &pointer);
     let cursor = state.placing.cursor;
-    let sheet = state.sheet();
-    let cell = sheet.rows.get(state.row).and_then(|row| row.cells.get(state.column)).map(|cell| cell.pointer.clone());
+    let row = state.sheet().row(state.row);
+    let cell = row.and_then(|row| row.cells.get(state.column).map(|cell| cell.pointer.clone()));
     let vectors = || children.iter().filter(|child| is_pair(&child.field, ["dx", "dy"]));
     let in_focus = vectors().find(|child| Some(&child.pointer) == cell.as_ref());
     let (target, value) = match in_focus.or_else(|| vectors().next()) {
@@ -124,7 +119,7 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
 /// Adds a point at the cursor to the list in focus; with it, the pointer of the point.
 pub fn add_here(state: &State) -> Result<(Edit, String), String> {
     let document = state.document();
-    let focused = focused(state);
+    let focused = state.focused();
     let mut inner = None;
     for pointer in upward(&focused) {
         let after = inner.replace(pointer).and_then(|child: &str| child[pointer.len() + 1..].parse::<usize>().ok());
@@ -160,10 +155,10 @@ fn add_to(document: &Document, list: &str, index: usize, at: Point) -> Option<(E
 /// The next (1) or previous (-1) row that has a place: its number and the place.
 pub fn next_point(state: &State, by: i64) -> Option<(usize, Point)> {
     let sheet = state.sheet();
-    let n = sheet.rows.len() as i64;
+    let n = sheet.len() as i64;
     (1..=n).find_map(|step| {
         let row = (state.row as i64 + by * step).rem_euclid(n) as usize;
-        place(state.document(), &sheet.rows[row].pointer).map(|(_, at)| (row, at))
+        place(state.document(), &sheet.pointer(row)?).map(|(_, at)| (row, at))
     })
 }
 

@@ -2,20 +2,33 @@
 //! list inside a form stands in it row by row. The panes draw a sheet and the commands edit its cells; neither knows a
 //! field by name, so a new parameter shows up here by itself.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use kurbo::Vec2;
 use serde_json::Value;
 
 use super::numbers;
-use crate::scene::Document;
 use crate::scene::field::{self, Child, Field, Kind};
+use crate::scene::schema::{Body, Place};
+use crate::scene::{Document, pointer};
 
-/// A node as rows.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A node as rows. Each is made where it is looked at, so that a list of ten thousand is as quick as one of ten.
+#[derive(Clone, Debug)]
 pub struct Sheet {
     /// Whether it is a list, its items the rows.
     pub table: bool,
-    /// The rows.
-    pub rows: Vec<Row>,
+    document: Document,
+    blocks: Vec<Block>,
+}
+
+/// Rows that follow one another and are made alike.
+#[derive(Clone, Debug)]
+struct Block {
+    /// The list whose items they are, or the one field.
+    pointer: String,
+    /// How many items; none for a field.
+    items: Option<usize>,
 }
 
 /// One row: a field, an item of a list, or the heading of a list inside a form.
@@ -26,7 +39,7 @@ pub struct Row {
     /// Its name or index.
     pub label: String,
     /// What it is.
-    pub field: Field,
+    pub field: Arc<Field>,
     /// Whether it is written in the document.
     pub set: bool,
     /// Whether it is an item of a list.
@@ -45,7 +58,7 @@ pub struct Cell {
     /// Its name in the row (x, y, dx, |J|), empty where the row's own name says it.
     pub head: String,
     /// What the value is.
-    pub field: Field,
+    pub field: Arc<Field>,
     /// What it shows.
     pub text: String,
 }
@@ -120,36 +133,150 @@ fn vector(value: &Value) -> Option<Vec2> {
     Some(Vec2::new(value.get(0)?.as_f64()?, value.get(1)?.as_f64()?))
 }
 
+impl Block {
+    fn len(&self) -> usize {
+        self.items.unwrap_or(1)
+    }
+}
+
 impl Sheet {
-    /// The node at `pointer`; empty where there is none.
-    pub fn of(document: &Document, pointer: &str) -> Sheet {
-        let table = field::field(document, pointer).is_some_and(|f| matches!(f.kind, Kind::List(_) | Kind::Map(_)));
-        let rows = if table { items(document, pointer) } else { form(document, pointer) };
-        Sheet { table, rows }
+    /// The node at `node`; empty where there is none.
+    pub fn of(document: &Document, node: &str) -> Sheet {
+        let place = Place::of(document.json(), node);
+        let body = place.map(|place| place.shape.body());
+        let table = matches!(body, Some(Body::List(..) | Body::Map(_)));
+        let blocks = match (place, body) {
+            (Some(place), Some(Body::List(..))) => {
+                vec![Block { pointer: node.to_owned(), items: Some(field::count(place)) }]
+            }
+            (Some(place), Some(_)) => blocks(place, node),
+            _ => Vec::new(),
+        };
+        Sheet { table, document: document.clone(), blocks }
     }
 
-    /// The names of the columns of a table: those of its longest row.
-    pub fn heads(&self) -> Vec<&str> {
-        let longest = self.rows.iter().filter(|row| row.item).max_by_key(|row| row.cells.len());
-        longest.map(|row| row.cells.iter().map(|cell| cell.head.as_str()).collect()).unwrap_or_default()
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        self.blocks.iter().map(Block::len).sum()
     }
-}
 
-fn items(document: &Document, pointer: &str) -> Vec<Row> {
-    field::children(document, pointer).into_iter().map(|child| item(document, child)).collect()
-}
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 
-fn item(document: &Document, child: Child) -> Row {
-    let label = child.pointer.rsplit_once('/').map(|(_, token)| token.replace("~1", "/").replace("~0", "~"));
-    let cells = match &child.field.kind {
-        Kind::Object | Kind::Tagged { .. } => {
-            let fields = field::children(document, &child.pointer);
-            fields.iter().fold(Vec::new(), |row, field| joined(row, cells(document, field, true)))
+    /// One row.
+    pub fn row(&self, index: usize) -> Option<Row> {
+        self.rows(index..index.checked_add(1)?).pop()
+    }
+
+    /// The rows of a range, as far as they are there.
+    pub fn rows(&self, range: Range<usize>) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let mut first = 0;
+        for block in &self.blocks {
+            let end = first + block.len();
+            let (from, to) = (range.start.clamp(first, end), range.end.clamp(first, end));
+            if from < to {
+                self.make(block, from - first..to - first, &mut rows);
+            }
+            first = end;
         }
-        _ => cells(document, &child, true),
+        rows
+    }
+
+    /// The rows that are fields, not items of lists.
+    pub fn fields(&self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        self.blocks.iter().filter(|block| block.items.is_none()).for_each(|block| self.make(block, 0..1, &mut rows));
+        rows
+    }
+
+    fn make(&self, block: &Block, range: Range<usize>, rows: &mut Vec<Row>) {
+        let json = self.document.json();
+        match block.items {
+            Some(_) => {
+                let Some(list) = Place::of(json, &block.pointer) else { return };
+                let items = range.filter_map(|i| field::child(list, &block.pointer, &i.to_string()));
+                rows.extend(items.map(|(child, place)| item(child, place)));
+            }
+            None => {
+                let parent = pointer::split(&block.pointer);
+                let place = parent.as_ref().and_then(|(parent, _)| Place::of(json, parent));
+                let (Some((parent, name)), Some(place)) = (parent, place) else { return };
+                let Some((child, place)) = field::child(place, parent, &name) else { return };
+                rows.push(if self.table { item(child, place) } else { form_row(child, place) });
+            }
+        }
+    }
+
+    /// Where a row is in the document.
+    pub fn pointer(&self, index: usize) -> Option<String> {
+        let mut rest = index;
+        for block in &self.blocks {
+            match block.items {
+                Some(_) if rest < block.len() => return Some(pointer::join(&block.pointer, rest)),
+                None if rest == 0 => return Some(block.pointer.clone()),
+                _ => rest -= block.len(),
+            }
+        }
+        None
+    }
+
+    /// The row of a place in the document.
+    pub fn position(&self, pointer: &str) -> Option<usize> {
+        let mut first = 0;
+        for block in &self.blocks {
+            match block.items {
+                None if block.pointer == pointer => return Some(first),
+                Some(count) => {
+                    let token = pointer.strip_prefix(&block.pointer).and_then(|rest| rest.strip_prefix('/'));
+                    if let Some(index) = token.and_then(pointer::index).filter(|&index| index < count) {
+                        return Some(first + index);
+                    }
+                }
+                None => {}
+            }
+            first += block.len();
+        }
+        None
+    }
+}
+
+/// The fields of a form, each list that is shown inside it with its items.
+fn blocks(place: Place, node: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for (child, place) in field::below(place, node) {
+        let inside = match &child.field.kind {
+            Kind::List(of) if is_flat(&of.kind) => Some(field::count(place)),
+            _ => None,
+        };
+        blocks.push(Block { pointer: child.pointer.clone(), items: None });
+        blocks.extend(inside.map(|count| Block { pointer: child.pointer, items: Some(count) }));
+    }
+    blocks
+}
+
+fn item(child: Child, place: Place) -> Row {
+    let label = pointer::split(&child.pointer).map(|(_, token)| token).unwrap_or_default();
+    let field = Arc::new(child.field);
+    let cells = match &field.kind {
+        Kind::Object | Kind::Tagged { .. } => {
+            let inner = field::below(place, &child.pointer).into_iter();
+            inner.fold(Vec::new(), |row, (child, place)| {
+                joined(row, cells(&child.name, &child.pointer, &Arc::new(child.field), place, true))
+            })
+        }
+        _ => cells(&child.name, &child.pointer, &field, place, true),
     };
-    let label = label.unwrap_or_default();
-    Row { label, set: true, item: true, cells, pointer: child.pointer, field: child.field }
+    Row { label, set: true, item: true, cells, pointer: child.pointer, field }
+}
+
+fn form_row(child: Child, place: Place) -> Row {
+    let Child { name, pointer, set, field } = child;
+    let field = Arc::new(field);
+    let cells = cells(&name, &pointer, &field, place, false);
+    Row { pointer, label: name, field, set, item: false, cells }
 }
 
 /// A row with the cells of one more field; their heads carry the field's name where they would be there twice.
@@ -161,39 +288,18 @@ fn joined(mut row: Vec<Cell>, mut more: Vec<Cell>) -> Vec<Cell> {
     row
 }
 
-fn form(document: &Document, pointer: &str) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for child in field::children(document, pointer) {
-        let cells = cells(document, &child, false);
-        let inside = match &child.field.kind {
-            Kind::List(of) if is_flat(&of.kind) => items(document, &child.pointer),
-            _ => Vec::new(),
-        };
-        let Child { name, pointer, set, field } = child;
-        rows.push(Row { pointer, label: name, field, set, item: false, cells });
-        rows.extend(inside);
-    }
-    rows
-}
-
 /// Whether items of this kind are shown inside the form that holds their list: unnamed ones are.
 fn is_flat(kind: &Kind) -> bool {
     matches!(kind, Kind::Numbers(_) | Kind::Number { .. } | Kind::Object)
 }
 
 /// The cells of a field. In a table each takes the field's name as its head where it has none of its own.
-fn cells(document: &Document, child: &Child, table: bool) -> Vec<Cell> {
-    let value = field::value(document, &child.pointer).unwrap_or(Value::Null);
-    let cell = |part, head: String, text| Cell {
-        pointer: child.pointer.clone(),
-        part,
-        head,
-        field: child.field.clone(),
-        text,
-    };
-    let Kind::Numbers(names) = &child.field.kind else {
-        let head = if table { child.name.clone() } else { String::new() };
-        return vec![cell(Part::Whole, head, summary(&child.field, &value))];
+fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: bool) -> Vec<Cell> {
+    let value = place.value.unwrap_or(&Value::Null);
+    let cell = |part, head: String, text| Cell { pointer: pointer.to_owned(), part, head, field: field.clone(), text };
+    let Kind::Numbers(names) = &field.kind else {
+        let head = if table { name.to_owned() } else { String::new() };
+        return vec![cell(Part::Whole, head, summary(field, value))];
     };
     let number = |i: usize| value.get(i).and_then(Value::as_f64).unwrap_or(0.0);
     let shown = |i: usize| numbers::short(number(i));

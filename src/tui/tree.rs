@@ -11,6 +11,7 @@ use super::terminal::plain;
 use crate::layers::Layer;
 use crate::scene::Document;
 use crate::scene::field::{self, Child, Kind};
+use crate::scene::schema::Place;
 
 /// A row of the tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,33 +32,31 @@ pub struct TreeRow {
 pub fn rows(document: &Document, folded: &BTreeSet<String>) -> Vec<TreeRow> {
     let scene = TreeRow { pointer: String::new(), label: "scene".into(), note: String::new(), depth: 0, folded: None };
     let mut rows = vec![scene];
-    below(document, "", 0, folded, &mut rows);
+    below(Place::root(document.json()), "", 0, folded, &mut rows);
     rows
 }
 
-fn below(document: &Document, pointer: &str, depth: usize, folded: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
-    for child in field::children(document, pointer).into_iter().filter(|child| sheet::is_node(&child.field.kind)) {
-        let value = field::value(document, &child.pointer).unwrap_or(Value::Null);
-        if value.is_null() {
-            continue;
-        }
-        if named(&value) {
-            below_list(document, &child.pointer, depth, folded, rows);
+fn below(place: Place, pointer: &str, depth: usize, folded: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
+    for (child, place) in field::below(place, pointer) {
+        let value = place.value.filter(|value| sheet::is_node(&child.field.kind) && !value.is_null());
+        let Some(value) = value else { continue };
+        if named(value) {
+            below_list(place, &child.pointer, depth, folded, rows);
         } else {
-            rows.push(leaf(child, &value, depth));
+            rows.push(leaf(child, value, depth));
         }
     }
 }
 
 /// The items of a list of named things, each with what is below it.
-fn below_list(document: &Document, pointer: &str, depth: usize, folded: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
-    for item in field::children(document, pointer) {
+fn below_list(list: Place, pointer: &str, depth: usize, folded: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
+    for (item, place) in field::below(list, pointer) {
         let is_folded = folded.contains(&item.pointer);
         let label = plain(&item.name);
         let inside = item.pointer.clone();
         rows.push(TreeRow { pointer: item.pointer, label, note: String::new(), depth, folded: Some(is_folded) });
         if !is_folded {
-            below(document, &inside, depth + 1, folded, rows);
+            below(place, &inside, depth + 1, folded, rows);
         }
     }
 }
@@ -72,7 +71,7 @@ fn leaf(child: Child, value: &Value, depth: usize) -> TreeRow {
 
 /// Whether a value is a list of named things.
 fn named(value: &Value) -> bool {
-    value.as_array().is_some_and(|items| items.iter().any(|item| item.get("name").is_some()))
+    value.as_array().is_some_and(|items| items.first().is_some_and(|item| item.get("name").is_some()))
 }
 
 /// The row that stands for the node at `pointer`: its own, else the nearest one above it.

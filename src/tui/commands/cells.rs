@@ -25,7 +25,7 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 fn current(state: &State) -> Option<(Row, Cell)> {
-    let row = state.sheet().rows.get(state.row)?.clone();
+    let row = state.sheet().row(state.row)?;
     let cell = row.cells.get(state.column)?.clone();
     Some((row, cell))
 }
@@ -176,7 +176,7 @@ fn step(state: &mut State, call: &Call) -> Done {
     let edits = entry::cells(state, &sheet).into_iter().map(|(_, cell)| {
         let old = cell.number(state.document()).unwrap_or(0.0);
         let value = crate::tui::numbers::tidy(old + by as f64 * unit);
-        entry::number(state.document(), cell, value)
+        entry::number(state.document(), &cell, value)
     });
     let edit = Edit::all(edits.collect::<Result<Vec<_>, _>>()?);
     state.edit(edit, true)

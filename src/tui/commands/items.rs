@@ -20,7 +20,7 @@ pub const COMMANDS: &[Command] = &[
 fn target(state: &State) -> Result<String, String> {
     match state.focus {
         Pane::Tree => Ok(state.node.clone()),
-        _ => state.sheet().rows.get(state.row).map(|row| row.pointer.clone()).ok_or("there is no row here".into()),
+        _ => state.sheet().pointer(state.row).ok_or("there is no row here".into()),
     }
 }
 
@@ -34,7 +34,7 @@ fn split_item(state: &State, pointer: &str) -> Option<(String, usize)> {
 pub fn add(state: &mut State, _: &Call) -> Done {
     let pointer = target(state).unwrap_or(state.node.clone());
     let field = field::field(state.document(), &pointer).ok_or("nothing can be added here")?;
-    let there = field::value(state.document(), &pointer).is_some_and(|value| !value.is_null());
+    let there = field::is_there(state.document(), &pointer);
     let end = || state.document().json().pointer(&pointer).and_then(Value::as_array).map_or(0, Vec::len);
     match (&field.kind, there) {
         (Kind::Tagged { .. }, false) => {
@@ -74,13 +74,13 @@ fn insert(state: &mut State, list: &str, index: usize) -> Done {
 
 /// Puts the cursor on the item at `pointer`: its row where its list is shown, else its node.
 pub fn go_to(state: &mut State, pointer: &str) {
-    match state.sheet().rows.iter().position(|row| row.pointer == pointer) {
+    match state.sheet().position(pointer) {
         Some(row) => state.row = row,
         None if state.focus == Pane::Tree => state.show(pointer),
         None => {
             let list = pointer.rsplit_once('/').map_or("", |(list, _)| list).to_string();
             state.show(list);
-            state.row = state.sheet().rows.iter().position(|row| row.pointer == pointer).unwrap_or(0);
+            state.row = state.sheet().position(pointer).unwrap_or(0);
         }
     }
     state.settle();
@@ -91,7 +91,7 @@ fn delete(state: &mut State, _: &Call) -> Done {
     let sheet = state.sheet();
     let pointers: Vec<String> = match state.focus {
         Pane::Tree => vec![state.node.clone()],
-        _ => entry::rows(state).rev().filter_map(|i| sheet.rows.get(i)).map(|row| row.pointer.clone()).collect(),
+        _ => entry::rows(state).rev().filter_map(|i| sheet.pointer(i)).collect(),
     };
     let written = |pointer: &&String| !pointer.is_empty() && state.document().json().pointer(pointer).is_some();
     let edits: Vec<Edit> = pointers.iter().filter(written).map(|pointer| Edit::remove(pointer)).collect();

@@ -26,7 +26,7 @@ fn page(state: &State) -> i64 {
 
 fn go(state: &mut State, call: &Call) -> Done {
     let tree = state.focus == Pane::Tree;
-    let rows = if tree { tree::rows(state.document(), &state.folded).len() } else { state.sheet().rows.len() };
+    let rows = if tree { tree::rows(state.document(), &state.folded).len() } else { state.sheet().len() };
     let at = if tree { tree::row_of(&tree::rows(state.document(), &state.folded), &state.node) } else { state.row };
     let by = |steps: i64| (at as i64 + steps).clamp(0, rows as i64 - 1).max(0) as usize;
     let to = match call.text {
@@ -52,7 +52,7 @@ fn go(state: &mut State, call: &Call) -> Done {
 }
 
 fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
-    let cells = state.sheet().rows.get(state.row).map_or(0, |row| row.cells.len());
+    let cells = state.sheet().row(state.row).map_or(0, |row| row.cells.len());
     let by = |steps: i64| (state.column as i64 + steps).clamp(0, cells.saturating_sub(1) as i64) as usize;
     state.column = match way {
         "left" if state.column == 0 => return pane(state, &Call { text: "tree", count: None }),
@@ -67,7 +67,7 @@ fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
 
 /// Goes to the next cell, after the last of a row to the first of the row below.
 fn move_on(state: &mut State) -> Done {
-    let cells = state.sheet().rows.get(state.row).map_or(0, |row| row.cells.len());
+    let cells = state.sheet().row(state.row).map_or(0, |row| row.cells.len());
     (state.row, state.column) = match state.column + 1 < cells {
         true => (state.row, state.column + 1),
         false => (state.row + 1, 0),
@@ -116,7 +116,7 @@ fn up(state: &mut State, _: &Call) -> Done {
     let Some((parent, _)) = state.node.rsplit_once('/') else { return Ok(()) };
     let (parent, child) = (parent.to_string(), state.node.clone());
     state.show(parent);
-    state.row = state.sheet().rows.iter().position(|row| row.pointer == child).unwrap_or(0);
+    state.row = state.sheet().position(&child).unwrap_or(0);
     Ok(())
 }
 
@@ -157,7 +157,7 @@ fn search(state: &mut State, call: &Call) -> Done {
     let mut all = Vec::new();
     places(state, "", &mut all);
     let found: Vec<usize> = (0..all.len()).filter(|&i| all[i].1.to_lowercase().contains(&state.sought)).collect();
-    let here = state.sheet().rows.get(state.row).map_or(state.node.clone(), |row| row.pointer.clone());
+    let here = state.focused();
     let at = all.iter().position(|(pointer, _)| *pointer == here).unwrap_or(0);
     let next = match call.text {
         "previous" => found.iter().rev().find(|&&i| i < at).or(found.last()),
@@ -183,12 +183,11 @@ fn places(state: &State, pointer: &str, all: &mut Vec<(String, String)>) {
 /// Shows the node or the field at `pointer`.
 pub fn reveal(state: &mut State, pointer: &str) {
     let kind = field::field(state.document(), pointer).map(|field| field.kind);
-    let there = field::value(state.document(), pointer).is_some_and(|value| !value.is_null());
-    let is_node = there && kind.is_some_and(|kind| is_node(&kind));
+    let is_node = field::is_there(state.document(), pointer) && kind.is_some_and(|kind| is_node(&kind));
     let node = if is_node { pointer } else { pointer.rsplit_once('/').map_or("", |(parent, _)| parent) };
     state.mode = Mode::Normal;
     state.show(node);
-    let row = state.sheet().rows.iter().position(|row| row.pointer == pointer);
+    let row = state.sheet().position(pointer);
     state.row = row.unwrap_or(state.row);
     state.focus = if is_node { Pane::Tree } else { Pane::Table };
     state.settle();

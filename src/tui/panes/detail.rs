@@ -16,9 +16,8 @@ const UNTOLD: f64 = 1e9;
 /// Draws it: name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let sheet = state.sheet();
-    let Some((row, cell)) = sheet.rows.get(state.row).and_then(|row| Some((row, row.cells.get(state.column)?))) else {
-        return;
-    };
+    let Some(row) = sheet.row(state.row) else { return };
+    let Some(cell) = row.cells.get(state.column) else { return };
     let number = cell.number(state.document()).filter(|_| cell.is_number());
     let value = number.map_or(cell.text.clone(), numbers::exact);
     let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };
@@ -43,7 +42,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     let Some(typed) = entry else { return };
     let n = entry::cells(state, &sheet).len();
-    let (text, style) = match entry::evaluate(state, &sheet, row, cell, (0, n), typed.text.value()) {
+    let (text, style) = match entry::evaluate(state, &sheet, &row, cell, (0, n), typed.text.value()) {
         Ok(value) => (format!("= {}", numbers::exact(numbers::tidy(value))), colour::strong()),
         Err(mistake) => (mistake, Style::new().add_modifier(Modifier::ITALIC)),
     };

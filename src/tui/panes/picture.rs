@@ -127,8 +127,7 @@ fn mean(frame: &Frame, sight: Sight, x: f64, y: f64) -> Option<[u8; 3]> {
 
 /// Outlines, curves, anchors and their jumps, the selected ones on top.
 fn draw_marks(state: &State, sight: Sight, area: Rect, buffer: &mut Buffer) {
-    let row = state.sheet().rows.get(state.row).map(|row| row.pointer.clone());
-    let selection = row.or_else(|| Some(state.node.clone()));
+    let selection = Some(state.focused());
     let view = View { outlines: true, regions: true, anchors: true, curves: true, selection, ..View::default() };
     let mut marks = overlay::overlay(state.document().scene(), state.seen.synth.as_deref(), &view);
     marks.sort_by_key(|mark| mark.selected);

@@ -1,6 +1,8 @@
 //! The middle: a node as a form or as a table. In a table the cells of like rows stand in columns under their names;
 //! elsewhere each number stands beside its name.
 
+use std::ops::Range;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
@@ -9,7 +11,7 @@ use super::{first_row, width, write};
 use crate::scene::address;
 use crate::scene::field::Kind;
 use crate::tui::app::{Mode, Pane, State};
-use crate::tui::sheet::{Cell, Row, Sheet};
+use crate::tui::sheet::{Cell, Row};
 use crate::tui::{colour, entry, terminal};
 
 /// Columns between two cells.
@@ -34,34 +36,38 @@ struct Placed<'a> {
 /// Draws it; the cursor is on the focused cell, or on the entry in it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let sheet = state.sheet();
-    if sheet.rows.is_empty() {
+    if sheet.is_empty() {
         write(buffer, area, 1, 0, if sheet.table { "empty: o adds an item" } else { "nothing here" }, colour::faint());
         return (state.focus == Pane::Table).then(|| area.as_position());
     }
-    let labels = sheet.rows.iter().map(|row| label(row).1 + i32::from(width(&label(row).0))).max().unwrap_or(0);
+    let height = area.height - u16::from(sheet.table);
+    let first = first_row(state.row, sheet.len(), height);
+    let near = neighbours(first, height);
+    let rows = sheet.rows(near.clone());
+    let labels = rows.iter().map(|row| label(row).1 + i32::from(width(&label(row).0))).max().unwrap_or(0);
     let labels = labels.min(i32::from(area.width) / 2) + GAP;
-    let heads = if sheet.table { sheet.heads() } else { Vec::new() };
-    let laid: Vec<Vec<Placed>> = sheet.rows.iter().map(|row| lay(&sheet, row, &heads)).collect();
+    let columns = Columns::of(&rows, sheet.table);
+    let shown = &rows[first - near.start..rows.len().min(first - near.start + usize::from(height))];
+    let laid: Vec<Vec<Placed>> = shown.iter().map(|row| columns.lay(row)).collect();
     let room = i32::from(area.width) - labels;
-    let focused = laid.get(state.row).and_then(|row| row.get(state.column));
+    let focused = laid.get(state.row - first).and_then(|row| row.get(state.column));
     let shift = focused.map_or(0, |p| (p.at + p.width + 1 - room).max(0));
     let cells = Rect { x: area.x + labels as u16, width: room.max(0) as u16, ..area };
-    let below = u16::from(!heads.is_empty());
+    let below = u16::from(!columns.heads.is_empty());
     if below > 0 {
-        draw_heads(&heads, &laid, cells, shift, buffer);
+        draw_heads(&columns.heads, &laid, cells, shift, buffer);
     }
     let body = Rect { y: area.y + below, height: area.height - below, ..area };
     let cells = Rect { y: body.y, height: body.height, ..cells };
-    let first = first_row(state.row, sheet.rows.len(), body.height);
     let mut cursor = None;
-    for (y, i) in (first..sheet.rows.len()).take(usize::from(body.height)).enumerate() {
-        let y = y as u16;
+    for (y, (row, placed)) in shown.iter().zip(&laid).enumerate() {
+        let (y, i) = (y as u16, first + y);
         let selected = state.selected_from.is_some() && entry::rows(state).contains(&i);
         let shift = if sheet.table || i == state.row { shift } else { 0 };
-        draw_label(&sheet.rows[i], selected, body, y, buffer);
-        for (c, placed) in laid[i].iter().enumerate() {
+        draw_label(row, selected, body, y, buffer);
+        for (c, placed) in placed.iter().enumerate() {
             let here = i == state.row && c == state.column && state.focus == Pane::Table;
-            let style = style(&sheet.rows[i], here, selected && c == state.column);
+            let style = style(row, here, selected && c == state.column);
             if let Some(head) = placed.head {
                 write(buffer, cells, head - shift, y, &placed.cell.head, colour::faint());
             }
@@ -116,31 +122,62 @@ fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], cells: Rect, shift: i32, buf
     }
 }
 
-/// Lays the cells of a row out: in the columns of all rows like it, each with its name where no heading says it.
-fn lay<'a>(sheet: &Sheet, row: &'a Row, heads: &[&str]) -> Vec<Placed<'a>> {
-    let alike = |other: &Row| {
-        other.item
-            && other.cells.len() == row.cells.len()
-            && other.cells.iter().zip(&row.cells).all(|(a, b)| a.head == b.head)
-    };
-    let like: Vec<&Row> = if row.item { sheet.rows.iter().filter(|other| alike(other)).collect() } else { vec![row] };
-    let under_heads = row.item && row.cells.iter().map(|cell| cell.head.as_str()).eq(heads.iter().copied());
-    let mut x = 0;
-    let place = |(c, cell): (usize, &'a Cell)| {
-        // What an item is says itself.
-        let says_itself = c == 0 && matches!(cell.field.kind, Kind::Choice(_));
-        let widest = like.iter().map(|row| i32::from(width(&row.cells[c].text))).max().unwrap_or(0);
-        let own = i32::from(width(&cell.text));
-        let named = !under_heads && !says_itself && !cell.head.is_empty() && (row.cells.len() > 1 || sheet.table);
-        let head = named.then_some(x);
-        let name = i32::from(width(&cell.head));
-        let wide = if under_heads { widest.max(name) } else { widest };
-        let start = x + if named { name + 1 } else { 0 };
-        let at = if cell.is_number() { start + wide - own } else { start };
-        x = start + wide + GAP;
-        Placed { cell, head, at, width: own }
-    };
-    row.cells.iter().enumerate().map(place).collect()
+/// The rows whose columns are laid out together: those in sight and their neighbours up to round numbers, so that
+/// columns keep their places while the table scrolls.
+fn neighbours(first: usize, height: u16) -> Range<usize> {
+    const ROUND: usize = 64;
+    first / ROUND * ROUND..(first + usize::from(height)).next_multiple_of(ROUND)
+}
+
+/// How wide the columns are: of the rows with the same cells, together.
+struct Columns<'a> {
+    /// The names over the table: those of its longest row; none over a form.
+    heads: Vec<&'a str>,
+    table: bool,
+    groups: Vec<(Vec<&'a str>, Vec<i32>)>,
+}
+
+impl<'a> Columns<'a> {
+    fn of(rows: &'a [Row], table: bool) -> Self {
+        let heads = |row: &'a Row| row.cells.iter().map(|cell| cell.head.as_str());
+        let mut groups: Vec<(Vec<&str>, Vec<i32>)> = Vec::new();
+        for row in rows.iter().filter(|row| row.item) {
+            let known = groups.iter().position(|(group, _)| heads(row).eq(group.iter().copied()));
+            let known = known.unwrap_or_else(|| {
+                groups.push((heads(row).collect(), vec![0; row.cells.len()]));
+                groups.len() - 1
+            });
+            for (widest, cell) in groups[known].1.iter_mut().zip(&row.cells) {
+                *widest = i32::from(width(&cell.text)).max(*widest);
+            }
+        }
+        // The first of the longest, so that equal ones do not change places.
+        let longest = groups.iter().rev().max_by_key(|(group, _)| group.len()).filter(|_| table);
+        Columns { heads: longest.map(|(group, _)| group.clone()).unwrap_or_default(), table, groups }
+    }
+
+    /// Lays the cells of a row out: in the columns of all rows like it, each with its name where no heading says it.
+    fn lay(&self, row: &'a Row) -> Vec<Placed<'a>> {
+        let heads = || row.cells.iter().map(|cell| cell.head.as_str());
+        let group = self.groups.iter().filter(|_| row.item).find(|(group, _)| heads().eq(group.iter().copied()));
+        let under_heads = row.item && heads().eq(self.heads.iter().copied());
+        let mut x = 0;
+        let place = |(c, cell): (usize, &'a Cell)| {
+            // What an item is says itself.
+            let says_itself = c == 0 && matches!(cell.field.kind, Kind::Choice(_));
+            let own = i32::from(width(&cell.text));
+            let widest = group.map_or(own, |(_, widths)| widths[c]);
+            let named = !under_heads && !says_itself && !cell.head.is_empty() && (row.cells.len() > 1 || self.table);
+            let head = named.then_some(x);
+            let name = i32::from(width(&cell.head));
+            let wide = if under_heads { widest.max(name) } else { widest };
+            let start = x + if named { name + 1 } else { 0 };
+            let at = if cell.is_number() { start + wide - own } else { start };
+            x = start + wide + GAP;
+            Placed { cell, head, at, width: own }
+        };
+        row.cells.iter().enumerate().map(place).collect()
+    }
 }
 
 /// The entry stands where its cell does, and moves left where it would not fit.

@@ -7,6 +7,7 @@ use super::app::Mode;
 use super::update::Effect;
 
 pub mod coverage;
+mod finding;
 mod lines;
 mod screens;
 pub mod support;
@@ -67,7 +68,7 @@ fn polar_and_cartesian_columns_edit_the_same_jump() {
     ]);
     let mut state = state();
     press(&mut state, MOTION);
-    let texts: Vec<String> = state.sheet().rows[0].cells.iter().map(|cell| cell.text.clone()).collect();
+    let texts: Vec<String> = state.sheet().row(0).unwrap().cells.iter().map(|cell| cell.text.clone()).collect();
     assert_eq!(texts, ["point", "20", "20", "0", "-18", "18", "90"]);
 }
 
