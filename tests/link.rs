@@ -165,8 +165,8 @@ fn the_editor_hears_the_window() {
     let mut heard = Vec::new();
     while heard.len() < 2 {
         match events.recv_timeout(PATIENCE).expect("an event") {
-            Event::Status => {}
-            other => heard.push(format!("{other:?}")),
+            Event::Reply(reply @ (Reply::Pointer { .. } | Reply::Command(_))) => heard.push(format!("{reply:?}")),
+            _ => {}
         }
     }
     assert_eq!(heard, ["Pointer { x: 1.5, y: -2.0 }", "Command(\"play\")"]);

@@ -1,7 +1,7 @@
 //! What a scene names, loaded: pictures and vector fields, in parallel. A cache keeps what did not change, and the last
 //! good version of what cannot be read just now.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
@@ -29,10 +29,10 @@ type Store<T> = HashMap<PathBuf, (Stamp, Arc<T>)>;
 
 /// A file's identity and version; another program cannot change the file and keep it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Stamp([i128; 5]);
+pub(super) struct Stamp([i128; 5]);
 
 impl Stamp {
-    fn of(file: &File) -> std::io::Result<Self> {
+    pub(super) fn of(file: &File) -> std::io::Result<Self> {
         let found = file.metadata()?;
         let nanos = |secs: i64, nanos: i64| i128::from(secs) * 1_000_000_000 + i128::from(nanos);
         Ok(Stamp([
@@ -62,11 +62,20 @@ pub fn load(
 /// As [`load`], for an editor that goes on: what can be loaded, and the problems. In the place of a file that cannot be
 /// read just now stands its last good version, where the cache has one.
 pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Materials, Vec<Problem>) {
-    let sources = Sources { scene_path, options };
-    let mut problems = Vec::new();
-    let pictures = sources.load(&named_pictures(scene), picture::decode, &mut cache.pictures, &mut problems);
-    let fields = sources.load(&named_fields(scene), fields::decode, &mut cache.fields, &mut problems);
-    (Materials { pictures, fields }, problems)
+    Sources { place: Place::Beside(scene_path), options }.gather(scene, cache)
+}
+
+/// Copies of the files that a scene on another machine names, by the path as written there; or why there is none.
+pub type Copies = BTreeMap<String, std::result::Result<PathBuf, String>>;
+
+/// As [`gather`], for a scene on another machine.
+pub fn gather_copies(
+    copies: &Copies,
+    scene: &Scene,
+    options: &Options,
+    cache: &mut Cache,
+) -> (Materials, Vec<Problem>) {
+    Sources { place: Place::Copies(copies), options }.gather(scene, cache)
 }
 
 /// Width and height of every picture that `scene` names, from the headers alone, and which files cannot be read.
@@ -93,6 +102,11 @@ pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<S
 pub fn files(scene_path: &Path, scene: &Scene) -> Vec<PathBuf> {
     let named = named_pictures(scene).into_iter().chain(named_fields(scene));
     named.map(|named| paths::beside(scene_path, named.path)).collect()
+}
+
+/// The same as paths, as they are written.
+pub(super) fn paths(scene: &Scene) -> BTreeSet<&str> {
+    named_pictures(scene).into_iter().chain(named_fields(scene)).map(|named| named.path).collect()
 }
 
 /// A file that a scene names.
@@ -126,12 +140,46 @@ fn named_fields(scene: &Scene) -> Vec<Named<'_>> {
     found
 }
 
+/// Where the files are.
+enum Place<'a> {
+    /// Beside the scene, or wherever its paths lead.
+    Beside(&'a Path),
+    /// On this machine, while the scene is on another.
+    Copies(&'a Copies),
+}
+
 struct Sources<'a> {
-    scene_path: &'a Path,
+    place: Place<'a>,
     options: &'a Options,
 }
 
 impl Sources<'_> {
+    fn gather(&self, scene: &Scene, cache: &mut Cache) -> (Materials, Vec<Problem>) {
+        let mut problems = Vec::new();
+        let pictures = self.load(&named_pictures(scene), picture::decode, &mut cache.pictures, &mut problems);
+        let fields = self.load(&named_fields(scene), fields::decode, &mut cache.fields, &mut problems);
+        (Materials { pictures, fields }, problems)
+    }
+
+    /// What a file is kept under.
+    fn key(&self, path: &str) -> PathBuf {
+        match self.place {
+            Place::Beside(scene_path) => paths::beside(scene_path, path),
+            Place::Copies(_) => path.into(),
+        }
+    }
+
+    fn open(&self, path: &str) -> Result<File> {
+        match self.place {
+            Place::Beside(scene_path) => paths::open(scene_path, path, self.options),
+            Place::Copies(copies) => match copies.get(path) {
+                Some(Ok(copy)) => paths::open_named(copy),
+                Some(Err(why)) => Err(Error::at(path, why)),
+                None => Err(Error::at(path, "is not here yet")),
+            },
+        }
+    }
+
     fn load<T: Send + Sync>(
         &self,
         named: &[Named],
@@ -140,8 +188,7 @@ impl Sources<'_> {
         problems: &mut Vec<Problem>,
     ) -> BTreeMap<String, Arc<T>> {
         // One decoding a file, however often it is named.
-        let files: BTreeMap<PathBuf, &str> =
-            named.iter().map(|named| (paths::beside(self.scene_path, named.path), named.path)).collect();
+        let files: BTreeMap<PathBuf, &str> = named.iter().map(|named| (self.key(named.path), named.path)).collect();
         let loaded: HashMap<PathBuf, Result<(Stamp, Arc<T>)>> = files
             .into_par_iter()
             .map(|(file, path)| {
@@ -152,7 +199,7 @@ impl Sources<'_> {
         let mut kept = Store::new();
         let mut materials = BTreeMap::new();
         for named in named {
-            let file = paths::beside(self.scene_path, named.path);
+            let file = self.key(named.path);
             let entry = match &loaded[&file] {
                 Ok(entry) => Some(entry.clone()),
                 Err(error) => {
@@ -175,7 +222,7 @@ impl Sources<'_> {
         decode: impl Fn(File, &str, &Limits) -> Result<T>,
         old: Option<&(Stamp, Arc<T>)>,
     ) -> Result<(Stamp, Arc<T>)> {
-        let file = paths::open(self.scene_path, path, self.options)?;
+        let file = self.open(path)?;
         let stamp = Stamp::of(&file).map_err(|error| Error::at(path, error))?;
         match old {
             Some(old) if old.0 == stamp => Ok(old.clone()),
@@ -254,5 +301,29 @@ mod tests {
         let (sizes, problems) = sizes(&path, &scene, &Options::default());
         assert_eq!(sizes, BTreeMap::from([("good".to_owned(), (2, 1))]));
         assert_eq!(places(&problems), expected, "fields are looked for too");
+    }
+
+    #[test]
+    fn copies_stand_for_files_on_another_machine() {
+        let folder = tempfile::tempdir().unwrap();
+        paint(folder.path(), "0.png", 2);
+        paint(folder.path(), "1.png", 3);
+        let scene = scene(&[("a", "a.png"), ("b", "../b.png"), ("c", "c.png")], None);
+        let mut cache = Cache::default();
+        let mut copies =
+            Copies::from([("a.png".into(), Ok(folder.path().join("0.png"))), ("c.png".into(), Err("no".into()))]);
+        let mut look = |copies: &Copies| {
+            let (materials, problems) = gather_copies(copies, &scene, &Options::default(), &mut cache);
+            (
+                materials.pictures.get("a").map(|a| a.width()),
+                problems.iter().map(|p| p.message.clone()).collect::<Vec<_>>(),
+            )
+        };
+        let missing = vec!["../b.png: is not here yet".to_owned(), "c.png: no".to_owned()];
+        assert_eq!(look(&copies), (Some(2), missing.clone()));
+        copies.insert("a.png".into(), Ok(folder.path().join("1.png")));
+        assert_eq!(look(&copies), (Some(3), missing));
+        copies.insert("a.png".into(), Err("gone".into()));
+        assert_eq!(look(&copies).0, Some(3), "the last good one");
     }
 }

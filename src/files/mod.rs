@@ -1,6 +1,7 @@
 //! The only file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
 //! elsewhere.
 
+pub mod cache;
 pub mod disk;
 pub mod draft;
 pub mod fields;
@@ -8,6 +9,7 @@ pub mod journal;
 pub mod limits;
 pub mod log;
 pub mod materials;
+pub mod originals;
 pub mod paths;
 pub mod picture;
 pub mod profiles;

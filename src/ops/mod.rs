@@ -14,6 +14,7 @@ use crate::base::text::printable;
 use crate::files;
 use crate::scene::Document;
 
+pub mod attach;
 pub mod check;
 pub mod command_line;
 pub mod completions;
@@ -57,6 +58,8 @@ pub enum Command {
     /// Open the preview window
     #[cfg(feature = "window")]
     View(view::Args),
+    /// Serve a scene to a window on another machine (plica view ssh://... starts this)
+    Attach(attach::Args),
     /// Plot the jump vectors, or write them as a table
     Field(field::Args),
     /// Print the JSON Schema of a scene
@@ -84,6 +87,7 @@ impl Command {
             Command::Schema(args) => schema::run(args, context),
             Command::Completions(args) => completions::run(args, context),
             Command::Man(args) => man::run(args, context),
+            Command::Attach(args) => attach::run(args, context),
             #[cfg(feature = "window")]
             Command::View(args) => view::run(args, context),
         }

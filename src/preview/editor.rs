@@ -7,10 +7,11 @@ use std::process::Command;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
+use super::Reply;
 use super::host::{Shared, thread};
 use super::keeper::{Keeper, Life};
 use super::link::{Door, Listener};
-use super::outbox::{Latest, Measured};
+use super::outbox::{Latest, Measured, Topic};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::base::system;
@@ -72,15 +73,8 @@ impl fmt::Display for Status {
 pub enum Event {
     /// [`Preview::status`] has something new to say.
     Status,
-    /// The pointer in a window, in pixels of the picture.
-    Pointer {
-        /// From the left edge.
-        x: f64,
-        /// From the top edge.
-        y: f64,
-    },
-    /// A request by command name, from a key pressed in a window.
-    Command(String),
+    /// What a window says.
+    Reply(Reply),
     /// A script asks for a change.
     Edit(Asked),
 }
@@ -123,8 +117,7 @@ impl Preview {
         revision: u64,
         deliver: impl Fn(Event) + Send + Sync + 'static,
     ) -> Preview {
-        let latest = Latest { document: document.clone(), revision, selection: None, playing: false, time: 0.0 };
-        let shared = Arc::new(Shared::new(latest, Box::new(deliver)));
+        let shared = Arc::new(Shared::new(Latest::new(document.clone(), revision), Box::new(deliver)));
         let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
         let mut preview = Preview { shared, scene, options: Options::default(), keeper: None, door: None };
         if let Err(error) = preview.listen() {
@@ -160,7 +153,7 @@ impl Preview {
     pub fn select(&self, pointer: Option<String>) {
         self.shared.change(|state| {
             state.latest.selection = pointer;
-            state.peers.values_mut().for_each(|peer| peer.outbox.selected());
+            state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Selection));
         });
     }
 
@@ -168,13 +161,13 @@ impl Preview {
     pub fn transport(&self, playing: bool, time: f64) {
         self.shared.change(|state| {
             (state.latest.playing, state.latest.time) = (playing, time);
-            state.peers.values_mut().for_each(|peer| peer.outbox.transport());
+            state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Transport));
         });
     }
 
     /// An overlay or zoom command for the windows, by name.
     pub fn view(&self, command: &str) {
-        self.shared.change(|state| state.peers.values_mut().for_each(|peer| peer.outbox.view(command)));
+        self.shared.view(command);
     }
 
     /// How the windows are doing.
@@ -342,7 +335,10 @@ mod tests {
         stage.until(connected);
         let Stage { preview, events, .. } = stage;
         drop(preview);
-        assert!(events.iter().all(|event| matches!(event, Event::Status)), "and ends with its editor");
+        assert!(
+            events.iter().all(|event| matches!(event, Event::Status | Event::Reply(_))),
+            "and ends with its editor"
+        );
     }
 
     #[test]

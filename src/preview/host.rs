@@ -7,11 +7,12 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::Reply;
 use super::editor::{Asked, Event, Status};
 use super::keeper::Life;
 use super::link::{self, Caller, HangUp, Listener, Wire};
 use super::message::{self, FromEditor, Role, ToEditor};
-use super::outbox::{Latest, Outbox};
+use super::outbox::{Latest, Outbox, Outgoing};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::edit::Edit;
@@ -26,6 +27,8 @@ pub(super) struct Shared {
     state: Mutex<State>,
     changed: Condvar,
     deliver: Box<dyn Fn(Event) + Send + Sync>,
+    /// Where the other end would not notice that this one is gone: how long it may hear nothing.
+    alive: Option<Duration>,
 }
 
 /// How things stand.
@@ -95,7 +98,12 @@ impl Shared {
             report: Report::default(),
             closing: false,
         };
-        Shared { state: Mutex::new(state), changed: Condvar::new(), deliver }
+        Shared { state: Mutex::new(state), changed: Condvar::new(), deliver, alive: None }
+    }
+
+    /// The same, saying something at least this often.
+    pub fn alive(self, every: Duration) -> Self {
+        Shared { alive: Some(every), ..self }
     }
 
     pub fn lock(&self) -> MutexGuard<'_, State> {
@@ -112,6 +120,14 @@ impl Shared {
     pub fn tell(&self, how: impl FnOnce(&mut State)) {
         self.change(how);
         (self.deliver)(Event::Status);
+    }
+
+    /// An overlay or zoom command for the windows.
+    pub fn view(&self, command: &str) {
+        self.change(|state| {
+            state.latest.views.take(command);
+            state.peers.values_mut().for_each(|peer| peer.outbox.view(command));
+        });
     }
 
     /// Waits until something is so, or for this long.
@@ -165,13 +181,14 @@ impl Shared {
         }
     }
 
-    fn talk_with_window(self: &Arc<Self>, wire: Wire, scene: &Path) -> Result<()> {
+    /// Tells a window everything and hears it, until it is gone.
+    pub fn talk_with_window(self: &Arc<Self>, wire: Wire, scene: &Path) -> Result<()> {
         let Wire { mut reader, mut writer, hang_up } = wire;
         let (latest, id) = {
             let mut state = self.lock();
             let (latest, id) = (state.latest.clone(), state.next_peer);
             state.next_peer += 1;
-            state.peers.insert(id, Peer { outbox: Outbox::greeted(latest.revision), hang_up });
+            state.peers.insert(id, Peer { outbox: Outbox::greeted(&latest), hang_up });
             (latest, id)
         };
         let hello = hello(scene, &latest);
@@ -202,7 +219,15 @@ impl Shared {
                     if let Some(outgoing) = peer.outbox.next(latest) {
                         break Some(outgoing);
                     }
-                    state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+                    let Some(alive) = self.alive else {
+                        state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+                        continue;
+                    };
+                    let (now, waited) = self.changed.wait_timeout(state, alive).unwrap_or_else(PoisonError::into_inner);
+                    state = now;
+                    if waited.timed_out() {
+                        break Some(Outgoing::Plain(FromEditor::Alive));
+                    }
                 }
             };
             match outgoing {
@@ -212,23 +237,37 @@ impl Shared {
         }
     }
 
+    fn outbox(&self, id: u64, how: impl FnOnce(&mut Outbox)) {
+        self.change(|state| {
+            if let Some(peer) = state.peers.get_mut(&id) {
+                how(&mut peer.outbox);
+            }
+        });
+    }
+
     /// Takes what the window says until it is gone.
     fn read(&self, id: u64, mut from: &mut (dyn Read + Send)) -> Result<()> {
         while let Some(said) = message::read::<ToEditor>(&mut from, link::most())? {
             match said {
-                ToEditor::Ack { revision, synth_ms } => self.tell(|state| {
-                    state.report.synth_ms = Some(synth_ms);
-                    state.peers.get_mut(&id).into_iter().for_each(|peer| peer.outbox.shown(revision));
-                }),
-                ToEditor::WantScene => self.change(|state| {
-                    state.peers.get_mut(&id).into_iter().for_each(|peer| peer.outbox.want_scene());
-                }),
-                ToEditor::Report { fps, adapter, notice } => self.tell(|state| {
-                    let synth_ms = state.report.synth_ms;
-                    state.report = Report { synth_ms, fps: Some(fps), adapter: line(&adapter), notice: line(&notice) };
-                }),
-                ToEditor::Pointer { x, y } => (self.deliver)(Event::Pointer { x, y }),
-                ToEditor::Command(name) => (self.deliver)(Event::Command(line(&name))),
+                ToEditor::Ack { revision, synth_ms } => {
+                    self.change(|state| state.report.synth_ms = Some(synth_ms));
+                    self.outbox(id, |outbox| outbox.shown(revision));
+                    (self.deliver)(Event::Reply(Reply::Shown { revision, synth_ms }));
+                }
+                ToEditor::WantScene => self.outbox(id, Outbox::want_scene),
+                ToEditor::Want { hash, offset } => self.outbox(id, |outbox| outbox.want(hash, offset)),
+                ToEditor::Report { fps, adapter, notice } => {
+                    let (adapter, notice) = (line(&adapter), line(&notice));
+                    self.change(|state| {
+                        let synth_ms = state.report.synth_ms;
+                        let (adapter, notice) = (adapter.clone(), notice.clone());
+                        state.report = Report { synth_ms, fps: Some(fps), adapter, notice };
+                    });
+                    (self.deliver)(Event::Reply(Reply::Report { fps, adapter, notice }));
+                }
+                ToEditor::Pointer { x, y } => (self.deliver)(Event::Reply(Reply::Pointer { x, y })),
+                ToEditor::Command(name) => (self.deliver)(Event::Reply(Reply::Command(line(&name)))),
+                ToEditor::Alive => {}
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));
                 }

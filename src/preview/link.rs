@@ -8,6 +8,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
@@ -19,6 +20,11 @@ use crate::files::Limits;
 
 /// How long the other end may take to say who it is.
 pub const HANDSHAKE: Duration = Duration::from_secs(2);
+
+/// On pipes to another machine something is said at least this often,
+pub const ALIVE: Duration = Duration::from_secs(5);
+/// and an end that heard nothing for this long counts the other as gone.
+pub const SILENCE: Duration = Duration::from_secs(20);
 
 /// How long one write may stand still before the other end counts as gone.
 const STUCK: Duration = Duration::from_secs(10);
@@ -39,15 +45,18 @@ pub struct Wire {
 }
 
 /// Ends a connection from any thread.
-pub struct HangUp(Option<UnixStream>);
+#[derive(Clone)]
+pub struct HangUp(Arc<dyn Fn() + Send + Sync>);
 
 impl HangUp {
+    /// A connection that is ended by `how`, which may be done more than once.
+    pub fn new(how: impl Fn() + Send + Sync + 'static) -> HangUp {
+        HangUp(Arc::new(how))
+    }
+
     /// Ends it; the halves see the end of the stream.
     pub fn now(&self) {
-        if let Some(stream) = &self.0 {
-            // Already ended is as good.
-            drop(stream.shutdown(Shutdown::Both));
-        }
+        (self.0)();
     }
 }
 
@@ -57,7 +66,40 @@ impl Wire {
         stream.set_read_timeout(None)?;
         stream.set_write_timeout(Some(STUCK))?;
         let (reader, writer) = (stream.try_clone()?, stream.try_clone()?);
-        Ok(Wire { reader: Box::new(reader), writer: Box::new(writer), hang_up: HangUp(Some(stream)) })
+        // Already ended is as good.
+        let hang_up = HangUp::new(move || drop(stream.shutdown(Shutdown::Both)));
+        Ok(Wire { reader: Box::new(reader), writer: Box::new(writer), hang_up })
+    }
+
+    /// The same, ended once nothing is heard for so long: for pipes to another machine, which may go without a word.
+    pub fn watched(self, most: Duration) -> Wire {
+        let heard = Arc::new(Mutex::new(Instant::now()));
+        let (seen, hang_up) = (Arc::downgrade(&heard), self.hang_up.clone());
+        std::thread::spawn(move || {
+            while let Some(heard) = seen.upgrade() {
+                let silent = heard.lock().unwrap_or_else(PoisonError::into_inner).elapsed();
+                if silent >= most {
+                    return hang_up.now();
+                }
+                drop(heard);
+                std::thread::sleep((most - silent).min(most / 4));
+            }
+        });
+        Wire { reader: Box::new(Noted { reader: self.reader, heard }), ..self }
+    }
+}
+
+/// A reader that notes when it last heard something.
+struct Noted {
+    reader: Box<dyn Read + Send>,
+    heard: Arc<Mutex<Instant>>,
+}
+
+impl Read for Noted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.reader.read(buffer);
+        *self.heard.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+        read
     }
 }
 
@@ -170,12 +212,16 @@ pub fn join(scene: &Path, role: Role, most: u64) -> Result<Option<(FromEditor, W
     check_peer(&stream)?;
     let limits = stream.set_read_timeout(Some(HANDSHAKE)).and_then(|()| stream.set_write_timeout(Some(HANDSHAKE)));
     limits.map_err(|e| Error::at("link", e))?;
-    message::write(&mut &stream, &ToEditor::Hello { program: env!("CARGO_PKG_VERSION").into(), role })?;
-    match message::read(&mut &stream, most)? {
-        Some(hello @ FromEditor::Hello { .. }) => {
-            let wire = Wire::socket(stream).map_err(|e| Error::at("link", e))?;
-            Ok(Some((hello, wire)))
-        }
+    let hello = shake_hands(&mut &stream, &mut &stream, role, most)?;
+    let wire = Wire::socket(stream).map_err(|e| Error::at("link", e))?;
+    Ok(Some((hello, wire)))
+}
+
+/// Says hello and returns the answer, a [`FromEditor::Hello`] of at most `most` bytes.
+pub fn shake_hands(to: &mut impl Write, from: &mut impl Read, role: Role, most: u64) -> Result<FromEditor> {
+    message::write(to, &ToEditor::Hello { program: env!("CARGO_PKG_VERSION").into(), role })?;
+    match message::read(from, most)? {
+        Some(hello @ FromEditor::Hello { .. }) => Ok(hello),
         Some(FromEditor::Bye(reason)) => Err(Error::at("editor", reason)),
         Some(_) => Err(Error::at("link", "the editor did not say hello")),
         None => Err(Error::at("link", "the editor left at once")),

@@ -1,6 +1,6 @@
-//! The protocol between editor and window: a header of fixed size, then JSON. The header carries magic, version, kind and
-//! length, and is checked before a byte of the rest is read or a byte of memory taken for it. It runs over any pair of
-//! `Read` and `Write`: a socket here, the pipes of an ssh elsewhere.
+//! The protocol between editor and window: a header of fixed size, then JSON, and for a piece of a file a line end and its
+//! bytes. The header carries magic, version, kind and length, and is checked before a byte of the rest is read or a byte of
+//! memory taken for it. It runs over any pair of `Read` and `Write`: a socket here, the pipes of an ssh elsewhere.
 
 use std::io::{self, Read, Write};
 
@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
+use crate::files::originals::Original;
 use crate::scene::edit::Edit;
 
 /// Version of the protocol; both ends must have the same.
@@ -16,9 +17,13 @@ pub const VERSION: u16 = 1;
 
 const MAGIC: [u8; 4] = *b"PLCA";
 const HEADER: usize = 12;
-/// The only kind so far. Pieces of pictures, for a window on another machine, will be another.
-const KIND_JSON: u16 = 1;
-const STEP: usize = 64 << 10;
+pub(super) const KIND_JSON: u16 = 1;
+/// JSON, a line end, and bytes that belong to it.
+pub(super) const KIND_BYTES: u16 = 2;
+pub(super) const STEP: usize = 64 << 10;
+
+/// What is wrong where something else speaks, as a shell's start-up files may.
+pub const NOT_PLICA: &str = "the other end is not plica";
 
 /// What the editor says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,6 +67,24 @@ pub enum FromEditor {
     },
     /// An overlay or zoom command, by name.
     View(String),
+    /// The overlay and zoom commands in force, for a window that was not there when they were given.
+    Views(Vec<String>),
+    /// What the scene names, for a window on another machine, which asks for what it has not got.
+    Images(Vec<Original>),
+    /// Answers a [`ToEditor::Want`]: the bytes from there on, at most [`PIECE`](crate::files::originals::PIECE).
+    Piece {
+        /// SHA-256 of the file, in hexadecimal.
+        hash: String,
+        /// Where the bytes stand in the file.
+        offset: u64,
+        /// The bytes; none where the file is not there any more.
+        #[serde(skip)]
+        bytes: Vec<u8>,
+    },
+    /// One line for the person at a window on another machine.
+    Notice(String),
+    /// Nothing happened, and the other end is still there.
+    Alive,
     /// Answers a [`ToEditor::Edit`]: no problems means done.
     Edited(Vec<Problem>),
     /// The editor leaves, or will not talk to this peer; the reason, for people.
@@ -116,6 +139,15 @@ pub enum ToEditor {
     },
     /// A request by command name.
     Command(String),
+    /// A window on another machine asks for a piece of a file that [`FromEditor::Images`] told of.
+    Want {
+        /// SHA-256 of the file, in hexadecimal.
+        hash: String,
+        /// Where the piece begins.
+        offset: u64,
+    },
+    /// Nothing happened, and the window is still there.
+    Alive,
     /// A change asked for by a script.
     Edit {
         /// The revision that the patch was made for.
@@ -125,56 +157,101 @@ pub enum ToEditor {
     },
 }
 
-/// Writes one message. How long it may be is the reader's to say; fails where the other end is gone.
-pub fn write(to: &mut impl Write, message: &impl Serialize) -> Result<()> {
-    let body = serde_json::to_vec(message).map_err(|e| Error::at("link", e))?;
-    let len = u32::try_from(body.len()).map_err(|_| too_long(body.len() as u64, u32::MAX.into()))?;
-    let sent = to.write_all(&header(len)).and_then(|()| to.write_all(&body)).and_then(|()| to.flush());
-    sent.map_err(|e| broken(&e))
+/// What goes over the wire: JSON, and bytes where a message has some.
+pub trait Message: Serialize + DeserializeOwned {
+    /// The bytes that go after its JSON.
+    fn bytes(&self) -> Option<&[u8]> {
+        None
+    }
+
+    /// Where the bytes that came after its JSON go; nowhere in most messages.
+    fn bytes_mut(&mut self) -> Option<&mut Vec<u8>> {
+        None
+    }
+}
+
+impl Message for ToEditor {}
+
+impl Message for FromEditor {
+    fn bytes(&self) -> Option<&[u8]> {
+        if let FromEditor::Piece { bytes, .. } = self { Some(bytes) } else { None }
+    }
+
+    fn bytes_mut(&mut self) -> Option<&mut Vec<u8>> {
+        if let FromEditor::Piece { bytes, .. } = self { Some(bytes) } else { None }
+    }
+}
+
+/// Writes one message, in one go. How long it may be is the reader's to say; fails where the other end is gone.
+pub fn write(to: &mut impl Write, message: &impl Message) -> Result<()> {
+    let mut whole = vec![0; HEADER];
+    serde_json::to_writer(&mut whole, message).map_err(|e| Error::at("link", e))?;
+    let kind = if let Some(bytes) = message.bytes() {
+        whole.push(b'\n');
+        whole.extend_from_slice(bytes);
+        KIND_BYTES
+    } else {
+        KIND_JSON
+    };
+    let length = whole.len() - HEADER;
+    let length = u32::try_from(length).map_err(|_| too_long(length as u64, u32::MAX.into()))?;
+    whole[..HEADER].copy_from_slice(&header(kind, length));
+    to.write_all(&whole).and_then(|()| to.flush()).map_err(|e| broken(&e))
 }
 
 /// Reads one message of at most `most` bytes ([`Limits::message`](crate::files::Limits::message)); `None` where the other
 /// end left between messages.
-pub fn read<T: DeserializeOwned>(from: &mut impl Read, most: u64) -> Result<Option<T>> {
-    let Some(len) = read_header(from, most)? else { return Ok(None) };
-    let body = read_body(from, len as usize)?;
-    let message = serde_json::from_slice(&body);
-    message.map(Some).map_err(|e| Error::at("link", format!("a message that cannot be understood: {e}")))
+pub fn read<T: Message>(from: &mut impl Read, most: u64) -> Result<Option<T>> {
+    let Some((kind, length)) = read_header(from, most)? else { return Ok(None) };
+    let mut body = read_body(from, length as usize)?;
+    // JSON on one line has no line end in it.
+    let json = if kind == KIND_BYTES { body.iter().position(|&byte| byte == b'\n') } else { Some(body.len()) };
+    let json = json.ok_or_else(|| not_understood("it has no end"))?;
+    let mut message: T = serde_json::from_slice(&body[..json]).map_err(not_understood)?;
+    match (message.bytes_mut(), kind) {
+        (Some(bytes), KIND_BYTES) => {
+            body.drain(..=json);
+            *bytes = body;
+        }
+        (None, KIND_JSON) => {}
+        _ => return Err(not_understood("its kind does not fit")),
+    }
+    Ok(Some(message))
 }
 
-fn header(len: u32) -> [u8; HEADER] {
+pub(super) fn header(kind: u16, length: u32) -> [u8; HEADER] {
     let mut header = [0; HEADER];
     header[..4].copy_from_slice(&MAGIC);
     header[4..6].copy_from_slice(&VERSION.to_le_bytes());
-    header[6..8].copy_from_slice(&KIND_JSON.to_le_bytes());
-    header[8..].copy_from_slice(&len.to_le_bytes());
+    header[6..8].copy_from_slice(&kind.to_le_bytes());
+    header[8..].copy_from_slice(&length.to_le_bytes());
     header
 }
 
-/// The checked length of the message that follows.
-fn read_header(from: &mut impl Read, most: u64) -> Result<Option<u32>> {
+/// The kind and the checked length of the message that follows.
+fn read_header(from: &mut impl Read, most: u64) -> Result<Option<(u16, u32)>> {
     let mut header = [0; HEADER];
     let got = fill(from, &mut header)?;
     if got == 0 {
         return Ok(None);
     }
     if !header[..got.min(4)].eq(&MAGIC[..got.min(4)]) {
-        return Err(Error::at("link", "the other end is not plica"));
+        return Err(Error::at("link", NOT_PLICA));
     }
     if got < HEADER {
         return Err(cut());
     }
     let [_, _, _, _, v0, v1, k0, k1, l0, l1, l2, l3] = header;
     let (version, kind) = (u16::from_le_bytes([v0, v1]), u16::from_le_bytes([k0, k1]));
-    let len = u32::from_le_bytes([l0, l1, l2, l3]);
+    let length = u32::from_le_bytes([l0, l1, l2, l3]);
     if version != VERSION {
         let what = format!("the other end speaks version {version} of the protocol, this one version {VERSION}");
         return Err(Error::at("link", what).cure("use the same plica at both ends"));
     }
-    if kind != KIND_JSON {
+    if ![KIND_JSON, KIND_BYTES].contains(&kind) {
         return Err(Error::at("link", format!("a message of unknown kind {kind}")));
     }
-    if u64::from(len) > most { Err(too_long(len.into(), most)) } else { Ok(Some(len)) }
+    if u64::from(length) > most { Err(too_long(length.into(), most)) } else { Ok(Some((kind, length))) }
 }
 
 /// Reads in steps, so that memory is taken for what came and never for what was announced.
@@ -204,6 +281,10 @@ fn fill(from: &mut impl Read, buffer: &mut [u8]) -> Result<usize> {
     Ok(got)
 }
 
+fn not_understood(why: impl std::fmt::Display) -> Error {
+    Error::at("link", format!("a message that cannot be understood: {why}"))
+}
+
 fn cut() -> Error {
     Error::at("link", "the other end went away in the middle of a message")
 }
@@ -217,132 +298,4 @@ fn broken(error: &io::Error) -> Error {
 
 fn too_long(len: u64, most: u64) -> Error {
     Error::at("link", format!("a message of {len} bytes, {most} is the most")).cure("give --limit message=BYTES")
-}
-
-#[cfg(test)]
-mod tests {
-    use std::fmt::Debug;
-
-    use proptest::prelude::*;
-    use serde_json::json;
-
-    use super::*;
-    use crate::files::Limits;
-
-    const MAX: u32 = 64 << 20;
-
-    fn read<T: DeserializeOwned>(from: &mut impl Read) -> Result<Option<T>> {
-        super::read(from, Limits::default().message)
-    }
-
-    fn bytes(message: &impl Serialize) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        write(&mut bytes, message).unwrap();
-        bytes
-    }
-
-    fn patch() -> Edit {
-        serde_json::from_value(json!([{"op": "replace", "path": "/layers/0/name", "value": "é\u{1}"}])).unwrap()
-    }
-
-    #[test]
-    fn every_message_comes_back_as_it_was_sent() {
-        let document = json!({"plica": 1, "z": 0.1, "a": [1e-300, -0.0, 0.30000000000000004]});
-        let text = String::from("a line");
-        let from_editor = [
-            FromEditor::Hello { program: text.clone(), scene: "/é/s".into(), revision: 3, document: document.clone() },
-            FromEditor::Patch { from_revision: 3, to_revision: u64::MAX, patch: patch() },
-            FromEditor::Scene { revision: 0, document },
-            FromEditor::Selection(Some("/layers/0".into())),
-            FromEditor::Selection(None),
-            FromEditor::Transport { playing: true, time: 1.25 },
-            FromEditor::View("view-field".into()),
-            FromEditor::Edited(vec![Problem::error("/a", "no").hint("so")]),
-            FromEditor::Edited(vec![]),
-            FromEditor::Bye(text.clone()),
-        ];
-        let to_editor = [
-            ToEditor::Hello { program: text.clone(), role: Role::Window },
-            ToEditor::Hello { program: text.clone(), role: Role::Script },
-            ToEditor::Ack { revision: 9, synth_ms: 0.1 },
-            ToEditor::WantScene,
-            ToEditor::Report { fps: 59.94, adapter: "llvmpipe".into(), notice: text.clone() },
-            ToEditor::Pointer { x: -1.5, y: 2.0 },
-            ToEditor::Command(text),
-            ToEditor::Edit { revision: 1, patch: patch() },
-        ];
-        come_back(&from_editor);
-        come_back(&to_editor);
-    }
-
-    fn come_back<T: Serialize + DeserializeOwned + PartialEq + Debug>(messages: &[T]) {
-        let stream: Vec<u8> = messages.iter().flat_map(bytes).collect();
-        let mut from = stream.as_slice();
-        for message in messages {
-            assert_eq!(read::<T>(&mut from).unwrap().as_ref(), Some(message));
-        }
-        assert_eq!(read::<T>(&mut from).unwrap(), None);
-    }
-
-    #[test]
-    fn what_is_wrong_is_refused_with_a_reason() {
-        let good = bytes(&ToEditor::WantScene);
-        let changed = |at: usize, to: &[u8]| [&good[..at], to, &good[at + to.len()..]].concat();
-        let table: [(&str, Vec<u8>, &str); 9] = [
-            ("garbage", b"GET / HTTP/1.1\r\n\r\n".to_vec(), "not plica"),
-            ("a short piece of garbage", b"hi".to_vec(), "not plica"),
-            ("an older version", changed(4, &[0, 0]), "speaks version 0"),
-            ("a newer version", changed(4, &[2, 0]), "use the same plica"),
-            ("an unknown kind", changed(6, &[9, 0]), "unknown kind 9"),
-            ("a huge length", changed(8, &[0xff; 4]), "4294967295 bytes"),
-            ("one byte too many", changed(8, &(MAX + 1).to_le_bytes()), "67108864 is the most"),
-            ("unknown JSON", [&header(7)[..], br#"{"a":1}"#].concat(), "unknown variant"),
-            ("broken JSON", [&header(3)[..], b"\"wa"].concat(), "cannot be understood"),
-        ];
-        for (name, bytes, reason) in table {
-            let error = read::<ToEditor>(&mut bytes.as_slice()).expect_err(name).to_string();
-            assert!(error.starts_with("link: ") && error.contains(reason), "{name}: {error}");
-        }
-    }
-
-    #[test]
-    fn a_message_cut_anywhere_is_an_error_and_never_a_message() {
-        let whole = bytes(&ToEditor::Pointer { x: 1.0, y: 2.0 });
-        for len in 1..whole.len() {
-            let error = read::<ToEditor>(&mut &whole[..len]).expect_err("cut").to_string();
-            assert!(error.contains("in the middle"), "{len}: {error}");
-        }
-    }
-
-    #[test]
-    fn no_memory_is_taken_for_an_announced_length() {
-        struct Watched<'a>(&'a [u8], usize);
-        impl Read for Watched<'_> {
-            fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-                self.1 = self.1.max(buffer.len());
-                self.0.read(buffer)
-            }
-        }
-        let bytes = header(MAX);
-        let mut from = Watched(&bytes, 0);
-        assert!(read::<ToEditor>(&mut from).is_err());
-        assert_eq!(from.1, STEP);
-    }
-
-    proptest! {
-        #[test]
-        fn any_bytes_end_in_an_answer(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
-            drop(read::<ToEditor>(&mut bytes.as_slice()));
-        }
-
-        #[test]
-        fn any_header_and_body_end_in_an_answer(version in 0..3u16, kind in 0..3u16, len: u32, body in "\\PC{0,40}") {
-            let mut bytes = header(len).to_vec();
-            bytes[4..6].copy_from_slice(&version.to_le_bytes());
-            bytes[6..8].copy_from_slice(&kind.to_le_bytes());
-            bytes.extend(body.as_bytes());
-            let answer = read::<ToEditor>(&mut bytes.as_slice());
-            prop_assert!(answer.is_err() || len as usize <= body.len());
-        }
-    }
 }

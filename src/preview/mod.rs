@@ -1,5 +1,6 @@
 //! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
 
+pub mod attach;
 pub mod client;
 pub mod editor;
 mod host;
@@ -7,8 +8,12 @@ mod keeper;
 pub mod keys;
 pub mod link;
 pub mod message;
+#[cfg(test)]
+mod message_tests;
 mod outbox;
 pub mod script;
+mod talk;
+mod views;
 #[cfg(feature = "window")]
 pub mod window;
 

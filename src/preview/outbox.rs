@@ -2,11 +2,13 @@
 //! revision, and become the scene itself once that is shorter; of everything else only the latest counts. So it stays small
 //! however long a window is stuck, and whoever edits never waits.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::io;
 use std::sync::Arc;
 
 use super::message::FromEditor;
+use super::views::Views;
+use crate::files::originals::Originals;
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
@@ -16,6 +18,9 @@ const MAX_PATCH: usize = 64 << 10;
 /// The most overlay commands kept for a window that does not read them; the oldest go first.
 const MAX_VIEWS: usize = 64;
 
+/// The most pieces of files that a window may ask for at a time; what it asks beyond them is not heard.
+const MAX_WANTS: usize = 256;
+
 /// The editor's state, as windows see it.
 #[derive(Clone)]
 pub(super) struct Latest {
@@ -24,6 +29,39 @@ pub(super) struct Latest {
     pub selection: Option<String>,
     pub playing: bool,
     pub time: f64,
+    pub views: Views,
+    /// What the scene names, where windows on another machine are served.
+    pub originals: Option<Arc<Originals>>,
+    /// A line for the person at a window on another machine.
+    pub notice: String,
+}
+
+impl Latest {
+    /// A document that nothing was done with yet.
+    pub fn new(document: Document, revision: u64) -> Latest {
+        let (views, notice) = (Views::default(), String::new());
+        Latest { document, revision, selection: None, playing: false, time: 0.0, views, originals: None, notice }
+    }
+
+    fn message(&self, topic: Topic) -> FromEditor {
+        match topic {
+            Topic::Selection => FromEditor::Selection(self.selection.clone()),
+            Topic::Transport => FromEditor::Transport { playing: self.playing, time: self.time },
+            Topic::Views => FromEditor::Views(self.views.list().to_vec()),
+            Topic::Notice => FromEditor::Notice(self.notice.clone()),
+            Topic::Images => FromEditor::Images(self.originals.as_ref().map(|all| all.list()).unwrap_or_default()),
+        }
+    }
+}
+
+/// What only the latest counts of, in the order in which it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Topic {
+    Selection,
+    Transport,
+    Views,
+    Notice,
+    Images,
 }
 
 /// An edit with its length on the wire, measured once for all windows. `None`: longer than a patch may be.
@@ -69,9 +107,10 @@ pub(super) struct Outbox {
     sent: u64,
     owed: bool,
     change: Change,
-    selection: bool,
-    transport: bool,
+    due: BTreeSet<Topic>,
     views: VecDeque<String>,
+    /// Pieces of files that the window waits for: hash and offset.
+    wants: VecDeque<(String, u64)>,
 }
 
 /// A message whose costly part (cloning, writing as JSON) is done later, outside any lock.
@@ -80,6 +119,7 @@ pub(super) enum Outgoing {
     Scene { document: Document, revision: u64 },
     Patch { from_revision: u64, to_revision: u64, edits: Vec<Arc<Edit>> },
     Plain(FromEditor),
+    Piece { originals: Arc<Originals>, hash: String, offset: u64 },
 }
 
 impl Outgoing {
@@ -91,15 +131,23 @@ impl Outgoing {
                 FromEditor::Patch { from_revision, to_revision, patch: Edit(json_patch::Patch(operations)) }
             }
             Outgoing::Plain(message) => message,
+            Outgoing::Piece { originals, hash, offset } => {
+                let bytes = originals.piece(&hash, offset);
+                FromEditor::Piece { hash, offset, bytes }
+            }
         }
     }
 }
 
 impl Outbox {
-    /// For a window that was greeted with the document of this revision, and has everything else to learn.
-    pub fn greeted(revision: u64) -> Self {
-        let change = Change::None;
-        Outbox { sent: revision, owed: true, change, selection: true, transport: true, views: VecDeque::new() }
+    /// For a window that was greeted with this state's document, and has everything else to learn.
+    pub fn greeted(latest: &Latest) -> Self {
+        let mut due = BTreeSet::from([Topic::Selection, Topic::Transport]);
+        due.extend((!latest.views.list().is_empty()).then_some(Topic::Views));
+        due.extend((!latest.notice.is_empty()).then_some(Topic::Notice));
+        due.extend(latest.originals.is_some().then_some(Topic::Images));
+        let (views, wants) = (VecDeque::new(), VecDeque::new());
+        Outbox { sent: latest.revision, owed: true, change: Change::None, due, views, wants }
     }
 
     /// The document changed by `edit`.
@@ -126,12 +174,16 @@ impl Outbox {
         self.owed &= revision != self.sent;
     }
 
-    pub fn selected(&mut self) {
-        self.selection = true;
+    /// There is something new to tell.
+    pub fn due(&mut self, topic: Topic) {
+        self.due.insert(topic);
     }
 
-    pub fn transport(&mut self) {
-        self.transport = true;
+    /// The window asks for a piece of a file.
+    pub fn want(&mut self, hash: String, offset: u64) {
+        if self.wants.len() < MAX_WANTS {
+            self.wants.push_back((hash, offset));
+        }
     }
 
     pub fn view(&mut self, command: &str) {
@@ -155,14 +207,19 @@ impl Outbox {
                 return next;
             }
         }
-        if std::mem::take(&mut self.selection) {
-            return Some(Outgoing::Plain(FromEditor::Selection(latest.selection.clone())));
+        if let Some(topic) = self.due.pop_first() {
+            if topic == Topic::Views {
+                // They are among those in force.
+                self.views.clear();
+            }
+            return Some(Outgoing::Plain(latest.message(topic)));
         }
-        if std::mem::take(&mut self.transport) {
-            let (playing, time) = (latest.playing, latest.time);
-            return Some(Outgoing::Plain(FromEditor::Transport { playing, time }));
+        if let Some(view) = self.views.pop_front() {
+            return Some(Outgoing::Plain(FromEditor::View(view)));
         }
-        self.views.pop_front().map(|view| Outgoing::Plain(FromEditor::View(view)))
+        let originals = latest.originals.clone()?;
+        let (hash, offset) = self.wants.pop_front()?;
+        Some(Outgoing::Piece { originals, hash, offset })
     }
 }
 
@@ -175,7 +232,7 @@ mod tests {
     const SCENE: &str = r#"{"plica": 1, "title": ""}"#;
 
     fn latest(revision: u64) -> Latest {
-        Latest { document: Document::parse(SCENE).unwrap(), revision, selection: None, playing: false, time: 0.0 }
+        Latest::new(Document::parse(SCENE).unwrap(), revision)
     }
 
     fn edit(length: usize) -> Measured {
@@ -184,7 +241,7 @@ mod tests {
     }
 
     fn quiet(revision: u64) -> Outbox {
-        Outbox { owed: false, selection: false, transport: false, ..Outbox::greeted(revision) }
+        Outbox { owed: false, due: BTreeSet::new(), ..Outbox::greeted(&latest(revision)) }
     }
 
     /// What goes out, in one word and its revisions.
@@ -233,11 +290,11 @@ mod tests {
 
     #[test]
     fn a_stuck_window_costs_no_memory() {
-        let mut outbox = Outbox::greeted(0);
+        let mut outbox = Outbox::greeted(&latest(0));
         for i in 0..100_000 {
             outbox.edited(&edit(10));
             outbox.view(&i.to_string());
-            outbox.selected();
+            outbox.due(Topic::Selection);
         }
         assert!(matches!(outbox.change, Change::Whole));
         assert_eq!(outbox.views.len(), MAX_VIEWS);
@@ -257,7 +314,7 @@ mod tests {
 
     #[test]
     fn a_new_window_learns_everything_and_the_rest_waits_for_no_answer() {
-        let mut outbox = Outbox::greeted(3);
+        let mut outbox = Outbox::greeted(&latest(3));
         outbox.edited(&edit(1));
         outbox.view("view-field");
         assert_eq!(told(&mut outbox, 4), "Selection(None)");
@@ -266,5 +323,35 @@ mod tests {
         assert_eq!(told(&mut outbox, 4), "nothing");
         outbox.shown(3);
         assert_eq!(told(&mut outbox, 4), "1 from 3 to 4");
+    }
+
+    #[test]
+    fn pieces_of_files_go_last_one_at_a_time() {
+        let mut latest = latest(0);
+        latest.originals = Some(Arc::default());
+        let mut outbox = quiet(0);
+        let told = |outbox: &mut Outbox| match outbox.next(&latest).map(Outgoing::into_message) {
+            Some(FromEditor::Piece { offset, .. }) => offset.to_string(),
+            Some(FromEditor::Patch { .. }) => "patch".into(),
+            Some(FromEditor::Notice(_)) => "notice".into(),
+            other => format!("{other:?}"),
+        };
+        (0..1000).for_each(|offset| outbox.want("a".into(), offset));
+        assert_eq!(outbox.wants.len(), MAX_WANTS);
+        assert_eq!(told(&mut outbox), "0");
+        outbox.edited(&edit(1));
+        outbox.due(Topic::Notice);
+        assert_eq!(["patch", "notice", "1", "2"].map(|_| told(&mut outbox)), ["patch", "notice", "1", "2"]);
+    }
+
+    #[test]
+    fn who_joins_late_learns_what_is_in_force() {
+        let mut latest = latest(0);
+        latest.views.take("view-field");
+        let mut outbox = Outbox::greeted(&latest);
+        outbox.view("view-field");
+        let all: Vec<_> = std::iter::from_fn(|| outbox.next(&latest)).map(Outgoing::into_message).collect();
+        let views = all.iter().filter(|m| matches!(m, FromEditor::View(_) | FromEditor::Views(_))).collect::<Vec<_>>();
+        assert_eq!(views, [&FromEditor::Views(vec!["view-field".into()])], "told once");
     }
 }

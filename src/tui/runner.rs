@@ -13,6 +13,7 @@ use super::{input, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::files::watch::Watch;
+use crate::preview::Reply;
 use crate::preview::editor::{self, Preview, Status};
 use crate::{files, ops};
 
@@ -207,9 +208,9 @@ impl Editor {
 pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
     let preview = Preview::start(door.path(), door.document(), door.revision(), move |said| {
         let event = match said {
-            editor::Event::Command(line) => Event::Command(line),
-            editor::Event::Pointer { x, y } => Event::Pointer(x, y),
-            editor::Event::Status => Event::WindowChanged,
+            editor::Event::Reply(Reply::Command(line)) => Event::Command(line),
+            editor::Event::Reply(Reply::Pointer { x, y }) => Event::Pointer(x, y),
+            editor::Event::Status | editor::Event::Reply(_) => Event::WindowChanged,
             editor::Event::Edit(asked) => Event::Asked(asked),
         };
         // Nobody listens once the editor has left.

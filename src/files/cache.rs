@@ -1,0 +1,202 @@
+//! Files of scenes on other machines, kept in the user's cache by content hash: what was transferred once is not again. A
+//! file is checked by its hash before it counts; the least recently used go when there is too much.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use sha2::{Digest, Sha256};
+
+use super::originals::{Contents, contents, hex};
+use super::write::{self, Atomic};
+use crate::base::error::{Error, Result};
+use crate::base::system::folders;
+
+/// The most bytes that are kept.
+pub const MOST: u64 = 1 << 30;
+
+/// A folder of files named by their hash.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    folder: PathBuf,
+    most: u64,
+}
+
+impl Cache {
+    /// The user's own: `plica/images` in the cache folder.
+    ///
+    /// # Errors
+    /// There is no home, or the folder cannot be made.
+    pub fn of_user() -> Result<Cache> {
+        let folder =
+            folders::cache().ok_or_else(|| Error::at("cache", "there is no home").cure("set XDG_CACHE_HOME"))?;
+        Cache::at(folder.join("images"), MOST)
+    }
+
+    /// One in `folder`, of at most `most` bytes.
+    ///
+    /// # Errors
+    /// The folder cannot be made.
+    pub fn at(folder: PathBuf, most: u64) -> Result<Cache> {
+        fs::create_dir_all(&folder)
+            .map_err(|error| Error::at(folder.display(), error).cure("set XDG_CACHE_HOME to a folder of yours"))?;
+        write::remove_stale(&folder.join("file"));
+        Ok(Cache { folder, most })
+    }
+
+    /// The file with these contents, where it is here and whole; one that is not is removed.
+    pub fn find(&self, wanted: &Contents) -> Option<PathBuf> {
+        let path = self.path(&wanted.hash)?;
+        let mut file = File::open(&path).ok()?;
+        if contents(&mut file).ok().as_ref() != Some(wanted) {
+            // It is asked for again; what cannot be removed is replaced then.
+            drop(fs::remove_file(&path));
+            return None;
+        }
+        // When it was used last; where that cannot be kept it goes earlier, and that is all.
+        drop(File::options().write(true).open(&path).and_then(|file| file.set_modified(SystemTime::now())));
+        Some(path)
+    }
+
+    /// Begins to take a file.
+    ///
+    /// # Errors
+    /// The hash is none, or the folder cannot be written.
+    pub fn begin(&self, wanted: &Contents) -> Result<Incoming> {
+        let path = self.path(&wanted.hash).ok_or_else(|| Error::at("link", "a hash that is none"))?;
+        Ok(Incoming { file: Atomic::create(&path)?, path, wanted: wanted.clone(), hash: Sha256::new(), have: 0 })
+    }
+
+    /// Removes the least recently used until the rest fits; what is in `used` stays.
+    pub fn trim(&self, used: &BTreeSet<String>) {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let mut files: Vec<_> = entries
+            .filter_map(|entry| {
+                let found = entry.metadata().ok().filter(fs::Metadata::is_file)?;
+                Some((found.modified().ok()?, found.len(), entry.path()))
+            })
+            .collect();
+        files.sort();
+        let mut all: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
+        let unused = |path: &Path| !path.file_name().is_some_and(|name| used.contains(&*name.to_string_lossy()));
+        for (_, bytes, path) in files.iter().filter(|(_, _, path)| unused(path)) {
+            if all <= self.most {
+                return;
+            }
+            // Another window may have been first.
+            drop(fs::remove_file(path));
+            all -= bytes;
+        }
+    }
+
+    fn path(&self, hash: &str) -> Option<PathBuf> {
+        let is_hash = hash.len() == 64 && hash.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
+        is_hash.then(|| self.folder.join(hash))
+    }
+}
+
+/// A file that is being taken, piece by piece. Dropped before it is whole, it leaves nothing behind.
+#[derive(Debug)]
+pub struct Incoming {
+    file: Atomic,
+    path: PathBuf,
+    wanted: Contents,
+    hash: Sha256,
+    have: u64,
+}
+
+impl Incoming {
+    /// What it is to be.
+    pub fn wanted(&self) -> &Contents {
+        &self.wanted
+    }
+
+    /// How many bytes are here.
+    pub fn have(&self) -> u64 {
+        self.have
+    }
+
+    /// Takes the next bytes.
+    ///
+    /// # Errors
+    /// There are more than were told of, or they cannot be written.
+    pub fn add(&mut self, bytes: &[u8]) -> Result<()> {
+        self.have += bytes.len() as u64;
+        if self.have > self.wanted.bytes {
+            return Err(Error::at("link", "a file that is longer than was said"));
+        }
+        self.hash.update(bytes);
+        self.file.write_all(bytes).map_err(|error| Error::at(self.path.display(), error))
+    }
+
+    /// Checks the whole and puts it in its place.
+    ///
+    /// # Errors
+    /// It is not what was told of, or cannot be written.
+    pub fn finish(self) -> Result<PathBuf> {
+        if hex(&self.hash.finalize()) != self.wanted.hash {
+            return Err(Error::at("link", "a file that is not what was said"));
+        }
+        self.file.commit()?;
+        Ok(self.path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::files::scene::hash;
+
+    fn told(bytes: &[u8]) -> Contents {
+        Contents { hash: hash(bytes), bytes: bytes.len() as u64 }
+    }
+
+    fn keep(cache: &Cache, bytes: &[u8]) -> PathBuf {
+        let mut incoming = cache.begin(&told(bytes)).unwrap();
+        bytes.chunks(3).for_each(|piece| incoming.add(piece).unwrap());
+        incoming.finish().unwrap()
+    }
+
+    #[test]
+    fn what_is_whole_is_found_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::at(folder.path().join("plica/images"), MOST).unwrap();
+        assert_eq!(cache.find(&told(b"cat")), None);
+        let path = keep(&cache, b"cat");
+        assert_eq!(cache.find(&told(b"cat")), Some(path.clone()));
+        fs::write(&path, "dog").unwrap();
+        assert_eq!(cache.find(&told(b"cat")), None, "changed");
+        assert!(!path.exists());
+        drop(cache.begin(&told(b"half")));
+        let mut wrong = cache.begin(&told(b"right")).unwrap();
+        wrong.add(b"wrong").unwrap();
+        assert!(wrong.finish().is_err());
+        assert!(cache.begin(&told(b"short")).unwrap().add(b"longer").is_err());
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 0, "nothing half done stays");
+        for hash in ["", "../../../etc/passwd", "ABCDEF", &"g".repeat(64)] {
+            let told = Contents { hash: hash.to_owned(), bytes: 1 };
+            assert!(cache.begin(&told).is_err() && cache.find(&told).is_none(), "{hash}");
+        }
+    }
+
+    #[test]
+    fn the_least_recently_used_go_first() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::at(folder.path().to_owned(), 8).unwrap();
+        let paths: Vec<_> = [b"aaaa", b"bbbb", b"cccc"].map(|bytes| keep(&cache, bytes)).into();
+        for (age, path) in paths.iter().enumerate() {
+            let time = SystemTime::now() - Duration::from_secs(100 - age as u64);
+            File::options().write(true).open(path).unwrap().set_modified(time).unwrap();
+        }
+        cache.find(&told(b"aaaa")).unwrap();
+        cache.trim(&BTreeSet::new());
+        assert_eq!(paths.iter().map(|path| path.exists()).collect::<Vec<_>>(), [true, false, true]);
+        keep(&cache, b"dddd");
+        cache.trim(&[hash(b"cccc"), hash(b"dddd")].into());
+        assert_eq!(paths.iter().map(|path| path.exists()).collect::<Vec<_>>(), [false, false, true]);
+    }
+}

@@ -1,0 +1,177 @@
+//! The files that a scene names, for a window on another machine: told by content hash, given out in small pieces, as they
+//! lie on the disk. A file stays open while the scene names it, so that its pieces fit together whatever is saved meanwhile.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read, Seek};
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::materials::{self, Stamp};
+use super::{Options, paths};
+use crate::base::error::{Error, Result};
+use crate::scene::Scene;
+
+/// The most bytes of a piece: other messages go between two of them.
+pub const PIECE: usize = 8 << 10;
+
+/// A file that a scene names.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Original {
+    /// Its path as the scene writes it.
+    pub path: String,
+    /// What is in it, or why it cannot be read.
+    pub file: std::result::Result<Contents, String>,
+}
+
+/// What is in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contents {
+    /// SHA-256 of all its bytes, in hexadecimal.
+    pub hash: String,
+    /// How many there are.
+    pub bytes: u64,
+}
+
+/// All files that one scene names, open.
+#[derive(Debug, Default)]
+pub struct Originals {
+    found: BTreeMap<String, std::result::Result<Arc<Found>, String>>,
+}
+
+#[derive(Debug)]
+struct Found {
+    stamp: Stamp,
+    contents: Contents,
+    file: File,
+}
+
+impl Originals {
+    /// Looks at the files that `scene` names; those that did not change since `before` are not read again.
+    pub fn of(scene_path: &Path, scene: &Scene, options: &Options, before: &Originals) -> Originals {
+        let look = |path: &str| {
+            let old = before.found.get(path).and_then(|found| found.as_ref().ok());
+            (path.to_owned(), look(scene_path, path, options, old).map_err(why))
+        };
+        Originals { found: materials::paths(scene).into_iter().map(look).collect() }
+    }
+
+    /// Every file, in the order of the paths.
+    pub fn list(&self) -> Vec<Original> {
+        let file = |found: &std::result::Result<Arc<Found>, String>| match found {
+            Ok(found) => Ok(found.contents.clone()),
+            Err(why) => Err(why.clone()),
+        };
+        self.found.iter().map(|(path, found)| Original { path: path.clone(), file: file(found) }).collect()
+    }
+
+    /// The bytes from `offset` on, at most [`PIECE`], of the file with this hash; none where there is none.
+    pub fn piece(&self, hash: &str, offset: u64) -> Vec<u8> {
+        let mut bytes = vec![0; PIECE];
+        let found = self.found.values().flatten().find(|found| found.contents.hash == hash);
+        let read = found.map_or(Ok(0), |found| read_full_at(&found.file, &mut bytes, offset));
+        bytes.truncate(read.unwrap_or(0));
+        bytes
+    }
+}
+
+fn read_full_at(file: &File, bytes: &mut [u8], offset: u64) -> std::io::Result<usize> {
+    let mut read = 0;
+    while read < bytes.len() {
+        match file.read_at(&mut bytes[read..], offset.saturating_add(read as u64))? {
+            0 => break,
+            n => read += n,
+        }
+    }
+    Ok(read)
+}
+
+fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found>>) -> Result<Arc<Found>> {
+    let mut file = paths::open(scene_path, path, options)?;
+    let place = |error| Error::at(path, error);
+    let stamp = Stamp::of(&file).map_err(place)?;
+    if let Some(old) = old.filter(|old| old.stamp == stamp) {
+        return Ok(old.clone());
+    }
+    let contents = contents(&mut file).map_err(place)?;
+    Ok(Arc::new(Found { stamp, contents, file }))
+}
+
+/// The reason alone: whoever reads it knows the path.
+fn why(error: Error) -> String {
+    match error {
+        Error::Failed { what, cure: None, .. } => what,
+        Error::Failed { what, cure: Some(cure), .. } => format!("{what} ({cure})"),
+        other => other.to_string(),
+    }
+}
+
+/// The contents of a file.
+pub(super) fn contents(file: &mut File) -> std::io::Result<Contents> {
+    file.rewind()?;
+    let (mut hash, mut bytes, mut buffer) = (Sha256::new(), 0, vec![0; 64 << 10]);
+    loop {
+        match file.read(&mut buffer)? {
+            0 => return Ok(Contents { hash: hex(&hash.finalize()), bytes }),
+            n => {
+                hash.update(&buffer[..n]);
+                bytes += n as u64;
+            }
+        }
+    }
+}
+
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(paths: &[&str]) -> Scene {
+        let images: serde_json::Map<_, _> =
+            paths.iter().map(|path| (path.replace('.', ""), serde_json::json!({ "path": path }))).collect();
+        serde_json::from_value(serde_json::json!({ "plica": 1, "images": images })).unwrap()
+    }
+
+    fn whole(originals: &Originals, hash: &str) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        loop {
+            match originals.piece(hash, bytes.len() as u64) {
+                piece if piece.is_empty() => return bytes,
+                piece => bytes.extend(piece),
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_make_the_file_that_was_told_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.plica.json");
+        let long: Vec<u8> = (0..20_000u32).map(|i| (i % 251) as u8).collect();
+        std::fs::write(folder.path().join("a.png"), &long).unwrap();
+        let (options, scene) = (Options::default(), scene(&["a.png", "../b.png", "c.png"]));
+        let first = Originals::of(&path, &scene, &options, &Originals::default());
+        let list = first.list();
+        let told: Vec<_> = list.iter().map(|one| (one.path.as_str(), one.file.is_ok())).collect();
+        assert_eq!(told, [("../b.png", false), ("a.png", true), ("c.png", false)]);
+        let contents = list[1].file.clone().unwrap();
+        assert_eq!(contents, Contents { hash: super::super::scene::hash(&long), bytes: 20_000 });
+        assert_eq!(first.piece(&contents.hash, 0).len(), PIECE);
+        // Saved by rename meanwhile: what was told of is still given out whole.
+        std::fs::write(folder.path().join("new"), "short").unwrap();
+        std::fs::rename(folder.path().join("new"), folder.path().join("a.png")).unwrap();
+        assert!(whole(&first, &contents.hash) == long);
+        let second = Originals::of(&path, &scene, &options, &first);
+        assert_eq!(second.list()[1].file.as_ref().unwrap().bytes, 5);
+        assert!(second.piece(&contents.hash, 0).is_empty(), "gone");
+        assert!(second.piece("", u64::MAX).is_empty());
+    }
+}

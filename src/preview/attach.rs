@@ -1,0 +1,157 @@
+//! The far end of a window on another machine: follows the scene here, as a window would, and serves it over a pipe, as an
+//! editor would. So the edits are joined here for a slow link, and whether an editor or the file is followed is the same.
+
+use std::path::Path;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use super::client;
+use super::editor::Event;
+use super::host::{Shared, thread};
+use super::link::{ALIVE, HANDSHAKE, SILENCE, Wire};
+use super::message::{self, FromEditor, ToEditor};
+use super::outbox::{Latest, Measured, Topic};
+use super::talk::News;
+use super::{Reply, Update};
+use crate::base::error::{Error, Result};
+use crate::files::Options;
+use crate::files::originals::Originals;
+use crate::scene::edit::Edit;
+
+/// How long the scene may take to be read for the first time.
+const FIRST: Duration = Duration::from_secs(30);
+/// The same once there was a notice: it most likely says why there is none.
+const AFTER_NOTICE: Duration = Duration::from_millis(300);
+
+/// Serves the scene to the window at the other end of `wire` until that is gone.
+///
+/// # Errors
+/// The other end is no window of this version, or there is no scene to show; it was told then.
+pub fn serve(scene: &Path, options: &Options, wire: Wire) -> Result<()> {
+    let Wire { mut reader, mut writer, hang_up } = wire.watched(SILENCE);
+    let (sender, greeted) = mpsc::channel();
+    let most = options.limits.message;
+    thread("greeting", move || {
+        let hello = message::read::<ToEditor>(&mut reader, most);
+        drop(sender.send((hello, reader)));
+    })?;
+    let refused = match greeted.recv_timeout(HANDSHAKE) {
+        Ok((Ok(Some(ToEditor::Hello { .. })), reader)) => match begin(scene, options) {
+            Ok(far) => {
+                return far.serve(scene, Wire { reader, writer, hang_up });
+            }
+            Err(error) => error,
+        },
+        Ok((Ok(Some(_)), _)) => Error::at("link", "the other end did not say hello"),
+        Ok((Ok(None), _)) => return Ok(()),
+        Ok((Err(error), _)) => error,
+        Err(_) => Error::at("link", "the other end does not answer"),
+    };
+    // A courtesy: who does not understand it sees how this process ends.
+    drop(message::write(&mut writer, &FromEditor::Bye(refused.to_string())));
+    Err(refused)
+}
+
+struct Far {
+    news: Receiver<News>,
+    replies: Sender<Reply>,
+    latest: Latest,
+    options: Options,
+}
+
+/// Follows the scene, as far as its first document.
+fn begin(scene: &Path, options: &Options) -> Result<Far> {
+    let (sender, news) = mpsc::channel();
+    let replies = client::follow_with(scene, options, false, Box::new(move |news| sender.send(news).is_ok()));
+    let mut why = format!("{} is not read in time", scene.display());
+    let mut patience = FIRST;
+    loop {
+        match news.recv_timeout(patience) {
+            Ok(News::Document { document, revision, .. }) => {
+                let latest = Latest::new(document, revision);
+                return Ok(Far { news, replies, latest, options: options.clone() });
+            }
+            Ok(News::Update(Update::Notice(line))) => (why, patience) = (line, AFTER_NOTICE),
+            Ok(_) => {}
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) if scene.exists() => {
+                return Err(Error::at("scene", why));
+            }
+            Err(_) => return Err(Error::at(scene.display(), "there is no such scene")),
+        }
+    }
+}
+
+impl Far {
+    fn serve(self, scene: &Path, wire: Wire) -> Result<()> {
+        let Far { news, replies, latest, options } = self;
+        // A reply that nobody waits for any more ends with this process.
+        let replies = Mutex::new(replies);
+        let deliver = move |event| {
+            if let Event::Reply(reply) = event {
+                drop(replies.lock().unwrap_or_else(PoisonError::into_inner).send(reply));
+            }
+        };
+        let shared = Arc::new(Shared::new(latest, Box::new(deliver)).alive(ALIVE));
+        let (told, path) = (shared.clone(), scene.to_owned());
+        thread("attach", move || {
+            look_at_files(&told, &path, &options);
+            for news in news {
+                let files = matches!(news, News::Document { .. } | News::Files);
+                publish(&told, news);
+                if files {
+                    look_at_files(&told, &path, &options);
+                }
+            }
+        })?;
+        shared.talk_with_window(wire, scene)
+    }
+}
+
+fn publish(shared: &Shared, news: News) {
+    match news {
+        News::Document { document, revision, edit } => {
+            let before = shared.lock().latest.document.clone();
+            let edit = Measured::new(&edit.unwrap_or_else(|| Edit::between(&before, &document)));
+            shared.change(|state| {
+                (state.latest.document, state.latest.revision) = (document, revision);
+                state.peers.values_mut().for_each(|peer| peer.outbox.edited(&edit));
+            });
+        }
+        News::Files => {}
+        News::Views(names) => {
+            shared.change(|state| drop(state.latest.views.catch_up(&names)));
+            tell(shared, Topic::Views);
+        }
+        News::Update(Update::Selection(pointer)) => {
+            shared.change(|state| state.latest.selection = pointer);
+            tell(shared, Topic::Selection);
+        }
+        News::Update(Update::Transport { playing, time }) => {
+            shared.change(|state| (state.latest.playing, state.latest.time) = (playing, time));
+            tell(shared, Topic::Transport);
+        }
+        News::Update(Update::Notice(line)) => {
+            shared.change(|state| state.latest.notice = line);
+            tell(shared, Topic::Notice);
+        }
+        News::Update(Update::View(name)) => shared.view(&name),
+        // Never told here: a scene comes as a document, and who was not opened by the editor is not closed by it.
+        News::Update(Update::Scene { .. } | Update::Closed) => {}
+    }
+}
+
+fn tell(shared: &Shared, topic: Topic) {
+    shared.change(|state| state.peers.values_mut().for_each(|peer| peer.outbox.due(topic)));
+}
+
+/// Tells the window what the scene names, where that is not what it was.
+fn look_at_files(shared: &Shared, scene: &Path, options: &Options) {
+    let (latest, none) = (shared.lock().latest.clone(), Originals::default());
+    let before = latest.originals.as_deref().unwrap_or(&none);
+    let originals = Originals::of(scene, latest.document.scene(), options, before);
+    if latest.originals.is_none() || originals.list() != before.list() {
+        shared.change(|state| state.latest.originals = Some(Arc::new(originals)));
+        tell(shared, Topic::Images);
+    }
+}
