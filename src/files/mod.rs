@@ -7,6 +7,7 @@ pub mod draft;
 pub mod fields;
 pub mod journal;
 pub mod limits;
+pub mod lines;
 pub mod log;
 pub mod materials;
 pub mod originals;

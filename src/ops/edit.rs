@@ -17,6 +17,9 @@ pub struct Args {
     /// Only look: no lock, no journal, nothing is changed
     #[arg(long)]
     pub read_only: bool,
+    /// Run the lines of a file at first, as `:source` does; where the output is no terminal or TERM is dumb, nothing else
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
     /// How files are read.
     #[command(flatten)]
     pub scene: SceneOptions,

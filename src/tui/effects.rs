@@ -9,6 +9,7 @@ use super::terminal;
 use super::update::{Effect, Event};
 use super::worker::{Job, Request};
 use crate::base::system::signals::{self, Signal};
+use crate::files::write;
 use crate::ops;
 
 impl Editor {
@@ -32,12 +33,22 @@ impl Editor {
                 self.leaving = leave && result.is_ok();
                 self.take(Event::Saved(result.map_err(|error| error.to_string())));
             }
+            Effect::Write(path, text) => {
+                let written =
+                    write::write_new(&path, text.as_bytes()).map(|()| format!("{} is written", path.display()));
+                self.take(Event::Saved(written.map_err(|error| error.to_string())));
+            }
+            Effect::Source(path) => {
+                if let Err(error) = self.source(&path) {
+                    self.state.complain(error.to_string());
+                }
+            }
             Effect::Open(path) => self.open(&path),
             Effect::Run(words) => self.start(&words),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::View(None) => self.preview.open_window(),
             Effect::View(Some(command)) => self.preview.view(&command),
-            Effect::Redraw => drop(self.screen.clear()),
+            Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
         }
@@ -60,7 +71,8 @@ impl Editor {
                 if window {
                     self.preview.open_window();
                 }
-                self.state = State::new(door, self.state.size, self.state.depth);
+                let recorder = std::mem::take(&mut self.state.recorder);
+                self.state = State { recorder, ..State::new(door, self.state.size, self.state.depth) };
                 self.begin();
             }
             Err(error) => self.state.complain(error.to_string()),
@@ -89,10 +101,13 @@ impl Editor {
 
     /// Gives the terminal back, stops as Ctrl-Z does, and comes back with a fresh screen.
     fn suspend(&mut self) {
+        if self.screen.is_none() {
+            return signals::default_action(Signal::Stop);
+        }
         terminal::restore();
         signals::default_action(Signal::Stop);
         match terminal::enter() {
-            Ok(screen) => self.screen = screen,
+            Ok(screen) => self.screen = Some(screen),
             Err(_) => self.leaving = true,
         }
     }

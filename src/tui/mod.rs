@@ -16,6 +16,7 @@ mod panes;
 mod place;
 mod recorder;
 mod runner;
+mod script;
 mod sheet;
 mod terminal;
 mod text;

@@ -2,6 +2,8 @@
 //! log of the session keeps all of them, so that they lead to the same scene again; a macro keeps what the person asked for;
 //! `.` keeps the last change. Typing, choosing and the help are not kept, but what came of them is: `put *1.1`.
 
+use std::path::{Path, PathBuf};
+
 /// What is kept of a command that was run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
@@ -32,6 +34,10 @@ pub struct Ended<'a> {
 pub struct Recorder {
     /// The log of the session: lines as a script has them, refused ones as comments.
     log: Vec<String>,
+    /// How much of it was handed out to be written.
+    written: usize,
+    /// The file that it is written to.
+    place: Option<PathBuf>,
     /// The line that began to ask, until it is answered.
     asked: Option<String>,
     /// Commands running now of which the line is kept: what they run is part of them.
@@ -79,5 +85,21 @@ impl Recorder {
     /// The log of the session.
     pub fn log(&self) -> &[String] {
         &self.log
+    }
+
+    /// The lines that were added since this was asked last.
+    pub fn unwritten(&mut self) -> &[String] {
+        let from = std::mem::replace(&mut self.written, self.log.len());
+        &self.log[from..]
+    }
+
+    /// The file that the log is written to; none where it is not.
+    pub fn place(&self) -> Option<&Path> {
+        self.place.as_deref()
+    }
+
+    /// The log is written to this file, or to none any more.
+    pub fn set_place(&mut self, place: Option<PathBuf>) {
+        self.place = place;
     }
 }

@@ -7,11 +7,13 @@ use std::time::{Duration, Instant};
 use super::app::State;
 use super::colour::Depth;
 use super::door::Door;
+use super::script::Scripts;
 use super::update::{Event, update};
 use super::worker::{Job, Worker};
 use super::{input, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Signal};
+use crate::files::lines::Log;
 use crate::files::watch::Watch;
 use crate::preview::Reply;
 use crate::preview::editor::{self, Preview, Status};
@@ -25,6 +27,8 @@ pub struct Options {
     pub window: bool,
     /// Whether the scene may only be looked at.
     pub read_only: bool,
+    /// The lines that are run at first.
+    pub script: Option<PathBuf>,
     /// How files are read.
     pub files: files::Options,
 }
@@ -32,7 +36,7 @@ pub struct Options {
 impl Options {
     /// As `plica edit` without options.
     pub fn new(path: PathBuf) -> Options {
-        Options { path, window: true, read_only: false, files: files::Options::default() }
+        Options { path, window: true, read_only: false, script: None, files: files::Options::default() }
     }
 
     /// As the command line says.
@@ -41,7 +45,8 @@ impl Options {
     /// A wrong limit.
     pub fn of(args: &ops::edit::Args) -> Result<Options> {
         let files = args.scene.options()?;
-        Ok(Options { path: args.path.clone(), window: !args.no_view, read_only: args.read_only, files })
+        let (path, script) = (args.path.clone(), args.script.clone());
+        Ok(Options { path, window: !args.no_view, read_only: args.read_only, script, files })
     }
 }
 
@@ -56,9 +61,12 @@ pub fn run(options: Options) -> Result<()> {
     let door = Door::open(&options.path, options.read_only, &options.files)?;
     let (sender, events) = mpsc::channel();
     let _signals = end_on_signals(sender.clone())?;
+    if options.script.is_some() && !terminal::is_there() {
+        return Editor::new(options, door, None, sender)?.run_unseen(&events);
+    }
     terminal::restore_on_panic();
     let screen = terminal::enter()?;
-    let result = Editor::new(options, door, screen, sender).and_then(|editor| editor.run(&events));
+    let result = Editor::new(options, door, Some(screen), sender).and_then(|editor| editor.run(&events));
     terminal::restore();
     result
 }
@@ -93,8 +101,8 @@ pub struct Editor {
     pub(super) options: Options,
     /// What is shown and changed.
     pub(super) state: State,
-    /// The terminal.
-    pub(super) screen: terminal::Screen,
+    /// The terminal; none where only a script is run.
+    pub(super) screen: Option<terminal::Screen>,
     /// Where events come in.
     pub(super) sender: mpsc::Sender<Event>,
     /// The thread that synthesises.
@@ -105,26 +113,55 @@ pub struct Editor {
     pub(super) preview: Preview,
     /// The files of the scene; none where they cannot be watched.
     pub(super) watch: Option<Watch>,
+    /// The scripts that run.
+    pub(super) scripts: Scripts,
+    /// The log of the session; none where there is no folder for it.
+    pub(super) log: Option<Log>,
     /// Whether it ends.
     pub(super) leaving: bool,
 }
 
 impl Editor {
-    fn new(options: Options, door: Door, screen: terminal::Screen, sender: mpsc::Sender<Event>) -> Result<Self> {
-        let size = screen.size().map_err(|e| Error::at("the terminal", e))?;
+    fn new(
+        options: Options,
+        door: Door,
+        screen: Option<terminal::Screen>,
+        sender: mpsc::Sender<Event>,
+    ) -> Result<Self> {
+        let size = screen.as_ref().map(|screen| screen.size()).transpose().map_err(|e| Error::at("the terminal", e))?;
+        let size = size.map_or(view::LEAST, |size| (size.width, size.height));
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
-        input::read(sender.clone());
+        if screen.is_some() {
+            input::read(sender.clone());
+        }
         let worker = Worker::start(options.files.clone(), sender.clone());
         let preview = listen(&door, &options.files, sender.clone());
         let changed = sender.clone();
         // Without it changes from outside are met at the next save.
         let watch = Watch::new(move |files| drop(changed.send(Event::FilesChanged(files))));
         let watch = watch.inspect_err(|error| tracing::warn!("{error}")).ok();
-        let state = State::new(door, (size.width, size.height), depth);
-        let mut editor = Editor { options, state, screen, sender, worker, job: None, preview, watch, leaving: false };
+        let log = begin_log(&door, size, sender.clone());
+        let mut state = State::new(door, size, depth);
+        state.recorder.set_place(log.as_ref().map(|log| log.path().to_owned()));
+        let mut editor = Editor {
+            options,
+            state,
+            screen,
+            sender,
+            worker,
+            job: None,
+            preview,
+            watch,
+            scripts: Scripts::default(),
+            log,
+            leaving: false,
+        };
         editor.begin();
-        if editor.options.window && editor::opens_by_itself() {
+        if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();
+        }
+        if let Some(script) = editor.options.script.clone() {
+            editor.source(&script)?;
         }
         Ok(editor)
     }
@@ -155,25 +192,35 @@ impl Editor {
             self.draw()?;
             self.wait(events, &mut ticked);
         }
-        self.state.door.flush();
-        self.job.take().into_iter().for_each(Job::end);
+        self.end();
         Ok(())
     }
 
+    /// Brings everything to the disk.
+    pub fn end(&mut self) {
+        self.state.door.flush();
+        self.job.take().into_iter().for_each(Job::end);
+        self.log = None;
+    }
+
     fn draw(&mut self) -> Result<()> {
-        let state = &self.state;
-        self.screen.draw(|frame| view::draw(frame, state)).map(drop).map_err(|e| Error::at("the terminal", e))
+        let (state, Some(screen)) = (&self.state, &mut self.screen) else { return Ok(()) };
+        screen.draw(|frame| view::draw(frame, state)).map(drop).map_err(|e| Error::at("the terminal", e))
     }
 
     /// Waits for an event and takes all that are there, so that many cost one drawing.
     fn wait(&mut self, events: &mpsc::Receiver<Event>, ticked: &mut Instant) {
-        let first = match self.state.playing {
-            true => events.recv_timeout(Duration::from_millis(33)).ok(),
-            false => events.recv_timeout(self.state.door.patience()).ok(),
+        let script_goes_on = !self.scripts.is_empty() && self.state.seen.work.is_none();
+        let patience = match self.state.playing {
+            _ if script_goes_on => Duration::ZERO,
+            true => Duration::from_millis(33),
+            false => self.state.door.patience(),
         };
+        let first = events.recv_timeout(patience).ok();
         for event in first.into_iter().chain(events.try_iter()) {
             self.take(event);
         }
+        self.run_scripts();
         self.see_window();
         let passed = ticked.elapsed().as_secs_f64();
         *ticked = Instant::now();
@@ -198,7 +245,11 @@ impl Editor {
 
     /// Takes an event, and does what it asks for.
     pub fn take(&mut self, event: Event) {
-        for effect in update(&mut self.state, event) {
+        let effects = update(&mut self.state, event);
+        if let Some(log) = &self.log {
+            self.state.recorder.unwritten().iter().for_each(|line| log.write(line.clone()));
+        }
+        for effect in effects {
             self.perform(effect);
         }
     }
@@ -217,6 +268,17 @@ pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>
         let _ = sender.send(event);
     });
     preview.with_options(options)
+}
+
+/// The log of this session; it tells the editor where it cannot be written.
+fn begin_log(door: &Door, (width, height): (u16, u16), sender: mpsc::Sender<Event>) -> Option<Log> {
+    let header = vec![
+        format!("plica {}", env!("CARGO_PKG_VERSION")),
+        format!("scene {}", terminal::plain(&door.path().display().to_string())),
+        format!("terminal {width} x {height}"),
+    ];
+    // Nobody listens once the editor has left.
+    Log::begin(door.path(), header, move |why| drop(sender.send(Event::Unlogged(why))))
 }
 
 /// The size of the first layer's picture, from its header.

@@ -1,7 +1,7 @@
 //! The terminal itself: every mode that the editor sets, and the one function that undoes all of them, used by the normal
 //! exit, errors, panics and signals alike.
 
-use std::io::{Stdout, Write, stdout};
+use std::io::{IsTerminal, Stdout, Write, stderr, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ratatui::Terminal;
@@ -15,6 +15,23 @@ pub type Screen = Terminal<CrosstermBackend<Stdout>>;
 
 /// Whether any mode is set; only then is there something to undo.
 static SET: AtomicBool = AtomicBool::new(false);
+
+/// Whether there is a terminal that a screen can be drawn on.
+pub fn is_there() -> bool {
+    stdout().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// Prints a line where there is no screen.
+pub fn print(line: &str) {
+    // Where nobody reads it there is nothing more to do.
+    let _ = writeln!(stdout(), "{}", plain(line));
+}
+
+/// Says a line to the person, beside what is printed.
+pub fn remark(line: &str) {
+    // As above.
+    let _ = writeln!(stderr(), "plica: {}", plain(line));
+}
 
 /// Sets every mode and gives the screen.
 pub fn enter() -> Result<Screen> {

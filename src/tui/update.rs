@@ -18,6 +18,8 @@ use crate::scene::{Document, Edit};
 pub enum Event {
     /// A key, by its name in the table.
     Key(String),
+    /// A line of a script.
+    Line(String),
     /// Text pasted by the terminal.
     Paste(String),
     /// The terminal has another size.
@@ -42,6 +44,8 @@ pub enum Event {
     Command(String),
     /// A script asks for an edit.
     Asked(Asked),
+    /// The log of the session cannot be written.
+    Unlogged(String),
     /// Files of the scene have changed on the disk.
     FilesChanged(Vec<PathBuf>),
     /// The system asks for an end, or the terminal has gone away.
@@ -79,6 +83,10 @@ pub enum Effect {
         /// Whether to leave once it is safe.
         leave: bool,
     },
+    /// Write a text to a new file.
+    Write(PathBuf, String),
+    /// Run the lines of a file.
+    Source(PathBuf),
     /// Open another scene.
     Open(PathBuf),
     /// Load the pictures again.
@@ -101,6 +109,10 @@ pub enum Effect {
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
     match event {
         Event::Key(key) => press(state, &key),
+        Event::Line(line) => {
+            state.message = None;
+            commands::run(state, &line, None);
+        }
         Event::Paste(text) => paste(state, &text),
         Event::Resize(width, height) => state.size = (width, height),
         Event::Tick(seconds) => tick(state, seconds),
@@ -123,6 +135,10 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Click(x, y) => click(state, x, y),
         Event::Command(name) => commands::run_of_window(state, &name),
         Event::Asked(asked) => answer(state, asked),
+        Event::Unlogged(why) => {
+            state.recorder.set_place(None);
+            state.complain(format!("the log of this session is not kept: {why}"));
+        }
         Event::FilesChanged(files) => follow(state, &files),
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),

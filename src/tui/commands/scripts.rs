@@ -1,13 +1,36 @@
-//! Lines that were run, as one thing: the log of the session.
+//! Lines that were run, as one thing: the log of the session, and scripts.
+
+use std::path::PathBuf;
 
 use super::{Call, Command, Done, command};
 use crate::tui::app::{Mode, Pages, State};
+use crate::tui::update::Effect;
 
-pub const COMMANDS: &[Command] = &[command("log", "", "Show the lines that this session has run", log).inside()];
+pub const COMMANDS: &[Command] = &[
+    command("log", "[FILE]", "Show the lines that this session has run, or write them to a file", log).inside(),
+    command("source", "FILE", "Run the lines of a file", source).inside(),
+];
 
-fn log(state: &mut State, _: &Call) -> Done {
+fn log(state: &mut State, call: &Call) -> Done {
     let lines = state.recorder.log().to_vec();
-    let scroll = lines.len().saturating_sub(1);
-    state.mode = Mode::Pages(Pages { title: "log of this session".into(), lines, scroll });
+    if !call.text.is_empty() {
+        let text = lines.iter().map(|line| format!("{line}\n")).collect();
+        state.ask(Effect::Write(PathBuf::from(call.text), text));
+        return Ok(());
+    }
+    let place = match state.recorder.place() {
+        Some(place) => format!("this log is {}", place.display()),
+        None => "this log is only here: :log FILE writes it".into(),
+    };
+    let lines = vec![format!("-- {} --", crate::tui::terminal::plain(&place))].into_iter().chain(lines).collect();
+    state.mode = Mode::Pages(Pages { title: "log".into(), lines, scroll: 0 });
+    Ok(())
+}
+
+fn source(state: &mut State, call: &Call) -> Done {
+    if call.text.is_empty() {
+        return Err("source takes a FILE of lines".into());
+    }
+    state.ask(Effect::Source(PathBuf::from(call.text)));
     Ok(())
 }

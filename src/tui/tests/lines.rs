@@ -61,6 +61,8 @@ pub fn what_is_outside_is_asked_for() {
         ("w!", "Save { to: None, overwrite: true, leave: false }"),
         ("wq", "Save { to: None, overwrite: false, leave: true }"),
         ("e b.json", "Open(\"b.json\")"),
+        ("source a b", "Source(\"a b\")"),
+        ("log a", "Write(\"a\", \"\")"),
         ("view", "View(None)"),
         ("view view-field", "View(Some(\"view-field\"))"),
         ("render -o \"a b.gif\"", "Run([\"render\", \"-o\", \"a b.gif\"])"),

@@ -1,0 +1,171 @@
+//! Files of lines that the editor runs: scripts, and the logs of its sessions, which are scripts too. A log is written by a
+//! thread of its own, so that no key waits for a disk; it comes into being with its first line, and the newest few stay.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread::JoinHandle;
+use std::time::SystemTime;
+
+use super::paths;
+use crate::base::error::{Error, Result};
+use crate::base::system::folders;
+
+/// How many logs are kept.
+const KEPT: usize = 20;
+/// How a log's name ends.
+const SUFFIX: &str = "plica";
+/// A script longer than this is none.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// Reads a script.
+///
+/// # Errors
+/// When there is no such file, or it is no text, or far too long for a script.
+pub fn read(path: &Path) -> Result<String> {
+    let mut bytes = Vec::new();
+    let read = paths::open_named(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(|error| Error::at(path.display(), error))?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(Error::at(path.display(), "is longer than 16 MiB").cure("name a file of lines"));
+    }
+    String::from_utf8(bytes).map_err(|_| Error::at(path.display(), "is not UTF-8 text").cure("name a file of lines"))
+}
+
+/// The log of one session.
+pub struct Log {
+    path: PathBuf,
+    lines: Option<Sender<String>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Log {
+    /// A log in the user's state folder, named by the scene; `header` is written before its first line. Where it cannot be
+    /// written, `failed` is told once. None where there is no such folder.
+    pub fn begin(scene: &Path, header: Vec<String>, failed: impl FnOnce(String) + Send + 'static) -> Option<Log> {
+        Some(Log::begin_in(&folders::state()?.join("sessions"), scene, header, failed))
+    }
+
+    fn begin_in(folder: &Path, scene: &Path, header: Vec<String>, failed: impl FnOnce(String) + Send + 'static) -> Log {
+        let seconds = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
+        let name = scene.file_name().unwrap_or_default().to_string_lossy();
+        let stem = name.split('.').next().unwrap_or_default();
+        let path = folder.join(format!("{seconds}-{stem}-{}.{SUFFIX}", std::process::id()));
+        let (sender, lines) = mpsc::channel();
+        let to = path.clone();
+        let thread = std::thread::spawn(move || {
+            if let Err(error) = write(&to, &header, &lines) {
+                failed(Error::at(to.display(), format!("cannot be written: {error}")).to_string());
+            }
+        });
+        Log { path, lines: Some(sender), thread: Some(thread) }
+    }
+
+    /// Where it is, or will be once there is a line in it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a line, at some time soon.
+    pub fn write(&self, line: String) {
+        // A thread that could not write has said so and ended.
+        self.lines.iter().for_each(|lines| drop(lines.send(line.clone())));
+    }
+}
+
+impl Drop for Log {
+    /// Waits until all of it is written.
+    fn drop(&mut self) {
+        self.lines = None;
+        // It panics over nothing; if it did, the log is what is lost.
+        self.thread.take().into_iter().for_each(|thread| drop(thread.join()));
+    }
+}
+
+fn write(path: &Path, header: &[String], lines: &Receiver<String>) -> io::Result<()> {
+    let Ok(mut line) = lines.recv() else { return Ok(()) };
+    let mut file = create(path)?;
+    let mut text: String = header.iter().map(|line| format!("# {line}\n")).collect();
+    loop {
+        text.push_str(&line);
+        text.push('\n');
+        text.extend(lines.try_iter().map(|line| line + "\n"));
+        file.write_all(text.as_bytes())?;
+        text.clear();
+        match lines.recv() {
+            Ok(next) => line = next,
+            Err(_) => return Ok(()),
+        }
+    }
+}
+
+/// Makes the file and its folder, and removes the oldest of the others.
+fn create(path: &Path) -> io::Result<File> {
+    let folder = super::disk::folder_of(path);
+    std::fs::create_dir_all(folder)?;
+    let file = OpenOptions::new().append(true).create_new(true).mode(0o600).open(path)?;
+    let mut all: Vec<(SystemTime, PathBuf)> = std::fs::read_dir(folder)?
+        .flatten()
+        .filter(|entry| entry.path().extension().is_some_and(|suffix| suffix == SUFFIX) && entry.path() != path)
+        .filter_map(|entry| Some((entry.metadata().ok()?.modified().ok()?, entry.path())))
+        .collect();
+    all.sort();
+    for (_, old) in all.iter().rev().skip(KEPT - 1) {
+        // One more than is meant to be there is no harm.
+        let _ = std::fs::remove_file(old);
+    }
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_comes_with_its_first_line_and_the_newest_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let inside = folder.path().join("sessions");
+        let begin = |scene: &str| Log::begin_in(&inside, Path::new(scene), vec!["plica".into()], |why| panic!("{why}"));
+        drop(begin("/a/nothing.plica.json"));
+        assert!(!inside.exists());
+        std::fs::create_dir(&inside).unwrap();
+        for i in 0..25 {
+            std::fs::write(inside.join(format!("{i}.plica")), "").unwrap();
+        }
+        std::fs::write(inside.join("mine.txt"), "").unwrap();
+        let log = begin("/a/cat.plica.json");
+        log.write("move down".into());
+        log.write("put 5".into());
+        let path = log.path().to_owned();
+        drop(log);
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "# plica\nmove down\nput 5\n");
+        assert!(path.to_str().unwrap().contains("-cat-"));
+        let left = std::fs::read_dir(&inside).unwrap().count();
+        assert_eq!(left, KEPT + 1, "logs, and a file that is not one");
+    }
+
+    #[test]
+    fn a_log_that_cannot_be_written_says_so_once() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("sessions"), "a file").unwrap();
+        let (sender, said) = mpsc::channel();
+        let failed = move |why: String| sender.send(why).unwrap();
+        let log = Log::begin_in(&folder.path().join("sessions"), Path::new("a"), Vec::new(), failed);
+        log.write("move down".into());
+        drop(log);
+        assert_eq!(said.iter().map(|why| why.contains("cannot be written")).collect::<Vec<_>>(), [true]);
+    }
+
+    #[test]
+    fn only_text_is_a_script() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("script");
+        std::fs::write(&path, "move down\n").unwrap();
+        assert_eq!(read(&path).unwrap(), "move down\n");
+        std::fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("UTF-8"));
+        assert!(read(&folder.path().join("no")).is_err());
+    }
+}
