@@ -89,7 +89,7 @@ impl Edit {
 }
 
 /// Writes `value` at `path`, making the parents that are not written from their defaults.
-fn write(document: &Document, path: &str, value: Value) -> Edit {
+pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
     let json = document.json();
     if json.pointer(path).is_some() {
         return Edit::replace(path, value);
@@ -148,7 +148,7 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
 }
 
 /// The tag of what stands at a place; empty where it has none.
-fn variant_of(place: Place<'_>) -> &str {
+pub(super) fn variant_of(place: Place<'_>) -> &str {
     match place.shape.body() {
         Body::Tagged(tag) => place.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default(),
         _ => "",

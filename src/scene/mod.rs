@@ -14,6 +14,7 @@ mod document;
 pub mod edit;
 pub mod field;
 pub mod history;
+pub mod insert;
 pub mod json;
 pub mod migrate;
 pub mod pointer;

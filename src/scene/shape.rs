@@ -24,9 +24,14 @@ pub fn check(json: &Value) -> Vec<Problem> {
 
 /// Whether `value` has this shape.
 pub fn fits(shape: Shape, value: &Value) -> bool {
+    problems(shape, value).is_empty()
+}
+
+/// Every problem of `value` where this shape is wanted; paths are relative to it.
+pub fn problems(shape: Shape, value: &Value) -> Vec<Problem> {
     let mut walk = Walk { path: String::new(), problems: Vec::new() };
     walk.value(shape, value);
-    walk.problems.is_empty()
+    walk.problems
 }
 
 struct Walk {

@@ -4,6 +4,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use super::choice::Choice;
+use super::clipboard::Kept;
 use super::colour::Depth;
 use super::door::Door;
 use super::entry::Entry;
@@ -61,6 +62,8 @@ pub struct State {
     pub lines: Vec<String>,
     /// Who listens to the lines that are run.
     pub recorder: Recorder,
+    /// What was yanked and selected last.
+    pub kept: Kept,
     /// What was searched for last.
     pub sought: String,
     /// What the threads have found out.
@@ -163,6 +166,7 @@ impl State {
             message: None,
             lines: Vec::new(),
             recorder: Recorder::default(),
+            kept: Kept::default(),
             sought: String::new(),
             seen: Seen::default(),
             effects: VecDeque::new(),

@@ -45,6 +45,7 @@ impl Editor {
             }
             Effect::Open(path) => self.open(&path),
             Effect::Run(words) => self.start(&words),
+            Effect::Copy(text) => terminal::copy(&text),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::View(None) => self.preview.open_window(),
             Effect::View(Some(command)) => self.preview.view(&command),

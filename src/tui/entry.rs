@@ -8,7 +8,7 @@ use super::numbers;
 use super::sheet::{Cell, Part, Row, Sheet};
 use super::text::Text;
 use crate::base::expression::{self, Variables};
-use crate::scene::field::{self, Kind};
+use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
 
 /// A value being typed.
@@ -105,23 +105,28 @@ fn variables(state: &State, sheet: &Sheet, row: &Row, cell: &Cell, (i, n): (usiz
 
 /// The edit that gives a cell this number; refused where it is out of the field's range.
 pub fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
-    let field = &cell.field;
-    let whole = matches!(field.kind, Kind::Number { integer: true });
-    if whole && value != value.trunc() {
-        return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
-    }
-    let counts = !matches!(cell.part, Part::Length | Part::Degrees);
-    if let (Some((min, max)), true) = (field.range, counts)
-        && !(min..=max).contains(&value)
-    {
-        let range = field.range_text().unwrap_or_default();
-        return Err(format!("{} is out of range: {} takes {range}", numbers::exact(value), field.name));
-    }
+    in_range(&cell.field, cell.part, value)?;
     if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
         return Err("a vector without a length has no direction: set |J| first".into());
     }
     let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
     Ok(set(document, &pointer, value))
+}
+
+/// Whether a field takes this number; else its range.
+pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
+    let whole = matches!(field.kind, Kind::Number { integer: true });
+    if whole && value != value.trunc() {
+        return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
+    }
+    let counts = !matches!(part, Part::Length | Part::Degrees);
+    match field.range.filter(|(min, max)| counts && !(*min..=*max).contains(&value)) {
+        None => Ok(()),
+        Some(_) => {
+            let range = field.range_text().unwrap_or_default();
+            Err(format!("{} is out of range: {} takes {range}", numbers::exact(value), field.name))
+        }
+    }
 }
 
 fn length(document: &Document, cell: &Cell) -> f64 {

@@ -3,6 +3,7 @@
 
 mod app;
 mod choice;
+mod clipboard;
 mod colour;
 mod commands;
 mod door;
@@ -15,6 +16,7 @@ mod numbers;
 mod panes;
 mod place;
 mod recorder;
+mod rows;
 mod runner;
 mod script;
 mod sheet;

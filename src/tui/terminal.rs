@@ -8,6 +8,7 @@ use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::crossterm::{cursor, event, execute, terminal};
 
+use super::clipboard::{Through, sequence};
 use crate::base::error::{Error, Result};
 
 /// The terminal that the editor draws on.
@@ -63,6 +64,14 @@ pub fn restore() {
         let _ = out.flush();
         let _ = terminal::disable_raw_mode();
     }
+}
+
+/// Hands a text to the clipboard of the terminal, where it takes one.
+pub fn copy(text: &str) {
+    let through = Through::of(|name| std::env::var(name).ok());
+    let mut out = stdout();
+    // A terminal that has gone away is met at the next drawing.
+    let _ = out.write_all(sequence(text, through).as_bytes()).and_then(|()| out.flush());
 }
 
 /// Makes a panic restore the terminal before its message is printed.

@@ -93,6 +93,8 @@ pub enum Effect {
     Reload,
     /// Run a subcommand of the command line with these arguments.
     Run(Vec<String>),
+    /// Hand a text to the terminal's clipboard.
+    Copy(String),
     /// End long work.
     Cancel,
     /// Open the preview window, or give it a command of its table.
@@ -189,7 +191,12 @@ fn paste(state: &mut State, text: &str) {
     let first = text.lines().next().unwrap_or_default();
     match &state.mode {
         Mode::Entry(_) | Mode::Line(_) => type_text(state, first),
-        _ => state.complain("paste into an entry (i) or a command (:)"),
+        Mode::Normal => {
+            if let Err(why) = commands::pasted(state, text) {
+                state.complain(why);
+            }
+        }
+        _ => state.complain("end this first (Esc): pasted rows go into lists, and text into what is being typed"),
     }
 }
 

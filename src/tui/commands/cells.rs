@@ -24,7 +24,7 @@ pub const COMMANDS: &[Command] = &[
     command("select", "", "Begin or end a selection of rows", select),
 ];
 
-fn current(state: &State) -> Option<(Row, Cell)> {
+pub fn current(state: &State) -> Option<(Row, Cell)> {
     let row = state.sheet().row(state.row)?;
     let cell = row.cells.get(state.column)?.clone();
     Some((row, cell))

@@ -17,7 +17,7 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 /// What the node or the row under the cursor is: its pointer.
-fn target(state: &State) -> Result<String, String> {
+pub fn target(state: &State) -> Result<String, String> {
     match state.focus {
         Pane::Tree => Ok(state.node.clone()),
         _ => state.sheet().pointer(state.row).ok_or("there is no row here".into()),

@@ -14,6 +14,7 @@ pub use cells::step_of;
 mod files;
 mod items;
 mod moving;
+mod pasting;
 mod placing;
 mod playing;
 mod said;
@@ -21,6 +22,8 @@ pub use said::{Said, quoted, unquoted, words};
 mod scripts;
 mod typing;
 mod values;
+mod yanking;
+pub use pasting::pasted;
 
 /// How a command ends: what to say where it could not be done.
 pub type Done = Result<(), String>;
@@ -87,6 +90,7 @@ const TABLES: &[&[Command]] = &[
     cells::COMMANDS,
     items::COMMANDS,
     values::COMMANDS,
+    yanking::COMMANDS,
     moving::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,

@@ -23,6 +23,7 @@ const TABLES: &[fn()] = &[
     super::lines::nodes_are_reached_by_folding_and_going_up,
     super::lines::what_is_outside_is_asked_for,
     super::lines::the_pointer_of_a_window_is_kept_as_a_place,
+    super::data::what_is_yanked_is_pasted_where_it_fits,
     super::lines::what_lasts_of_no_key_changes_no_scene,
 ];
 

@@ -7,6 +7,7 @@ use super::app::Mode;
 use super::update::Effect;
 
 pub mod coverage;
+mod data;
 mod finding;
 mod lines;
 mod screens;

@@ -48,6 +48,14 @@ pub fn state() -> State {
     state
 }
 
+/// The editor with the scene `text` open, as [`state`].
+pub fn state_of(text: &str) -> State {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.plica.json");
+    std::fs::write(&path, text).unwrap();
+    State::new(Door::in_memory(&path), (80, 24), Depth::None)
+}
+
 /// Presses keys, written with spaces between them; `"text"` types text. Gives all effects.
 pub fn press(state: &mut State, keys: &str) -> Vec<Effect> {
     let mut effects = Vec::new();

@@ -1,0 +1,124 @@
+//! Values that come from elsewhere (the clipboard, a pasted table) into a scene: whether they fit, and the edit that brings
+//! them in under names of their own and, in an ascending list, to their places.
+
+use std::collections::HashSet;
+
+use serde_json::{Map, Value};
+
+use super::build::{unique_name, variant_of, write};
+use super::edit::Edit;
+use super::schema::{Body, Place};
+use super::{Document, field, pointer, shape};
+use crate::base::problem::Problem;
+use crate::layers;
+
+/// More items than this are written with their list as a whole: one operation, however many there are.
+const ONE_BY_ONE: usize = 100;
+
+/// Why `value` cannot stand at `path`, by the schema alone; none where it can. Paths of the problem are relative to it.
+pub fn misfit(document: &Document, path: &str, value: &Value) -> Option<Problem> {
+    match Place::of(document.json(), path) {
+        Some(place) => shape::problems(place.shape, value).into_iter().next(),
+        None => Some(Problem::error("", "there is no such place")),
+    }
+}
+
+impl Edit {
+    /// Adds `items` to the list at `list`, before the one at `index`: names become unique, and in a list that ascends each
+    /// goes to its place (where that is taken, one item goes half way to the next, many replace what is there). With it,
+    /// the pointer of the first. None where there is no such list, or nothing to add.
+    pub fn insert_all(document: &Document, list: &str, index: usize, items: Vec<Value>) -> Option<(Edit, String)> {
+        let place = Place::of(document.json(), list)?;
+        let Body::List(..) = place.shape.body() else { return None };
+        let old = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
+        let (holder, name) = pointer::split(list)?;
+        let variant = variant_of(Place::of(document.json(), holder)?);
+        let (index, items) = (index.min(old.len()), named_apart(old, items));
+        if let Some(key) = layers::ascending(variant, &name) {
+            let placed = match items.as_slice() {
+                [one] => placed_alone(variant, &name, key, old, one, index)?,
+                _ => placed(key, old, items)?,
+            };
+            return Some((write(document, list, placed.0.into()), pointer::join(list, placed.1)));
+        }
+        let first = pointer::join(list, index);
+        if items.is_empty() {
+            return None;
+        }
+        if items.len() <= ONE_BY_ONE && document.json().pointer(list).is_some_and(Value::is_array) {
+            let each = items.into_iter().enumerate();
+            let edits = each.map(|(i, item)| Edit::add(&pointer::join(list, index + i), item));
+            return Some((Edit::all(edits), first));
+        }
+        let all: Vec<Value> = old[..index].iter().cloned().chain(items).chain(old[index..].iter().cloned()).collect();
+        Some((write(document, list, all.into()), first))
+    }
+
+    /// Adds entries to the map at `map`, under names of their own; with it, the pointer of the first. None where there is
+    /// no such map, or nothing to add.
+    pub fn insert_entries(document: &Document, map: &str, entries: Map<String, Value>) -> Option<(Edit, String)> {
+        let place = Place::of(document.json(), map)?;
+        let Body::Map(_) = place.shape.body() else { return None };
+        let mut all = place.value.and_then(Value::as_object).cloned().unwrap_or_default();
+        let mut first = None;
+        for (name, value) in entries {
+            let name = unique_name(&name, |name| all.contains_key(name));
+            first.get_or_insert_with(|| pointer::join(map, &name));
+            all.insert(name, value);
+        }
+        Some((write(document, map, all.into()), first?))
+    }
+}
+
+/// The items under names that none of `old` has, nor another of them.
+fn named_apart(old: &[Value], mut items: Vec<Value>) -> Vec<Value> {
+    let mut taken: HashSet<String> = old.iter().filter_map(|item| field::name_of(Some(item))).collect();
+    for item in &mut items {
+        if let Some(name) = field::name_of(Some(item)) {
+            let name = unique_name(&name, |name| taken.contains(name));
+            item["name"] = name.as_str().into();
+            taken.insert(name);
+        }
+    }
+    items
+}
+
+fn key_of(item: &Value, key: &str) -> Option<f64> {
+    item.pointer(key).and_then(Value::as_f64)
+}
+
+/// One item in an ascending list: at its place, or where that is taken half way to the next, as a copy goes.
+fn placed_alone(
+    variant: &str,
+    list: &str,
+    key: &str,
+    old: &[Value],
+    item: &Value,
+    index: usize,
+) -> Option<(Vec<Value>, usize)> {
+    let (mut item, mut to) = (item.clone(), old.partition_point(|one| key_of(one, key) < key_of(&item, key)));
+    if old.get(to).is_some_and(|one| key_of(one, key) == key_of(&item, key)) {
+        let (near, between) = layers::item(variant, list, old, index)?;
+        (*item.pointer_mut(key)?, to) = (between.pointer(key)?.clone(), near);
+    }
+    let mut all = old.to_vec();
+    all.insert(to, item);
+    Some((all, to))
+}
+
+/// Many items in an ascending list, each at its place, instead of what stands there.
+fn placed(key: &str, old: &[Value], items: Vec<Value>) -> Option<(Vec<Value>, usize)> {
+    let least = items.iter().filter_map(|item| key_of(item, key)).fold(f64::INFINITY, f64::min);
+    let mut all = items;
+    all.sort_by(|a, b| key_of(a, key).unwrap_or(0.0).total_cmp(&key_of(b, key).unwrap_or(0.0)));
+    let kept = old.iter().filter(|one| {
+        let own = key_of(one, key).unwrap_or(0.0);
+        let at = all.partition_point(|new| key_of(new, key).unwrap_or(0.0) < own);
+        all.get(at).is_none_or(|new| key_of(new, key) != Some(own))
+    });
+    let kept: Vec<Value> = kept.cloned().collect();
+    all.extend(kept);
+    all.sort_by(|a, b| key_of(a, key).unwrap_or(0.0).total_cmp(&key_of(b, key).unwrap_or(0.0)));
+    let first = all.iter().position(|item| key_of(item, key) == Some(least))?;
+    Some((all, first))
+}

@@ -1,0 +1,285 @@
+//! Yank and paste: a node or rows as JSON, rows as CSV, and both back to where they fit.
+
+use serde_json::{Map, Value};
+
+use super::items::{go_to, target};
+use super::{Call, Command, Done, command};
+use crate::base::problem::quoted;
+use crate::scene::field::{self, Kind};
+use crate::scene::insert::misfit;
+use crate::scene::{Document, Edit, address, json, pointer};
+use crate::tui::app::{Pane, State};
+use crate::tui::clipboard::{MOST_BYTES, Yanked};
+use crate::tui::sheet::Sheet;
+use crate::tui::update::Effect;
+use crate::tui::{entry, numbers, rows, terminal};
+
+pub const COMMANDS: &[Command] = &[
+    command("yank", "[json|csv]", "Yank the row, the selection or the node", yank),
+    command("paste", "[JSON]", "Paste what was yanked, or a value, after the cursor or into the list", paste).change(),
+];
+
+fn yank(state: &mut State, call: &Call) -> Done {
+    let (text, said) = match call.text {
+        "csv" => {
+            let (sheet, rows) = table(state)?;
+            (rows::write(state.document(), &sheet, rows.clone()), format!("{} as CSV", counted(rows.count(), "row")))
+        }
+        "" | "json" => {
+            let (yanked, said) = yanked(state)?;
+            let text = json::to_text(&yanked.value).trim_end().to_owned();
+            state.kept.yanked = Some(yanked);
+            (text, said)
+        }
+        other => return Err(format!("yank takes json or csv, not {}", quoted(other))),
+    };
+    if text.len() > MOST_BYTES {
+        let size = text.len().div_ceil(1000);
+        let here = if call.text == "csv" { "" } else { "; p pastes it here" };
+        state.complain(format!(
+            "{said}: {size} kB are too much for the terminal's clipboard ({} kB){here}",
+            MOST_BYTES / 1000
+        ));
+        return Ok(());
+    }
+    state.ask(Effect::Copy(text));
+    state.say(format!("{said} yanked"));
+    Ok(())
+}
+
+/// So many of a thing, in words.
+fn counted(count: usize, name: &str) -> String {
+    if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
+}
+
+/// The rows that are yanked as CSV: those of the selection, or all of the list in focus.
+fn table(state: &State) -> Result<(Sheet, std::ops::RangeInclusive<usize>), String> {
+    let sheet = state.sheet();
+    let rows = match state.focus {
+        Pane::Table => entry::rows(state),
+        _ => 0..=sheet.len().saturating_sub(1),
+    };
+    if sheet.is_empty() || !sheet.table && !rows.clone().all(|i| sheet.row(i).is_some_and(|row| row.item)) {
+        return Err("rows of a list are yanked as CSV; y yanks this as JSON".into());
+    }
+    Ok((sheet, rows))
+}
+
+/// What `y` takes, and what it is called.
+fn yanked(state: &State) -> Result<(Yanked, String), String> {
+    let sheet = state.sheet();
+    let rows = match state.focus {
+        Pane::Table if state.selected_from.is_some() => {
+            let rows = entry::rows(state);
+            sheet.rows(*rows.start()..rows.end() + 1)
+        }
+        _ => Vec::new(),
+    };
+    let there = |pointer: &str| field::value(state.document(), pointer).filter(|value| !value.is_null());
+    let nothing = "there is nothing to yank here";
+    let one = match rows.as_slice() {
+        [] => target(state)?,
+        [row] => row.pointer.clone(),
+        _ => {
+            let said = counted(rows.len(), "row");
+            let named = rows.iter().any(|row| !row.item) || in_map(state.document(), &rows[0].pointer);
+            let values = rows.iter().filter_map(|row| Some((row.label.clone(), there(&row.pointer)?)));
+            let value: Value = match named {
+                true => values.collect::<Map<_, _>>().into(),
+                false => values.map(|(_, value)| value).collect(),
+            };
+            return Ok((Yanked { value, name: None }, said));
+        }
+    };
+    let value = there(&one).ok_or(nothing)?;
+    let name = in_map(state.document(), &one).then(|| pointer::split(&one).map(|(_, last)| last)).flatten();
+    let said = field::field(state.document(), &one).map(|field| field.name).filter(|name| !name.is_empty());
+    let said = said.map_or("the scene".into(), |name| match name.parse::<usize>() {
+        Ok(_) => counted(1, "row"),
+        Err(_) => terminal::plain(&name),
+    });
+    Ok((Yanked { value, name }, said))
+}
+
+fn in_map(document: &Document, path: &str) -> bool {
+    let holder = pointer::split(path).and_then(|(holder, _)| field::field(document, holder));
+    holder.is_some_and(|field| matches!(field.kind, Kind::Map(_)))
+}
+
+fn paste(state: &mut State, call: &Call) -> Done {
+    let yanked = match call.text {
+        "" => state.kept.yanked.clone().ok_or("nothing was yanked yet: y yanks")?,
+        text => {
+            let value = json::parse(text).map_err(|problem| format!("what was pasted is no JSON: {problem}"))?;
+            Yanked { value, name: None }
+        }
+    };
+    (0..call.times()).try_for_each(|_| paste_value(state, &yanked))
+}
+
+/// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, over a
+/// field. Of several ways the first counts that the scene bears.
+fn paste_value(state: &mut State, yanked: &Yanked) -> Done {
+    let mut why = None;
+    for (edit, pointer) in ways(state, yanked) {
+        if edit.is_empty() {
+            continue;
+        }
+        match state.edit(edit, false) {
+            Ok(()) => {
+                go_to_pasted(state, &pointer);
+                return Ok(());
+            }
+            Err(reason) => drop(why.get_or_insert(reason)),
+        }
+    }
+    Err(why.unwrap_or_else(|| refusal(state, &yanked.value)))
+}
+
+fn go_to_pasted(state: &mut State, pointer: &str) {
+    let field = field::field(state.document(), pointer);
+    let name = field.map(|field| field.name).filter(|name| name.parse::<usize>().is_err() && !name.is_empty());
+    if is_item(state.document(), pointer) || in_map(state.document(), pointer) {
+        go_to(state, pointer);
+    }
+    state.say(name.map_or("pasted".to_string(), |name| format!("{} pasted", terminal::plain(&name))));
+}
+
+fn is_item(document: &Document, path: &str) -> bool {
+    item_of(document, path).is_some()
+}
+
+/// The list and the index of an item.
+pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize)> {
+    let (list, last) = pointer::split(path)?;
+    let is_list = matches!(field::field(document, list)?.kind, Kind::List(_));
+    Some((list, pointer::index(&last).filter(|_| is_list)?))
+}
+
+/// `path` and all that hold it, the innermost first.
+pub fn upward(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(path), |path| path.rsplit_once('/').map(|(holder, _)| holder))
+}
+
+/// Where the cursor is: the cell in a table or form, else the node.
+pub fn here(state: &State) -> String {
+    let cell = || {
+        let sheet = state.sheet();
+        let row = sheet.row(state.row)?;
+        Some(row.cells.get(state.column).map_or(&row.pointer, |cell| &cell.pointer).clone())
+    };
+    match state.focus {
+        Pane::Tree => state.node.clone(),
+        _ => cell().unwrap_or_else(|| state.node.clone()),
+    }
+}
+
+/// Every way in which a value fits, the likeliest first.
+fn ways(state: &State, yanked: &Yanked) -> Vec<(Edit, String)> {
+    let document = state.document();
+    let here = here(state);
+    let mut ways: Vec<(Edit, String)> = over_cells(state, &yanked.value, &here).into_iter().collect();
+    for path in upward(&here) {
+        if let Some((list, index)) = item_of(document, path) {
+            ways.extend(into_list(document, list, index + 1, &yanked.value));
+        }
+        let Some(field) = field::field(document, path) else { continue };
+        if let Kind::List(_) = field.kind {
+            let end = document.json().pointer(path).and_then(Value::as_array).map_or(0, Vec::len);
+            ways.extend(into_list(document, path, end, &yanked.value));
+        }
+        ways.extend(into_map(document, path, yanked));
+        // Rows of a list of fixed length, as a matrix is, have no room for another.
+        let loose = matches!(field.kind, Kind::Numbers(_)) || !is_item(document, path) && !in_map(document, path);
+        if loose && misfit(document, path, &yanked.value).is_none() {
+            ways.push((Edit::set(document, path, yanked.value.clone()), path.to_owned()));
+        }
+    }
+    ways.extend(fields(document, &state.node, &here, &yanked.value));
+    for child in field::children(document, &state.node) {
+        let end = document.json().pointer(&child.pointer).and_then(Value::as_array).map_or(0, Vec::len);
+        ways.extend(into_list(document, &child.pointer, end, &yanked.value));
+        ways.extend(into_map(document, &child.pointer, yanked));
+    }
+    ways
+}
+
+/// A number over a number, a text over a text: in every selected row, as if it were typed.
+fn over_cells(state: &State, value: &Value, here: &str) -> Option<(Edit, String)> {
+    let row = state.sheet().row(state.row)?;
+    let cell = row.cells.get(state.column).filter(|_| state.focus == Pane::Table)?;
+    let text = match value {
+        Value::Number(number) if cell.is_number() => numbers::exact(number.as_f64()?),
+        Value::String(text) if cell.field.kind == Kind::Text => text.clone(),
+        _ => return None,
+    };
+    Some((entry::edit(state, &text).ok()?, here.to_owned()))
+}
+
+/// A value as one item of a list, or its parts as several.
+fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Option<(Edit, String)> {
+    let item = pointer::join(list, "-");
+    let fits = |value: &Value| misfit(document, &item, value).is_none();
+    if !matches!(field::field(document, list)?.kind, Kind::List(_)) {
+        return None;
+    }
+    let items = match value {
+        value if fits(value) => vec![value.clone()],
+        Value::Array(items) if items.iter().all(fits) => items.clone(),
+        _ => return None,
+    };
+    Edit::insert_all(document, list, index, items)
+}
+
+/// A value as one entry of a map, under the name it had or that of its file; or an object of such entries.
+fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<(Edit, String)> {
+    let field = field::field(document, map).filter(|field| matches!(field.kind, Kind::Map(_)))?;
+    let fits = |value: &Value| misfit(document, &pointer::join(map, "new"), value).is_none();
+    let entries = match &yanked.value {
+        value if fits(value) => {
+            let file = || value.get("path").and_then(Value::as_str).map(stem).map(str::to_owned);
+            let name = yanked.name.clone().or_else(file).unwrap_or(field.name);
+            Map::from_iter([(name, value.clone())])
+        }
+        Value::Object(entries) if entries.values().all(fits) => entries.clone(),
+        _ => return None,
+    };
+    Edit::insert_entries(document, map, entries)
+}
+
+/// The name of a file without its folder and its ending.
+pub fn stem(path: &str) -> &str {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    file.split_once('.').map_or(file, |(stem, _)| stem)
+}
+
+/// An object whose every key is a field of the form.
+fn fields(document: &Document, form: &str, here: &str, value: &Value) -> Option<(Edit, String)> {
+    let object = value.as_object().filter(|object| !object.is_empty())?;
+    let known = field::children(document, form);
+    let known =
+        |name: &String| known.iter().find(|child| pointer::split(&child.pointer).is_some_and(|(_, own)| own == **name));
+    let edits = object.iter().map(|(name, value)| {
+        let child = known(name).filter(|child| misfit(document, &child.pointer, value).is_none())?;
+        Some(Edit::set(document, &child.pointer, value.clone()))
+    });
+    Some((Edit::all(edits.collect::<Option<Vec<_>>>()?), here.to_owned()))
+}
+
+/// Why nothing takes the value: what the place under the cursor wants.
+fn refusal(state: &State, value: &Value) -> String {
+    let document = state.document();
+    let here = here(state);
+    let list = upward(&here).find_map(|path| match field::field(document, path)?.kind {
+        Kind::List(_) => Some(path.to_owned()),
+        _ => item_of(document, path).map(|(list, _)| list.to_owned()),
+    });
+    let wanted = list.as_ref().map_or(here.clone(), |list| pointer::join(list, "-"));
+    let why = misfit(document, &wanted, value).map(|problem| problem.to_string()).unwrap_or_default();
+    let name = address::address(document, list.as_deref().unwrap_or(&here));
+    format!(
+        "it does not fit into {}: {}",
+        if name.is_empty() { "the scene" } else { &name },
+        why.trim_start_matches('/')
+    )
+}
