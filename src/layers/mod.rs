@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::base::change::Change;
 use crate::base::pixels::{Grid, Picture};
 use crate::base::problem::Problem;
 
@@ -21,15 +22,18 @@ pub type Xy = [f64; 2];
 pub type Sizes = BTreeMap<String, (usize, usize)>;
 
 /// How many things a place of the document asks for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Count {
+pub struct Count<'a> {
     /// What is counted: "anchors", "points" (of outlines).
     pub what: &'static str,
     /// The place, relative to the layer.
-    pub path: String,
+    pub path: &'a dyn Fn() -> String,
     /// How many, estimated from above.
     pub count: f64,
 }
+
+/// The problems of a layer, part by part, each relative to its part: what an edit leaves alone keeps them.
+#[derive(Clone, Debug, Default)]
+pub struct Checked(pub Vec<Arc<[Problem]>>);
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,17 +51,36 @@ impl Layer {
         }
     }
 
-    /// Every problem of the layer by itself; paths are relative to it.
-    pub fn check(&self) -> Vec<Problem> {
+    /// Checks the layer by itself. Parts that are as in the layer `before` keep what was found there.
+    pub fn check(&self, before: Option<(&Layer, &Checked)>) -> Checked {
         match self {
-            Layer::Picture(picture) => folding::check::check(picture),
+            Layer::Picture(picture) => {
+                let before = before.map(|(Layer::Picture(before), checked)| (before, checked));
+                folding::check::check(picture, before)
+            }
         }
     }
 
-    /// What the layer asks for, place by place, told before any of it is made; paths are relative to the layer.
-    pub fn counts(&self) -> Vec<Count> {
+    /// Every problem that a check has found; paths are relative to the layer.
+    pub fn problems(&self, checked: &Checked) -> Vec<Problem> {
         match self {
-            Layer::Picture(picture) => folding::check::counts(picture),
+            Layer::Picture(_) => folding::check::problems(checked),
+        }
+    }
+
+    /// The layer that `json` means, where `change` is how that differs from what this one was read from; none where it
+    /// must be read as a whole.
+    pub fn reread(&self, json: &Value, change: &Change) -> Option<Layer> {
+        match self {
+            _ if *change.field("kind") != Change::Same => None,
+            Layer::Picture(picture) => folding::reread::layer(picture, json, change).map(Layer::Picture),
+        }
+    }
+
+    /// Calls `each` with what the layer asks for, place by place, told before any of it is made.
+    pub fn counts(&self, each: &mut dyn FnMut(Count)) {
+        match self {
+            Layer::Picture(picture) => folding::check::counts(picture, each),
         }
     }
 

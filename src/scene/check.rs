@@ -1,12 +1,15 @@
 //! Everything that can be said about a scene before it is synthesised: shape first (the schema), then names, references
 //! and what each technique says about its own layers. Facts about pictures come in as values.
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Scene, pointer, shape};
+use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity, nearest, quoted};
-use crate::layers::{Sizes, check as rules};
+use crate::layers::{Checked, Sizes, check as rules};
 
 /// So many unknown references of a layer are listed.
 const MAX_REFERENCES: usize = 100;
@@ -35,29 +38,78 @@ impl Default for Rules {
     }
 }
 
+/// What JSON means, once it has passed every check.
+#[derive(Clone, Debug)]
+pub struct Read {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// What deserves a word.
+    pub warnings: Arc<[Problem]>,
+    /// What was found in each layer by itself.
+    layers: Arc<[Checked]>,
+}
+
 /// The scene that `json` means, with its warnings; or every problem: of shape, and, where the shape is right, of names,
 /// ranges and references.
-pub fn read(json: &Value, rules: &Rules) -> Result<(Scene, Vec<Problem>), Vec<Problem>> {
+pub fn read(json: &Value, rules: &Rules) -> Result<Read, Vec<Problem>> {
     let problems = shape::check(json);
     if !problems.is_empty() {
         return Err(problems);
     }
     // The walk above says the same as the types and more; where they ever differ the types have the last word.
     let scene = Scene::deserialize(json).map_err(|e| vec![Problem::error("", e.to_string())])?;
-    let problems = check(&scene, rules);
-    if problems.iter().any(|problem| problem.severity == Severity::Error) {
-        Err(problems)
-    } else {
-        Ok((scene, problems))
+    check(scene, None, rules)
+}
+
+/// The same, where `change` is how `json` differs from what `before` was read from: only that is looked at. What does not
+/// come through is read as a whole, so that problems are told as ever.
+pub fn reread(json: &Value, change: &Change, before: &Read, rules: &Rules) -> Result<Read, Vec<Problem>> {
+    let fits = shape::still_fits(json, change);
+    match if fits { before.scene.reread(json, change) } else { None } {
+        Some(scene) => check(scene, Some(before), rules),
+        None => read(json, rules),
     }
 }
 
-/// Every problem of a scene whose shape is right, errors first.
-pub fn check(scene: &Scene, rules: &Rules) -> Vec<Problem> {
+impl Scene {
+    fn reread(&self, json: &Value, change: &Change) -> Option<Scene> {
+        let bare = json.as_object()?.iter().filter(|(name, _)| *name != "layers");
+        let bare = Scene::deserialize(Value::Object(bare.map(|(k, v)| (k.clone(), v.clone())).collect())).ok()?;
+        let layers = match change.field("layers") {
+            Change::Same => self.layers.clone(),
+            Change::Items(items) if items.ahead + items.between.len() + items.behind == self.layers.len() => {
+                let mut layers = self.layers.clone();
+                for (i, change) in items.each().filter(|(_, change)| **change != Change::Same) {
+                    let layer = layers.get_mut(i)?;
+                    *layer = layer.reread(json.get("layers")?.get(i)?, change)?;
+                }
+                layers
+            }
+            _ => return None,
+        };
+        Some(Scene { layers, ..bare })
+    }
+}
+
+/// Checks a scene whose shape is right, and what is new in it since `before`.
+fn check(scene: Scene, before: Option<&Read>, rules: &Rules) -> Result<Read, Vec<Problem>> {
+    let before = |i: usize| before.and_then(|before| Some((before.scene.layers.get(i)?, before.layers.get(i)?)));
     // What asks for too much is not even looked at more closely.
-    let mut problems = counts(scene, rules);
-    if problems.is_empty() {
-        problems.extend(below_layers(scene, |layer| layer.check()));
+    let over = counts(&scene, rules);
+    let layers = scene.layers.iter().enumerate().filter(|_| over.is_empty());
+    let layers: Vec<Checked> = layers.map(|(i, layer)| layer.check(before(i))).collect();
+    let warnings = problems(&scene, over, &layers, rules);
+    if warnings.iter().any(|problem| problem.severity == Severity::Error) {
+        return Err(warnings);
+    }
+    Ok(Read { scene: Arc::new(scene), warnings: warnings.into(), layers: layers.into() })
+}
+
+/// Every problem of a scene whose shape is right, errors first.
+fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules) -> Vec<Problem> {
+    let mut problems = over;
+    for (i, (layer, checked)) in scene.layers.iter().zip(layers).enumerate() {
+        problems.extend(layer.problems(checked).into_iter().map(|problem| problem.under(&format!("/layers/{i}"))));
     }
     problems.extend(scene.images.keys().filter_map(|name| rules::plain_text(name, &pointer::join("/images", name))));
     if scene.layers.is_empty() {
@@ -85,20 +137,19 @@ fn below_layers(scene: &Scene, check: impl Fn(&crate::layers::Layer) -> Vec<Prob
 
 /// The first place of each kind where the scene asks for more than is allowed.
 fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    for (what, most) in [("anchors", rules.anchors), ("points", rules.points)] {
-        let layers = scene.layers.iter().enumerate();
-        let places = layers.flat_map(|(i, layer)| {
-            let counts = layer.counts().into_iter().filter(|count| count.what == what);
-            counts.map(move |count| (format!("/layers/{i}{}", count.path), count.count))
+    let mut sums = [("anchors", rules.anchors, 0.0, None), ("points", rules.points, 0.0, None)];
+    for (i, layer) in scene.layers.iter().enumerate() {
+        layer.counts(&mut |count| {
+            for (_, most, sum, over) in sums.iter_mut().filter(|(what, ..)| *what == count.what) {
+                *sum += count.count;
+                if *sum > *most as f64 && over.is_none() {
+                    *over = Some(format!("/layers/{i}{}", (count.path)()));
+                }
+            }
         });
-        let mut sum = 0.0;
-        let over = places.into_iter().find(|(_, count)| {
-            sum += count;
-            sum > most as f64
-        });
-        problems.extend(over.map(|(path, _)| too_many(path, what, most)));
     }
+    let over = sums.into_iter().filter_map(|(what, most, _, over)| Some(too_many(over?, what, most)));
+    let mut problems: Vec<Problem> = over.collect();
     if scene.timeline.frames() > rules.frames {
         problems.push(too_many("/timeline".into(), "frames", rules.frames));
     }

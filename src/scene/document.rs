@@ -8,14 +8,14 @@ use serde_json::{Value, json};
 use super::check::Rules;
 use super::edit::Edit;
 use super::{Scene, VERSION, check, json, migrate};
+use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
 
 /// A scene as written and as meant. A clone shares both.
 #[derive(Clone, Debug)]
 pub struct Document {
     json: Arc<Value>,
-    scene: Arc<Scene>,
-    warnings: Arc<[Problem]>,
+    read: check::Read,
     rules: Rules,
 }
 
@@ -39,8 +39,8 @@ impl Document {
 
     /// The same under other rules.
     pub fn from_json_under(json: Value, rules: Rules) -> Result<Document, Vec<Problem>> {
-        let (scene, warnings) = check::read(&json, &rules)?;
-        Ok(Document { json: Arc::new(json), scene: Arc::new(scene), warnings: warnings.into(), rules })
+        let read = check::read(&json, &rules)?;
+        Ok(Document { json: Arc::new(json), read, rules })
     }
 
     /// A scene of pictures, (name, path, width, height) each: a layer each, with one zone that covers it. Names are
@@ -66,7 +66,7 @@ impl Document {
 
     /// What the document means.
     pub fn scene(&self) -> &Arc<Scene> {
-        &self.scene
+        &self.read.scene
     }
 
     /// What is written.
@@ -81,16 +81,28 @@ impl Document {
 
     /// What deserves a word; the scene renders.
     pub fn warnings(&self) -> &[Problem] {
-        &self.warnings
+        &self.read.warnings
     }
 
     /// The document after an edit, or the errors that it would bring.
     pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
+        Ok(self.change(edit)?.map_or_else(|| self.clone(), |(document, _)| document))
+    }
+
+    /// The same, with what takes the edit back; none where it changes nothing. Only what the edit changes is read and
+    /// checked again; it comes to what the whole check says.
+    pub(super) fn change(&self, edit: &Edit) -> Result<Option<(Document, Edit)>, Vec<Problem>> {
         let mut json = Value::clone(&self.json);
-        edit.patch(&mut json).map_err(|problem| vec![problem])?;
-        Document::from_json_under(json, self.rules).map_err(|mut problems| {
+        let inverse = edit.patch(&mut json).map_err(|problem| vec![problem])?;
+        let change = Change::of(&self.json, &json);
+        if change == Change::Same {
+            return Ok(None);
+        }
+        let errors = |mut problems: Vec<Problem>| {
             problems.retain(|problem| problem.severity == Severity::Error);
             problems
-        })
+        };
+        let read = check::reread(&json, &change, &self.read, &self.rules).map_err(errors)?;
+        Ok(Some((Document { json: Arc::new(json), read, rules: self.rules }, inverse)))
     }
 }

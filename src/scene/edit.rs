@@ -60,23 +60,17 @@ impl Edit {
         }
     }
 
-    /// Changes `json`, without looking at what comes out.
-    pub(super) fn patch(&self, json: &mut Value) -> Result<(), Problem> {
-        self.0.iter().try_for_each(|operation| step(json, operation).map(|_| ()))
+    /// Changes `json`, without looking at what comes out. Gives what takes the edit back, to the letter.
+    pub(super) fn patch(&self, json: &mut Value) -> Result<Edit, Problem> {
+        let mut undo = self.0.iter().map(|operation| step(json, operation)).collect::<Result<Vec<_>, _>>()?;
+        undo.reverse();
+        Ok(Edit::all(undo))
     }
 
     /// What takes the edit back: applied after it, it gives back `document` to the letter. Empty where the edit cannot be
     /// applied.
     pub fn inverse(&self, document: &Document) -> Edit {
-        let mut json = document.json().clone();
-        let mut undo = Vec::new();
-        for operation in self.0.iter() {
-            match step(&mut json, operation) {
-                Ok(inverse) => undo.push(inverse),
-                Err(_) => return Edit::default(),
-            }
-        }
-        Edit::all(undo.into_iter().rev())
+        self.patch(&mut document.json().clone()).unwrap_or_default()
     }
 
     /// The edit that makes `to` out of `from`, to the letter.

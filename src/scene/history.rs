@@ -80,11 +80,7 @@ impl History {
 
     /// Applies an edit; what was undone is forgotten. None where the edit changes nothing.
     pub fn apply(&mut self, edit: Edit, stamp: Stamp) -> Result<Option<Applied>, Vec<Problem>> {
-        let document = self.document.apply(&edit)?;
-        let inverse = edit.inverse(&self.document);
-        if super::json::same(document.json(), self.document.json()) {
-            return Ok(None);
-        }
+        let Some((document, inverse)) = self.document.change(&edit)? else { return Ok(None) };
         self.document = document;
         let step = self.note(edit.clone(), inverse.clone(), stamp);
         Ok(Some(Applied { revision: self.revision, step, edit, inverse }))

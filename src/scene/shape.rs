@@ -7,6 +7,7 @@ use serde_json::{Map, Number, Value};
 use super::field::range_text;
 use super::pointer;
 use super::schema::{Body, Shape, WIDEST};
+use crate::base::change::Change;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 
 /// No more problems than this are listed.
@@ -20,6 +21,35 @@ pub fn check(json: &Value) -> Vec<Problem> {
         walk.problems.push(Problem::error("", format!("more than {MAX_PROBLEMS} problems; the rest are not listed")));
     }
     walk.problems
+}
+
+/// Whether `json` has the right shape, where what it was before `change` had it.
+pub fn still_fits(json: &Value, change: &Change) -> bool {
+    changed_fits(Shape::root(), json, change)
+}
+
+fn changed_fits(shape: Shape, value: &Value, change: &Change) -> bool {
+    match (change, shape.body(), value) {
+        (Change::Same, ..) => true,
+        (Change::Items(items), Body::List(item, min, max), Value::Array(all)) => {
+            let fits = |(i, change): (usize, &Change)| all.get(i).is_some_and(|one| changed_fits(item, one, change));
+            (min..=max).contains(&all.len()) && items.each().all(fits)
+        }
+        (Change::Fields(fields), Body::Map(item), Value::Object(map)) => {
+            fields.iter().all(|(name, change)| map.get(name).is_none_or(|value| changed_fits(item, value, change)))
+        }
+        (Change::Fields(fields), body @ (Body::Object | Body::Tagged(_)), Value::Object(map)) => {
+            let retagged = matches!(body, Body::Tagged(tag) if *change.field(tag) != Change::Same);
+            let Some(branch) = shape.branch(Some(value)).filter(|_| !retagged) else { return fits(shape, value) };
+            let field = |(name, change): &(String, Change)| match (map.get(name), branch.property(None, name)) {
+                (None, _) => true,
+                (Some(value), Some(field)) => changed_fits(field, value, change),
+                (Some(_), None) => false,
+            };
+            branch.required().all(|name| map.contains_key(name)) && fields.iter().all(field)
+        }
+        _ => fits(shape, value),
+    }
 }
 
 /// Whether `value` has this shape.

@@ -9,7 +9,7 @@ use super::{anchors, counts, fold::Fold, interpolation::Interpolation, outline::
 use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::problem::{Problem, quoted};
-use crate::layers::{Count, Sizes, check as rules};
+use crate::layers::{Checked, Count, Sizes, check as rules};
 
 /// In zones with more anchors than this, coincident ones are not looked for.
 const MAX_COMPARED: f64 = 20_000.0;
@@ -20,15 +20,31 @@ const SAME_PX: f64 = 1e-6;
 /// So many coincident pairs of a zone are named.
 const MAX_PAIRS: usize = 3;
 
-/// Every problem of the layer by itself.
-pub fn check(layer: &PictureLayer) -> Vec<Problem> {
-    let zones = || layer.zones.iter().enumerate();
-    let mut problems = rules::names(zones().map(|(i, zone)| (format!("/zones/{i}/name"), zone.name.as_str())));
-    for (i, zone) in zones() {
-        let prefix = format!("/zones/{i}");
-        problems.extend(check_zone(zone).into_iter().map(|problem| problem.under(&prefix)));
+/// Checks the layer by itself: the names of its zones, then each zone, unless it is as in the layer `before`.
+pub fn check(layer: &PictureLayer, before: Option<(&PictureLayer, &Checked)>) -> Checked {
+    let names = layer.zones.iter().enumerate();
+    let names = rules::names(names.map(|(i, zone)| (format!("/zones/{i}/name"), zone.name.as_str())));
+    let known = |i: usize, zone: &Zone| {
+        let (before, checked) = before?;
+        let alike = |&j: &usize| before.zones.get(j) == Some(zone);
+        let at = Some(i).filter(alike).or_else(|| (0..before.zones.len()).find(alike))?;
+        checked.0.get(at + 1).cloned()
+    };
+    let zones = layer.zones.iter().enumerate();
+    let zones = zones.map(|(i, zone)| known(i, zone).unwrap_or_else(|| check_zone(zone).into()));
+    Checked(std::iter::once(names.into()).chain(zones).collect())
+}
+
+/// Every problem that a check has found, its path relative to the layer.
+pub fn problems(checked: &Checked) -> Vec<Problem> {
+    let mut all = Vec::new();
+    for (i, part) in checked.0.iter().enumerate() {
+        match i.checked_sub(1) {
+            None => all.extend(part.iter().cloned()),
+            Some(zone) => all.extend(part.iter().map(|problem| problem.clone().under(&format!("/zones/{zone}")))),
+        }
     }
-    problems
+    all
 }
 
 /// The images that the layer names, each with its pointer.
@@ -58,16 +74,15 @@ pub fn files(layer: &PictureLayer) -> Vec<(String, &str)> {
 }
 
 /// The anchors and outline points that the layer asks for, place by place, told before they are made.
-pub fn counts(layer: &PictureLayer) -> Vec<Count> {
-    let mut all = Vec::new();
+pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     for (i, zone) in layer.zones.iter().enumerate() {
-        all.push(Count { what: "points", path: format!("/zones/{i}/outline"), count: counts::points(zone) });
+        let path = || format!("/zones/{i}/outline");
+        each(Count { what: "points", path: &path, count: counts::points(zone) });
         for (j, tool) in zone.motion.iter().enumerate() {
-            let count = counts::anchors(tool, &zone.outline);
-            all.push(Count { what: "anchors", path: format!("/zones/{i}/motion/{j}"), count });
+            let path = || format!("/zones/{i}/motion/{j}");
+            each(Count { what: "anchors", path: &path, count: counts::anchors(tool, &zone.outline) });
         }
     }
-    all
 }
 
 /// What the sizes of pictures say: an outline outside its picture, a mask of another size.

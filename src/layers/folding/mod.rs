@@ -14,6 +14,7 @@ pub mod outline;
 pub mod position;
 pub mod probe;
 pub mod regions;
+pub mod reread;
 pub mod starts;
 pub mod synth;
 pub mod texels;

@@ -2,6 +2,7 @@
 
 mod edits;
 mod fields;
+mod reread;
 mod undo;
 
 use super::field::{Field, Kind, children};

@@ -1,0 +1,122 @@
+//! What differs between two JSON values, found in one walk over both, so that what comes after an edit (checks, reading
+//! into types) looks only where something has changed.
+
+use serde_json::{Map, Value};
+
+/// How a value differs from the one that stood in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Not at all: to the last sign, the order of keys included.
+    Same,
+    /// It is another value.
+    Other,
+    /// An object of which these fields differ: changed, added (the old one has them not) or taken away.
+    Fields(Vec<(String, Change)>),
+    /// A list that differs in one stretch.
+    Items(Items),
+}
+
+/// How a list differs: the same items at both ends, others between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Items {
+    /// So many items at the beginning are the old ones.
+    pub ahead: usize,
+    /// And so many at the end.
+    pub behind: usize,
+    /// The new list's items between; where the list has kept its length, against the old ones at the same places, else
+    /// all [`Change::Other`].
+    pub between: Vec<Change>,
+}
+
+impl Change {
+    /// What makes `new` of `old`.
+    pub fn of(old: &Value, new: &Value) -> Change {
+        match (old, new) {
+            (Value::Object(old), Value::Object(new)) => fields(old, new),
+            (Value::Array(old), Value::Array(new)) => items(old, new),
+            _ if old == new => Change::Same,
+            _ => Change::Other,
+        }
+    }
+
+    /// How the field `name` of an object differs.
+    pub fn field(&self, name: &str) -> &Change {
+        match self {
+            Change::Same => &Change::Same,
+            Change::Fields(fields) => fields.iter().find(|(key, _)| key == name).map_or(&Change::Same, |(_, one)| one),
+            _ => &Change::Other,
+        }
+    }
+}
+
+impl Items {
+    /// The items that may differ, each with its place in the new list.
+    pub fn each(&self) -> impl Iterator<Item = (usize, &Change)> {
+        self.between.iter().enumerate().map(|(i, change)| (self.ahead + i, change))
+    }
+}
+
+fn fields(old: &Map<String, Value>, new: &Map<String, Value>) -> Change {
+    let common = |a: &Map<String, Value>, b: &Map<String, Value>| -> Vec<String> {
+        a.keys().filter(|key| b.contains_key(*key)).cloned().collect()
+    };
+    let ordered = old.keys().eq(new.keys());
+    if !ordered && common(old, new) != common(new, old) {
+        return Change::Other;
+    }
+    let gone = old.keys().filter(|key| !ordered && !new.contains_key(*key)).map(|key| (key.clone(), Change::Other));
+    let mut changed: Vec<(String, Change)> = gone.collect();
+    for (key, value) in new {
+        match old.get(key).map_or(Change::Other, |old| Change::of(old, value)) {
+            Change::Same => {}
+            change => changed.push((key.clone(), change)),
+        }
+    }
+    if changed.is_empty() { Change::Same } else { Change::Fields(changed) }
+}
+
+fn items(old: &[Value], new: &[Value]) -> Change {
+    let same = |(old, new): (&Value, &Value)| Change::of(old, new) == Change::Same;
+    let ahead = old.iter().zip(new).take_while(|&pair| same(pair)).count();
+    let least = old.len().min(new.len()) - ahead;
+    let behind = old.iter().rev().zip(new.iter().rev()).take(least).take_while(|&pair| same(pair)).count();
+    if ahead == new.len() && ahead == old.len() {
+        return Change::Same;
+    }
+    let (old, new) = (&old[ahead..old.len() - behind], &new[ahead..new.len() - behind]);
+    let between = match old.len() == new.len() {
+        true => old.iter().zip(new).map(|(old, new)| Change::of(old, new)).collect(),
+        false => vec![Change::Other; new.len()],
+    };
+    Change::Items(Items { ahead, behind, between })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn only_what_differs_is_told() {
+        let old = json!({ "a": 1, "b": [1, 2, 3, 4], "c": { "d": "x", "e": null } });
+        let changed = |path: &str, value: Value| {
+            let mut new = old.clone();
+            *new.pointer_mut(path).unwrap() = value;
+            Change::of(&old, &new)
+        };
+        let field = |name: &str, change| Change::Fields(vec![(name.to_owned(), change)]);
+        let items =
+            |ahead, behind, between: &[Change]| Change::Items(Items { ahead, behind, between: between.to_vec() });
+        let other = || Change::Other;
+        assert_eq!(Change::of(&old, &old), Change::Same);
+        assert_eq!(changed("/a", json!(2)), field("a", other()));
+        assert_eq!(changed("/c/d", json!("y")), field("c", field("d", other())));
+        assert_eq!(changed("/b/2", json!(9)), field("b", items(2, 1, &[other()])));
+        assert_eq!(changed("/b", json!([1, 2, 4])), field("b", items(2, 1, &[])));
+        assert_eq!(changed("/b", json!([1, 2, 2, 3, 4])), field("b", items(2, 2, &[other()])));
+        assert_eq!(changed("/c", json!({ "e": null })), field("c", field("d", other())));
+        assert_eq!(changed("/c", json!({ "e": null, "d": "x" })), field("c", other()));
+        assert_eq!(changed("/a", json!(1.0)), field("a", other()));
+    }
+}
