@@ -244,7 +244,7 @@ impl State {
 
     /// The contexts of the key table that are in force, the innermost first.
     pub fn contexts(&self) -> Vec<&'static str> {
-        match (&self.mode, self.focus) {
+        let mut contexts = match (&self.mode, self.focus) {
             (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
             (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
             (Mode::Choice(_), _) => vec![keys::LIST],
@@ -253,7 +253,11 @@ impl State {
             (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
             (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
             (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],
+        };
+        if matches!(self.mode, Mode::Normal) && self.recorder.recording().is_some() {
+            contexts.insert(0, keys::RECORDING);
         }
+        contexts
     }
 
     /// The frame that is shown, and how many there are.

@@ -13,6 +13,7 @@ mod cells;
 pub use cells::step_of;
 mod files;
 mod items;
+mod macros;
 mod moving;
 mod pasting;
 mod placing;
@@ -68,6 +69,11 @@ impl Command {
         Command { kept: Kept::Answer, ..self }
     }
 
+    /// One that plays lines, which are kept in its place.
+    const fn played(self) -> Command {
+        Command { kept: Kept::Played, ..self }
+    }
+
     /// One of which only the lines are kept that it runs itself, if any: it types, asks, or only shows.
     const fn inside(self) -> Command {
         Command { kept: Kept::Inside, ..self }
@@ -96,6 +102,7 @@ const TABLES: &[&[Command]] = &[
     playing::COMMANDS,
     typing::COMMANDS,
     scripts::COMMANDS,
+    macros::COMMANDS,
 ];
 
 /// Every command of the editor.
@@ -136,7 +143,7 @@ pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
     super::tests::coverage::ran(said.name);
     let command = find(said.name);
     let kept = command.map_or(Kept::Line, |command| command.kept);
-    let asked = asks(state);
+    let (revision, asked) = (state.door.revision(), asks(state));
     state.recorder.begin(kept);
     let done = match command {
         Some(command) => (command.run)(state, &Call { text: said.text, count: said.count }),
@@ -144,11 +151,17 @@ pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
     };
     let asks = asks(state) && !asked;
     // Only a run of steps joins into one step of undo, whatever was looked at meanwhile.
-    if done.is_ok() && kept != Kept::Inside && !asks && said.name != "step" {
+    if done.is_ok() && !matches!(kept, Kept::Inside | Kept::Played) && !asks && said.name != "step" {
         state.door.close_step();
     }
     let refused = done.as_ref().err().map(String::as_str);
-    state.recorder.end(Ended { line: said.to_string(), kept, refused, asks });
+    state.recorder.end(Ended {
+        line: said.to_string(),
+        kept,
+        refused,
+        asks,
+        changed: state.door.revision() != revision,
+    });
     done
 }
 

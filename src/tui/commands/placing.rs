@@ -11,7 +11,7 @@ use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor),
-    command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed),
+    command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed).change(),
     command("zoom", "in|out|fit", "Zoom the picture", zoom),
     command("pointer", "", "Take the window's pointer into the field, else into the picture's cursor", pointer)
         .inside(),

@@ -16,6 +16,8 @@ pub const AIM: &str = "aiming a jump vector";
 pub const LIST: &str = "list of choices";
 /// The help.
 pub const HELP: &str = "help";
+/// Every pane, while a macro is being recorded.
+pub const RECORDING: &str = "recording a macro";
 /// Any text being typed.
 pub const TYPING: &str = "typing";
 /// A value being typed into a cell.
@@ -37,6 +39,10 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "Ctrl-c", "leave", "As Esc, and say how to leave"),
     row(EVERYWHERE, "u", "undo", "Undo"),
     row(EVERYWHERE, "Ctrl-r", "redo", "Redo"),
+    row(EVERYWHERE, ".", "again", "Repeat the last change here"),
+    row(EVERYWHERE, "q {a-z}", "record {a-z}", "Record a macro"),
+    row(EVERYWHERE, "@ {a-z}", "play-macro {a-z}", "Play a macro"),
+    row(EVERYWHERE, "@ @", "play-macro last", "Play the last macro again"),
     row(EVERYWHERE, "<", "step-size smaller", "Make the step ten times smaller"),
     row(EVERYWHERE, ">", "step-size larger", "Make the step ten times larger"),
     row(EVERYWHERE, "P", "play", "Play or pause"),
@@ -73,6 +79,7 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "M", "pointer", "Take the window's pointer into the field, else into the picture's cursor"),
     row(EVERYWHERE, "Ctrl-l", "redraw", "Draw the screen anew"),
     row(EVERYWHERE, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
+    row(RECORDING, "q", "record", "End the macro"),
     row(TREE, "j", "move down", "Go down"),
     row(TREE, "Down", "move down", "Go down"),
     row(TREE, "k", "move up", "Go up"),

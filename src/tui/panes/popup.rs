@@ -59,7 +59,9 @@ fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     let contexts = state.contexts();
     let rows: Vec<_> = keys::continuations(&contexts, &state.pressed).collect();
     let tall = rows.len() as u16 + 2;
-    let wide = rows.iter().map(|row| width(row.help) + 8).max().unwrap_or(0) + 4;
+    let column =
+        rows.iter().map(|row| width(row.key) + 1).max().unwrap_or(0).saturating_sub(width(&state.pressed)).max(4);
+    let wide = rows.iter().map(|row| width(row.help)).max().unwrap_or(0) + column + 8;
     let area = Rect {
         x: screen.right().saturating_sub(wide + 1),
         y: screen.bottom().saturating_sub(tall + 2),
@@ -73,6 +75,6 @@ fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     for (y, row) in rows.iter().enumerate() {
         let key = row.key.strip_prefix(&state.pressed).unwrap_or(row.key);
         write(buffer, inner, 0, y as u16, key, colour::strong());
-        write(buffer, inner, 4, y as u16, row.help, Style::new());
+        write(buffer, inner, i32::from(column), y as u16, row.help, Style::new());
     }
 }

@@ -62,6 +62,9 @@ fn marks(state: &State) -> String {
 
 fn right(state: &State) -> String {
     let mut parts = Vec::new();
+    if let Some(letter) = state.recorder.recording() {
+        parts.push(format!("recording {letter}"));
+    }
     if let Some(count) = state.count {
         parts.push(count.to_string());
     }

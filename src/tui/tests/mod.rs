@@ -10,6 +10,7 @@ pub mod coverage;
 mod data;
 mod finding;
 mod lines;
+mod macros;
 mod screens;
 pub mod support;
 

@@ -1,0 +1,69 @@
+//! Lines run again: macros, and `.` for the last change. Both are lines that the recorder kept; a line that cannot be done
+//! ends them.
+
+use super::{Call, Command, Done, Said, command, obey};
+use crate::tui::app::{Mode, State};
+
+pub const COMMANDS: &[Command] = &[
+    command("record", "[LETTER]", "Record a macro, or end the recording", record).inside(),
+    command("play-macro", "LETTER|last", "Play a macro", play).played(),
+    command("again", "", "Repeat the last change here", again).played(),
+];
+
+fn record(state: &mut State, call: &Call) -> Done {
+    if call.text.is_empty() {
+        let (letter, lines) = state.recorder.end_macro().ok_or("no macro is being recorded: qa begins a")?;
+        state.say(format!("macro {letter} has {lines} lines: @{letter} plays it"));
+        return Ok(());
+    }
+    if let Some(letter) = state.recorder.recording() {
+        return Err(format!("macro {letter} is being recorded: q ends it"));
+    }
+    state.recorder.begin_macro(letter(call.text)?);
+    Ok(())
+}
+
+fn letter(text: &str) -> Result<char, String> {
+    let mut letters = text.chars();
+    let one = letters.next().filter(char::is_ascii_lowercase).filter(|_| letters.next().is_none());
+    one.ok_or_else(|| format!("macros have letters from a to z, not {text}"))
+}
+
+fn play(state: &mut State, call: &Call) -> Done {
+    let letter = match call.text {
+        "last" => state.recorder.played().ok_or("no macro was played yet: @a plays a")?,
+        text => letter(text)?,
+    };
+    let lines = state.recorder.play(letter)?;
+    for _ in 0..call.times() {
+        for (at, line) in lines.iter().enumerate() {
+            repeat(state, line).map_err(|why| format!("macro {letter} stopped at line {} ({line}): {why}", at + 1))?;
+        }
+    }
+    Ok(())
+}
+
+/// Runs a line of several; one that is refused leaves no list open.
+fn repeat(state: &mut State, line: &str) -> Done {
+    state.recorder.spend()?;
+    obey(state, line, None).inspect_err(|_| {
+        if matches!(state.mode, Mode::Choice(_)) {
+            state.mode = Mode::Normal;
+        }
+    })
+}
+
+/// A count takes the place of the change's own.
+fn again(state: &mut State, call: &Call) -> Done {
+    let mut lines = state.recorder.change().to_vec();
+    let last = lines.last_mut().ok_or("nothing was changed yet: . repeats the last change")?;
+    if call.count.is_some() {
+        *last = Said { count: None, ..Said::parse(last, None) }.to_string();
+    }
+    for _ in 0..call.times() {
+        for line in &lines {
+            repeat(state, line)?;
+        }
+    }
+    Ok(())
+}
