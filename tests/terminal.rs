@@ -155,7 +155,7 @@ fn signals_end_the_editor_and_lose_nothing() {
         editor.end();
         editor.assert_restored();
         let mut editor = Editor::open(folder.path(), &["photo.png"]);
-        editor.wait_for("1 unsaved changes were left behind");
+        editor.wait_for("1 unsaved change was left behind");
         editor.press("\r:wq\r");
         assert_eq!(editor.end(), 0, "{name}");
         let scene = json(&folder.path().join("photo.plica.json"));

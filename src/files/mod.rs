@@ -5,6 +5,7 @@ pub mod cache;
 pub mod disk;
 pub mod draft;
 pub mod fields;
+pub mod holder;
 pub mod journal;
 pub mod limits;
 pub mod lines;
@@ -17,15 +18,21 @@ pub mod profiles;
 pub mod recovery;
 pub mod scene;
 pub mod session;
-#[cfg(test)]
-mod session_tests;
 pub mod watch;
 pub mod write;
 
 pub use limits::Limits;
 pub use write::write_atomic;
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 use crate::scene::check::Rules;
+
+/// Milliseconds since the epoch, now.
+pub(crate) fn now_ms() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since.map_or(0, |since| since.as_millis().try_into().unwrap_or(u64::MAX))
+}
 
 /// What a person allows a scene to do and to take.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,5 +1,7 @@
 //! From a journal back to a history: its records are done again, one after another, from the document it starts from.
 
+use serde_json::Value;
+
 use super::journal::{Contents, Kind, Record};
 use crate::base::problem::Problem;
 use crate::scene::check::Rules;
@@ -18,6 +20,8 @@ pub struct Replayed {
     pub records: usize,
     /// SHA-256 of the scene file as the journal last knew it.
     pub file: String,
+    /// What that file held, where the journal tells.
+    pub base: Option<Value>,
     /// Changes since then.
     pub unsaved: usize,
     /// When the last record was made, in milliseconds since the epoch.
@@ -44,6 +48,7 @@ pub fn replay(contents: &Contents) -> Option<Replayed> {
 fn attempt(document: &Document, contents: &Contents, count: usize) -> Result<Replayed, Option<usize>> {
     let mut replay = Replay::new(document.clone());
     let mut file = contents.header.file.clone();
+    let mut base = contents.header.is_file.then(|| contents.header.document.clone());
     let (mut unsaved, mut time_ms, mut next_step, mut last_edit) = (0, 0, 0, None);
     for (index, (record, _)) in contents.records[..count].iter().enumerate() {
         let held = last_edit == Some(record.step);
@@ -51,13 +56,13 @@ fn attempt(document: &Document, contents: &Contents, count: usize) -> Result<Rep
         last_edit = (record.kind == Kind::Edit).then_some(record.step);
         unsaved += 1;
         if let Kind::Saved(hash) = &record.kind {
-            (file, unsaved) = (hash.clone(), 0);
+            (file, unsaved, base) = (hash.clone(), 0, Some(replay.json().clone()));
         }
         time_ms = record.time;
         next_step = next_step.max(record.step + 1);
     }
     let history = replay.finish(Rules::NONE).map_err(|_| count.checked_sub(1))?;
-    Ok(Replayed { history, records: count, file, unsaved, time_ms, next_step })
+    Ok(Replayed { history, records: count, file, base, unsaved, time_ms, next_step })
 }
 
 fn again(replay: &mut Replay, record: &Record, held: bool) -> Result<(), Problem> {

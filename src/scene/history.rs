@@ -240,6 +240,11 @@ impl Replay {
         Ok(())
     }
 
+    /// The document as it is now.
+    pub fn json(&self) -> &Value {
+        &self.json
+    }
+
     /// The document was written to its file.
     pub fn saved(&mut self) {
         self.history.mark_saved();

@@ -16,6 +16,7 @@ pub mod field;
 pub mod history;
 pub mod insert;
 pub mod json;
+pub mod merge;
 pub mod migrate;
 pub mod pointer;
 pub mod schema;

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::edit::Edit;
 use super::field::name_of;
+use super::merge::Conflict;
 use super::pointer;
 use super::schema::{Body, Place, Shape};
 
@@ -37,6 +38,20 @@ pub fn in_short(before: &Value, edit: &Edit) -> String {
         [one] => one.clone(),
         [first, rest @ ..] => format!("{first} (and {} more)", rest.len()),
     }
+}
+
+/// A place that two versions changed, each in its own way: `left eye · radius 80 here, 70 in the file`. `mine` is the
+/// version that is here.
+pub fn conflict(mine: &Value, conflict: &Conflict) -> String {
+    let at = conflict.pointer.as_str();
+    let shape = Place::of(mine, at).map(|place| place.shape);
+    let said = |value: &Option<Value>| match value.as_ref().map(|value| words(shape, value)) {
+        None => "deleted".into(),
+        Some(words) if words.is_empty() => "changed".into(),
+        Some(words) => words,
+    };
+    let place = place(mine, at, conflict.mine.as_ref().or(conflict.theirs.as_ref()));
+    format!("{place} {} here, {} in the file", said(&conflict.mine), said(&conflict.theirs))
 }
 
 /// One operation; none for a test.
@@ -155,17 +170,25 @@ fn words(shape: Option<Shape>, value: &Value) -> String {
         (Some(Body::Tagged(tag)), Value::Object(map)) => map.get(tag).and_then(Value::as_str).unwrap_or("?").to_owned(),
         (_, Value::Object(_)) => String::new(),
         (_, Value::Array(items)) if items.iter().all(Value::is_number) && items.len() <= 4 => {
-            items.iter().map(Value::to_string).collect::<Vec<_>>().join(", ")
+            items.iter().map(number).collect::<Vec<_>>().join(", ")
         }
         (_, Value::Array(items)) => format!("{} items", items.len()),
         (_, Value::String(text)) if text.is_empty() => "\"\"".into(),
         (_, Value::String(text)) => text.clone(),
         (_, Value::Null) => "none".into(),
-        (_, other) => other.to_string(),
+        (_, other) => number(other),
     };
     match text.char_indices().nth(LONGEST) {
         Some((at, _)) => format!("{}…", &text[..at]),
         None => text,
+    }
+}
+
+/// A number without needless decimals; other values as JSON.
+fn number(value: &Value) -> String {
+    match value.as_f64() {
+        Some(number) if number == number.trunc() && number.abs() < 1e15 => format!("{number:.0}"),
+        _ => value.to_string(),
     }
 }
 
@@ -195,7 +218,7 @@ mod tests {
             (set(&eye("position.function"), json!("linear")), "left eye · position sine → linear"),
             (set(&eye("name"), json!("right eye")), "left eye · name left eye → right eye"),
             (set(&eye("fold"), json!(null)), "left eye · fold deleted"),
-            (set(&eye("feather"), json!(null)), "left eye · feather 4.0 → 0.0"),
+            (set(&eye("feather"), json!(null)), "left eye · feather 4 → 0"),
             (set("timeline.fps", json!(24)), "scene · fps 30 → 24"),
             (Edit::remove(&format!("{zone}/motion/1")), "left eye · motion 2 deleted"),
             (Edit::remove(zone), "left eye deleted"),

@@ -9,6 +9,7 @@ use super::colour::Depth;
 use super::door::Door;
 use super::entry::Entry;
 use super::keys;
+use super::life::Life;
 use super::line::Line;
 use super::place::Placing;
 use super::recorder::Recorder;
@@ -68,6 +69,8 @@ pub struct State {
     pub sought: String,
     /// What the threads have found out.
     pub seen: Seen,
+    /// What happens to the scene outside, and what is asked about it.
+    pub life: Life,
     /// What is still to happen outside.
     pub effects: VecDeque<Effect>,
 }
@@ -144,8 +147,8 @@ impl State {
     pub fn new(door: Door, size: (u16, u16), depth: Depth) -> Self {
         let node = tree::first(door.document());
         let placing = Placing::new(tree::picture_centre(door.document()));
-        let mode = door.offered().map_or(Mode::Normal, |offer| Mode::Choice(Choice::recovery(offer)));
-        State {
+        let life = Life::begin(&door);
+        let mut state = State {
             door,
             size,
             depth,
@@ -155,7 +158,7 @@ impl State {
             row: 0,
             column: 0,
             selected_from: None,
-            mode,
+            mode: Mode::Normal,
             count: None,
             pressed: String::new(),
             step: 0,
@@ -169,8 +172,11 @@ impl State {
             kept: Kept::default(),
             sought: String::new(),
             seen: Seen::default(),
+            life,
             effects: VecDeque::new(),
-        }
+        };
+        super::life::ask(&mut state);
+        state
     }
 
     /// The scene as it is now.

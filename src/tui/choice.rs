@@ -1,6 +1,7 @@
 //! A list to choose from: the words of a choice, the kinds of a tagged object, the scene's images.
 
 use super::app::State;
+use super::life::Question;
 use super::sheet::Cell;
 use crate::scene::field::{self, Kind};
 
@@ -24,21 +25,11 @@ pub enum Then {
     Set(Vec<String>),
     /// The tagged object here becomes one of that kind.
     Become(String),
-    /// Unsaved edits that a session left behind are taken, or left.
-    Recover,
+    /// A question is answered.
+    Answer(Question),
 }
 
-/// The word that takes unsaved edits.
-pub const RECOVER: &str = "recover";
-
 impl Choice {
-    /// What is asked where a session left unsaved edits behind.
-    pub fn recovery(offer: String) -> Choice {
-        let options = [(RECOVER, "Take them"), ("leave", "Open the scene as it was saved; u still gives them")];
-        let options = options.map(|(word, help)| (word.to_string(), help.to_string())).to_vec();
-        Choice { title: offer, options, at: 0, then: Then::Recover }
-    }
-
     /// Moves the cursor, from the last to the first.
     pub fn step(&mut self, by: i64) {
         let n = self.options.len().max(1) as i64;

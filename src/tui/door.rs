@@ -7,10 +7,15 @@ use std::time::Duration;
 use super::update::Change;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
-use crate::files::session::{Mode, Overwrite, Session};
+use crate::files::holder::Holder;
+use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
 use crate::files::{self, picture, write};
 use crate::scene::history::Applied;
+use crate::scene::merge::Side;
 use crate::scene::{Document, Edit};
+
+/// What is said where the scene may only be looked at.
+const READ_ONLY: &str = "the scene is open for reading only: :w PATH saves a copy of it";
 
 /// A scene that is open.
 pub struct Door {
@@ -26,11 +31,12 @@ impl Door {
     ///
     /// # Errors
     /// The scene or the picture cannot be read, or somebody else edits the scene.
-    pub fn open(path: &Path, read_only: bool, options: &files::Options) -> Result<Door> {
+    pub fn open(path: &Path, mode: Mode, options: &files::Options) -> Result<Door> {
+        let read_only = mode == Mode::ReadOnly;
         let is_scene = path.extension().is_some_and(|extension| extension == "json");
         let (scene, made) = if is_scene { (path.to_owned(), false) } else { beside(path, read_only, options)? };
-        let mode = if read_only { Mode::ReadOnly } else { Mode::Edit };
         let session = Session::open(&scene, options, mode)?;
+        let read_only = session.reads_only();
         Ok(Door { session, options: options.clone(), read_only, journaled: !read_only, made })
     }
 
@@ -90,11 +96,22 @@ impl Door {
         }
     }
 
-    /// Unsaved edits that a session left behind, in words.
-    pub fn offered(&self) -> Option<String> {
-        let offer = self.session.recovery()?;
-        let also = if offer.file_changed { ", and the file has changed since" } else { "" };
-        Some(format!("{} unsaved changes were left behind{also}", offer.changes))
+    /// Unsaved edits that a session left behind.
+    pub fn offered(&self) -> Option<&Recovery> {
+        self.session.recovery()
+    }
+
+    /// Who edits the scene, so that here it may only be looked at.
+    pub fn held_by(&self) -> Option<&Holder> {
+        self.session.held_by()
+    }
+
+    /// Refuses what would change the scene where it may only be looked at.
+    ///
+    /// # Errors
+    /// Says so.
+    pub fn writable(&self) -> std::result::Result<(), String> {
+        if self.read_only { Err(READ_ONLY.into()) } else { Ok(()) }
     }
 
     /// Takes the unsaved edits that are offered, or leaves them; undo still gives them.
@@ -114,9 +131,7 @@ impl Door {
     /// # Errors
     /// What would be wrong in the scene.
     pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Change>, Vec<Problem>> {
-        if self.read_only {
-            return Err(vec![Problem::error("", "the scene is open for reading only")]);
-        }
+        self.writable().map_err(|why| vec![Problem::error("", why)])?;
         let applied = self.session.apply(edit, held)?;
         Ok(applied.map(|applied| self.change(applied)))
     }
@@ -151,6 +166,9 @@ impl Door {
             write::write_new(to, self.document().to_text().as_bytes())?;
             return Ok(format!("{} is written", to.display()));
         }
+        if !overwrite && let Err(why) = self.session.may_overwrite() {
+            return Err(why.cure(":merge takes it in, :w! overwrites it"));
+        }
         self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
         Ok(format!("{} is saved", self.path().display()))
     }
@@ -160,28 +178,25 @@ impl Door {
     /// # Errors
     /// The file cannot be read, or has errors in it.
     pub fn revert(&mut self) -> Result<Option<Change>> {
-        if let Some(applied) = self.session.reload()? {
-            return Ok(Some(self.change(applied)));
-        }
-        let file = files::scene::open(self.path(), &self.options)?;
-        let edit = Edit::between(self.document(), &file);
-        let place = self.path().display().to_string();
-        self.apply(edit, false).map_err(|problems| Error::Scene { file: place, problems })
+        let applied = self.session.revert()?;
+        Ok(applied.map(|applied| self.change(applied)))
     }
 
-    /// Takes another program's version of the file in, where nothing here is unsaved. None where the file is as we left it.
+    /// Takes what another program wrote to the file in: see [`Session::take_in`].
     ///
     /// # Errors
-    /// What is to be said otherwise.
-    pub fn follow(&mut self) -> std::result::Result<Option<Change>, String> {
-        if self.is_saved() {
-            let applied = self.session.reload().map_err(|error| error.to_string())?;
-            return Ok(applied.map(|applied| self.change(applied)));
-        }
-        if !self.session.file_changed() {
-            return Ok(None);
-        }
-        Err("the file differs on the disk: :e! takes its version (undo takes it back), :w! overwrites it".into())
+    /// The file cannot be read, or has errors in it.
+    pub fn take_in(&mut self, prefer: Option<Side>) -> Result<(Taken, Option<Change>)> {
+        let (taken, applied) = self.session.take_in(prefer)?;
+        Ok((taken, applied.map(|applied| self.change(applied))))
+    }
+
+    /// What the file has otherwise than the scene here, in words.
+    ///
+    /// # Errors
+    /// As [`Door::take_in`].
+    pub fn difference(&self) -> Result<Vec<String>> {
+        self.session.difference()
     }
 
     /// Waits until every edit is in the journal.

@@ -9,6 +9,7 @@ use super::terminal;
 use super::update::{Effect, Event};
 use super::worker::{Job, Request};
 use crate::base::system::signals::{self, Signal};
+use crate::files::session::Mode;
 use crate::files::write;
 use crate::ops;
 
@@ -43,7 +44,8 @@ impl Editor {
                     self.state.complain(error.to_string());
                 }
             }
-            Effect::Open(path) => self.open(&path),
+            Effect::Open(path) => self.open(&path, self.options.mode()),
+            Effect::TakeOver => self.open(&self.state.door.path().to_owned(), Mode::TakeOver),
             Effect::Run(words) => self.start(&words),
             Effect::Copy(text) => terminal::copy(&text),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
@@ -62,8 +64,8 @@ impl Editor {
         self.worker.ask(Request { scene, path, time: self.state.time, fresh });
     }
 
-    fn open(&mut self, path: &Path) {
-        match Door::open(path, self.options.read_only, &self.options.files) {
+    fn open(&mut self, path: &Path, mode: Mode) {
+        match Door::open(path, mode, &self.options.files) {
             Ok(door) => {
                 let window = self.preview.has_window();
                 // First, for it may be the same scene, and a scene has one editor.

@@ -11,6 +11,7 @@ mod effects;
 mod entry;
 mod input;
 mod keys;
+mod life;
 mod line;
 mod numbers;
 mod panes;

@@ -14,6 +14,7 @@ use super::{input, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::files::lines::Log;
+use crate::files::session::Mode;
 use crate::files::watch::Watch;
 use crate::preview::Reply;
 use crate::preview::editor::{self, Preview, Status};
@@ -39,6 +40,11 @@ impl Options {
         Options { path, window: true, read_only: false, script: None, files: files::Options::default() }
     }
 
+    /// How a scene is opened: where somebody else edits it, the person is asked.
+    pub(super) fn mode(&self) -> Mode {
+        if self.read_only { Mode::ReadOnly } else { Mode::EditOrLook }
+    }
+
     /// As the command line says.
     ///
     /// # Errors
@@ -58,7 +64,7 @@ const GRACE: Duration = Duration::from_secs(2);
 /// # Errors
 /// The scene cannot be opened, or there is no terminal.
 pub fn run(options: Options) -> Result<()> {
-    let door = Door::open(&options.path, options.read_only, &options.files)?;
+    let door = Door::open(&options.path, options.mode(), &options.files)?;
     let (sender, events) = mpsc::channel();
     let _signals = end_on_signals(sender.clone())?;
     if options.script.is_some() && !terminal::is_there() {

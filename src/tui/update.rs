@@ -8,7 +8,7 @@ use ratatui::layout::{Position, Rect};
 use super::app::{Mode, Pages, State};
 use super::keys::{self, Found};
 use super::panes::first_row;
-use super::{commands, tree, view};
+use super::{commands, life, tree, view};
 use crate::base::pixels::Frame;
 use crate::preview::editor::Asked;
 use crate::render::Synth;
@@ -89,6 +89,8 @@ pub enum Effect {
     Source(PathBuf),
     /// Open another scene.
     Open(PathBuf),
+    /// Open this scene to edit it, although somebody may do so elsewhere.
+    TakeOver,
     /// Load the pictures again.
     Reload,
     /// Run a subcommand of the command line with these arguments.
@@ -131,7 +133,12 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             state.seen.work = None;
             report(state, result);
         }
-        Event::Saved(result) => report(state, result),
+        Event::Saved(result) => {
+            if state.door.is_saved() {
+                state.life.file = None;
+            }
+            report(state, result);
+        }
         Event::WindowChanged => {}
         Event::Pointer(x, y) => state.seen.pointer = Some((x, y)),
         Event::Click(x, y) => click(state, x, y),
@@ -141,26 +148,12 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             state.recorder.set_place(None);
             state.complain(format!("the log of this session is not kept: {why}"));
         }
-        Event::FilesChanged(files) => follow(state, &files),
+        Event::FilesChanged(files) => life::follow(state, &files),
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),
     }
+    life::ask(state);
     state.effects.drain(..).collect()
-}
-
-/// Another program wrote the scene or one of its pictures.
-fn follow(state: &mut State, files: &[PathBuf]) {
-    if files.iter().any(|file| file != state.door.path()) {
-        state.ask(Effect::Reload);
-    }
-    match state.door.follow() {
-        Ok(Some(change)) => {
-            state.changed(change);
-            state.say("the file was changed by another program: its version is here, u takes it back");
-        }
-        Ok(None) => {}
-        Err(why) => state.complain(why),
-    }
 }
 
 /// An edit that a script asks for goes through the same door.

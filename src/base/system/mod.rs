@@ -36,6 +36,33 @@ pub fn user() -> u32 {
     rustix::process::geteuid().as_raw()
 }
 
+/// The name of that user; the number where it has none.
+pub fn user_name() -> String {
+    let named = ["USER", "LOGNAME"].into_iter().filter_map(|name| std::env::var(name).ok());
+    named.into_iter().find(|name| !name.is_empty()).unwrap_or_else(|| format!("user {}", user()))
+}
+
+/// The name of this machine.
+pub fn host_name() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+/// Whether other machines may have the folder too, so that locks there tell nothing about them: a network's, or one that
+/// a program keeps.
+#[cfg(target_os = "linux")]
+pub fn is_shared(folder: &std::path::Path) -> bool {
+    /// NFS, SMB (three of them), 9P, Ceph, FUSE, AFS.
+    const SHARED: [u32; 8] =
+        [0x6969, 0x517b, 0xff53_4d42, 0xfe53_4d42, 0x0102_1997, 0x00c3_6400, 0x6573_5546, 0x5346_414f];
+    rustix::fs::statfs(folder).is_ok_and(|found| SHARED.contains(&(found.f_type as u32)))
+}
+
+/// Whether other machines may have the folder too: not known here, so they may.
+#[cfg(not(target_os = "linux"))]
+pub fn is_shared(_: &std::path::Path) -> bool {
+    true
+}
+
 /// Whether a terminal is at the other end.
 pub fn is_terminal(stream: impl AsFd) -> bool {
     rustix::termios::isatty(stream)

@@ -24,6 +24,9 @@ pub struct Header {
     pub file: String,
     /// The document before the first record.
     pub document: Value,
+    /// Whether the file held that document.
+    #[serde(default)]
+    pub is_file: bool,
 }
 
 /// One change of a document, or that it was saved.
@@ -154,7 +157,7 @@ mod tests {
     use serde_json::json;
 
     fn header() -> Header {
-        Header { file: "00".into(), document: json!({"plica": 1, "title": "ü"}) }
+        Header { file: "00".into(), document: json!({"plica": 1, "title": "ü"}), is_file: true }
     }
 
     fn records() -> Vec<Record> {

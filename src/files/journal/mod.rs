@@ -156,7 +156,7 @@ impl Found {
     }
 
     /// Not used after all.
-    fn leave(self) {
+    pub fn leave(self) {
         if self.bytes.is_empty() {
             // An empty file that stays does no harm.
             let _ = disk::remove(&self.path);
@@ -254,7 +254,7 @@ impl Journal {
             _ => {
                 let now = (self.length, document.clone());
                 if let Some((dropped, document)) = self.checkpoint.replace(now) {
-                    let header = Header { file: file.to_owned(), document: document.json().clone() };
+                    let header = Header { file: file.to_owned(), document: document.json().clone(), is_file: false };
                     self.drop_oldest(dropped, format::start(&header));
                 }
             }

@@ -10,6 +10,7 @@ use crate::scene::field::{self, Kind};
 use crate::tui::app::{Mode, State};
 use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry::{self, Entry};
+use crate::tui::life;
 use crate::tui::sheet::{Cell, Row};
 
 pub const COMMANDS: &[Command] = &[
@@ -68,7 +69,7 @@ fn put(state: &mut State, call: &Call) -> Done {
         let choice = choice::of_cell(state, &cell, others).filter(|_| !cell.is_node());
         let choice = choice.ok_or_else(|| format!("{} takes no value: go into it", row.label))?;
         let word = word_of(&choice, &text)?;
-        take(state, choice.then, &word)?;
+        take(state, choice, &word)?;
     }
     state.mode = Mode::Normal;
     Ok(())
@@ -105,11 +106,12 @@ fn choice(state: &mut State, call: &Call) -> Done {
         "next" => choice.step(call.times()),
         "previous" => choice.step(-call.times()),
         _ => match (choice.taken().map(str::to_owned), &choice.then) {
-            (Some(word), Then::Recover) => {
-                // A log begins with the scene as it is after this: elsewhere there is nothing to recover.
+            (Some(word), Then::Answer(_)) => {
+                // Elsewhere, where a log is run again, nothing of the kind has happened.
+                let choice = choice.clone();
                 state.mode = Mode::Normal;
-                state.recorder.remark(&format!("unsaved edits of the session before: {word}"));
-                return take(state, Then::Recover, &word);
+                state.recorder.remark(&format!("{}: {word}", choice.title));
+                return take(state, choice, &word);
             }
             (Some(word), _) => return obey(state, &format!("choose {}", quoted(&word)), None),
             (None, _) => state.mode = Mode::Normal,
@@ -123,9 +125,9 @@ fn choose(state: &mut State, call: &Call) -> Done {
         return Err("there is no list to choose from: Enter opens one".into());
     };
     let word = word_of(choice, &unquoted(call.text))?;
-    let then = choice.then.clone();
+    let choice = choice.clone();
     state.mode = Mode::Normal;
-    take(state, then, &word)
+    take(state, choice, &word)
 }
 
 /// The word, where the list has it.
@@ -139,9 +141,9 @@ fn word_of(choice: &Choice, word: &str) -> Result<String, String> {
     Err(format!("{} cannot be {word}{}", choice.title, near.unwrap_or_else(all)))
 }
 
-fn take(state: &mut State, then: Then, word: &str) -> Done {
+fn take(state: &mut State, choice: Choice, word: &str) -> Done {
     let document = state.document();
-    let edit = match &then {
+    let edit = match &choice.then {
         Then::Set(pointers) => {
             let bool = |pointer: &str| field::field(document, pointer).is_some_and(|field| field.kind == Kind::Bool);
             let value = |pointer: &str| if bool(pointer) { Value::from(word == "true") } else { Value::from(word) };
@@ -151,11 +153,7 @@ fn take(state: &mut State, then: Then, word: &str) -> Done {
             Some(Kind::Tagged { tag, .. }) => entry::set(document, &format!("{pointer}/{tag}"), word.into()),
             _ => return Err(format!("{pointer} has no kinds")),
         },
-        Then::Recover => {
-            let change = state.door.recover(word == choice::RECOVER);
-            change.into_iter().for_each(|change| state.changed(change));
-            return Ok(());
-        }
+        Then::Answer(question) => return life::answer(state, question.about, word, choice),
     };
     state.edit(edit, false)
 }
@@ -170,7 +168,7 @@ fn step(state: &mut State, call: &Call) -> Done {
         let mut choice: Choice = choice::of_cell(state, &cell, others).ok_or("only numbers and choices step")?;
         choice.step(by);
         let word = choice.taken().unwrap_or_default().to_string();
-        return take(state, choice.then, &word);
+        return take(state, choice, &word);
     }
     let unit = step_of(state.step);
     let edits = entry::cells(state, &sheet).into_iter().map(|(_, cell)| {

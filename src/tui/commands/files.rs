@@ -46,7 +46,7 @@ fn refuse_unsaved(state: &State, instead: &str) -> Done {
 fn save(state: &mut State, path: &str, overwrite: bool, leave: bool) -> Done {
     let to = (!path.is_empty()).then(|| PathBuf::from(path));
     if state.door.read_only() && to.is_none() {
-        return Err("the scene is open for reading only: :w PATH saves elsewhere".into());
+        return state.door.writable();
     }
     state.ask(Effect::Save { to, overwrite, leave });
     Ok(())

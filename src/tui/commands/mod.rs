@@ -3,6 +3,7 @@
 
 use super::app::{Mode, State};
 use super::keys::{EVERYWHERE, KEYS};
+use super::life;
 use super::recorder::{Ended, Kept};
 use super::update::Effect;
 use crate::base::problem;
@@ -81,8 +82,7 @@ impl Command {
 }
 
 /// A command of which the line is kept; [`Command::change`] and [`Command::inside`] say otherwise.
-
-const fn command(
+pub const fn command(
     name: &'static str,
     args: &'static str,
     help: &'static str,
@@ -103,6 +103,7 @@ const TABLES: &[&[Command]] = &[
     typing::COMMANDS,
     scripts::COMMANDS,
     macros::COMMANDS,
+    life::COMMANDS,
 ];
 
 /// Every command of the editor.

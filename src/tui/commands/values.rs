@@ -58,6 +58,7 @@ fn redo(state: &mut State, call: &Call) -> Done {
 }
 
 fn repeat(state: &mut State, call: &Call, none: &str, step: fn(&mut Door) -> Option<Change>) -> Done {
+    state.door.writable()?;
     let times = call.text.parse().unwrap_or(call.times()).max(1);
     let done: Vec<Change> = (0..times).map_while(|_| step(&mut state.door)).collect();
     if done.is_empty() {

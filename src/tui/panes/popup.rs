@@ -7,7 +7,7 @@ use ratatui::widgets::{Block, Clear, Widget};
 
 use super::{first_row, width, write};
 use crate::tui::app::{Mode, Pages, State};
-use crate::tui::choice::Choice;
+use crate::tui::choice::{Choice, Then};
 use crate::tui::{colour, keys, terminal, view};
 
 /// Draws what there is; the cursor is in the list.
@@ -24,11 +24,18 @@ pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position
 }
 
 fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
+    let text: &[String] = if let Then::Answer(question) = &choice.then { &question.text } else { &[] };
     let words = choice.options.iter().map(|(word, _)| width(word)).max().unwrap_or(0);
     let help = choice.options.iter().map(|(_, help)| width(help)).max().unwrap_or(0);
-    let wide = (words + help + 6).clamp(30, screen.width - 8);
-    let tall = (choice.options.len() as u16 + 2).min(screen.height - 4);
-    let area = view::window(screen, wide, tall, &terminal::plain(&choice.title), buffer);
+    let title = terminal::plain(&choice.title);
+    let above = text.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
+    let wide = (words + help + 6).max(above + 4).clamp(30, screen.width - 8);
+    let tall = (choice.options.len() as u16 + text.len() as u16 + 2).min(screen.height - 4);
+    let area = view::window(screen, wide, tall, &title, buffer);
+    for (y, line) in text.iter().enumerate() {
+        write(buffer, area, 1, y as u16, line, Style::new());
+    }
+    let area = below(area, text.len() as u16);
     let first = first_row(choice.at, choice.options.len(), area.height);
     for (y, (i, (word, help))) in
         choice.options.iter().enumerate().skip(first).take(usize::from(area.height)).enumerate()
@@ -38,6 +45,12 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
         write(buffer, area, i32::from(words) + 3, y as u16, help, colour::faint());
     }
     Position::new(area.x + 1, area.y + (choice.at - first) as u16)
+}
+
+/// What is left of an area below its first rows.
+fn below(area: Rect, rows: u16) -> Rect {
+    let rows = rows.min(area.height);
+    Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
 fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {

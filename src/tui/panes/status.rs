@@ -54,7 +54,8 @@ fn marks(state: &State) -> String {
     [
         mark(!state.door.is_saved(), "  *"),
         mark(!state.door.is_synced(), " ~"),
-        mark(state.door.read_only(), "  [read only]"),
+        mark(state.door.read_only(), "  RO"),
+        &state.life.file.map(|word| format!("  {word}")).unwrap_or_default(),
         failing.as_deref().unwrap_or_default(),
     ]
     .concat()

@@ -9,6 +9,7 @@ use super::update::Effect;
 pub mod coverage;
 mod data;
 mod finding;
+mod life;
 mod lines;
 mod macros;
 mod screens;

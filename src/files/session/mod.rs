@@ -2,23 +2,39 @@
 //! whoever asks: a key, a command, a script, `plica set`.
 
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 
+use super::holder::{Holder, Sign};
 use super::journal::{self, Found, Header, Journal, Kind, Record, Unopened};
 use super::recovery::{self, Replayed};
-use super::{Options, scene, write};
+use super::{Options, now_ms, scene, write};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::history::{Applied, Stamp};
-use crate::scene::{Document, Edit, History};
+use crate::scene::{Document, Edit, History, words};
+
+mod outside;
+#[cfg(test)]
+mod tests;
+
+pub use outside::Taken;
 
 /// What a session may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Edit and save: nobody else may edit meanwhile.
     Edit,
+    /// The same; where somebody else edits the scene already, look at it: see [`Session::held_by`].
+    EditOrLook,
+    /// Edit, also where somebody whose lock cannot be seen may do so too.
+    TakeOver,
     /// Look, and edit in memory at most: no lock, no journal.
     ReadOnly,
+}
+
+impl Mode {
+    fn edits(self) -> bool {
+        self != Mode::ReadOnly
+    }
 }
 
 /// Whether a save may replace what another program wrote meanwhile.
@@ -31,10 +47,12 @@ pub enum Overwrite {
 }
 
 /// Unsaved edits that a session left behind which did not end well.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recovery {
     /// How many changes.
     pub changes: usize,
+    /// What they change in the file, in words.
+    pub words: Vec<String>,
     /// When the last one was made, in milliseconds since the epoch.
     pub time_ms: u64,
     /// Whether another program changed the file since.
@@ -67,7 +85,21 @@ pub struct Session {
     file: String,
     /// Added to the history's steps, so that none is used twice in a journal.
     first_step: u64,
-    offer: Option<(Recovery, History)>,
+    offer: Option<Offer>,
+    /// What the file held when it was last read or written; none where that is not known.
+    base: Option<Document>,
+    /// Who edits the scene instead of us.
+    held_by: Option<Holder>,
+    _sign: Option<Sign>,
+}
+
+/// Unsaved edits that are offered, and what was known of the file then.
+#[derive(Debug)]
+struct Offer {
+    recovery: Recovery,
+    history: History,
+    file: String,
+    base: Option<Document>,
 }
 
 impl Session {
@@ -81,10 +113,7 @@ impl Session {
         // Nothing is made on the disk for a scene that cannot be opened.
         scene::open(path, options)?;
         let path = std::fs::canonicalize(path).map_err(|error| Error::at(path.display(), error))?;
-        let found = if mode == Mode::Edit { Some(journal::find(&path)) } else { None };
-        if let Some(Err(Unopened::Locked { pid })) = found {
-            return Err(locked(&path, pid));
-        }
+        let (found, held_by) = claim(&path, mode)?;
         // Under the lock nobody of ours writes any more: this is the text that counts.
         let text = scene::read_text(&path, &options.limits)?;
         let document = scene::parse(&path, &text, options)?;
@@ -99,14 +128,18 @@ impl Session {
             file: scene::hash(text.as_bytes()),
             first_step: 0,
             offer: None,
+            base: Some(document.clone()),
+            held_by,
+            _sign: None,
         };
         match found {
             Some(Ok(found)) => {
                 write::remove_stale(&session.path);
+                session._sign = Sign::put_up(&session.path);
                 session.take_up(found, document);
             }
-            Some(Err(Unopened::Failed(error))) => session.journal_missing = Some(error.to_string()),
-            _ => {}
+            Some(Err(error)) => session.journal_missing = Some(error.to_string()),
+            None => session.mode = Mode::ReadOnly,
         }
         Ok(session)
     }
@@ -118,7 +151,7 @@ impl Session {
             found.contents = None;
         }
         let (records, revision) = replayed.as_ref().map_or((0, 0), |r| (r.records, r.history.revision()));
-        let header = Header { file: self.file.clone(), document: document.json().clone() };
+        let header = Header { file: self.file.clone(), document: document.json().clone(), is_file: true };
         let place = found.path().display().to_string();
         match found.open(&header, records, revision) {
             Ok(opened) => (self.journal, self.aside) = (Some(opened.journal), opened.aside),
@@ -131,7 +164,7 @@ impl Session {
 
     /// Decides between the journal's document and the file's.
     fn compare(&mut self, replayed: Replayed, document: Document) {
-        let Replayed { mut history, unsaved, time_ms, next_step, file, .. } = replayed;
+        let Replayed { mut history, unsaved, time_ms, next_step, file, base, .. } = replayed;
         self.first_step = next_step;
         history.govern(self.options.rules());
         let file_changed = file != self.file;
@@ -139,7 +172,10 @@ impl Session {
             self.history = history;
             self.now_saved(file_changed);
         } else if unsaved > 0 && !history.is_saved() {
-            self.offer = Some((Recovery { changes: unsaved, time_ms, file_changed }, history));
+            let words = words::describe(document.json(), &Edit::between(&document, history.document()));
+            let recovery = Recovery { changes: unsaved, words, time_ms, file_changed };
+            let base = base.and_then(|json| Document::from_json_under(json, self.options.rules()).ok());
+            self.offer = Some(Offer { recovery, history, file, base });
         } else {
             self.history = history;
             self.enter(&document);
@@ -162,8 +198,18 @@ impl Session {
     }
 
     /// Unsaved edits that are offered; until they are taken or not, the document is the file's.
-    pub fn recovery(&self) -> Option<Recovery> {
-        self.offer.as_ref().map(|(recovery, _)| *recovery)
+    pub fn recovery(&self) -> Option<&Recovery> {
+        self.offer.as_ref().map(|offer| &offer.recovery)
+    }
+
+    /// Who edits the scene, so that here it may only be looked at.
+    pub fn held_by(&self) -> Option<&Holder> {
+        self.held_by.as_ref()
+    }
+
+    /// Whether the scene may only be looked at.
+    pub fn reads_only(&self) -> bool {
+        !self.mode.edits()
     }
 
     /// Where bytes of a damaged journal were kept aside.
@@ -171,21 +217,17 @@ impl Session {
         self.aside.as_deref()
     }
 
-    /// Takes the unsaved edits that are offered. Where another program changed the file since, its version becomes one
-    /// edit that is undone: redo gives it.
+    /// Takes the unsaved edits that are offered. Where another program changed the file since, all is as if it had done so
+    /// now: see [`Session::take_in`].
     pub fn recover(&mut self) {
-        let Some((recovery, history)) = self.offer.take() else { return };
-        let file = std::mem::replace(&mut self.history, history).document().clone();
-        if recovery.file_changed {
-            self.enter(&file);
-            self.undo();
-        }
+        let Some(offer) = self.offer.take() else { return };
+        (self.history, self.file, self.base) = (offer.history, offer.file, offer.base);
     }
 
     /// Leaves the unsaved edits that are offered; undo still gives them.
     pub fn discard_recovery(&mut self) {
-        let Some((_, history)) = self.offer.take() else { return };
-        let file = std::mem::replace(&mut self.history, history).document().clone();
+        let Some(offer) = self.offer.take() else { return };
+        let file = std::mem::replace(&mut self.history, offer.history).document().clone();
         self.enter(&file);
     }
 
@@ -245,12 +287,11 @@ impl Session {
     /// file meanwhile, unless it may be overwritten; when the session only reads.
     pub fn save(&mut self, overwrite: Overwrite) -> Result<()> {
         let place = self.path.display();
-        if self.mode == Mode::ReadOnly {
+        if self.reads_only() {
             return Err(Error::at(place, "is open to read only").cure("save a copy under another name"));
         }
-        if overwrite == Overwrite::No && self.file_changed() {
-            return Err(Error::at(place, "was changed by another program")
-                .cure("load its version, which undo takes back, or overwrite it"));
+        if overwrite == Overwrite::No {
+            self.may_overwrite().map_err(|error| error.cure("take its changes in, or overwrite it"))?;
         }
         // The edits first: should we die in between, the journal knows what the file has become. Where they cannot be
         // kept, saving is all the more urgent.
@@ -261,31 +302,15 @@ impl Session {
         let ours = scene::hash(text.as_bytes());
         if let Err(error) = scene::save(&self.path, &text) {
             // It may have come as far as the file and not be safe there: what is there is ours all the same.
-            if self.file_hash().is_some_and(|found| found == ours) {
+            if self.file_holds(&ours) {
                 self.file = ours;
             }
             return Err(error);
         }
         self.file = ours;
+        self.base = Some(self.document().clone());
         self.now_saved(true);
         Ok(())
-    }
-
-    /// Looks whether another program changed the file; its version enters as one edit. None where the file is as we left
-    /// it.
-    ///
-    /// # Errors
-    /// When the file cannot be read or has errors in it: the document stays as it is, the last good one.
-    pub fn reload(&mut self) -> Result<Option<Applied>> {
-        let text = scene::read_text(&self.path, &self.options.limits)?;
-        let file = scene::hash(text.as_bytes());
-        if file == self.file {
-            return Ok(None);
-        }
-        let document = scene::parse(&self.path, &text, &self.options)?;
-        self.discard_recovery();
-        self.file = file;
-        Ok(self.enter(&document))
     }
 
     /// How safe the present document is.
@@ -308,27 +333,6 @@ impl Session {
         }
     }
 
-    /// The document of the file enters as one edit.
-    fn enter(&mut self, document: &Document) -> Option<Applied> {
-        let edit = Edit::between(self.history.document(), document);
-        let applied = self.history.apply(edit, Stamp { time_ms: now_ms(), held: false }).ok().flatten();
-        if let Some(applied) = &applied {
-            self.record(Kind::Edit, applied);
-        }
-        self.now_saved(true);
-        applied
-    }
-
-    /// The document is the file's; the journal is told unless it knows.
-    fn now_saved(&mut self, tell: bool) {
-        self.history.mark_saved();
-        if tell {
-            let (revision, edit) = (self.history.revision(), Edit::default());
-            let applied = Applied { revision, step: 0, edit: edit.clone(), inverse: edit };
-            self.record(Kind::Saved(self.file.clone()), &applied);
-        }
-    }
-
     fn record_all(&mut self, kind: &Kind, all: &[Applied]) {
         all.iter().for_each(|applied| self.record(kind.clone(), applied));
     }
@@ -340,23 +344,32 @@ impl Session {
         let record = Record { revision: applied.revision, time: now_ms(), step, kind, patch, inverse };
         journal.append(&record, self.history.document(), &self.file);
     }
-
-    /// Whether another program changed the file since we read or wrote it.
-    pub fn file_changed(&self) -> bool {
-        self.file_hash().is_some_and(|found| found != self.file)
-    }
-
-    fn file_hash(&self) -> Option<String> {
-        Some(scene::hash(&std::fs::read(&self.path).ok()?))
-    }
 }
 
-fn locked(path: &Path, pid: Option<u32>) -> Error {
-    let who = pid.map_or("another process".to_owned(), |pid| format!("process {pid}"));
-    Error::at(path.display(), format!("is being edited by {who}")).cure("close it there first, or open it to read only")
+/// A journal, or why there is none.
+type Claimed = std::io::Result<Found>;
+
+/// Finds and locks the journal of the scene at `path`. Neither that nor a reason where it may only be looked at: then
+/// perhaps who holds it.
+fn claim(path: &Path, mode: Mode) -> Result<(Option<Claimed>, Option<Holder>)> {
+    if !mode.edits() {
+        return Ok((None, None));
+    }
+    let holder = match journal::find(path) {
+        Err(Unopened::Locked { pid }) => Holder::of_lock(path, pid),
+        Err(Unopened::Failed(error)) => return Ok((Some(Err(error)), None)),
+        Ok(found) => match Holder::unseen(path, found.path()).filter(|_| mode != Mode::TakeOver) {
+            None => return Ok((Some(Ok(found)), None)),
+            Some(holder) => {
+                found.leave();
+                holder
+            }
+        },
+    };
+    if mode == Mode::EditOrLook { Ok((None, Some(holder))) } else { Err(held(path, &holder)) }
 }
 
-fn now_ms() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| since.as_millis().try_into().unwrap_or(u64::MAX))
+fn held(path: &Path, holder: &Holder) -> Error {
+    let error = Error::at(path.display(), holder.in_words());
+    error.cure("close it there first, or open it to read only")
 }

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::session::{Mode, Overwrite, Session};
-use super::{Options, journal, scene};
+use super::{Mode, Overwrite, Session, Taken};
+use crate::files::{Options, journal, scene};
+use crate::scene::merge::Side;
 use crate::scene::{Document, Edit};
 
 const SCENE: &str = "{ \"plica\": 1,\n   \"title\": \"start\" }\n";
@@ -138,17 +139,17 @@ fn a_change_from_outside_is_one_edit() {
     let mut session = open(&place.scene);
     edit(&mut session, "ours");
     session.save(Overwrite::No).unwrap();
-    assert_eq!(session.reload().unwrap(), None, "our own save is not from outside");
+    assert_eq!(session.take_in(None).unwrap(), (Taken::Nothing, None), "our own save is not from outside");
     drop(session);
     outside(&place, "theirs");
     let mut session = open(&place.scene);
     assert_eq!((shown(&session), session.recovery()), ("theirs", None));
     assert!(session.safety().saved);
     outside(&place, "again");
-    assert!(session.reload().unwrap().is_some());
+    assert!(matches!(session.take_in(None).unwrap(), (Taken::Whole, Some(_))));
     assert_eq!(shown(&session), "again");
     std::fs::write(&place.scene, "{ half").unwrap();
-    assert!(session.reload().is_err());
+    assert!(session.take_in(None).is_err());
     assert_eq!(shown(&session), "again", "the last good one");
     for text in ["theirs", "ours", "start"] {
         session.undo().unwrap();
@@ -168,9 +169,95 @@ fn unsaved_edits_and_a_change_from_outside_are_both_kept() {
     assert_eq!(shown(&session), "theirs");
     session.recover();
     assert_eq!(shown(&session), "ours");
-    session.redo().unwrap();
+    assert!(session.save(Overwrite::No).is_err(), "not before somebody has decided");
+    let asked = session.take_in(None).unwrap();
+    assert_eq!(asked, (Taken::Asked(vec!["scene · title ours here, theirs in the file".into()]), None));
+    let (taken, applied) = session.take_in(Some(Side::Theirs)).unwrap();
+    assert!(taken == Taken::Whole && applied.is_some() && session.safety().saved);
     assert_eq!(shown(&session), "theirs");
-    assert!(session.safety().saved);
+    session.undo().unwrap();
+    assert_eq!(shown(&session), "ours");
+}
+
+#[test]
+fn what_others_do_to_the_file() {
+    let both = "{ \"plica\": 1, \"title\": \"start\", \"timeline\": { \"fps\": 5 } }";
+    let theirs = SCENE.replace("start", "theirs");
+    // The title here, the file after, which side counts; what becomes of it, the title, whether it is saved.
+    for (ours, file, prefer, taken, title, saved) in [
+        (None, Some(SCENE), None, Some("Nothing"), "start", true),
+        (None, Some(theirs.as_str()), None, Some("Whole"), "theirs", true),
+        (None, None, None, Some("Gone"), "start", false),
+        (None, Some("{ half"), None, None, "start", true),
+        (Some("ours"), Some(SCENE), None, Some("Nothing"), "ours", false),
+        (Some("ours"), Some(theirs.as_str()), None, Some("Asked"), "ours", false),
+        (Some("ours"), Some(theirs.as_str()), Some(Side::Mine), Some("Merged"), "ours", false),
+        (Some("ours"), Some(theirs.as_str()), Some(Side::Theirs), Some("Whole"), "theirs", true),
+        (Some("theirs"), Some(theirs.as_str()), None, Some("Whole"), "theirs", true),
+        (Some("ours"), Some(both), None, Some("Merged"), "ours", false),
+        (Some("ours"), Some("{ half"), Some(Side::Theirs), None, "ours", false),
+        (Some("ours"), None, None, Some("Gone"), "ours", false),
+    ] {
+        let place = place();
+        let mut session = open(&place.scene);
+        ours.into_iter().for_each(|title| edit(&mut session, title));
+        match file {
+            Some(text) => std::fs::write(&place.scene, text).unwrap(),
+            None => std::fs::remove_file(&place.scene).unwrap(),
+        }
+        let case = format!("{ours:?} {file:?} {prefer:?}");
+        let found = session.take_in(prefer).ok().map(|(taken, _)| format!("{taken:?}"));
+        assert!(found.as_deref().unwrap_or("").starts_with(taken.unwrap_or("")), "{case}: {found:?}");
+        assert_eq!(found.is_none(), taken.is_none(), "{case}");
+        assert_eq!((shown(&session), session.safety().saved), (title, saved), "{case}");
+        let decided = !matches!(taken, Some("Asked") | None);
+        assert_eq!(session.save(Overwrite::No).is_ok(), decided, "{case}: a save, once it is decided");
+        session.save(Overwrite::Yes).unwrap();
+        assert!(std::fs::read_to_string(&place.scene).unwrap().contains(title), "{case}");
+        if file == Some(both) {
+            assert_eq!(session.document().scene().timeline.fps, 5.0, "{case}");
+        }
+        // All of it is one step at most.
+        if shown(&session) != ours.unwrap_or("start") {
+            session.undo().unwrap();
+            assert_eq!(shown(&session), ours.unwrap_or("start"), "{case}");
+        }
+    }
+}
+
+#[test]
+fn what_is_offered_stays_offered_while_the_file_changes() {
+    let place = place();
+    let mut session = open(&place.scene);
+    edit(&mut session, "ours");
+    kill(session);
+    let mut session = open(&place.scene);
+    outside(&place, "theirs");
+    assert_eq!(session.take_in(None).unwrap().0, Taken::Whole);
+    assert_eq!(shown(&session), "theirs");
+    assert!(session.recovery().unwrap().file_changed);
+    session.recover();
+    assert_eq!(shown(&session), "ours");
+    assert!(matches!(session.take_in(None).unwrap().0, Taken::Asked(_)));
+}
+
+#[test]
+fn who_comes_second_may_look_and_is_told_who_edits() {
+    let place = place();
+    let first = open(&place.scene);
+    let mut second = Session::open(&place.scene, &Options::default(), Mode::EditOrLook).unwrap();
+    assert!(second.reads_only());
+    assert_eq!(second.held_by().unwrap().pid, std::process::id());
+    drop(first);
+    outside(&place, "saved by the first");
+    assert_eq!(second.take_in(None).unwrap().0, Taken::Whole);
+    assert_eq!(shown(&second), "saved by the first");
+    let third = Session::open(&place.scene, &Options::default(), Mode::EditOrLook).unwrap();
+    assert!(!third.reads_only() && third.held_by().is_none());
+    let left: Vec<_> = std::fs::read_dir(place.folder.path()).unwrap().map(|f| f.unwrap().file_name()).collect();
+    assert!(left.iter().any(|name| name == ".cat.editor"), "{left:?}");
+    drop(third);
+    assert!(!place.folder.path().join(".cat.editor").exists());
 }
 
 #[test]
@@ -270,7 +357,7 @@ fn a_long_journal_drops_its_oldest_part() {
     let mut document = Document::parse(&text).unwrap();
     let mut history = crate::scene::History::new(document.clone());
     let file = scene::hash(text.as_bytes());
-    let header = journal::Header { file: file.clone(), document: document.json().clone() };
+    let header = journal::Header { file: file.clone(), document: document.json().clone(), is_file: true };
     let found = journal::find(&place.scene).unwrap();
     let mut journal = found.open(&header, 0, 0).unwrap().journal;
     journal.compact_every(2000);

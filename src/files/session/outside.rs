@@ -1,0 +1,165 @@
+//! What other programs do to the file of a session: noticed by its hash, taken in as one edit, merged with what is unsaved
+//! here, or left for somebody to decide. Nothing of either side is lost unasked: undo has it.
+
+use std::io::ErrorKind;
+
+use super::{Kind, Session};
+use crate::base::error::{Error, Result};
+use crate::files::{now_ms, scene};
+use crate::scene::history::{Applied, Stamp};
+use crate::scene::merge::{Merged, Side, merge};
+use crate::scene::{Document, Edit, words};
+
+/// What became of the file's version.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Taken {
+    /// The file is as we left it.
+    Nothing,
+    /// The file is no longer there; the document counts as unsaved.
+    Gone,
+    /// The document is the file's version now.
+    Whole,
+    /// The document is both; what was unsaved still is.
+    Merged,
+    /// Both changed these places, in words; nothing is done until somebody says which side counts there.
+    Asked(Vec<String>),
+}
+
+impl Session {
+    /// Looks whether another program changed the file and takes its version in, as one edit. What is unsaved here is merged
+    /// with it; where both changed the same place, the `prefer`red side counts, and without one nothing is done. Gives the
+    /// edit, where there is one.
+    ///
+    /// # Errors
+    /// When the file cannot be read or has errors in it: the document stays as it is, the last good one.
+    pub fn take_in(&mut self, prefer: Option<Side>) -> Result<(Taken, Option<Applied>)> {
+        if self.is_gone() {
+            self.history.mark_unsaved();
+            return Ok((Taken::Gone, None));
+        }
+        let (theirs, file) = self.file_version()?;
+        if file == self.file {
+            // It may have been away for a moment.
+            if self.history.document().to_text() == theirs.to_text() {
+                self.history.mark_saved();
+            }
+            return Ok((Taken::Nothing, None));
+        }
+        if let Some(offer) = &mut self.offer {
+            // What is offered stays offered; until it is taken or not, the document is the file's.
+            offer.recovery.file_changed = true;
+            (self.file, self.base) = (file, Some(theirs.clone()));
+            let edit = Edit::between(self.history.document(), &theirs);
+            let applied = self.history.apply(edit, Stamp::default()).ok().flatten();
+            self.history.mark_saved();
+            return Ok((Taken::Whole, applied));
+        }
+        if self.history.is_saved() {
+            (self.file, self.base) = (file, Some(theirs.clone()));
+            return Ok((Taken::Whole, self.enter(&theirs)));
+        }
+        let (merged, conflicts) = self.merged(&theirs, prefer.unwrap_or(Side::Mine));
+        if prefer.is_none() && !conflicts.is_empty() {
+            return Ok((Taken::Asked(conflicts), None));
+        }
+        (self.file, self.base) = (file, Some(theirs.clone()));
+        if merged.to_text() == theirs.to_text() {
+            return Ok((Taken::Whole, self.enter(&theirs)));
+        }
+        let applied = self.enter_edit(&merged);
+        self.history.mark_unsaved();
+        Ok((Taken::Merged, applied))
+    }
+
+    /// Takes the file's version in the place of the document, as one edit; gives it, where there is a difference.
+    ///
+    /// # Errors
+    /// As [`Session::take_in`].
+    pub fn revert(&mut self) -> Result<Option<Applied>> {
+        let (theirs, file) = self.file_version()?;
+        self.discard_recovery();
+        (self.file, self.base) = (file, Some(theirs.clone()));
+        Ok(self.enter(&theirs))
+    }
+
+    /// What the file has otherwise than the document, in words.
+    ///
+    /// # Errors
+    /// As [`Session::take_in`].
+    pub fn difference(&self) -> Result<Vec<String>> {
+        let (theirs, _) = self.file_version()?;
+        Ok(words::describe(self.document().json(), &Edit::between(self.document(), &theirs)))
+    }
+
+    /// The document and the file's version as one, and where one of them has to give way, in words.
+    fn merged(&self, theirs: &Document, prefer: Side) -> (Document, Vec<String>) {
+        let mine = self.document();
+        let base = self.base.as_ref().map(Document::json);
+        let Merged { json, conflicts } = merge(base, mine.json(), theirs.json(), prefer);
+        let conflicts: Vec<String> = conflicts.iter().map(|one| words::conflict(mine.json(), one)).collect();
+        match Document::from_json_under(json, self.options.rules()) {
+            Ok(merged) => (merged, conflicts),
+            Err(problems) => {
+                let whole = if prefer == Side::Mine { mine } else { theirs };
+                let why = problems.iter().map(|problem| format!("together they would be wrong: {problem}"));
+                (whole.clone(), conflicts.into_iter().chain(why).collect())
+            }
+        }
+    }
+
+    /// The document in the file, and the file's hash.
+    fn file_version(&self) -> Result<(Document, String)> {
+        let text = scene::read_text(&self.path, &self.options.limits)?;
+        Ok((scene::parse(&self.path, &text, &self.options)?, scene::hash(text.as_bytes())))
+    }
+
+    /// Whether the file was taken away.
+    pub fn is_gone(&self) -> bool {
+        std::fs::metadata(&self.path).is_err_and(|error| error.kind() == ErrorKind::NotFound)
+    }
+
+    /// Why the file must not be overwritten unasked; a file that is gone may be written again.
+    ///
+    /// # Errors
+    /// That reason.
+    pub fn may_overwrite(&self) -> Result<()> {
+        match std::fs::read(&self.path) {
+            Ok(bytes) if scene::hash(&bytes) == self.file => Ok(()),
+            Ok(_) => Err(Error::at(self.path.display(), "was changed by another program")),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+            Err(error) => Err(Error::at(self.path.display(), error)),
+        }
+    }
+
+    /// Whether the file holds just this, after a save that failed on its way.
+    pub(super) fn file_holds(&self, hash: &str) -> bool {
+        std::fs::read(&self.path).is_ok_and(|bytes| scene::hash(&bytes) == hash)
+    }
+
+    /// The document of the file enters as one edit.
+    pub(super) fn enter(&mut self, document: &Document) -> Option<Applied> {
+        let applied = self.enter_edit(document);
+        self.now_saved(true);
+        applied
+    }
+
+    fn enter_edit(&mut self, document: &Document) -> Option<Applied> {
+        let edit = Edit::between(self.history.document(), document);
+        self.history.close_step();
+        let applied = self.history.apply(edit, Stamp { time_ms: now_ms(), held: false }).ok().flatten();
+        if let Some(applied) = &applied {
+            self.record(Kind::Edit, applied);
+        }
+        applied
+    }
+
+    /// The document is the file's; the journal is told unless it knows.
+    pub(super) fn now_saved(&mut self, tell: bool) {
+        self.history.mark_saved();
+        if tell {
+            let (revision, edit) = (self.history.revision(), Edit::default());
+            let applied = Applied { revision, step: 0, edit: edit.clone(), inverse: edit };
+            self.record(Kind::Saved(self.file.clone()), &applied);
+        }
+    }
+}
