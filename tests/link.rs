@@ -164,9 +164,9 @@ fn the_editor_hears_the_window() {
     window.replies.send(Reply::Command("play".into())).unwrap();
     let mut heard = Vec::new();
     while heard.len() < 2 {
-        match events.recv_timeout(PATIENCE).expect("an event") {
-            Event::Reply(reply @ (Reply::Pointer { .. } | Reply::Command(_))) => heard.push(format!("{reply:?}")),
-            _ => {}
+        let event = events.recv_timeout(PATIENCE).expect("an event");
+        if let Event::Reply(reply @ (Reply::Pointer { .. } | Reply::Command(_))) = event {
+            heard.push(format!("{reply:?}"));
         }
     }
     assert_eq!(heard, ["Pointer { x: 1.5, y: -2.0 }", "Command(\"play\")"]);

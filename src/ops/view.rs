@@ -1,18 +1,28 @@
-//! `plica view`: the preview window alone. It joins the editor that has the scene open, else follows the file.
+//! `plica view`: the preview window alone. It joins the editor that has the scene open, else follows the file; on another
+//! machine through ssh.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::PoisonError;
 
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
-use crate::files::materials;
-use crate::preview::{client, window};
+use crate::files::cache::Cache;
+use crate::files::{Options, materials};
+use crate::preview::address::{Address, SCHEME};
+use crate::preview::client::{self, Link};
+use crate::preview::ssh::Way;
+use crate::preview::{far, fetch, window};
 
 /// Open the preview window
 #[derive(clap::Args)]
 pub struct Args {
-    /// The scene
+    /// The scene, here or on another machine
+    #[arg(value_name = "SCENE | ssh://[USER@]HOST[:PORT]/PATH")]
     pub scene: PathBuf,
+    /// What plica is called on the other machine, where it is not found by itself [env: PLICA_REMOTE]
+    #[arg(long, value_name = "PATH")]
+    pub remote_plica: Option<String>,
     /// Close with the editor that opened the window
     #[arg(long, hide = true)]
     pub joined: bool,
@@ -23,20 +33,47 @@ pub struct Args {
 /// Runs the window until it is closed.
 ///
 /// # Errors
-/// There is no display, or nothing that can draw on it. A broken scene is no error: the window says what is wrong and
-/// waits until it is mended.
+/// There is no display, or nothing that can draw on it; another machine cannot be reached. A broken scene is no error: the
+/// window says what is wrong and waits until it is mended.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let options = args.options.options()?;
-    if !args.joined && !args.scene.exists() {
-        return Err(Error::at(args.scene.display(), "there is no such scene").cure("plica edit PICTURE makes one"));
-    }
-    let link = client::follow(&args.scene, &options, args.joined);
-    let (path, mut cache) = (args.scene.clone(), materials::Cache::default());
+    let (name, link, load) = match args.scene.to_str().filter(|text| text.starts_with(SCHEME)) {
+        Some(address) => there(Way::to(Address::parse(address)?, args.remote_plica, &options))?,
+        None => here(&args.scene, args.joined, options)?,
+    };
+    context.check_cancelled()?;
     window::run(window::Setup {
-        title: format!("{} - plica", args.scene.file_name().unwrap_or_default().to_string_lossy()),
+        title: format!("{name} - plica"),
         updates: link.updates,
         replies: link.replies,
         cancel: context.cancel.clone(),
-        load: Box::new(move |scene| materials::gather(&path, scene, &options, &mut cache)),
+        load,
     })
+}
+
+type Source = (String, Link, window::Load);
+
+fn here(scene: &Path, joined: bool, options: Options) -> Result<Source> {
+    if !joined && !scene.exists() {
+        return Err(Error::at(scene.display(), "there is no such scene").cure("plica edit PICTURE makes one"));
+    }
+    let link = client::follow(scene, &options, joined);
+    let (path, mut cache) = (scene.to_owned(), materials::Cache::default());
+    let load = move |scene: &_| materials::gather(&path, scene, &options, &mut cache);
+    let name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok((name, link, Box::new(load)))
+}
+
+fn there(way: Way) -> Result<Source> {
+    let kept = Cache::of_user()?;
+    let name = format!("{} on {}", way.address.file_name(), way.address.host);
+    let (copies, options) = (fetch::Shared::default(), way.options.clone());
+    let connected = way.connect(drop)?;
+    let link = far::follow(way, connected, kept, copies.clone())?;
+    let mut cache = materials::Cache::default();
+    let load = move |scene: &_| {
+        let copies = copies.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        materials::gather_copies(&copies, scene, &options, &mut cache)
+    };
+    Ok((name, link, Box::new(load)))
 }

@@ -67,7 +67,7 @@ impl Client {
                     }
                 }
                 Ok(Heard::Lost(session, error)) if self.talk.is_present(session) => self.lost(error)?,
-                Ok(Heard::Said(..) | Heard::Lost(..)) => {}
+                Ok(Heard::Said(..) | Heard::Lost(..) | Heard::Connected(_)) => {}
                 Ok(Heard::Changed(files)) => self.changed(&files)?,
                 Err(RecvTimeoutError::Timeout) if !self.talk.is_joined() => drop(self.join()?),
                 Err(RecvTimeoutError::Timeout) => {}

@@ -162,7 +162,7 @@ impl Shared {
 }
 
 /// The last bytes of a stream, as text.
-fn tail(mut stream: impl Read) -> String {
+pub(super) fn tail(mut stream: impl Read) -> String {
     let mut kept = VecDeque::new();
     let mut buffer = [0; 1024];
     while let Ok(n) = stream.read(&mut buffer) {

@@ -26,6 +26,9 @@ pub const ALIVE: Duration = Duration::from_secs(5);
 /// and an end that heard nothing for this long counts the other as gone.
 pub const SILENCE: Duration = Duration::from_secs(20);
 
+/// What is said where the other end goes instead of an answer.
+pub const LEFT: &str = "the editor left at once";
+
 /// How long one write may stand still before the other end counts as gone.
 const STUCK: Duration = Duration::from_secs(10);
 
@@ -224,7 +227,7 @@ pub fn shake_hands(to: &mut impl Write, from: &mut impl Read, role: Role, most: 
         Some(hello @ FromEditor::Hello { .. }) => Ok(hello),
         Some(FromEditor::Bye(reason)) => Err(Error::at("editor", reason)),
         Some(_) => Err(Error::at("link", "the editor did not say hello")),
-        None => Err(Error::at("link", "the editor left at once")),
+        None => Err(Error::at("link", LEFT)),
     }
 }
 

@@ -1,8 +1,11 @@
 //! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
 
+pub mod address;
 pub mod attach;
 pub mod client;
 pub mod editor;
+pub mod far;
+pub mod fetch;
 mod host;
 mod keeper;
 pub mod keys;
@@ -12,6 +15,7 @@ pub mod message;
 mod message_tests;
 mod outbox;
 pub mod script;
+pub mod ssh;
 mod talk;
 mod views;
 #[cfg(feature = "window")]

@@ -45,6 +45,8 @@ pub(super) enum Heard {
     Lost(u64, Option<Error>),
     /// Files changed on disk.
     Changed(Vec<PathBuf>),
+    /// An attempt to connect again ended.
+    Connected(Result<(FromEditor, Wire)>),
     /// The window is gone.
     Gone,
 }
@@ -200,8 +202,9 @@ impl Talk {
         Document::from_json_under(json, self.options.rules()).map_err(|problems| Error::Scene { file, problems })
     }
 
-    /// Ends the connection where there is one.
+    /// Ends the connection where there is one; its last words are not heard.
     pub fn leave(&mut self) {
+        self.session += 1;
         self.outlet.set(None);
         if let Some(hang_up) = self.hang_up.take() {
             hang_up.now();

@@ -1,0 +1,201 @@
+//! The window's side across machines: talks with the far end of a way, fetches the files that the scene names, and where the
+//! link is lost keeps the last state, says so and goes there again by itself, later each time.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::client::Link;
+use super::fetch::{Fetch, Shared};
+use super::link::{ALIVE, HangUp, Wire};
+use super::message::{FromEditor, ToEditor};
+use super::ssh::Way;
+use super::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
+use crate::base::error::{Error, Result};
+use crate::files::cache::Cache;
+
+/// Waits before going there again, by attempts that failed in a row.
+const WAITS_SECS: [u64; 5] = [1, 2, 5, 10, 30];
+/// How often the progress of a file is told at most.
+const PROGRESS: Duration = Duration::from_millis(300);
+
+/// Follows the scene at the end of `way` from the hello that was said there on. `copies` fills with the files that the scene
+/// names, kept in `cache`.
+///
+/// # Errors
+/// The scene of the hello is wrong.
+pub fn follow(way: Way, (hello, wire): (FromEditor, Wire), cache: Cache, copies: Shared) -> Result<Link> {
+    let (updates, receiver) = mpsc::channel();
+    let settled = Arc::new(AtomicBool::new(false));
+    let sink = once_settled(window_sink(updates), settled.clone());
+    let (talk, replies, heard) = Talk::new(way.address.to_string(), &way.options, sink);
+    let fetch = Fetch::new(cache, copies, way.options.limits.memory);
+    let mut far = Far {
+        talk,
+        fetch,
+        settled,
+        standing: String::new(),
+        tries: 0,
+        next: None,
+        going: Arc::default(),
+        told: Instant::now(),
+        way,
+    };
+    far.talk.enter(hello, wire)?;
+    std::thread::spawn(move || drop(far.run(&heard)));
+    Ok(Link { updates: receiver, replies })
+}
+
+/// Keeps the scene back until the files that it names are here: without them it is nothing but a complaint.
+fn once_settled(mut sink: Sink, settled: Arc<AtomicBool>) -> Sink {
+    let mut waiting = None;
+    Box::new(move |news| match news {
+        News::Document { .. } if !settled.load(Ordering::Relaxed) => {
+            waiting = Some(news);
+            true
+        }
+        News::Files => waiting.take().is_none_or(&mut sink) && sink(News::Files),
+        other => sink(other),
+    })
+}
+
+struct Far {
+    way: Way,
+    talk: Talk,
+    fetch: Fetch,
+    settled: Arc<AtomicBool>,
+    /// What the far end said last of how it follows the scene.
+    standing: String,
+    /// Attempts that failed in a row.
+    tries: usize,
+    /// When to go there again; none while somebody is on the way or there.
+    next: Option<Instant>,
+    /// Gives up the attempt that is on the way.
+    going: Arc<Mutex<Option<HangUp>>>,
+    /// When the progress was told last.
+    told: Instant,
+}
+
+impl Far {
+    fn run(mut self, heard: &Receiver<Heard>) -> Outcome {
+        self.talk.show(None)?;
+        let mut said = Instant::now();
+        loop {
+            let due = self.next.unwrap_or(said + ALIVE);
+            match heard.recv_timeout(due.saturating_duration_since(Instant::now())) {
+                Ok(Heard::Said(session, said)) if self.talk.is_present(session) => self.take(said)?,
+                Ok(Heard::Lost(session, error)) if self.talk.is_present(session) => self.lost(error)?,
+                Ok(Heard::Connected(Ok((hello, wire)))) => self.connected(hello, wire)?,
+                Ok(Heard::Connected(Err(error))) => self.wait(error.to_string())?,
+                Ok(Heard::Said(..) | Heard::Lost(..) | Heard::Changed(_)) => {}
+                Err(RecvTimeoutError::Timeout) if self.next.is_some() => self.go(),
+                Err(RecvTimeoutError::Timeout) => {
+                    self.talk.say(&ToEditor::Alive);
+                    said = Instant::now();
+                }
+                Ok(Heard::Gone) | Err(RecvTimeoutError::Disconnected) => return Err(WindowGone),
+            }
+        }
+    }
+
+    fn take(&mut self, said: FromEditor) -> Outcome {
+        match self.talk.take(said)? {
+            Some(FromEditor::Images(originals)) => {
+                let changed = self.fetch.told(originals);
+                self.fetched(changed)
+            }
+            Some(FromEditor::Piece { hash, offset, bytes }) => {
+                let taken = self.fetch.piece(&hash, offset, &bytes, Instant::now());
+                let whole = taken.or_else(|error| self.talk.notice(error.to_string()).map(|()| true))?;
+                self.fetched(whole)
+            }
+            Some(FromEditor::Notice(line)) => {
+                self.standing = format!("{}: {line}", self.way.address.host);
+                if self.fetch.is_settled() { self.talk.notice(self.standing.clone()) } else { Ok(()) }
+            }
+            Some(FromEditor::Bye(reason)) => {
+                self.leave();
+                self.wait(reason)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Goes on fetching; where files came the scene is shown with them.
+    fn fetched(&mut self, changed: bool) -> Outcome {
+        let wants = match self.fetch.wants(Instant::now()) {
+            Ok(wants) => wants,
+            Err(error) => return self.talk.notice(error.to_string()),
+        };
+        wants.iter().for_each(|want| self.talk.say(want));
+        let settled = self.fetch.is_settled();
+        if changed || settled && !self.settled.load(Ordering::Relaxed) {
+            self.settled.fetch_or(settled, Ordering::Relaxed);
+            if self.settled.load(Ordering::Relaxed) {
+                self.talk.tell(News::Files)?;
+            }
+        }
+        match self.fetch.progress() {
+            Some(_) if self.told.elapsed() < PROGRESS => Ok(()),
+            Some(line) => {
+                self.told = Instant::now();
+                self.talk.notice(line)
+            }
+            None if settled => self.talk.notice(self.standing.clone()),
+            None => Ok(()),
+        }
+    }
+
+    fn leave(&mut self) {
+        self.talk.leave();
+        self.fetch.lost();
+    }
+
+    fn lost(&mut self, error: Option<Error>) -> Outcome {
+        self.leave();
+        let why =
+            error.map_or("the connection was lost".to_owned(), |error| format!("the connection was lost ({error})"));
+        self.wait(why)
+    }
+
+    /// The last state stays; it is tried again in a while.
+    fn wait(&mut self, why: String) -> Outcome {
+        let wait = Duration::from_secs(WAITS_SECS[self.tries.min(WAITS_SECS.len() - 1)]);
+        self.tries += 1;
+        self.next = Some(Instant::now() + wait);
+        self.talk.notice(format!("reconnecting: {why}"))
+    }
+
+    /// Goes there again, beside this thread: ssh may have something to ask.
+    fn go(&mut self) {
+        self.next = None;
+        let (way, sender, going) = (self.way.clone(), self.talk.sender.clone(), self.going.clone());
+        std::thread::spawn(move || {
+            let keep = |hang_up| *going.lock().unwrap_or_else(PoisonError::into_inner) = Some(hang_up);
+            let connected = way.connect(keep);
+            if let Err(mpsc::SendError(Heard::Connected(Ok((_, wire))))) = sender.send(Heard::Connected(connected)) {
+                wire.hang_up.now();
+            }
+        });
+    }
+
+    fn connected(&mut self, hello: FromEditor, wire: Wire) -> Outcome {
+        let hang_up = wire.hang_up.clone();
+        if let Err(error) = self.talk.enter(hello, wire) {
+            hang_up.now();
+            return self.wait(error.to_string());
+        }
+        self.tries = 0;
+        self.talk.show(None)?;
+        self.talk.notice(format!("{}: connected again", self.way.address.host))
+    }
+}
+
+impl Drop for Far {
+    fn drop(&mut self) {
+        if let Some(hang_up) = self.going.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            hang_up.now();
+        }
+    }
+}
