@@ -18,6 +18,7 @@ struct Editor {
     master: Option<Box<dyn MasterPty + Send>>,
     keys: Option<Box<dyn Write + Send>>,
     seen: Arc<Mutex<vt100::Parser>>,
+    sent: Arc<Mutex<Vec<u8>>>,
 }
 
 impl Editor {
@@ -37,15 +38,17 @@ impl Editor {
         drop(pair.slave);
         let seen = Arc::new(Mutex::new(vt100::Parser::new(24, 80, 0)));
         let mut output = pair.master.try_clone_reader().unwrap();
-        let parser = seen.clone();
+        let (parser, sent) = (seen.clone(), Arc::new(Mutex::new(Vec::new())));
+        let all = sent.clone();
         std::thread::spawn(move || {
             let mut bytes = [0; 4096];
             while let Ok(n @ 1..) = output.read(&mut bytes) {
                 parser.lock().unwrap().process(&bytes[..n]);
+                all.lock().unwrap().extend_from_slice(&bytes[..n]);
             }
         });
         let keys = pair.master.take_writer().unwrap();
-        Editor { child, master: Some(pair.master), keys: Some(keys), seen }
+        Editor { child, master: Some(pair.master), keys: Some(keys), seen, sent }
     }
 
     fn press(&mut self, keys: &str) {
@@ -62,6 +65,20 @@ impl Editor {
         let begun = Instant::now();
         while !self.screen().contains(text) {
             assert!(begun.elapsed() < PATIENCE, "no {text:?} on the screen:\n{}", self.screen());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits until `start` was sent, and gives what followed it up to and with `end`.
+    fn wait_for_sequence(&self, start: &str, end: &str) -> String {
+        let begun = Instant::now();
+        loop {
+            let sent = String::from_utf8_lossy(&self.sent.lock().unwrap()).into_owned();
+            let found = sent.split_once(start).and_then(|(_, rest)| rest.split_once(end));
+            if let Some((body, _)) = found {
+                return body.to_owned();
+            }
+            assert!(begun.elapsed() < PATIENCE, "no {start:?} was sent:\n{}", self.screen());
             std::thread::sleep(Duration::from_millis(10));
         }
     }
@@ -212,6 +229,37 @@ fn subcommands_run_beside_the_editor_on_the_scene_as_it_is_there() {
     editor.press(":q!\r");
     assert_eq!(editor.end(), 0);
     editor.assert_restored();
+}
+
+/// A terminal that answers nothing gets half-blocks; one that is told to takes pixels, within the bound of bytes.
+#[test]
+fn pictures_come_as_the_protocol_wants_them() {
+    for (protocol, start, end) in [
+        ("kitty", "\x1b_Gi=", "\u{10eeee}"),
+        ("iterm2", "\x1b]1337;File=inline=1;", "\x07"),
+        ("sixel", "\x1bP0;1;0q\"1;1;", "\x1b\\"),
+    ] {
+        let folder = folder();
+        let mut editor = Editor::open(folder.path(), &["photo.png", "--graphics", protocol]);
+        editor.wait_for("made");
+        editor.press("gi");
+        let body = editor.wait_for_sequence(start, end);
+        assert!(body.len() > 500 && body.len() < 256_000, "{protocol}: {} bytes", body.len());
+        let plain = |c: char| c.is_ascii_graphic() || "\x1b".contains(c);
+        assert!(body.chars().all(plain), "{protocol}");
+        editor.press(":q\r");
+        assert_eq!(editor.end(), 0);
+        editor.assert_restored();
+    }
+    let folder = folder();
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("made");
+    editor.press("gi");
+    editor.wait_for("▀▀▀");
+    let sent = String::from_utf8_lossy(&editor.sent.lock().unwrap()).into_owned();
+    assert!(!["\x1b_G", "\x1b]1337", "\x1bP"].iter().any(|start| sent.contains(start)));
+    editor.press(":q\r");
+    assert_eq!(editor.end(), 0);
 }
 
 #[test]

@@ -2,5 +2,5 @@
 
 pub mod animation;
 pub mod field;
-mod still;
+pub mod still;
 pub mod textures;

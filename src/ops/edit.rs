@@ -20,6 +20,9 @@ pub struct Args {
     /// Run the lines of a file at first, as `:source` does; where the output is no terminal or TERM is dumb, nothing else
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
+    /// How the picture is shown in the terminal: auto asks it
+    #[arg(long, value_name = "PROTOCOL", default_value = "auto", value_parser = ["auto", "kitty", "iterm2", "sixel", "blocks"])]
+    pub graphics: String,
     /// How files are read.
     #[command(flatten)]
     pub scene: SceneOptions,

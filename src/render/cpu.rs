@@ -19,6 +19,24 @@ pub fn linear(synth: &Synth, scene_time: f64) -> Picture {
     picture
 }
 
+/// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame), and no others: what a
+/// small view of a large picture costs.
+pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Picture {
+    let mut picture = Picture::filled(columns.len(), rows.len(), [0.0; 4]);
+    let lines = picture.cells_mut().par_chunks_mut(columns.len().max(1)).zip(rows.par_iter());
+    lines.for_each(|(out, &y)| {
+        for LayerSynth::Picture(layer) in &synth.layers {
+            if y < layer.picture.height() {
+                let within = &columns[..columns.partition_point(|&x| x < layer.picture.width())];
+                let mut own = vec![[0.0; 4]; within.len()];
+                folding::frame::columns(layer, scene_time, y, within, &mut own);
+                out.iter_mut().zip(own).for_each(|(beneath, colour)| *beneath = over(colour, *beneath));
+            }
+        }
+    });
+    picture
+}
+
 /// The mean of the frames of several samples of each pixel, in linear light.
 pub fn mean(samples: &[Synth], scene_time: f64) -> Picture {
     mean_of(samples.iter().map(|synth| linear(synth, scene_time)))

@@ -10,6 +10,7 @@ pub mod cpu;
 #[cfg(feature = "window")]
 pub mod gpu;
 pub mod overlay;
+pub mod part;
 #[cfg(feature = "window")]
 pub mod reduce;
 

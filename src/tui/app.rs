@@ -13,10 +13,10 @@ use super::life::Life;
 use super::line::Line;
 use super::place::Placing;
 use super::recorder::Recorder;
+use super::seeing::Seeing;
 use super::sheet::Sheet;
 use super::tree;
 use super::update::{Change, Effect};
-use crate::base::pixels::Frame;
 use crate::base::problem::Problem;
 use crate::render::Synth;
 use crate::scene::{Document, Edit, field};
@@ -71,6 +71,8 @@ pub struct State {
     pub seen: Seen,
     /// What happens to the scene outside, and what is asked about it.
     pub life: Life,
+    /// What there is to see of the picture.
+    pub seeing: Seeing,
     /// What is still to happen outside.
     pub effects: VecDeque<Effect>,
 }
@@ -130,8 +132,6 @@ pub struct Seen {
     pub synth: Option<Arc<Synth>>,
     /// How long the last synthesis took.
     pub synth_ms: Option<f64>,
-    /// The current frame.
-    pub frame: Option<Arc<Frame>>,
     /// What keeps the scene from being shown.
     pub problem: Option<String>,
     /// Long work that runs: what, and how far it is.
@@ -173,6 +173,7 @@ impl State {
             sought: String::new(),
             seen: Seen::default(),
             life,
+            seeing: Seeing::default(),
             effects: VecDeque::new(),
         };
         super::life::ask(&mut state);

@@ -5,9 +5,10 @@ use std::path::Path;
 use super::app::State;
 use super::door::Door;
 use super::runner::{Editor, listen};
+use super::seeing::{self, Request};
 use super::terminal;
 use super::update::{Effect, Event};
-use super::worker::{Job, Request};
+use super::worker::Job;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
 use crate::files::write;
@@ -20,15 +21,13 @@ impl Editor {
             Effect::Publish(change) => {
                 self.preview.publish(&change.document, change.revision, &change.edit);
                 self.watch_files();
-                self.show(false);
             }
             Effect::Show => {
                 self.preview.select(Some(self.state.focused()));
                 let duration = self.state.document().scene().timeline.duration;
                 self.preview.transport(self.state.playing, self.state.time * duration);
-                self.show(false);
             }
-            Effect::Reload => self.show(true),
+            Effect::Reload => self.worker.ask(Request { fresh: true, ..seeing::request(&self.state) }),
             Effect::Save { to, overwrite, leave } => {
                 let result = self.state.door.save(to.as_deref(), overwrite);
                 self.leaving = leave && result.is_ok();
@@ -57,13 +56,6 @@ impl Editor {
         }
     }
 
-    /// Asks for the synthesis and the frame of the present.
-    pub fn show(&self, fresh: bool) {
-        let scene = self.state.document().scene().clone();
-        let path = self.state.door.path().to_owned();
-        self.worker.ask(Request { scene, path, time: self.state.time, fresh });
-    }
-
     fn open(&mut self, path: &Path, mode: Mode) {
         match Door::open(path, mode, &self.options.files) {
             Ok(door) => {
@@ -75,7 +67,9 @@ impl Editor {
                     self.preview.open_window();
                 }
                 let recorder = std::mem::take(&mut self.state.recorder);
+                let graphics = self.state.seeing.graphics.clone();
                 self.state = State { recorder, ..State::new(door, self.state.size, self.state.depth) };
+                self.state.seeing.graphics = graphics;
                 self.begin();
             }
             Err(error) => self.state.complain(error.to_string()),

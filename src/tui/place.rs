@@ -16,14 +16,16 @@ use crate::scene::{Document, Edit};
 pub struct Placing {
     /// The cursor, in image pixels; on the centre of a pixel unless set by a number.
     pub cursor: Point,
-    /// How many times the picture is shown twice as large as it fits.
-    pub zoom: i32,
+    /// Pixels of the picture a dot; none: as many as show all of it.
+    pub zoom: Option<f64>,
+    /// The middle of what is in sight, as far as the picture and the cursor allow.
+    pub middle: Point,
 }
 
 impl Placing {
     /// The cursor at a place, all of the picture in sight.
     pub fn new(cursor: Point) -> Self {
-        Placing { cursor, zoom: 0 }
+        Placing { cursor, zoom: None, middle: cursor }
     }
 
     /// Moves the cursor, within the picture where its size is known.

@@ -1,5 +1,6 @@
 //! Runs the editor: events in, effects out. The only place that knows the terminal, the threads, the files and the window.
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -7,7 +8,9 @@ use std::time::{Duration, Instant};
 use super::app::State;
 use super::colour::Depth;
 use super::door::Door;
+use super::graphics::{self, Protocol, ask};
 use super::script::Scripts;
+use super::seeing::{self, Eyes};
 use super::update::{Event, update};
 use super::worker::{Job, Worker};
 use super::{input, terminal, view};
@@ -30,6 +33,8 @@ pub struct Options {
     pub read_only: bool,
     /// The lines that are run at first.
     pub script: Option<PathBuf>,
+    /// How the picture is shown; none: as the terminal answers.
+    pub graphics: Option<Protocol>,
     /// How files are read.
     pub files: files::Options,
 }
@@ -37,7 +42,8 @@ pub struct Options {
 impl Options {
     /// As `plica edit` without options.
     pub fn new(path: PathBuf) -> Options {
-        Options { path, window: true, read_only: false, script: None, files: files::Options::default() }
+        let (script, graphics) = (None, None);
+        Options { path, window: true, read_only: false, script, graphics, files: files::Options::default() }
     }
 
     /// How a scene is opened: where somebody else edits it, the person is asked.
@@ -52,7 +58,8 @@ impl Options {
     pub fn of(args: &ops::edit::Args) -> Result<Options> {
         let files = args.scene.options()?;
         let (path, script) = (args.path.clone(), args.script.clone());
-        Ok(Options { path, window: !args.no_view, read_only: args.read_only, script, files })
+        let graphics = Protocol::named(&args.graphics);
+        Ok(Options { path, window: !args.no_view, read_only: args.read_only, script, graphics, files })
     }
 }
 
@@ -123,6 +130,8 @@ pub struct Editor {
     pub(super) scripts: Scripts,
     /// The log of the session; none where there is no folder for it.
     pub(super) log: Option<Log>,
+    /// What the panes have asked the worker for.
+    pub(super) eyes: Eyes,
     /// Whether it ends.
     pub(super) leaving: bool,
 }
@@ -137,7 +146,10 @@ impl Editor {
         let size = screen.as_ref().map(|screen| screen.size()).transpose().map_err(|e| Error::at("the terminal", e))?;
         let size = size.map_or(view::LEAST, |size| (size.width, size.height));
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
+        let mut typed = Vec::new();
+        let mut graphics = graphics::Graphics::default();
         if screen.is_some() {
+            (graphics, typed) = ask::ask(options.graphics, |name| std::env::var(name).ok());
             input::read(sender.clone());
         }
         let worker = Worker::start(options.files.clone(), sender.clone());
@@ -149,6 +161,7 @@ impl Editor {
         let log = begin_log(&door, size, sender.clone());
         let mut state = State::new(door, size, depth);
         state.recorder.set_place(log.as_ref().map(|log| log.path().to_owned()));
+        state.seeing.graphics = graphics;
         let mut editor = Editor {
             options,
             state,
@@ -160,9 +173,11 @@ impl Editor {
             watch,
             scripts: Scripts::default(),
             log,
+            eyes: Eyes::default(),
             leaving: false,
         };
         editor.begin();
+        typed.into_iter().for_each(|key| editor.take(Event::Key(key)));
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();
         }
@@ -178,7 +193,6 @@ impl Editor {
         let greeting = self.state.door.greeting();
         self.state.say(greeting);
         self.watch_files();
-        self.show(false);
     }
 
     /// Watches the scene and all that it names.
@@ -195,8 +209,13 @@ impl Editor {
     fn run(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         let mut ticked = Instant::now();
         while !self.leaving {
+            self.eyes.request(&self.state).into_iter().for_each(|request| self.worker.ask(request));
             self.draw()?;
             self.wait(events, &mut ticked);
+        }
+        if let (Protocol::Kitty, Some(screen)) = (seeing::protocol(&self.state), &mut self.screen) {
+            // A terminal that has gone away has nothing to forget.
+            let _ = screen.backend_mut().write_all(graphics::forget().as_bytes());
         }
         self.end();
         Ok(())
@@ -211,7 +230,10 @@ impl Editor {
 
     fn draw(&mut self) -> Result<()> {
         let (state, Some(screen)) = (&self.state, &mut self.screen) else { return Ok(()) };
-        screen.draw(|frame| view::draw(frame, state)).map(drop).map_err(|e| Error::at("the terminal", e))
+        let begun = Instant::now();
+        let drawn = screen.draw(|frame| view::draw(frame, state)).map(drop);
+        self.eyes.wrote(state, begun.elapsed());
+        drawn.map_err(|e| Error::at("the terminal", e))
     }
 
     /// Waits for an event and takes all that are there, so that many cost one drawing.
@@ -220,7 +242,7 @@ impl Editor {
         let patience = match self.state.playing {
             _ if script_goes_on => Duration::ZERO,
             true => Duration::from_millis(33),
-            false => self.state.door.patience(),
+            false => self.eyes.patience(self.state.door.patience()),
         };
         let first = events.recv_timeout(patience).ok();
         for event in first.into_iter().chain(events.try_iter()) {
@@ -251,6 +273,9 @@ impl Editor {
 
     /// Takes an event, and does what it asks for.
     pub fn take(&mut self, event: Event) {
+        if let (Event::Resize(..), Some(cell)) = (&event, ask::cell()) {
+            self.state.seeing.graphics.cell = cell;
+        }
         let effects = update(&mut self.state, event);
         if let Some(log) = &self.log {
             self.state.recorder.unwritten().iter().for_each(|line| log.write(line.clone()));

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use ratatui::layout::{Position, Rect};
 
 use super::app::{Mode, Pages, State};
+use super::graphics::Shown;
 use super::keys::{self, Found};
 use super::panes::first_row;
 use super::{commands, life, tree, view};
-use crate::base::pixels::Frame;
 use crate::preview::editor::Asked;
 use crate::render::Synth;
 use crate::scene::{Document, Edit};
@@ -28,8 +28,8 @@ pub enum Event {
     Tick(f64),
     /// A synthesis has ended: what it made and how long it took, or what kept it.
     Synthesised(Result<(Arc<Synth>, f64), String>),
-    /// A frame is there.
-    Framed(Arc<Frame>),
+    /// A picture is there.
+    Framed(Arc<Shown>),
     /// Long work has got on.
     Progress(String),
     /// Long work has ended; what it said last.
@@ -127,7 +127,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             state.seen.problem = None;
         }
         Event::Synthesised(Err(problem)) => state.seen.problem = Some(problem),
-        Event::Framed(frame) => state.seen.frame = Some(frame),
+        Event::Framed(shown) => state.seeing.shown = Some(shown),
         Event::Progress(line) => state.seen.work = Some(line),
         Event::Done(result) => {
             state.seen.work = None;

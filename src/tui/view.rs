@@ -1,7 +1,7 @@
 //! The screen: where the panes stand, at every size from 80 x 24 on. Draws the state and changes nothing.
 
 use ratatui::Frame;
-use ratatui::layout::{Alignment, Constraint, Layout, Position, Rect, Spacing};
+use ratatui::layout::{Alignment, Constraint, Layout, Margin, Position, Rect, Spacing};
 use ratatui::symbols::merge::MergeStrategy;
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Clear, Paragraph, Widget};
@@ -49,6 +49,22 @@ pub fn areas(screen: Rect) -> Areas {
     Areas { tree, table, detail, right, status, line }
 }
 
+/// Whether the picture stands in the middle, for want of room at the right.
+fn picture_in_middle(state: &State, areas: &Areas) -> bool {
+    areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim))
+}
+
+/// The inside of the picture's pane, where it is on the screen.
+pub fn picture(state: &State) -> Option<Rect> {
+    let (width, height) = state.size;
+    if width < LEAST.0 || height < LEAST.1 {
+        return None;
+    }
+    let areas = areas(Rect::new(0, 0, width, height));
+    let middle = picture_in_middle(state, &areas).then(|| areas.table.union(areas.detail));
+    areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
+}
+
 /// Draws the screen.
 pub fn draw(frame: &mut Frame, state: &State) {
     let screen = frame.area();
@@ -57,8 +73,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
     }
     let areas = areas(screen);
     let mut cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
-    let in_middle = areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim));
-    if in_middle {
+    if picture_in_middle(state, &areas) {
         let whole = areas.table.union(areas.detail);
         let inner = pane(frame, state, whole, Pane::Picture, &panes::picture::title(state));
         cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
@@ -79,6 +94,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
     panes::status::draw(state, areas.status, frame.buffer_mut());
     cursor = panes::line::draw(state, areas.line, frame.buffer_mut()).or(cursor);
     cursor = panes::popup::draw(state, screen, frame.buffer_mut()).or(cursor);
+    panes::picture::give_way(state, frame.buffer_mut());
     if let Some(cursor) = cursor {
         frame.set_cursor_position(cursor);
     }

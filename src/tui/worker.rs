@@ -1,30 +1,18 @@
 //! Threads beside the editor: one synthesises the scene and makes its frames, always for the newest request; one runs a
 //! subcommand. Neither ever keeps a key waiting; what they find out comes back as events.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
+use super::graphics::Shown;
+use super::seeing::Request;
 use super::update::Event;
 use crate::base::error::Error;
 use crate::files;
 use crate::ops;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
-
-/// What the panes want to show.
-#[derive(Clone)]
-pub struct Request {
-    /// The scene.
-    pub scene: Arc<Scene>,
-    /// Its file, which its pictures are relative to.
-    pub path: PathBuf,
-    /// Scene time.
-    pub time: f64,
-    /// Whether files may have changed since the last time.
-    pub fresh: bool,
-}
 
 /// The thread that synthesises.
 pub struct Worker {
@@ -37,7 +25,8 @@ impl Worker {
         let slot = Arc::new((Mutex::new(None), Condvar::new()));
         let shared = slot.clone();
         std::thread::spawn(move || {
-            let mut studio = Studio { options, cache: files::materials::Cache::default(), shown: None };
+            let cache = files::materials::Cache::default();
+            let mut studio = Studio { options, cache, shown: None, picture: None };
             while let Some(request) = next(&shared) {
                 if !studio.serve(&request, &events) {
                     return;
@@ -69,6 +58,7 @@ struct Studio {
     options: files::Options,
     cache: files::materials::Cache,
     shown: Option<(Arc<Scene>, Arc<Synth>)>,
+    picture: Option<Arc<Shown>>,
 }
 
 impl Studio {
@@ -82,8 +72,11 @@ impl Studio {
                 return false;
             }
         }
-        let Some((_, synth)) = &self.shown else { return true };
-        events.send(Event::Framed(Arc::new(render::cpu::frame(synth, request.time)))).is_ok()
+        let Some((scene, synth)) = &self.shown else { return true };
+        let Some(wanted) = request.picture.clone() else { return true };
+        let picture = Shown::new(synth, scene, request.time, wanted, self.picture.as_deref());
+        self.picture = Some(picture.clone());
+        events.send(Event::Framed(picture)).is_ok()
     }
 
     fn synthesise(&mut self, request: &Request) -> Result<Arc<Synth>, String> {

@@ -68,6 +68,13 @@ pub fn is_terminal(stream: impl AsFd) -> bool {
     rustix::termios::isatty(stream)
 }
 
+/// Whether there is something to read (or the end), or comes to be within this time.
+pub fn readable(stream: impl AsFd, within: std::time::Duration) -> bool {
+    let mut one = [rustix::event::PollFd::new(&stream, rustix::event::PollFlags::IN)];
+    let within = rustix::event::Timespec::try_from(within).ok();
+    rustix::event::poll(&mut one, within.as_ref()).is_ok_and(|ready| ready > 0)
+}
+
 /// Whether this process was started from an SSH session.
 pub fn over_ssh() -> bool {
     ["SSH_CONNECTION", "SSH_TTY"].iter().any(|name| std::env::var_os(name).is_some_and(|v| !v.is_empty()))
@@ -84,6 +91,7 @@ mod tests {
             assert_eq!(peer_user(&a).unwrap(), user());
         }
         assert!(!is_terminal(&a));
+        assert!(!readable(&a, std::time::Duration::ZERO));
     }
 
     #[test]

@@ -17,18 +17,35 @@ pub fn row(synth: &Synth, time: f64, y: usize, out: &mut [Rgba]) {
     }
 }
 
+/// As [`row`] for some of its columns only, each within the picture: equal to what [`row`] writes there.
+pub fn columns(synth: &Synth, time: f64, y: usize, columns: &[usize], out: &mut [Rgba]) {
+    let still = synth.picture.row(y);
+    out.iter_mut().zip(columns).for_each(|(out, &x)| *out = still[x]);
+    for zone in &synth.zones {
+        let field = &*zone.field;
+        if (field.y0..field.y0 + field.inside.height()).contains(&y) {
+            let s = zone.clock.s(time);
+            let within = field.x0..field.x0 + field.inside.width();
+            let covered = out.iter_mut().zip(columns).filter(|(_, x)| within.contains(*x));
+            covered.for_each(|(out, &x)| zone_pixel(zone, s, (x - field.x0, y), out));
+        }
+    }
+}
+
 /// Shows one zone over what lies beneath, in the part of row `y` that its box covers.
 fn zone_row(zone: &ZoneSynth, s: f64, y: usize, beneath: &mut [Rgba]) {
+    beneath.iter_mut().enumerate().for_each(|(column, still)| zone_pixel(zone, s, (column, y), still));
+}
+
+/// Shows the pixel in column `column` of the zone's box, row `y` of the picture, over what lies beneath.
+fn zone_pixel(zone: &ZoneSynth, s: f64, (column, y): (usize, usize), still: &mut Rgba) {
     let field = &*zone.field;
-    let first = (y - field.y0) * field.inside.width();
-    for (column, still) in beneath.iter_mut().enumerate() {
-        let i = first + column;
-        if field.inside.cells()[i]
-            && let Some(e) = effective(field, i, s)
-        {
-            let q = Point::new((field.x0 + column) as f64 + 0.5, y as f64 + 0.5);
-            *still = shown(&zone.source, q, jump(field, i) * e, *still);
-        }
+    let i = (y - field.y0) * field.inside.width() + column;
+    if field.inside.cells()[i]
+        && let Some(e) = effective(field, i, s)
+    {
+        let q = Point::new((field.x0 + column) as f64 + 0.5, y as f64 + 0.5);
+        *still = shown(&zone.source, q, jump(field, i) * e, *still);
     }
 }
 

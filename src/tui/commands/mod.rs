@@ -22,6 +22,7 @@ mod playing;
 mod said;
 pub use said::{Said, quoted, unquoted, words};
 mod scripts;
+mod seeing;
 mod typing;
 mod values;
 mod yanking;
@@ -100,6 +101,7 @@ const TABLES: &[&[Command]] = &[
     moving::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
+    seeing::COMMANDS,
     typing::COMMANDS,
     scripts::COMMANDS,
     macros::COMMANDS,

@@ -5,17 +5,14 @@ use kurbo::Vec2;
 use super::items::go_to;
 use super::{Call, Command, Done, command, obey};
 use crate::tui::app::{Mode, Pane, State};
-use crate::tui::numbers::short;
-use crate::tui::place;
 use crate::tui::update::Effect;
+use crate::tui::{place, seeing};
 
 pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor),
     command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed).change(),
-    command("zoom", "in|out|fit", "Zoom the picture", zoom),
     command("pointer", "", "Take the window's pointer into the field, else into the picture's cursor", pointer)
         .inside(),
-    command("probe", "[X,Y]", "Say what a pixel does", probe),
 ];
 
 fn cursor(state: &mut State, call: &Call) -> Done {
@@ -25,6 +22,7 @@ fn cursor(state: &mut State, call: &Call) -> Done {
     let to =
         if place { Vec2::new(x, y) - state.placing.cursor.to_vec2() } else { Vec2::new(x, y) * call.times() as f64 };
     state.placing.step(to, state.picture_size);
+    seeing::settle(state);
     Ok(())
 }
 
@@ -56,24 +54,11 @@ fn placed(state: &mut State, call: &Call) -> Done {
             state.row = row;
             state.settle();
             state.placing.cursor = at;
+            seeing::settle(state);
             state.ask(Effect::Show);
             Ok(())
         }
     }
-}
-
-fn zoom(state: &mut State, call: &Call) -> Done {
-    let times = call.times() as i32;
-    state.placing.zoom = match call.text {
-        "in" => state.placing.zoom + times,
-        "out" => state.placing.zoom - times,
-        _ => 0,
-    }
-    .clamp(0, 12);
-    let all = [("in", "zoom-in"), ("out", "zoom-out"), ("fit", "zoom-fit")];
-    let same = all.iter().find(|(way, _)| *way == call.text).map(|(_, name)| name.to_string());
-    same.into_iter().for_each(|name| state.ask(Effect::View(Some(name))));
-    Ok(())
 }
 
 /// Where the row under the cursor has a place, it goes to the window's pointer; the picture's cursor does always.
@@ -81,21 +66,4 @@ fn pointer(state: &mut State, _: &Call) -> Done {
     let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
     obey(state, &format!("cursor at {x} {y}"), None)?;
     if state.focus == Pane::Table { obey(state, "place move", None) } else { Ok(()) }
-}
-
-/// Asks `plica probe` about the pixel under the cursor, or about X,Y, at the time that is shown.
-fn probe(state: &mut State, call: &Call) -> Done {
-    if !call.text.is_empty() {
-        let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
-        let [x, y] = numbers[..] else { return Err("probe takes X,Y".into()) };
-        state.placing.cursor = (x, y).into();
-        state.placing.step(Vec2::ZERO, state.picture_size);
-    }
-    if state.focus != Pane::Picture && call.text.is_empty() {
-        state.focus = Pane::Picture;
-    }
-    let at = state.placing.cursor;
-    let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.time.to_string()];
-    state.ask(Effect::Run(words.map(str::to_owned).to_vec()));
-    Ok(())
 }

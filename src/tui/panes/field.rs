@@ -13,8 +13,6 @@ use crate::tui::app::State;
 use crate::tui::numbers::{polar, short};
 use crate::tui::{colour, tree};
 
-const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
-
 /// Draws it, its longest vector and its scale below.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some(field) = field(state) else {
@@ -57,15 +55,14 @@ fn vector([x, y]: [f32; 2]) -> Vec2 {
 
 /// One arrow: a dot where there is next to nothing.
 fn arrow(state: &State, jump: Vec2, longest: f64) -> (&'static str, Style) {
-    let (length, degrees) = polar(jump);
+    let (length, _) = polar(jump);
     if longest == 0.0 || length < longest * 0.02 {
         return ("·", colour::faint());
     }
-    let eighth = (degrees / 45.0).round().rem_euclid(8.0) as usize;
     let style = match length / longest {
         share if share > 0.66 => state.depth.ink(Style::new().add_modifier(Modifier::BOLD), Color::Green),
         share if share > 0.33 => state.depth.ink(Style::new(), Color::Green),
         _ => state.depth.ink(colour::faint(), Color::Green),
     };
-    (ARROWS[eighth], style)
+    (super::arrow(jump), style)
 }

@@ -5,6 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::Span;
 
+use super::numbers::polar;
+
 pub mod detail;
 pub mod field;
 pub mod line;
@@ -30,6 +32,12 @@ pub fn write(buffer: &mut Buffer, area: Rect, x: i32, y: u16, text: &str, style:
     let from = x.max(0) as u16;
     buffer.set_stringn(area.x + from, area.y + y, skipped, usize::from(area.width - from), style);
     end
+}
+
+/// The arrow for the direction of a vector, one of eight.
+pub fn arrow(vector: kurbo::Vec2) -> &'static str {
+    const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+    ARROWS[(polar(vector).1 / 45.0).round().rem_euclid(8.0) as usize]
 }
 
 /// The first of `count` rows that is shown in `height` lines, so that row `at` stands in the middle where it can.

@@ -1,93 +1,116 @@
-//! The picture in half-blocks, two pixels a cell, with outlines, anchors and the placing cursor over it. Without colours
-//! each cell is a shade.
+//! The picture: as pixels where the terminal takes them, else in half-blocks, two dots a cell, with outlines, regions,
+//! anchors and the placing cursor over them. Without colours each cell is a shade.
 
-use kurbo::Point;
+use kurbo::{Point, Vec2};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 
-use super::write;
-use crate::base::pixels::Frame;
-use crate::render::overlay::{self, Dot, Mark, Shape, View};
+use super::{arrow, write};
+use crate::render::overlay::{self, Dot, Kind, Mark, Shape};
+use crate::render::part::Part;
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::colour::{self, Depth};
+use crate::tui::graphics::{Protocol, Shown};
 use crate::tui::numbers::short;
-use crate::tui::place::{self, Placing};
+use crate::tui::{place, seeing, sight, view};
 
-/// What of the picture is in sight: image pixels of the top left corner, and image pixels a half-block.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
-    /// The corner.
-    pub corner: Point,
-    /// Image pixels a half-block, both ways.
-    pub scale: f64,
-}
-
-impl Sight {
-    /// All of the picture in the middle; zoomed in, the part around the cursor.
-    pub fn of(placing: &Placing, (width, height): (usize, usize), columns: u16, rows: u16) -> Sight {
-        let (columns, halves) = (f64::from(columns.max(1)), f64::from(rows.max(1)) * 2.0);
-        let fit = (width as f64 / columns).max(height as f64 / halves).max(1e-6);
-        let scale = fit / f64::from(1u32 << placing.zoom.clamp(0, 20));
-        let edge = |cursor: f64, size: f64, cells: f64| {
-            let seen = cells * scale;
-            if seen >= size { (size - seen) / 2.0 } else { (cursor - seen / 2.0).clamp(0.0, size - seen) }
-        };
-        let x = edge(placing.cursor.x, width as f64, columns);
-        Sight { corner: Point::new(x, edge(placing.cursor.y, height as f64, halves)), scale }
-    }
-
-    /// The column and the half-row of a place in the picture.
-    fn cell(&self, at: Point) -> (i64, i64) {
-        let of = |v: f64| (v / self.scale).floor().clamp(-1e9, 1e9) as i64;
-        (of(at.x - self.corner.x), of(at.y - self.corner.y))
-    }
-}
-
-/// The cursor's coordinates, and the zoom.
+/// The cursor's coordinates, how large the picture is shown, and how it comes to the terminal.
 pub fn title(state: &State) -> String {
     let at = state.placing.cursor;
-    let zoom = if state.placing.zoom > 0 { format!("  {}x", 1u64 << state.placing.zoom) } else { String::new() };
-    format!("picture  x {} y {}{zoom}", short(at.x), short(at.y))
+    let part = seeing::part(state);
+    let scale = part.map(|part| format!("  {}", sight::words(part.scale))).unwrap_or_default();
+    let fit = if state.placing.zoom.is_none() { " fit" } else { "" };
+    let reduced = state.seeing.shown.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
+    let protocol = seeing::protocol(state).name();
+    format!("picture  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
 
 /// Draws it; the real cursor is on the placing cursor where the picture has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let Some(size) = state.picture_size.filter(|_| area.width > 0 && area.height > 0) else {
+    let Some(part) = seeing::part(state).filter(|_| area.width > 0 && area.height > 0) else {
         write(buffer, area, 1, 0, "no picture yet", colour::faint());
         return (state.focus == Pane::Picture).then(|| area.as_position());
     };
-    let sight = Sight::of(&state.placing, size, area.width, area.height);
-    if let Some(frame) = &state.seen.frame {
-        draw_pixels(frame, sight, state.depth, area, buffer);
+    match pixels(state, area) {
+        Some(cells) => {
+            for (at, cell) in area.positions().zip(cells.content()) {
+                buffer.cell_mut(at).into_iter().for_each(|there| there.clone_from(cell));
+            }
+        }
+        None => draw_blocks(state, &part, area, buffer),
     }
-    draw_marks(state, sight, area, buffer);
-    let (x, half) = sight.cell(state.placing.cursor);
-    let (x, y) = (x.clamp(0, i64::from(area.width) - 1), (half / 2).clamp(0, i64::from(area.height) - 1));
-    let style = Style::new().fg(Color::Reset).bg(Color::Reset).add_modifier(Modifier::REVERSED);
-    write(buffer, area, x as i32, y as u16, "┼", style);
-    (state.focus == Pane::Picture).then(|| Position::new(area.x + x as u16, area.y + y as u16))
+    let cursor = seeing::cursor_cell(state, &part);
+    let within = |cell: f64, cells: u16| cell.clamp(0.0, f64::from(cells - 1)) as u16;
+    let cursor = Position::new(area.x + within(cursor.x, area.width), area.y + within(cursor.y, area.height));
+    (state.focus == Pane::Picture).then_some(cursor)
 }
 
-fn draw_pixels(frame: &Frame, sight: Sight, depth: Depth, area: Rect, buffer: &mut Buffer) {
-    for y in 0..area.height {
-        for x in 0..area.width {
-            let half = |lower: u16| mean(frame, sight, f64::from(x), f64::from(y * 2 + lower));
-            let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y)) else { continue };
-            match (half(0), half(1)) {
-                (None, None) => {}
-                (upper, lower) if depth == Depth::None => {
-                    cell.set_char(colour::shade(both(upper, lower)));
-                }
-                (upper, lower) => {
-                    let paint = |rgb: Option<[u8; 3]>| rgb.and_then(|rgb| depth.colour(rgb)).unwrap_or(Color::Reset);
-                    let (symbol, style) = match (upper, lower) {
-                        (None, lower) => ("▄", Style::new().fg(paint(lower))),
-                        (upper, None) => ("▀", Style::new().fg(paint(upper))),
-                        (upper, lower) => ("▀", Style::new().fg(paint(upper)).bg(paint(lower))),
-                    };
-                    cell.set_symbol(symbol).set_style(style);
-                }
+/// The cells of the picture in a pane of this size, where the terminal takes pixels.
+fn pixels(state: &State, area: Rect) -> Option<&Buffer> {
+    let shown = state.seeing.shown.as_ref()?;
+    let fits = shown.wanted.cells == (area.width, area.height) && shown.wanted.protocol == seeing::protocol(state);
+    shown.cells.as_ref().filter(|_| fits)
+}
+
+/// Where something was drawn over the pixels, half-blocks take their place: a picture that is sent whole would be painted
+/// over it. Kitty's cells are characters like others and stay.
+pub fn give_way(state: &State, buffer: &mut Buffer) {
+    let Some(area) = view::picture(state).filter(|_| seeing::protocol(state) != Protocol::Kitty) else { return };
+    let (Some(cells), Some(part)) = (pixels(state, area), seeing::part(state)) else { return };
+    let free = |(at, cell): &(Position, &_)| buffer.cell(*at) == Some(*cell);
+    let free: Vec<Position> = area.positions().zip(cells.content()).filter(free).map(|(at, _)| at).collect();
+    if free.len() == cells.content().len() {
+        return;
+    }
+    let mut blocks = Buffer::empty(area);
+    draw_blocks(state, &part, area, &mut blocks);
+    for at in free {
+        if let (Some(there), Some(cell)) = (buffer.cell_mut(at), blocks.cell(at)) {
+            there.clone_from(cell);
+        }
+    }
+}
+
+fn draw_blocks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
+    // In half-blocks, whatever the dots of the terminal are.
+    let scale = part.scale * part.dots.0 as f64 / f64::from(area.width);
+    let part = Part { scale, dots: (area.width.into(), usize::from(area.height) * 2), ..*part };
+    if let Some(shown) = &state.seeing.shown {
+        draw_pixels(shown, &part, state.depth, area, buffer);
+    }
+    draw_marks(state, &part, area, buffer);
+    let (x, half) = cell(&part, state.placing.cursor);
+    let style = Style::new().fg(Color::Reset).bg(Color::Reset).add_modifier(Modifier::REVERSED);
+    write(buffer, area, x as i32, half.div_euclid(2).max(0) as u16, "┼", style);
+}
+
+/// The column and the half-row of a place in the picture.
+fn cell(part: &Part, at: Point) -> (i64, i64) {
+    let dot = part.dot_of(at);
+    let whole = |v: f64| v.floor().clamp(-1e9, 1e9) as i64;
+    (whole(dot.x), whole(dot.y))
+}
+
+fn draw_pixels(shown: &Shown, part: &Part, depth: Depth, area: Rect, buffer: &mut Buffer) {
+    for (x, y) in (0..area.height).flat_map(|y| (0..area.width).map(move |x| (x, y))) {
+        let dot = |lower: f64| Point::new(f64::from(x) + 0.5, f64::from(y) * 2.0 + lower + 0.5);
+        let half = |lower: f64| shown.colour_at(part.place_of(dot(lower)));
+        let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y)) else { continue };
+        let paint = |rgb: Option<[u8; 3]>| rgb.and_then(|rgb| depth.colour(rgb)).unwrap_or(Color::Reset);
+        match (half(0.0), half(1.0)) {
+            (None, None) => {}
+            (upper, lower) if depth == Depth::None => {
+                cell.set_char(colour::shade(both(upper, lower)));
+            }
+            (None, lower) => {
+                cell.set_symbol("▄").set_style(Style::new().fg(paint(lower)));
+            }
+            (upper, None) => {
+                cell.set_symbol("▀").set_style(Style::new().fg(paint(upper)));
+            }
+            (upper, lower) => {
+                cell.set_symbol("▀").set_style(Style::new().fg(paint(upper)).bg(paint(lower)));
             }
         }
     }
@@ -100,57 +123,43 @@ fn both(upper: Option<[u8; 3]>, lower: Option<[u8; 3]>) -> [u8; 3] {
     }
 }
 
-/// The mean colour of a half-block over a few of its pixels, on a checkerboard where it is transparent; none beyond the
-/// picture.
-fn mean(frame: &Frame, sight: Sight, x: f64, y: f64) -> Option<[u8; 3]> {
-    const PLACES: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
-    let at = |v: f64, corner: f64, size: usize| {
-        let pixel = (corner + v * sight.scale).floor();
-        (pixel >= 0.0 && pixel < size as f64).then_some(pixel as usize)
-    };
-    let (mut sum, mut count) = ([0u32; 3], 0);
-    for dy in PLACES {
-        for dx in PLACES {
-            let i = at(x + dx, sight.corner.x, frame.width());
-            let j = at(y + dy, sight.corner.y, frame.height());
-            let (Some(i), Some(j)) = (i, j) else { continue };
-            let [r, g, b, a] = frame.get(i, j).map(u32::from);
-            let ground = if (i / 8 + j / 8) % 2 == 0 { 96 } else { 160 };
-            for (sum, code) in sum.iter_mut().zip([r, g, b]) {
-                *sum += (code * a + ground * (255 - a)) / 255;
-            }
-            count += 1;
-        }
-    }
-    (count > 0).then(|| sum.map(|v| (v / count) as u8))
-}
-
-/// Outlines, curves, anchors and their jumps, the selected ones on top.
-fn draw_marks(state: &State, sight: Sight, area: Rect, buffer: &mut Buffer) {
-    let selection = Some(state.focused());
-    let view = View { outlines: true, regions: true, anchors: true, curves: true, selection, ..View::default() };
-    let mut marks = overlay::overlay(state.document().scene(), state.seen.synth.as_deref(), &view);
+/// Outlines, regions, curves, anchors and their jumps, the selected ones on top.
+fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
+    let synth = state.seen.synth.as_deref();
+    let mut marks = overlay::overlay(state.document().scene(), synth, &seeing::overlays(state));
     marks.sort_by_key(|mark| mark.selected);
     for mark in &marks {
-        draw_mark(mark, state.depth, sight, area, buffer);
+        draw_mark(mark, state.depth, part, area, buffer);
     }
     if let (Mode::Aim, Some(from)) = (&state.mode, place::selected(state)) {
         let style = Style::new().add_modifier(Modifier::BOLD);
-        line(from, state.placing.cursor, sight, |x, half| put(buffer, area, x, half, "•", style));
+        line(from, state.placing.cursor, part, |x, half| put(buffer, area, x, half, "•", style));
     }
 }
 
-fn draw_mark(mark: &Mark, depth: Depth, sight: Sight, area: Rect, buffer: &mut Buffer) {
+/// What a line of each kind is drawn with: shapes tell them apart, colours only help.
+fn stroke(kind: Kind) -> &'static str {
+    match kind {
+        Kind::FoldRegion => "x",
+        Kind::Curve => "~",
+        Kind::Lasso => ":",
+        Kind::Handle => "'",
+        _ => "·",
+    }
+}
+
+fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Buffer) {
     let [r, g, b, _] = if mark.selected { overlay::SELECTED } else { mark.kind.style().color };
     let style = depth.colour([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
     let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
+    let glyph = stroke(mark.kind);
     match &mark.shape {
         Shape::Line { points, closed } => {
             let last = points.last().filter(|_| *closed);
             let from = last.into_iter().chain(points);
             let to = points.iter().skip(usize::from(!closed));
             for (&from, &to) in from.zip(to) {
-                line(from, to, sight, |x, half| put(buffer, area, x, half, "·", style));
+                line(from, to, part, |x, half| put(buffer, area, x, half, glyph, style));
             }
         }
         Shape::Dot(at) => {
@@ -162,13 +171,13 @@ fn draw_mark(mark: &Mark, depth: Depth, sight: Sight, area: Rect, buffer: &mut B
                 (Dot::Diamond, false) => "◇",
                 (Dot::Diamond, true) => "◆",
             };
-            let (x, half) = sight.cell(*at);
+            let (x, half) = cell(part, *at);
             put(buffer, area, x, half, glyph, style);
         }
         Shape::Arrow(from, to) => {
-            line(*from, *to, sight, |x, half| put(buffer, area, x, half, "·", style));
-            let (x, half) = sight.cell(*to);
-            put(buffer, area, x, half, "*", style);
+            line(*from, *to, part, |x, half| put(buffer, area, x, half, glyph, style));
+            let (x, half) = cell(part, *to);
+            put(buffer, area, x, half, arrow(Vec2::new(to.x - from.x, to.y - from.y)), style);
         }
         Shape::Fill(_) | Shape::Label(..) => {}
     }
@@ -186,35 +195,12 @@ fn put(buffer: &mut Buffer, area: Rect, x: i64, half: i64, glyph: &str, style: S
     }
 }
 
-/// Every half-block that a line meets, within reason.
-fn line(from: Point, to: Point, sight: Sight, mut each: impl FnMut(i64, i64)) {
-    let steps = ((to - from).hypot2().sqrt() / sight.scale).ceil().clamp(1.0, 4000.0);
+/// Every half-block that a line meets.
+fn line(from: Point, to: Point, part: &Part, mut each: impl FnMut(i64, i64)) {
+    let Some((a, b)) = sight::clipped(part.dot_of(from), part.dot_of(to), part.dots) else { return };
+    let steps = (b - a).hypot2().sqrt().ceil().max(1.0);
     for i in 0..=steps as u32 {
-        let (x, half) = sight.cell(from.lerp(to, f64::from(i) / steps));
-        each(x, half);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_whole_picture_fits_and_the_zoom_follows_the_cursor() {
-        let mut placing = Placing::new(Point::new(390.0, 290.0));
-        let sight = Sight::of(&placing, (400, 300), 40, 20);
-        assert_eq!((sight.scale, sight.corner), (10.0, Point::new(0.0, -50.0)));
-        placing.zoom = 2;
-        let sight = Sight::of(&placing, (400, 300), 40, 20);
-        assert_eq!((sight.scale, sight.corner), (2.5, Point::new(300.0, 200.0)));
-        assert_eq!(sight.cell(placing.cursor), (36, 36));
-    }
-
-    #[test]
-    fn a_transparent_picture_shows_a_ground() {
-        let frame = Frame::filled(8, 8, [255, 0, 0, 0]);
-        let sight = Sight { corner: Point::ZERO, scale: 8.0 };
-        assert_eq!(mean(&frame, sight, 0.0, 0.0), Some([96; 3]));
-        assert_eq!(mean(&frame, sight, 1.0, 0.0), None);
+        let dot = a.lerp(b, f64::from(i) / steps);
+        each(dot.x.floor() as i64, dot.y.floor() as i64);
     }
 }

@@ -13,6 +13,7 @@ mod life;
 mod lines;
 mod macros;
 mod screens;
+mod seeing;
 pub mod support;
 
 /// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them. The

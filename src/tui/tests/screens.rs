@@ -7,9 +7,11 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::support::{press, state};
-use crate::base::pixels::{Frame, Picture};
+use crate::base::pixels::Picture;
 use crate::layers::Materials;
 use crate::tui::app::State;
+use crate::tui::graphics::Shown;
+use crate::tui::seeing;
 use crate::tui::update::{Event, update};
 use crate::tui::view;
 
@@ -31,22 +33,29 @@ const STATES: &[(&str, &str)] = &[
 ];
 
 /// The state with a synthesis and a frame, as the worker would have brought them.
-fn opened(size: (u16, u16)) -> State {
+pub fn opened(size: (u16, u16)) -> State {
     let mut state = state();
     let shade = |i: usize| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, 0.3, 1.0];
     let picture = Arc::new(Picture::from_cells(64, 64, (0..64 * 64).map(shade).collect()));
     let materials = Materials { pictures: [("cat".to_string(), picture)].into(), ..Materials::default() };
     let synth = crate::render::synth(state.document().scene(), &materials, None).unwrap();
-    let frame: Frame = crate::render::cpu::frame(&synth, 0.25);
     update(&mut state, Event::Synthesised(Ok((Arc::new(synth), 12.0))));
-    update(&mut state, Event::Framed(Arc::new(frame)));
     update(&mut state, Event::Resize(size.0, size.1));
     state.time = 0.25;
     state
 }
 
+/// What the worker would answer to what the panes want.
+pub fn see(state: &mut State) {
+    let request = seeing::request(state);
+    if let (Some(synth), Some(wanted)) = (state.seen.synth.clone(), request.picture) {
+        let shown = Shown::new(&synth, &request.scene, request.time, wanted, state.seeing.shown.as_deref());
+        update(state, Event::Framed(shown));
+    }
+}
+
 /// What is on the screen, the cursor's place below.
-fn screen(state: &State) -> String {
+pub fn screen(state: &State) -> String {
     let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
     terminal.draw(|frame| view::draw(frame, state)).unwrap();
     let cursor = terminal.get_cursor_position().unwrap();
@@ -68,6 +77,7 @@ fn screens_are_as_kept() {
         for (name, keys) in STATES {
             let mut state = opened(size);
             press(&mut state, keys);
+            see(&mut state);
             let path = folder.join(format!("{name}-{}x{}.txt", size.0, size.1));
             let found = screen(&state);
             if std::env::var_os("PLICA_UPDATE").is_some() {
@@ -88,6 +98,7 @@ fn every_size_is_drawn_and_small_ones_say_so() {
         for (_, keys) in STATES {
             let mut state = opened((width, height));
             press(&mut state, keys);
+            see(&mut state);
             let small = width < 80 || height < 24;
             let text = screen(&state);
             assert!(!small || width < 20 || text.contains("Plica needs 80 x 24"), "{width} x {height}:\n{text}");

@@ -1,0 +1,108 @@
+//! What of the picture is in sight and how it comes to the terminal; what one pixel does.
+
+use kurbo::Vec2;
+
+use super::{Call, Command, Done, command};
+use crate::base::problem;
+use crate::tui::app::{Pane, State};
+use crate::tui::graphics::Protocol;
+use crate::tui::numbers::short;
+use crate::tui::update::Effect;
+use crate::tui::{seeing, sight};
+
+pub const COMMANDS: &[Command] = &[
+    command("zoom", "in|out|fit|one", "Zoom the picture, here and in the window", zoom),
+    command("pan", "left|right|up|down|cursor", "Show another part of the picture", pan),
+    command("graphics", "[auto|kitty|iterm2|sixel|blocks|bytes N]", "Say or set how the picture is shown", graphics),
+    command("probe", "[X,Y]", "Say what a pixel does", probe),
+];
+
+fn zoom(state: &mut State, call: &Call) -> Done {
+    let known = [("in", "zoom-in"), ("out", "zoom-out"), ("fit", "zoom-fit"), ("one", "zoom-one")];
+    let (_, same) = known.iter().find(|(way, _)| *way == call.text).ok_or("zoom takes in, out, fit or one")?;
+    state.ask(Effect::View(Some((*same).to_string())));
+    let (Some(before), Some(size)) = (seeing::part(state), state.picture_size) else { return Ok(()) };
+    let fit = sight::fit(size, before.dots);
+    let steps = 0..call.times().min(100);
+    state.placing.zoom = match call.text {
+        "fit" => None,
+        "one" => (fit > 1.0).then_some(1.0),
+        way => steps.fold(state.placing.zoom, |zoom, _| sight::zoomed(zoom.unwrap_or(fit), fit, way == "in")),
+    };
+    // What is under the cursor stays there.
+    let (cursor, scale) = (state.placing.cursor, state.placing.zoom.unwrap_or(fit));
+    state.placing.middle = cursor + (before.corner + before.seen() / 2.0 - cursor) * (scale / before.scale);
+    seeing::settle(state);
+    Ok(())
+}
+
+fn pan(state: &mut State, call: &Call) -> Done {
+    let (x, y) = match call.text {
+        "left" => (-1.0, 0.0),
+        "right" => (1.0, 0.0),
+        "up" => (0.0, -1.0),
+        "down" => (0.0, 1.0),
+        "cursor" => {
+            state.placing.middle = state.placing.cursor;
+            return Ok(());
+        }
+        _ => return Err("pan takes left, right, up, down or cursor".into()),
+    };
+    for _ in 0..call.times().min(1000) {
+        if let (Some(part), Some(size)) = (seeing::part(state), state.picture_size) {
+            sight::pan(&mut state.placing, &part, size, Vec2::new(x, y));
+        }
+    }
+    state.placing.step(Vec2::ZERO, state.picture_size);
+    seeing::settle(state);
+    Ok(())
+}
+
+fn graphics(state: &mut State, call: &Call) -> Done {
+    let mut words = call.text.split_whitespace();
+    let graphics = &mut state.seeing.graphics;
+    match (words.next(), words.next()) {
+        (None, _) => {}
+        (Some("auto"), None) => graphics.forced = None,
+        (Some("bytes"), Some(bytes)) => {
+            let bytes = bytes.parse::<usize>().ok().filter(|bytes| (1000..=100_000_000).contains(bytes));
+            let bytes = bytes.ok_or("graphics bytes takes a number from 1000 to 100000000")?;
+            graphics.bytes = (bytes, bytes);
+        }
+        (Some(name), None) => {
+            let known = Protocol::NAMES.iter().map(|(name, _)| *name).chain(["auto", "bytes"]);
+            let near = problem::nearest(name, known).map(|near| format!(": {near}")).unwrap_or_default();
+            let protocol = Protocol::named(name).ok_or_else(|| format!("there are no graphics {name}{near}"))?;
+            graphics.forced = Some(protocol);
+        }
+        _ => return Err("graphics takes auto, kitty, iterm2, sixel, blocks or bytes N".into()),
+    }
+    let (playing, still) = state.seeing.graphics.bytes;
+    let (width, height) = state.seeing.graphics.cell;
+    let taken = state.seeing.shown.as_ref().map(|shown| format!(", the last took {}", shown.bytes)).unwrap_or_default();
+    state.say(format!(
+        "graphics: {} (the terminal: {}), cells of {width} x {height} px, at most {playing} bytes a frame while playing, \
+         {still} still{taken}",
+        seeing::protocol(state).name(),
+        state.seeing.graphics.found.name(),
+    ));
+    Ok(())
+}
+
+/// Asks `plica probe` about the pixel under the cursor, or about X,Y, at the time that is shown.
+fn probe(state: &mut State, call: &Call) -> Done {
+    if !call.text.is_empty() {
+        let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+        let [x, y] = numbers[..] else { return Err("probe takes X,Y".into()) };
+        state.placing.cursor = (x, y).into();
+        state.placing.step(Vec2::ZERO, state.picture_size);
+        seeing::settle(state);
+    }
+    if state.focus != Pane::Picture && call.text.is_empty() {
+        state.focus = Pane::Picture;
+    }
+    let at = state.placing.cursor;
+    let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.time.to_string()];
+    state.ask(Effect::Run(words.map(str::to_owned).to_vec()));
+    Ok(())
+}

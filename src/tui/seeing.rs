@@ -1,0 +1,158 @@
+//! What the panes see of the picture: which part they want from the worker, as a function of the state, and what it has
+//! answered. The runner asks whenever this is something else than it asked for last.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use kurbo::Point;
+
+use super::app::{Mode, State};
+use super::graphics::{Graphics, Marks, Protocol, Shown, Wanted};
+use super::{place, sight, view};
+use crate::render::overlay::View;
+use crate::render::part::Part;
+use crate::scene::Scene;
+
+/// What there is to see.
+#[derive(Clone, Debug, Default)]
+pub struct Seeing {
+    /// What pictures the terminal takes.
+    pub graphics: Graphics,
+    /// The picture that the worker made last.
+    pub shown: Option<Arc<Shown>>,
+}
+
+/// What the panes want to show.
+#[derive(Clone)]
+pub struct Request {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Its file, which its pictures are relative to.
+    pub path: PathBuf,
+    /// Scene time.
+    pub time: f64,
+    /// Whether files may have changed since the last time.
+    pub fresh: bool,
+    /// The picture, where there is room for it.
+    pub picture: Option<Wanted>,
+}
+
+impl PartialEq for Request {
+    /// Whether the same is to be seen.
+    fn eq(&self, other: &Request) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.path == other.path
+            && self.time == other.time
+            && self.picture == other.picture
+    }
+}
+
+/// What the panes want now.
+pub fn request(state: &State) -> Request {
+    let scene = state.document().scene().clone();
+    let path = state.door.path().to_owned();
+    Request { scene, path, time: state.time, fresh: false, picture: wanted(state) }
+}
+
+/// The protocol in force.
+pub fn protocol(state: &State) -> Protocol {
+    state.seeing.graphics.protocol(state.depth)
+}
+
+/// The part of the picture that its pane shows; none where there is no such pane on the screen.
+pub fn part(state: &State) -> Option<Part> {
+    let area = view::picture(state)?;
+    let dots = state.seeing.graphics.dots(protocol(state), (area.width, area.height));
+    Some(sight::part(&state.placing, state.picture_size?, dots))
+}
+
+/// Remembers what is in sight, so that the picture only moves when the cursor would leave it.
+pub fn settle(state: &mut State) {
+    if let Some(part) = part(state) {
+        state.placing.middle = part.corner + part.seen() / 2.0;
+    }
+}
+
+/// What is drawn over the picture, and how the selection stands out.
+pub fn overlays(state: &State) -> View {
+    let selection = Some(state.focused());
+    View { outlines: true, regions: true, anchors: true, curves: true, selection, ..View::default() }
+}
+
+fn wanted(state: &State) -> Option<Wanted> {
+    let area = view::picture(state)?;
+    let graphics = &state.seeing.graphics;
+    let (playing, still) = graphics.bytes;
+    let protocol = protocol(state);
+    let marks = || Marks {
+        view: overlays(state),
+        cursor: state.placing.cursor,
+        aim: place::selected(state).filter(|_| matches!(state.mode, Mode::Aim)),
+    };
+    Some(Wanted {
+        part: part(state)?,
+        cells: (area.width, area.height),
+        protocol,
+        tmux: graphics.tmux,
+        bytes: if state.playing { playing } else { still },
+        marks: (protocol != Protocol::Blocks).then(marks),
+    })
+}
+
+/// The place of the cursor on its pane, in cells from its corner.
+pub fn cursor_cell(state: &State, part: &Part) -> Point {
+    let (across, down) = state.seeing.graphics.dots_a_cell(protocol(state));
+    let dot = part.dot_of(state.placing.cursor);
+    Point::new((dot.x / across as f64).floor(), (dot.y / down as f64).floor())
+}
+
+/// What was asked of the worker, and when it may be asked for the next picture. Writing a picture to a slow link takes
+/// time, in which keys would wait: after it the link is left to them for twice as long. Pictures in between are dropped,
+/// never queued.
+#[derive(Default)]
+pub struct Eyes {
+    asked: Option<Request>,
+    written: Option<Arc<Shown>>,
+    free: Option<Instant>,
+}
+
+/// However slow the link, a picture comes as often as this.
+const LONGEST: Duration = Duration::from_secs(5);
+
+impl Eyes {
+    /// What to ask the worker for now: something new, and a picture only where the link is free for one.
+    pub fn request(&mut self, state: &State) -> Option<Request> {
+        let mut request = request(state);
+        if self.asked.as_ref() == Some(&request) {
+            return None;
+        }
+        if !self.left().is_zero() {
+            if self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(&asked.scene, &request.scene)) {
+                return None;
+            }
+            request.picture = None;
+        }
+        self.asked = Some(request.clone());
+        Some(request)
+    }
+
+    /// A screen has been written, and it took so long.
+    pub fn wrote(&mut self, state: &State, took: Duration) {
+        let shown = state.seeing.shown.as_ref();
+        if self.written.as_ref().map(Arc::as_ptr) != shown.map(Arc::as_ptr) {
+            self.written = shown.cloned();
+            self.free = Some(Instant::now() + (took * 2).min(LONGEST));
+        }
+    }
+
+    /// How long to wait for events: `otherwise`, or until a picture may be asked for that is wanted by then.
+    pub fn patience(&self, otherwise: Duration) -> Duration {
+        let left = self.left();
+        if left.is_zero() { otherwise } else { left.min(otherwise) }
+    }
+
+    fn left(&self) -> Duration {
+        self.free.map_or(Duration::ZERO, |free| free.saturating_duration_since(Instant::now()))
+    }
+}

@@ -1,0 +1,148 @@
+//! Seeing without a window: zoom and pan, the picture in every protocol, within its bound of bytes.
+
+use kurbo::Point;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::{Buffer, CellDiffOption};
+
+use super::screens::{opened, screen, see};
+use super::support::{press, state};
+use crate::tui::app::State;
+use crate::tui::colour::Depth;
+use crate::tui::graphics::Protocol;
+use crate::tui::{seeing, view};
+
+/// The screen as cells.
+fn cells(state: &State) -> Buffer {
+    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
+    terminal.draw(|frame| view::draw(frame, state)).unwrap().buffer.clone()
+}
+
+/// The editor with the picture in a protocol, on a wide terminal.
+fn shown_by(protocol: Protocol, keys: &str) -> State {
+    let mut state = opened((160, 48));
+    state.depth = Depth::True;
+    state.seeing.graphics.forced = Some(protocol);
+    press(&mut state, keys);
+    see(&mut state);
+    state
+}
+
+#[test]
+pub fn zooming_keeps_the_cursor_and_panning_takes_it_along() {
+    // The picture has 64 x 64 pixels, its pane 62 x 44 dots.
+    const FIT: f64 = 64.0 / 44.0;
+    for (keys, scale, corner, cursor) in [
+        ("", FIT, None, (30.5, 25.5)),
+        ("z 1", 1.0, Some((1.0, 8.0)), (30.5, 25.5)),
+        ("z 1 z z", 1.0, Some((0.0, 4.0)), (30.5, 25.5)),
+        ("z + z +", 0.5, Some((16.0, 17.0)), (30.5, 25.5)),
+        ("z + z + z z", 0.5, Some((15.0, 15.0)), (30.5, 25.5)),
+        ("z + z + z l", 0.5, Some((24.0, 17.0)), (30.5, 25.5)),
+        ("z + z + z l z l", 0.5, Some((32.0, 17.0)), (32.5, 25.5)),
+        ("z + z + z h z h z h", 0.5, Some((0.0, 17.0)), (30.5, 25.5)),
+        ("2 z + z f", FIT, None, (30.5, 25.5)),
+        ("g i + + 0", FIT, None, (30.5, 25.5)),
+        ("g i + + -", 1.0, None, (30.5, 25.5)),
+        ("g i + + 9 L", 0.5, Some((33.0, 17.0)), (63.5, 25.5)),
+    ] {
+        let mut state = opened((160, 48));
+        press(&mut state, keys);
+        let part = seeing::part(&state).unwrap();
+        assert_eq!(part.dots, (62, 44), "{keys}");
+        assert!((part.scale - scale).abs() < 1e-9, "{keys}: {}", part.scale);
+        corner.into_iter().for_each(|corner| assert_eq!(part.corner, Point::from(corner), "{keys}"));
+        assert_eq!(state.placing.cursor, Point::from(cursor), "{keys}");
+    }
+}
+
+#[test]
+fn nothing_is_asked_for_that_no_pane_shows() {
+    let mut state = opened((80, 24));
+    assert!(seeing::request(&state).picture.is_none());
+    press(&mut state, "g i");
+    let wanted = seeing::request(&state).picture.unwrap();
+    assert_eq!((wanted.cells, wanted.part.dots), ((55, 20), (55, 40)));
+    assert!(seeing::request(&state) == seeing::request(&state));
+    press(&mut state, "l");
+    assert_eq!(seeing::request(&state).picture, Some(wanted), "half-blocks have their cursor over them");
+}
+
+#[test]
+fn every_protocol_fills_its_pane_and_stays_within_its_bytes() {
+    for (protocol, start) in
+        [(Protocol::Kitty, "\x1b_Gi="), (Protocol::Iterm2, "\x1b]1337;File=inline=1"), (Protocol::Sixel, "\x1bP0;1;0q")]
+    {
+        for bytes in [4_000, 64_000] {
+            let state = shown_by(protocol, &format!(": \"graphics bytes {bytes}\" Enter"));
+            let shown = state.seeing.shown.clone().unwrap();
+            assert!(shown.bytes <= bytes, "{protocol:?}: {} bytes", shown.bytes);
+            assert_eq!(shown.by > 1, bytes == 4_000, "{protocol:?} {bytes}: by {}", shown.by);
+            let area = view::picture(&state).unwrap();
+            let found = cells(&state);
+            let first = found.cell(area.as_position()).unwrap();
+            assert!(first.symbol().contains(start), "{protocol:?}: {:.60}", first.symbol());
+            let title =
+                format!("{}{}", protocol.name(), if shown.by > 1 { format!(" /{}", shown.by) } else { String::new() });
+            let text: String =
+                found.content().iter().filter(|cell| cell.symbol().len() < 20).map(|c| c.symbol()).collect();
+            assert!(text.contains(&title), "{title}: {text}");
+        }
+    }
+}
+
+#[test]
+fn half_blocks_stay_within_their_bytes_too() {
+    let state = shown_by(Protocol::Blocks, ": \"graphics bytes 8000\" Enter");
+    let shown = state.seeing.shown.clone().unwrap();
+    assert!(shown.bytes <= 8000 && shown.by > 1 && shown.cells.is_none());
+}
+
+#[test]
+fn what_lies_over_a_picture_is_not_painted_over() {
+    for protocol in [Protocol::Kitty, Protocol::Iterm2, Protocol::Sixel] {
+        let mut state = shown_by(protocol, "");
+        press(&mut state, "g");
+        let (found, area) = (cells(&state), view::picture(&state).unwrap());
+        let pixels = area.positions().filter(|&at| {
+            let cell = found.cell(at).unwrap();
+            cell.diff_option == CellDiffOption::Skip || cell.symbol().contains('\x1b')
+        });
+        // Kitty's picture is sent once, with its first cell; the others give way.
+        assert_eq!(pixels.count(), usize::from(protocol == Protocol::Kitty), "{protocol:?}");
+        let text: String = found.content().iter().map(|cell| cell.symbol()).collect();
+        assert!(text.contains("Go to the tree"), "{protocol:?}");
+        press(&mut state, "t");
+        see(&mut state);
+        assert!(
+            cells(&state).cell(area.as_position()).unwrap().symbol().contains('\x1b'),
+            "{protocol:?}: it comes back"
+        );
+    }
+}
+
+#[test]
+pub fn graphics_are_told_and_set() {
+    for (keys, said, bad) in [
+        (": \"graphics\" Enter", "graphics: blocks (the terminal: blocks)", false),
+        (": \"graphics sixel\" Enter", "graphics: sixel", false),
+        (": \"graphics sixl\" Enter", "sixel", true),
+        (": \"graphics bytes 5\" Enter", "1000", true),
+        (": \"graphics bytes 20000\" Enter", "at most 20000 bytes", false),
+        (": \"zoom sideways\" Enter", "in, out, fit or one", true),
+    ] {
+        let mut state = state();
+        state.depth = Depth::Ansi;
+        press(&mut state, keys);
+        let message = state.message.clone().unwrap();
+        assert!(message.bad == bad && message.text.contains(said), "{keys}: {message:?}");
+    }
+}
+
+#[test]
+fn without_colours_kitty_is_not_used() {
+    let mut state = opened((160, 48));
+    press(&mut state, ": \"graphics kitty\" Enter");
+    assert_eq!(seeing::protocol(&state), Protocol::Blocks);
+    assert!(screen(&state).contains("blocks"));
+}
