@@ -14,6 +14,7 @@ mod input;
 mod keys;
 mod life;
 mod line;
+mod lines;
 mod numbers;
 mod panes;
 mod place;

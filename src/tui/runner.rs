@@ -13,7 +13,7 @@ use super::script::Scripts;
 use super::seeing::{self, Eyes};
 use super::update::{Event, update};
 use super::worker::{Job, Worker};
-use super::{input, terminal, view};
+use super::{input, lines, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::files::lines::Log;
@@ -46,9 +46,13 @@ impl Options {
         Options { path, window: true, read_only: false, script, graphics, files: files::Options::default() }
     }
 
-    /// How a scene is opened: where somebody else edits it, the person is asked.
+    /// How a scene is opened: where somebody else edits it, the person is asked, if there is one.
     pub(super) fn mode(&self) -> Mode {
-        if self.read_only { Mode::ReadOnly } else { Mode::EditOrLook }
+        match (self.read_only, lines::is_interactive()) {
+            (true, _) => Mode::ReadOnly,
+            (false, true) => Mode::EditOrLook,
+            (false, false) => Mode::Edit,
+        }
     }
 
     /// As the command line says.
@@ -73,9 +77,12 @@ const GRACE: Duration = Duration::from_secs(2);
 pub fn run(options: Options) -> Result<()> {
     let door = Door::open(&options.path, options.mode(), &options.files)?;
     let (sender, events) = mpsc::channel();
-    let _signals = end_on_signals(sender.clone())?;
-    if options.script.is_some() && !terminal::is_there() {
-        return Editor::new(options, door, None, sender)?.run_unseen(&events);
+    let unseen = !terminal::is_there();
+    let _signals = end_on_signals(sender.clone(), unseen && lines::is_interactive())?;
+    if unseen {
+        let script = options.script.is_some();
+        let editor = Editor::new(options, door, None, sender)?;
+        return if script { editor.run_unseen(&events) } else { editor.run_lines(&events) };
     }
     terminal::restore_on_panic();
     let screen = terminal::enter()?;
@@ -85,11 +92,16 @@ pub fn run(options: Options) -> Result<()> {
 }
 
 /// The signal thread asks the editor to end, and ends the process where that takes too long: a terminal that went away
-/// can hold a write for ever.
-fn end_on_signals(sender: mpsc::Sender<Event>) -> Result<signals::Registration> {
+/// can hold a write for ever. Where a person types `lines`, Ctrl-C comes as a signal and ends only what runs.
+fn end_on_signals(sender: mpsc::Sender<Event>, lines: bool) -> Result<signals::Registration> {
     let handler = move |signal| match signal {
-        Signal::Hangup | Signal::Terminate | Signal::Interrupt => {
+        Signal::Interrupt if lines => {
             // Where nobody listens any more the editor is leaving already.
+            let _ = sender.send(Event::Line("leave".into()));
+            Answer::Done
+        }
+        Signal::Hangup | Signal::Terminate | Signal::Interrupt => {
+            // As above.
             let _ = sender.send(Event::End);
             std::thread::spawn(|| {
                 std::thread::sleep(GRACE);

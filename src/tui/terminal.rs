@@ -1,7 +1,7 @@
 //! The terminal itself: every mode that the editor sets, and the one function that undoes all of them, used by the normal
 //! exit, errors, panics and signals alike.
 
-use std::io::{IsTerminal, Stdout, Write, stderr, stdout};
+use std::io::{IsTerminal, Stdout, Write, stderr, stdin, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ratatui::Terminal;
@@ -19,7 +19,7 @@ static SET: AtomicBool = AtomicBool::new(false);
 
 /// Whether there is a terminal that a screen can be drawn on.
 pub fn is_there() -> bool {
-    stdout().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+    stdin().is_terminal() && stdout().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
 /// Prints a line where there is no screen.

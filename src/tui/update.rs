@@ -20,6 +20,8 @@ pub enum Event {
     Key(String),
     /// A line of a script.
     Line(String),
+    /// A line of the line mode, none at the end of the input; lines.rs takes it before it comes here.
+    Typed(Option<String>),
     /// Text pasted by the terminal.
     Paste(String),
     /// The terminal has another size.
@@ -139,7 +141,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             }
             report(state, result);
         }
-        Event::WindowChanged => {}
+        Event::WindowChanged | Event::Typed(_) => {}
         Event::Pointer(x, y) => state.seen.pointer = Some((x, y)),
         Event::Click(x, y) => click(state, x, y),
         Event::Command(name) => commands::run_of_window(state, &name),

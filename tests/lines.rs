@@ -1,0 +1,105 @@
+//! The line mode by the real binary: commands on standard input, plain answers on standard output, mistakes on standard
+//! error, and an exit status that a script can trust.
+#![cfg(feature = "tui")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const SCENE: &str = r#"{
+  "plica": 1,
+  "timeline": { "duration": 1, "fps": 4 },
+  "images": { "cat": { "path": "cat.png" } },
+  "layers": [
+    {
+      "kind": "picture", "name": "face", "image": "cat",
+      "zones": [{ "name": "eye", "outline": { "kind": "rectangle", "x": 8, "y": 8, "width": 32, "height": 24 } }]
+    }
+  ]
+}
+"#;
+
+/// A folder with a scene and a picture in it.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    image::RgbImage::new(64, 48).save(folder.path().join("cat.png")).unwrap();
+    std::fs::write(folder.path().join("cat.plica.json"), SCENE).unwrap();
+    folder
+}
+
+fn run(folder: &Path, arguments: &[&str], lines: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
+    command.args(["edit", "cat.plica.json"]).args(arguments).current_dir(folder);
+    command.env("XDG_STATE_HOME", folder.join("state")).env("XDG_RUNTIME_DIR", folder).env("TERM", "dumb");
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    // One that refuses to begin reads nothing.
+    let _ = child.stdin.take().unwrap().write_all(lines.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn saved(folder: &Path) -> String {
+    std::fs::read_to_string(folder.join("cat.plica.json")).unwrap()
+}
+
+#[test]
+fn lines_edit_answer_and_fail_by_their_numbers() {
+    let speed = "layers.face.zones.eye.speed";
+    // Lines; what is on standard output and on standard error; whether it succeeds; whether the speed is saved.
+    for (lines, out, error, succeeds, kept) in [
+        (format!("set {speed}=2\nget {speed}\nw\n"), "\n2\n", "", true, true),
+        (format!(":set {speed}=2\n# a remark\n\nwq\nget {speed}"), "is saved", "", true, true),
+        (format!("set {speed}=2\n"), "is set", "not saved", true, false),
+        (format!("set {speed}=2\nq\nq!\nget {speed}"), "is set", "line 2: there are unsaved edits", false, false),
+        (format!("set {speed}=-x\nset {speed}=2\nw"), "is saved", "line 1: ", false, true),
+        ("sett a=1\nmove\nq".into(), "", "line 1: there is no command sett", false, false),
+        ("?\nq".into(), "set PATH=VALUE", "", true, false),
+        ("help undo\nq".into(), ":undo", "", true, false),
+        ("go layers.face.zones.eye.interpolation.method\nenter\nthin-plate\nget layers.face.zones.eye.interpolation.method\n".into(), "\"thin-plate\"", "", true, false),
+        ("probe 20,20".into(), "eye", "", true, false),
+        (format!("set {speed}=2\nundo\nq"), "is set", "", true, false),
+        ("render -o no/such/a.gif".into(), "", "line 1: ", false, false),
+    ] {
+        let folder = folder();
+        let output = run(folder.path(), &[], &lines);
+        let (said, complained) = (text(&output.stdout), text(&output.stderr));
+        let case = format!("{lines}\n-- out\n{said}\n-- error\n{complained}");
+        assert!(said.contains(out) && complained.contains(error), "{case}");
+        assert_eq!(output.status.code(), Some(if succeeds { 0 } else { 1 }), "{case}");
+        assert_eq!(saved(folder.path()).contains("\"speed\": 2"), kept, "{case}");
+        assert!(!said.contains('\u{1b}') && !complained.contains('\u{1b}'), "{case}");
+    }
+}
+
+#[test]
+fn long_work_runs_in_the_foreground() {
+    let folder = folder();
+    let output = run(folder.path(), &[], "render -o out.gif\nset title=after\nw\n");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(folder.path().join("out.gif").exists() && saved(folder.path()).contains("after"));
+}
+
+#[test]
+fn what_was_left_behind_is_offered_in_words() {
+    let folder = folder();
+    let first = run(folder.path(), &[], "set layers.face.zones.eye.speed=2\n");
+    assert!(text(&first.stderr).contains("not saved"), "{}", text(&first.stderr));
+    let second = run(folder.path(), &[], "recover\nw\n");
+    let told = text(&second.stderr);
+    assert!(told.contains("1 unsaved change was left behind") && told.contains("eye · speed 1 → 2"), "{told}");
+    assert!(saved(folder.path()).contains("\"speed\": 2"));
+}
+
+#[test]
+fn a_scene_that_is_only_read_is_not_changed() {
+    let folder = folder();
+    let output = run(folder.path(), &["--read-only"], "set title=x\nget title\nw\n");
+    let complained = text(&output.stderr);
+    assert!(complained.contains("line 1: ") && complained.contains("reading only"), "{complained}");
+    assert_eq!((output.status.code(), saved(folder.path()).as_str()), (Some(1), SCENE));
+}
