@@ -14,7 +14,7 @@ use plica::files::Options;
 use plica::preview::client::{self, Link};
 use plica::preview::editor::{Event, Preview, Status};
 use plica::preview::message::{self, FromEditor, Role, ToEditor};
-use plica::preview::{Reply, Update, link, script};
+use plica::preview::{Reply, Transport, Update, link, script};
 use plica::scene::Document;
 use plica::scene::edit::Edit;
 use serde_json::{Value, json};
@@ -127,7 +127,8 @@ fn a_window_gets_the_state_and_then_joined_edits() {
     let stage = stage();
     let (editor, events) = stage.editor();
     editor.select(Some("/layers/0".into()));
-    editor.transport(true, 0.5);
+    let half = Transport { playing: true, time: 0.5, speed: 2.0 };
+    editor.transport(half);
     let window = stage.window();
     assert_eq!(next_title(&window), ("0".into(), 0));
     let selection = next(&window, |update| match update {
@@ -136,10 +137,10 @@ fn a_window_gets_the_state_and_then_joined_edits() {
     });
     assert_eq!(selection.as_deref(), Some("/layers/0"));
     let transport = next(&window, |update| match update {
-        Update::Transport { playing, time } => Some((*playing, *time)),
+        Update::Transport(transport) => Some(*transport),
         _ => None,
     });
-    assert_eq!(transport, (true, 0.5));
+    assert_eq!(transport, half);
     shown(&window, 0);
     until(&events, &editor, |status| matches!(status, Status::Connected { synth_ms: Some(_), .. }));
     let document = publish(&editor, &stage.document, 1..=1);
@@ -161,15 +162,17 @@ fn the_editor_hears_the_window() {
     window.replies.send(Reply::Pointer { x: f64::NAN, y: 0.0 }).unwrap();
     window.replies.send(report(60.0)).unwrap();
     window.replies.send(Reply::Pointer { x: 1.5, y: -2.0 }).unwrap();
-    window.replies.send(Reply::Command("play".into())).unwrap();
+    window.replies.send(Reply::Transport(Transport { playing: true, time: 0.5, speed: 2.0 })).unwrap();
+    window.replies.send(Reply::Command("mark-point".into())).unwrap();
     let mut heard = Vec::new();
-    while heard.len() < 2 {
+    while heard.len() < 3 {
         let event = events.recv_timeout(PATIENCE).expect("an event");
-        if let Event::Reply(reply @ (Reply::Pointer { .. } | Reply::Command(_))) = event {
+        if let Event::Reply(reply @ (Reply::Pointer { .. } | Reply::Transport(_) | Reply::Command(_))) = event {
             heard.push(format!("{reply:?}"));
         }
     }
-    assert_eq!(heard, ["Pointer { x: 1.5, y: -2.0 }", "Command(\"play\")"]);
+    let transport = "Transport(Transport { playing: true, time: 0.5, speed: 2.0 })";
+    assert_eq!(heard, ["Pointer { x: 1.5, y: -2.0 }", transport, "Command(\"mark-point\")"]);
     assert_eq!(editor.status().to_string(), "connected 60 fps");
     assert!(matches!(editor.status(), Status::Connected { adapter, .. } if adapter == "ab"));
 }

@@ -30,6 +30,8 @@ pub struct Limits {
     pub message: u64,
     /// Bytes pasted at once.
     pub paste: u64,
+    /// Width and height of a picture given to the GPU by the window, each.
+    pub texture: u64,
 }
 
 /// A row of the table.
@@ -47,7 +49,7 @@ pub struct Limit {
 const MIB: u64 = 1 << 20;
 
 /// Every limit.
-pub const TABLE: [Limit; 12] = [
+pub const TABLE: [Limit; 13] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
     limit("memory", "bytes that decoding one picture may take", 2048 * MIB, |l| &mut l.memory),
@@ -60,6 +62,7 @@ pub const TABLE: [Limit; 12] = [
     limit("frames", "frames of an animation", 100_000, |l| &mut l.frames),
     limit("message", "bytes of a message between editor and window", 64 * MIB, |l| &mut l.message),
     limit("paste", "bytes pasted at once", 16 * MIB, |l| &mut l.paste),
+    limit("texture", "side of a picture in the window; larger ones are reduced", 1 << 20, |l| &mut l.texture),
 ];
 
 const fn limit(name: &'static str, help: &'static str, default: u64, of: fn(&mut Limits) -> &mut u64) -> Limit {
@@ -81,6 +84,7 @@ impl Default for Limits {
             frames: 0,
             message: 0,
             paste: 0,
+            texture: 0,
         };
         for row in &TABLE {
             *(row.of)(&mut limits) = row.default;

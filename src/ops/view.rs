@@ -37,6 +37,7 @@ pub struct Args {
 /// window says what is wrong and waits until it is mended.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let options = args.options.options()?;
+    let most = usize::try_from(options.limits.texture).unwrap_or(usize::MAX);
     let (name, link, load) = match args.scene.to_str().filter(|text| text.starts_with(SCHEME)) {
         Some(address) => there(Way::to(Address::parse(address)?, args.remote_plica, &options))?,
         None => here(&args.scene, args.joined, options)?,
@@ -46,6 +47,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         title: format!("{name} - plica"),
         updates: link.updates,
         replies: link.replies,
+        most,
         cancel: context.cancel.clone(),
         load,
     })

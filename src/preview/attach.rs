@@ -127,8 +127,8 @@ fn publish(shared: &Shared, news: News) {
             shared.change(|state| state.latest.selection = pointer);
             tell(shared, Topic::Selection);
         }
-        News::Update(Update::Transport { playing, time }) => {
-            shared.change(|state| (state.latest.playing, state.latest.time) = (playing, time));
+        News::Update(Update::Transport(transport)) => {
+            shared.change(|state| state.latest.transport = transport);
             tell(shared, Topic::Transport);
         }
         News::Update(Update::Notice(line)) => {

@@ -7,11 +7,11 @@ use std::process::Command;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-use super::Reply;
 use super::host::{Shared, thread};
 use super::keeper::{Keeper, Life};
 use super::link::{Door, Listener};
 use super::outbox::{Latest, Measured, Topic};
+use super::{Reply, Transport};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::base::system;
@@ -62,7 +62,7 @@ impl fmt::Display for Status {
                 if !notice.is_empty() {
                     return write!(f, ", {notice}");
                 }
-                fps.map_or(Ok(()), |fps| write!(f, " {fps:.0} fps"))
+                fps.filter(|fps| *fps > 0.0).map_or(Ok(()), |fps| write!(f, " {fps:.0} fps"))
             }
         }
     }
@@ -152,17 +152,28 @@ impl Preview {
     /// The selection moved to this JSON pointer.
     pub fn select(&self, pointer: Option<String>) {
         self.shared.change(|state| {
-            state.latest.selection = pointer;
-            state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Selection));
+            if state.latest.selection != pointer {
+                state.latest.selection = pointer;
+                state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Selection));
+            }
         });
     }
 
-    /// The animation was started or stopped, or moved to `time` (scene time, in seconds).
-    pub fn transport(&self, playing: bool, time: f64) {
+    /// The animation was started or stopped, or moved, or plays at another speed. What the windows know already is not said
+    /// again.
+    pub fn transport(&self, transport: Transport) {
         self.shared.change(|state| {
-            (state.latest.playing, state.latest.time) = (playing, time);
-            state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Transport));
+            if state.latest.transport != transport {
+                state.latest.transport = transport;
+                state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Transport));
+            }
         });
+    }
+
+    /// The animation has run on to `time` (scene time, in seconds) by itself, as it does in the windows: those that join
+    /// later begin there.
+    pub fn passing(&self, time: f64) {
+        self.shared.lock().latest.transport.time = time;
     }
 
     /// An overlay or zoom command for the windows, by name.

@@ -7,12 +7,12 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::Reply;
 use super::editor::{Asked, Event, Status};
 use super::keeper::Life;
 use super::link::{self, Caller, HangUp, Listener, Wire};
 use super::message::{self, FromEditor, Role, ToEditor};
-use super::outbox::{Latest, Outbox, Outgoing};
+use super::outbox::{Latest, Outbox, Outgoing, Topic};
+use super::{Reply, Transport};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::edit::Edit;
@@ -66,6 +66,13 @@ pub(super) fn thread(name: &str, work: impl FnOnce() + Send + 'static) -> Result
 }
 
 impl State {
+    /// The animation runs as this window says; the others are told.
+    fn lead(&mut self, id: u64, transport: Transport) {
+        self.latest.transport = transport;
+        let others = self.peers.iter_mut().filter(|(other, _)| **other != id);
+        others.for_each(|(_, peer)| peer.outbox.due(Topic::Transport));
+    }
+
     /// What the status line says.
     pub fn status(&self) -> Status {
         match (self.peers.len(), &self.refused, &self.life) {
@@ -264,6 +271,10 @@ impl Shared {
                         state.report = Report { synth_ms, fps: Some(fps), adapter, notice };
                     });
                     (self.deliver)(Event::Reply(Reply::Report { fps, adapter, notice }));
+                }
+                ToEditor::Transport(transport) => {
+                    self.change(|state| state.lead(id, transport));
+                    (self.deliver)(Event::Reply(Reply::Transport(transport)));
                 }
                 ToEditor::Pointer { x, y } => (self.deliver)(Event::Reply(Reply::Pointer { x, y })),
                 ToEditor::Command(name) => (self.deliver)(Event::Reply(Reply::Command(line(&name)))),

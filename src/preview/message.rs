@@ -7,6 +7,7 @@ use std::io::{self, Read, Write};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
+use super::Transport;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::originals::Original;
@@ -58,13 +59,8 @@ pub enum FromEditor {
     },
     /// JSON pointer of what is selected.
     Selection(Option<String>),
-    /// Whether the animation runs, and the scene time in seconds.
-    Transport {
-        /// Runs on from `time`.
-        playing: bool,
-        /// In seconds.
-        time: f64,
-    },
+    /// Whether the animation runs, and where it is.
+    Transport(Transport),
     /// An overlay or zoom command, by name.
     View(String),
     /// The overlay and zoom commands in force, for a window that was not there when they were given.
@@ -137,6 +133,8 @@ pub enum ToEditor {
         /// From the top edge.
         y: f64,
     },
+    /// The animation was started or stopped in the window, or moved.
+    Transport(Transport),
     /// A request by command name.
     Command(String),
     /// A window on another machine asks for a piece of a file that [`FromEditor::Images`] told of.

@@ -11,6 +11,7 @@ use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::files::Limits;
 use crate::files::originals::{Contents, Original};
+use crate::preview::Transport;
 use crate::scene::edit::Edit;
 
 const MAX: u32 = 64 << 20;
@@ -39,7 +40,7 @@ fn every_message_comes_back_as_it_was_sent() {
         FromEditor::Scene { revision: 0, document },
         FromEditor::Selection(Some("/layers/0".into())),
         FromEditor::Selection(None),
-        FromEditor::Transport { playing: true, time: 1.25 },
+        FromEditor::Transport(Transport { playing: true, time: 1.25, speed: 0.5 }),
         FromEditor::View("view-field".into()),
         FromEditor::Views(vec!["view-field".into(), "zoom-in".into()]),
         FromEditor::Images(vec![

@@ -23,7 +23,27 @@ pub mod window;
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::scene::Scene;
+
+/// How the animation runs: the same in the editor and all of its windows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Transport {
+    /// Whether it runs on from `time`.
+    pub playing: bool,
+    /// Scene time, in seconds.
+    pub time: f64,
+    /// Seconds of the scene a second.
+    pub speed: f64,
+}
+
+impl Default for Transport {
+    fn default() -> Self {
+        Transport { playing: false, time: 0.0, speed: 1.0 }
+    }
+}
 
 /// What reaches a window, from the editor that has the scene open or from the file.
 #[derive(Clone, Debug)]
@@ -37,13 +57,8 @@ pub enum Update {
     },
     /// JSON pointer of what is selected in the editor (`/layers/0/zones/2/motion/1`).
     Selection(Option<String>),
-    /// Whether the animation runs, and the scene's time, in seconds.
-    Transport {
-        /// Runs on from `time`.
-        playing: bool,
-        /// Scene time, in seconds.
-        time: f64,
-    },
+    /// Whether the animation runs, and where it is.
+    Transport(Transport),
     /// An overlay or zoom command, by its name in the key table.
     View(String),
     /// One line for the person: the link was lost, the file cannot be read, ...
@@ -78,6 +93,8 @@ pub enum Reply {
         /// From the top edge.
         y: f64,
     },
+    /// The animation was started or stopped in the window, or moved.
+    Transport(Transport),
     /// A request by command name, from a key pressed in the window; only the editor edits.
     Command(String),
 }

@@ -6,6 +6,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::io;
 use std::sync::Arc;
 
+use super::Transport;
 use super::message::FromEditor;
 use super::views::Views;
 use crate::files::originals::Originals;
@@ -27,8 +28,7 @@ pub(super) struct Latest {
     pub document: Document,
     pub revision: u64,
     pub selection: Option<String>,
-    pub playing: bool,
-    pub time: f64,
+    pub transport: Transport,
     pub views: Views,
     /// What the scene names, where windows on another machine are served.
     pub originals: Option<Arc<Originals>>,
@@ -39,14 +39,14 @@ pub(super) struct Latest {
 impl Latest {
     /// A document that nothing was done with yet.
     pub fn new(document: Document, revision: u64) -> Latest {
-        let (views, notice) = (Views::default(), String::new());
-        Latest { document, revision, selection: None, playing: false, time: 0.0, views, originals: None, notice }
+        let (transport, views, notice) = (Transport::default(), Views::default(), String::new());
+        Latest { document, revision, selection: None, transport, views, originals: None, notice }
     }
 
     fn message(&self, topic: Topic) -> FromEditor {
         match topic {
             Topic::Selection => FromEditor::Selection(self.selection.clone()),
-            Topic::Transport => FromEditor::Transport { playing: self.playing, time: self.time },
+            Topic::Transport => FromEditor::Transport(self.transport),
             Topic::Views => FromEditor::Views(self.views.list().to_vec()),
             Topic::Notice => FromEditor::Notice(self.notice.clone()),
             Topic::Images => FromEditor::Images(self.originals.as_ref().map(|all| all.list()).unwrap_or_default()),
@@ -318,7 +318,7 @@ mod tests {
         outbox.edited(&edit(1));
         outbox.view("view-field");
         assert_eq!(told(&mut outbox, 4), "Selection(None)");
-        assert_eq!(told(&mut outbox, 4), "Transport { playing: false, time: 0.0 }");
+        assert_eq!(told(&mut outbox, 4), "Transport(Transport { playing: false, time: 0.0, speed: 1.0 })");
         assert_eq!(told(&mut outbox, 4), "view-field");
         assert_eq!(told(&mut outbox, 4), "nothing");
         outbox.shown(3);

@@ -165,7 +165,7 @@ impl Talk {
             FromEditor::Patch { from_revision, to_revision, patch } => self.patch(from_revision, to_revision, patch)?,
             FromEditor::Scene { revision, document } => self.replace(revision, document)?,
             FromEditor::Selection(pointer) => self.update(Update::Selection(pointer))?,
-            FromEditor::Transport { playing, time } => self.update(Update::Transport { playing, time })?,
+            FromEditor::Transport(transport) => self.update(Update::Transport(transport))?,
             FromEditor::View(name) => self.update(Update::View(name))?,
             FromEditor::Views(names) => self.tell(News::Views(names))?,
             other => return Ok(Some(other)),
@@ -283,7 +283,8 @@ fn to_editor(reply: Reply) -> Option<ToEditor> {
         Reply::Shown { revision, .. } => Some(ToEditor::Ack { revision, synth_ms: 0.0 }),
         Reply::Report { fps, adapter, notice } if fps.is_finite() => Some(ToEditor::Report { fps, adapter, notice }),
         Reply::Pointer { x, y } if x.is_finite() && y.is_finite() => Some(ToEditor::Pointer { x, y }),
-        Reply::Report { .. } | Reply::Pointer { .. } => None,
+        Reply::Transport(t) if t.time.is_finite() && t.speed.is_finite() => Some(ToEditor::Transport(t)),
+        Reply::Report { .. } | Reply::Pointer { .. } | Reply::Transport(_) => None,
         Reply::Command(name) => Some(ToEditor::Command(name)),
     }
 }

@@ -7,7 +7,7 @@ use super::choice::Choice;
 use super::clipboard::Kept;
 use super::colour::Depth;
 use super::door::Door;
-use super::entry::Entry;
+use super::entry::{self, Entry};
 use super::keys;
 use super::life::Life;
 use super::line::Line;
@@ -57,6 +57,8 @@ pub struct State {
     pub time: f64,
     /// Whether the animation runs.
     pub playing: bool,
+    /// Seconds of the scene a second.
+    pub speed: f64,
     /// One line for the person.
     pub message: Option<Message>,
     /// Commands that were run, the newest last.
@@ -166,6 +168,7 @@ impl State {
             picture_size: None,
             time: 0.0,
             playing: false,
+            speed: 1.0,
             message: None,
             lines: Vec::new(),
             recorder: Recorder::default(),
@@ -252,6 +255,7 @@ impl State {
     /// The contexts of the key table that are in force, the innermost first.
     pub fn contexts(&self) -> Vec<&'static str> {
         let mut contexts = match (&self.mode, self.focus) {
+            (Mode::Entry(_), _) if entry::of_number(self) => vec![keys::NUMBER, keys::ENTRY, keys::TYPING],
             (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
             (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
             (Mode::Choice(_), _) => vec![keys::LIST],

@@ -24,9 +24,9 @@ impl Editor {
             }
             Effect::Show => {
                 self.preview.select(Some(self.state.focused()));
-                let duration = self.state.document().scene().timeline.duration;
-                self.preview.transport(self.state.playing, self.state.time * duration);
+                self.preview.transport(self.state.transport());
             }
+            Effect::Pass => self.preview.passing(self.state.transport().time),
             Effect::Reload => self.worker.ask(Request { fresh: true, ..seeing::request(&self.state) }),
             Effect::Save { to, overwrite, leave } => {
                 let result = self.state.door.save(to.as_deref(), overwrite);

@@ -1,12 +1,13 @@
 //! A value being typed into a cell. The raw text is kept until it is taken; what it says is computed over the columns of
 //! the row, once for every selected row, and all of it is one edit.
 
+use kurbo::Point;
 use serde_json::Value;
 
-use super::app::State;
-use super::numbers;
+use super::app::{Mode, State};
 use super::sheet::{Cell, Part, Row, Sheet};
 use super::text::Text;
+use super::{numbers, place};
 use crate::base::expression::{self, Variables};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
@@ -131,6 +132,36 @@ pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
 
 fn length(document: &Document, cell: &Cell) -> f64 {
     Cell { part: Part::Length, ..cell.clone() }.number(document).unwrap_or(0.0)
+}
+
+/// Whether a number is being typed.
+pub fn of_number(state: &State) -> bool {
+    state.sheet().row(state.row).is_some_and(|row| row.cells.get(state.column).is_some_and(Cell::is_number))
+}
+
+/// Types the coordinate of `at` that the field takes; a jump's is that from its point to there.
+///
+/// # Errors
+/// The field takes none.
+pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
+    let row = state.sheet().row(state.row);
+    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let label = row.as_ref().map_or("", |row| &row.label);
+    let name = cell.map_or("", |cell| if cell.head.is_empty() { label } else { &cell.head });
+    let from = place::selected(state).unwrap_or_default();
+    let (x, y) = (numbers::short(at.x), numbers::short(at.y));
+    let value = match name {
+        "x" => at.x,
+        "y" => at.y,
+        "dx" => at.x - from.x,
+        "dy" => at.y - from.y,
+        _ => return Err(format!("the window's pointer is at {x}, {y}: this field takes no coordinate")),
+    };
+    if let Mode::Entry(entry) = &mut state.mode {
+        entry.text = Text::new(numbers::exact(numbers::tidy(value)), true);
+    }
+    state.say(format!("the window's pointer is at {x}, {y}: Enter takes it"));
+    Ok(())
 }
 
 /// The edit that sets one place. A pair inside a list of numbers is set as a whole.

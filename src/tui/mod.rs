@@ -27,6 +27,7 @@ mod sheet;
 mod sight;
 mod terminal;
 mod text;
+mod transport;
 mod tree;
 mod update;
 mod view;

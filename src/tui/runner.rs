@@ -304,6 +304,7 @@ pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>
         let event = match said {
             editor::Event::Reply(Reply::Command(line)) => Event::Command(line),
             editor::Event::Reply(Reply::Pointer { x, y }) => Event::Pointer(x, y),
+            editor::Event::Reply(Reply::Transport(transport)) => Event::Transport(transport),
             editor::Event::Status | editor::Event::Reply(_) => Event::WindowChanged,
             editor::Event::Edit(asked) => Event::Asked(asked),
         };

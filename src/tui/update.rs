@@ -10,6 +10,7 @@ use super::graphics::Shown;
 use super::keys::{self, Found};
 use super::panes::first_row;
 use super::{commands, life, tree, view};
+use crate::preview::Transport;
 use crate::preview::editor::Asked;
 use crate::render::Synth;
 use crate::scene::{Document, Edit};
@@ -42,6 +43,8 @@ pub enum Event {
     WindowChanged,
     /// The pointer in a window, in pixels of the picture.
     Pointer(f64, f64),
+    /// A window plays or stands like this.
+    Transport(Transport),
     /// A window asks for a command, by its name in the window's table.
     Command(String),
     /// A script asks for an edit.
@@ -76,6 +79,8 @@ pub enum Effect {
     Publish(Box<Change>),
     /// The time or the selection has changed.
     Show,
+    /// The time has passed, or a window has changed it: the windows know.
+    Pass,
     /// Write the document; to the scene's own file where no other is given.
     Save {
         /// Another file.
@@ -121,7 +126,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         }
         Event::Paste(text) => paste(state, &text),
         Event::Resize(width, height) => state.size = (width, height),
-        Event::Tick(seconds) => tick(state, seconds),
+        Event::Tick(seconds) => state.pass(seconds),
         Event::Synthesised(Ok((synth, ms))) => {
             state.picture_size = Some(synth.size);
             state.seen.synth = Some(synth);
@@ -144,6 +149,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::WindowChanged | Event::Typed(_) => {}
         Event::Pointer(x, y) => state.seen.pointer = Some((x, y)),
         Event::Click(x, y) => click(state, x, y),
+        Event::Transport(transport) => state.follow(transport),
         Event::Command(name) => commands::run_of_window(state, &name),
         Event::Asked(asked) => answer(state, asked),
         Event::Unlogged(why) => {
@@ -216,15 +222,6 @@ fn click(state: &mut State, x: u16, y: u16) {
         commands::run(state, "pane picture", None);
     } else if areas.table.contains(at) {
         commands::run(state, "pane table", None);
-    }
-}
-
-fn tick(state: &mut State, seconds: f64) {
-    let duration = state.document().scene().timeline.duration;
-    if state.playing && duration > 0.0 {
-        let time = state.time + seconds / duration;
-        state.time = time - time.floor();
-        state.ask(Effect::Show);
     }
 }
 

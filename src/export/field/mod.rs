@@ -192,7 +192,7 @@ fn marks_of(scene: &Scene, view: &View, plot_from_image: &impl Fn(Point) -> Poin
                 Some(fill(dot(plot_from_image(at), style.dot, f64::from(style.dot_px) * 0.8), style.color))
             }
             // The arrows of the field say more.
-            Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) => None,
+            Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) | Shape::Cell(..) => None,
         }
     };
     overlay(scene, None, view).into_iter().filter_map(mark).collect()

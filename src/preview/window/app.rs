@@ -15,24 +15,29 @@ use winit::window::{Window, WindowId};
 use super::clock::Clock;
 use super::opened::{Opened, first_size};
 use super::screen::{Drawn, Screen};
-use super::show::{Cached, Show, still};
+use super::show::{Cached, Show, name};
 use super::state::{Outcome, State};
 use super::worker::{Event, Ready};
 use super::{PLACE, chrome, input};
 use crate::base::error::{Error, Result};
-use crate::preview::keys::{KEYS, PLAY};
-use crate::preview::{Reply, Update};
-use crate::render::reduce::reduced;
+use crate::preview::{Reply, Transport as Leading, Update};
 
 /// A scene is given so long before the window opens with a notice alone.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// A line of a mouse wheel is one step; a touchpad gives pixels.
 const WHEEL_PX: f64 = 60.0;
 
+/// Editor and window may be so far apart while both play, as a share of the timeline, before the window follows.
+const APART: f64 = 0.05;
+/// A command that no key gives: the device is lost. For tests of what follows.
+const LOSE_DEVICE: &str = "lose-device";
+
 /// The window and all that it shows.
 pub struct App {
     title: String,
     replies: Sender<Reply>,
+    /// The largest side of a picture that is given to the GPU, in pixels.
+    most: usize,
     instance: Option<wgpu::Instance>,
     state: State,
     shown: Option<Show>,
@@ -40,6 +45,10 @@ pub struct App {
     marks: Cached,
     drag: Drag,
     clock: Clock,
+    /// What is to be answered once it is on the screen.
+    owed: Option<Reply>,
+    /// What was said last about how the window is doing: frames a second and what is wrong.
+    reported: Option<(f64, String)>,
     /// When the window opens without a scene, to show a notice.
     open_by: Option<Instant>,
     failed: Option<Error>,
@@ -55,18 +64,20 @@ enum Drag {
 
 impl App {
     /// A window that opens with the first scene or the first problem.
-    pub fn new(instance: wgpu::Instance, title: String, replies: Sender<Reply>) -> App {
-        let now = Instant::now();
+    pub fn new(instance: wgpu::Instance, title: String, replies: Sender<Reply>, most: usize) -> App {
         App {
             title,
             replies,
+            most,
             instance: Some(instance),
-            state: State { scale: 1.0, ..State::default() },
+            state: State::default(),
             shown: None,
             opened: None,
             marks: Cached::default(),
             drag: Drag::Nothing,
-            clock: Clock { last: now, due: now, counted_from: now, frames: 0 },
+            clock: Clock::default(),
+            owed: None,
+            reported: None,
             open_by: None,
             failed: None,
         }
@@ -74,6 +85,7 @@ impl App {
 
     /// Why the window ended, where that was an error.
     pub fn ended(self) -> Result<()> {
+        tracing::info!("the window drew {} times", self.clock.drawn);
         self.failed.map_or(Ok(()), Err)
     }
 
@@ -94,8 +106,8 @@ impl App {
             .with_inner_size(PhysicalSize::new(size.0, size.1));
         let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        self.reply(Reply::Report { fps: 0.0, adapter: gpu.device().name(), notice: String::new() });
         self.opened = Some(Opened { window, gpu, screen, hidden: false });
+        self.report();
         self.resized();
         Ok(())
     }
@@ -133,19 +145,14 @@ impl App {
             let (width, height) = self.first_size(event_loop);
             let _ = opened.window.request_inner_size(PhysicalSize::new(width, height)); // answered by Resized
         }
-        let factor = width.max(height).div_ceil(opened.gpu.device().max_side()).max(1);
-        let frames = if factor > 1 { reduced(&ready.synth, factor) } else { ready.synth.clone() };
-        self.state.problem = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
-        self.shown = Some(Show {
-            scene: ready.scene,
-            synth: ready.synth,
-            still: still(&frames),
-            frames,
-            frame_scale: 1.0 / factor as f64,
-        });
+        let most = opened.gpu.device().max_side().min(self.most);
+        let (show, reduced) = Show::new(ready.scene, ready.synth, most);
+        self.shown = Some(show);
+        self.state.problem = reduced;
         self.marks.revision += 1;
-        self.reply(Reply::Shown { revision: ready.revision, synth_ms: ready.synth_ms });
-        self.redraw();
+        self.owed = Some(Reply::Shown { revision: ready.revision, synth_ms: ready.synth_ms });
+        self.select(self.state.selection.clone());
+        self.report();
         Ok(())
     }
 
@@ -153,11 +160,10 @@ impl App {
     fn follow(&mut self, event_loop: &ActiveEventLoop, update: Update) {
         match update {
             Update::Scene { .. } => {} // comes as Ready, synthesised
-            Update::Selection(pointer) => self.state.selection = pointer,
-            Update::Transport { playing, time } => {
-                self.state.transport.playing = playing;
-                self.state.transport.seek(time, &self.state.timeline);
-                self.clock.start();
+            Update::Selection(pointer) => self.select(pointer),
+            Update::Transport(transport) => self.join_in(transport),
+            Update::View(command) if command == LOSE_DEVICE => {
+                self.opened.iter().for_each(|opened| opened.gpu.device().raw.destroy());
             }
             Update::View(command) => self.run(event_loop, &command),
             Update::Notice(line) => {
@@ -169,10 +175,33 @@ impl App {
         self.redraw();
     }
 
+    fn select(&mut self, pointer: Option<String>) {
+        let named = pointer.as_deref().zip(self.shown.as_ref());
+        self.state.selected = named.and_then(|(pointer, show)| name(&show.scene, pointer));
+        self.state.selection = pointer;
+        self.redraw();
+    }
+
+    /// Plays or stands as the editor does. Whoever drags the time leads, and two clocks that run need not be set.
+    fn join_in(&mut self, Leading { playing, time, speed }: Leading) {
+        let State { transport, timeline, .. } = &mut self.state;
+        let t = time / timeline.duration.max(f64::MIN_POSITIVE);
+        let apart = (transport.scene_time(timeline) - t).abs();
+        let together = playing && transport.playing && apart.min(1.0 - apart) < APART;
+        if self.drag != Drag::Time && !together {
+            transport.playing = playing;
+            transport.seek(t, timeline);
+            self.clock.start();
+        }
+        transport.speed = speed;
+        self.report();
+    }
+
     /// Takes what is wrong with a scene.
     fn warn(&mut self, event_loop: &ActiveEventLoop, line: String) -> Result<()> {
         self.state.problem = Some(line);
         self.open(event_loop)?;
+        self.report();
         self.redraw();
         Ok(())
     }
@@ -181,20 +210,40 @@ impl App {
         let played = self.state.transport.playing;
         match self.state.run(command) {
             Outcome::Redraw => self.redraw(),
+            Outcome::FullScreen => self.opened.iter().for_each(Opened::toggle_full_screen),
             Outcome::Quit => event_loop.exit(),
             Outcome::Unknown => {}
         }
-        if self.state.transport.playing && !played {
+        if self.state.transport.playing != played {
             self.clock.start();
+            self.report();
         }
     }
 
     /// A key: the window follows at once, and the editor is told what concerns it too.
     fn key(&mut self, event_loop: &ActiveEventLoop, command: &'static str) {
-        self.run(event_loop, command);
-        if KEYS.iter().any(|row| row.command == command && row.context == PLAY) {
+        self.leading(|app| app.run(event_loop, command));
+        if let ("mark-point", Some(Point { x, y })) = (command, self.state.marked) {
+            self.reply(Reply::Pointer { x, y });
             self.reply(Reply::Command(command.to_owned()));
         }
+    }
+
+    /// Does what may change the time; the editor follows.
+    fn leading(&mut self, change: impl FnOnce(&mut App)) {
+        let before = self.state.transport.clone();
+        change(self);
+        let now = &self.state.transport;
+        if (now.playing, now.frame, now.speed) != (before.playing, before.frame, before.speed) {
+            self.lead();
+        }
+    }
+
+    /// Tells the editor how the animation runs.
+    fn lead(&self) {
+        let State { transport, timeline, .. } = &self.state;
+        let time = transport.scene_time(timeline) * timeline.duration;
+        self.reply(Reply::Transport(Leading { playing: transport.playing, time, speed: transport.speed }));
     }
 
     fn reply(&self, reply: Reply) {
@@ -228,7 +277,8 @@ impl App {
 
     fn scrub(&mut self, x: f64) {
         let frame = chrome::frame_at(&self.state, x);
-        self.state.transport.go_to(frame, &self.state.timeline);
+        self.leading(|app| app.state.transport.go_to(frame, &app.state.timeline));
+        self.report();
         self.redraw();
     }
 
@@ -243,9 +293,7 @@ impl App {
 
     /// Draws the window. A lost device is replaced, and the drawing asked for again.
     fn draw(&mut self) -> Result<()> {
-        let now = Instant::now();
-        self.state.transport.advance((now - self.clock.last).as_secs_f64(), &self.state.timeline);
-        self.clock.last = now;
+        self.advance();
         let Some(opened) = &mut self.opened else { return Ok(()) };
         match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks) {
             _ if opened.gpu.device().is_lost() => self.reopen()?,
@@ -255,8 +303,26 @@ impl App {
             Ok(Drawn::Lost) => self.reopen()?,
             Err(error) => return Err(error),
         }
-        self.count(now);
+        self.clock.drawn += 1;
+        self.owed.take().into_iter().for_each(|reply| self.reply(reply));
         Ok(())
+    }
+
+    /// The animation runs on, and stops by itself where it plays once.
+    fn advance(&mut self) {
+        let (passed, fps) = self.clock.tick();
+        if !self.state.transport.playing {
+            return;
+        }
+        if let Some(fps) = fps {
+            self.state.fps = Some(fps);
+            self.report();
+        }
+        self.state.transport.advance(passed, &self.state.timeline);
+        if !self.state.transport.playing {
+            self.lead();
+            self.report();
+        }
     }
 
     /// Goes on after device or surface were lost, with new ones in the same window.
@@ -271,16 +337,18 @@ impl App {
         Ok(())
     }
 
-    /// Tells the editor once a second how fast the animation runs.
-    fn count(&mut self, now: Instant) {
-        self.clock.frames += 1;
-        let secs = (now - self.clock.counted_from).as_secs_f64();
-        if let (true, Some(opened)) = (secs >= 1.0, &self.opened) {
-            let fps = f64::from(self.clock.frames) / secs;
-            let notice = self.state.problem.clone().unwrap_or_default();
-            self.reply(Reply::Report { fps, adapter: opened.gpu.device().name(), notice });
-            (self.clock.counted_from, self.clock.frames) = (now, 0);
+    /// Tells the editor how the window is doing, where that has changed.
+    fn report(&mut self) {
+        self.state.fps = self.state.fps.filter(|_| self.state.transport.playing);
+        let Some(opened) = &self.opened else { return };
+        let (fps, notice) = (self.state.fps.unwrap_or(0.0).round(), self.state.problem.clone().unwrap_or_default());
+        let adapter = opened.gpu.device().name();
+        let report = Some((fps, notice.clone()));
+        if self.reported != report {
+            self.reported = report;
+            self.reply(Reply::Report { fps, adapter, notice });
         }
+        self.redraw();
     }
 
     fn plays_visibly(&self) -> bool {
@@ -340,15 +408,10 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let rest = self.state.transport.until_next(&self.state.timeline);
         let interval = self.opened.as_ref().map(Opened::interval);
         let flow = match interval {
-            Some(interval) if self.plays_visibly() => {
-                let now = Instant::now();
-                if self.clock.due <= now {
-                    self.clock.due = (self.clock.due + interval).max(now);
-                }
-                ControlFlow::WaitUntil(self.clock.due)
-            }
+            Some(interval) if self.plays_visibly() => ControlFlow::WaitUntil(self.clock.next(interval, rest)),
             None => self.open_by.map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
             _ => ControlFlow::Wait,
         };

@@ -137,7 +137,7 @@ fn rim(stroke: &Stroke) -> Stroke {
         a: stroke.a.map(|x| x - grow),
         b: stroke.b.map(|x| x + grow),
         radius: stroke.radius + HALO_PX,
-        color: HALO,
+        color: [HALO[0], HALO[1], HALO[2], (u16::from(HALO[3]) * u16::from(stroke.color[3]) / 255) as u8],
         ..*stroke
     }
 }

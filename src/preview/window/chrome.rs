@@ -3,39 +3,68 @@
 use kurbo::{Point, Rect, Vec2};
 
 use super::canvas::{Canvas, Color};
-use super::glyphs;
 use super::state::{BAR_PX, Panel, State};
+use super::{glyphs, legend};
 use crate::base::keys::KeyRow;
-use crate::base::maths::pow;
 use crate::preview::keys::{KEYS, VIEW};
-use crate::render::overlay::Kind;
 
 /// The ground around the picture.
 pub const GROUND: Color = [18, 20, 24, 255];
 const BAR: Color = [28, 31, 37, 255];
-const PANEL: Color = [22, 24, 29, 238];
+pub const PANEL: Color = [22, 24, 29, 238];
 const RAIL: Color = [58, 64, 74, 255];
 const ACCENT: Color = [86, 180, 233, 255];
-const TEXT: Color = [205, 210, 218, 255];
+pub const TEXT: Color = [205, 210, 218, 255];
 const WARNING: Color = [240, 160, 40, 255];
 const DIM: Color = [132, 141, 153, 255];
 
-const TEXT_PX: f64 = 8.0;
-const MARGIN_PX: f64 = 12.0;
+pub const TEXT_PX: f64 = 8.0;
+pub const MARGIN_PX: f64 = 12.0;
 
 /// Draws bar and panel.
 pub fn draw(state: &State) -> Canvas {
     let mut canvas = Canvas::default();
+    border(&mut canvas, state);
+    marked(&mut canvas, state);
     match state.panel {
         Panel::None => {}
         Panel::Menu => panel(&mut canvas, state, &mut KEYS.iter().filter(|row| row.context == VIEW)),
         Panel::Help => panel(&mut canvas, state, &mut KEYS.iter()),
     }
-    if state.shown.field {
-        scale_bar(&mut canvas, state);
-    }
+    legend::draw(&mut canvas, state);
     bar(&mut canvas, state);
     canvas
+}
+
+/// The border between the still picture and the moving one.
+fn border(canvas: &mut Canvas, state: &State) {
+    let Some(x) = state.wipe_at() else { return };
+    let (area, scale) = (state.area(), state.scale);
+    let y = area.height / 2.0;
+    let point = |dx: f64, dy: f64| Point::new(x + dx * scale, y + dy * scale);
+    canvas.with_halo(|c| {
+        c.line(Point::new(x, 0.0), Point::new(x, area.height), 1.5 * scale, TEXT);
+        for side in [-1.0, 1.0] {
+            c.polyline(
+                &[point(5.0 * side, -5.0), point(10.0 * side, 0.0), point(5.0 * side, 5.0)],
+                false,
+                1.5 * scale,
+                None,
+                TEXT,
+            );
+        }
+    });
+}
+
+/// A cross at the point that was marked last.
+fn marked(canvas: &mut Canvas, state: &State) {
+    let Some(at) = state.marked else { return };
+    let (at, scale) = (state.camera.screen_from_image(at, state.area()), state.scale);
+    canvas.with_halo(|c| {
+        for way in [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, -1.0)] {
+            c.line(at + way * 3.0 * scale, at + way * 11.0 * scale, 1.5 * scale, ACCENT);
+        }
+    });
 }
 
 /// The rail in the bar along which time runs, in physical pixels.
@@ -63,11 +92,32 @@ fn bar(canvas: &mut Canvas, state: &State) {
     let size = TEXT_PX * scale / glyphs::BASE;
     let right_at = rail.x1 - glyphs::width(&right) * size;
     canvas.text(&right, Point::new(right_at, y), TEXT_PX * scale, DIM);
-    if let Some(line) = state.problem.as_ref().or(state.notice.as_ref()) {
-        let color = if state.problem.is_some() { WARNING } else { DIM };
-        let from = left.x + glyphs::width(&times) * size + 24.0 * scale;
-        let room = ((right_at - from - 16.0 * scale) / size).max(0.0);
-        canvas.text(&shortened(line, room), Point::new(from, y), TEXT_PX * scale, color);
+    let from = left.x + glyphs::width(&times) * size + 24.0 * scale;
+    let room = ((right_at - from - 16.0 * scale) / size).max(0.0);
+    let (line, color) = said(state);
+    canvas.text(&shortened(&line, room), Point::new(from, y), TEXT_PX * scale, color);
+}
+
+/// What the middle of the bar says: what is wrong, else what is shown instead of the picture, else what is selected and how
+/// the window is connected.
+fn said(state: &State) -> (String, Color) {
+    let explained = if !state.has_picture() {
+        Some("synthesising".to_owned())
+    } else if state.shown.seam {
+        let last = state.timeline.frames() - 1;
+        Some(format!("the seam: frame {last} against frame 0, differences 8 times as strong"))
+    } else if state.shown.wipe {
+        Some("still left, moving right".to_owned())
+    } else {
+        None
+    };
+    match (&state.problem, explained) {
+        (Some(problem), _) => (problem.clone(), WARNING),
+        (None, Some(explained)) => (explained, TEXT),
+        (None, None) => {
+            let parts = [state.selected.as_deref(), state.notice.as_deref()];
+            (parts.into_iter().flatten().collect::<Vec<_>>().join("   "), DIM)
+        }
     }
 }
 
@@ -98,9 +148,10 @@ fn sign(canvas: &mut Canvas, playing: bool, at: Point, height: f64) {
 
 fn times(state: &State) -> String {
     let (timeline, transport) = (&state.timeline, &state.transport);
-    let still = if state.shown.still { "  still" } else { "" };
+    let still = if state.shown.still { "   still picture" } else { "" };
+    let speed = if transport.speed == 1.0 { String::new() } else { format!("   speed {}", transport.speed) };
     format!(
-        "{:.2} / {:.2} s   frame {} / {}{still}",
+        "{:.2} / {:.2} s   frame {} / {}{speed}{still}",
         transport.secs(timeline),
         timeline.frames() as f64 / timeline.fps,
         transport.frame.floor(),
@@ -111,7 +162,12 @@ fn times(state: &State) -> String {
 fn right_text(state: &State) -> String {
     let place = state.pointed().map_or(String::new(), |p| format!("x {:.1}  y {:.1}   ", p.x, p.y));
     let percent = state.camera.zoom * 100.0;
-    format!("{place}{} %   ? keys", if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 })
+    let exactly = if state.transport.whole_frames { "whole frames   " } else { "" };
+    let fps = state.fps.map_or(String::new(), |fps| format!("{fps:.0} fps   "));
+    format!(
+        "{place}{exactly}{fps}{} %   ? keys",
+        if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 }
+    )
 }
 
 /// As much of a text as fits.
@@ -128,28 +184,6 @@ fn shortened(text: &str, room: f64) -> String {
         }
     }
     if kept.is_empty() { kept } else { kept + "..." }
-}
-
-/// An arrow of a round length, and what that is in pixels of the picture: the legend of the vector field.
-fn scale_bar(canvas: &mut Canvas, state: &State) {
-    let scale = state.scale;
-    let screen_from_jump = state.arrow_scale * state.camera.zoom / scale;
-    let Some(jump) = round_length(screen_from_jump) else { return };
-    let y = state.area().height - 20.0 * scale;
-    let from = Point::new(2.0 * MARGIN_PX * scale, y);
-    let to = from + Vec2::new(jump * screen_from_jump * scale, 0.0);
-    let text = format!("{jump} px");
-    let right = to.x + 12.0 * scale + glyphs::width(&text) * TEXT_PX * scale / glyphs::BASE;
-    let back = Rect::new(MARGIN_PX * scale, y - 10.0 * scale, right + MARGIN_PX * scale, y + 10.0 * scale);
-    canvas.rect(back, 4.0 * scale, PANEL);
-    canvas.arrow(from, to, 1.2 * scale, 7.0 * scale, Kind::Field.style().color);
-    canvas.text(&text, Point::new(to.x + 12.0 * scale, y - TEXT_PX * scale / 2.0), TEXT_PX * scale, TEXT);
-}
-
-/// The largest of 1, 2, 5, 10, 20 ... pixels that is at most 90 logical pixels long on the screen.
-fn round_length(screen_from_jump: f64) -> Option<f64> {
-    let steps = (-2..7).flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * pow(10.0, f64::from(power))));
-    steps.filter(|length| length * screen_from_jump <= 90.0).reduce(f64::max)
 }
 
 /// A list of keys in the upper left corner, in as many columns as it needs.
@@ -214,14 +248,6 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_bar_has_a_round_length_that_fits() {
-        for (screen_from_jump, length) in [(1.0, 50.0), (0.9, 100.0), (8.0, 10.0), (0.031, 2000.0)] {
-            assert_eq!(round_length(screen_from_jump), Some(length), "{screen_from_jump}");
-        }
-        assert_eq!(round_length(f64::NAN), None);
-    }
-
-    #[test]
     fn all_keys_fit_a_small_window() {
         let mut state = State { panel: Panel::Help, ..state() };
         state.resize(Size::new(480.0, 320.0), 1.0);
@@ -234,5 +260,20 @@ mod tests {
         let mut state = state();
         state.transport.frame = 15.0;
         assert_eq!(times(&state), "0.50 / 2.00 s   frame 15 / 60");
+        state.transport.speed = 0.25;
+        assert!(times(&state).ends_with("frame 15 / 60   speed 0.25"));
+        assert_eq!(right_text(&state), "200 %   ? keys");
+        (state.fps, state.transport.whole_frames) = (Some(59.97), true);
+        assert_eq!(right_text(&state), "whole frames   60 fps   200 %   ? keys");
+    }
+
+    #[test]
+    fn the_bar_says_the_most_important_thing() {
+        let mut state = State { notice: Some("joined".into()), selected: Some("face/eye".into()), ..state() };
+        assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
+        state.shown.seam = true;
+        assert!(said(&state).0.contains("frame 59 against frame 0"));
+        state.problem = Some("no picture".into());
+        assert_eq!(said(&state), ("no picture".into(), WARNING));
     }
 }

@@ -12,6 +12,8 @@ pub fn command(key: &Key) -> Option<&'static str> {
         Key::Named(NamedKey::ArrowUp) => "Up",
         Key::Named(NamedKey::ArrowDown) => "Down",
         Key::Named(NamedKey::Escape) => "Esc",
+        Key::Named(NamedKey::Enter) => "Enter",
+        Key::Named(NamedKey::F11) => "F11",
         Key::Character(text) if text == "=" => "+", // the same key without Shift on many keyboards
         Key::Character(text) => text.as_str(),
         _ => return None,
@@ -31,6 +33,8 @@ mod tests {
             ("Up", NamedKey::ArrowUp),
             ("Down", NamedKey::ArrowDown),
             ("Esc", NamedKey::Escape),
+            ("Enter", NamedKey::Enter),
+            ("F11", NamedKey::F11),
         ];
         for row in KEYS {
             let name = named.iter().find(|(written, _)| *written == row.key);

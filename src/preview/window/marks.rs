@@ -15,14 +15,15 @@ const HEAD_PX: f64 = 7.0;
 /// The pixel grid shows from this zoom on.
 const GRID_ZOOM: f64 = 8.0;
 const GRID: Color = [255, 255, 255, 28];
+/// What lies under a label, so that it can be read on anything.
+const LABEL_GROUND: Color = [16, 18, 22, 205];
 
 /// Draws marks.
 pub fn draw(marks: &[Mark], camera: &Camera, area: Size, scale: f64) -> Canvas {
     let mut canvas = Canvas::default();
-    let mut painter = Painter { camera, area, scale, labels: Vec::new() };
-    for mark in marks {
-        painter.mark(&mut canvas, mark);
-    }
+    let painter = Painter { camera, area, scale };
+    marks.iter().for_each(|mark| painter.mark(&mut canvas, mark));
+    painter.labels(&mut canvas, marks);
     canvas
 }
 
@@ -49,8 +50,6 @@ struct Painter<'a> {
     camera: &'a Camera,
     area: Size,
     scale: f64,
-    /// Where labels stand; one that would lie on another waits until there is room.
-    labels: Vec<Rect>,
 }
 
 impl Painter<'_> {
@@ -64,10 +63,10 @@ impl Painter<'_> {
         bounds.inflate(40.0, 40.0).overlaps(self.area.to_rect())
     }
 
-    fn mark(&mut self, canvas: &mut Canvas, mark: &Mark) {
+    fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
         let style = mark.kind.style();
         let grown = if mark.selected { f64::from(SELECTED_GROWTH) } else { 1.0 } * self.scale;
-        let color = if mark.selected { SELECTED } else { style.color };
+        let color = color_of(mark);
         let width = f64::from(style.width_px) * grown;
         match &mark.shape {
             Shape::Line { points, closed } => {
@@ -85,14 +84,31 @@ impl Painter<'_> {
                     canvas.with_halo(|c| c.arrow(from, to, width, HEAD_PX * grown, color));
                 }
             }
-            Shape::Label(at, text) => {
-                let at = self.screen(*at) + Vec2::new(9.0, -14.0) * self.scale;
-                let size = Size::new(glyphs::width(text) / glyphs::BASE, 1.0) * (LABEL_PX * self.scale);
-                let place = Rect::from_origin_size(at, size).inflate(3.0 * self.scale, 3.0 * self.scale);
-                if self.seen(&[at]) && !self.labels.iter().any(|other| other.overlaps(place)) {
-                    self.labels.push(place);
-                    canvas.with_halo(|c| c.text(text, at, LABEL_PX * self.scale, color));
+            Shape::Cell(at, side, color) => {
+                // On whole pixels, so that neighbours meet without a seam.
+                let [a, b] = [-0.5, 0.5].map(|half| self.screen(*at + Vec2::new(side * half, side * half)).round());
+                if self.seen(&[a, b]) {
+                    canvas.rect(Rect::from_points(a, b), 0.0, *color);
                 }
+            }
+            Shape::Label(..) => {}
+        }
+    }
+
+    /// Labels lie on top of all else, those of what is selected first; one that would lie on another waits until there is
+    /// room.
+    fn labels(&self, canvas: &mut Canvas, marks: &[Mark]) {
+        let mut taken: Vec<Rect> = Vec::new();
+        let selected = marks.iter().filter(|mark| mark.selected);
+        for mark in selected.chain(marks.iter().filter(|mark| !mark.selected)) {
+            let Shape::Label(at, text) = &mark.shape else { continue };
+            let at = self.screen(*at) + Vec2::new(9.0, -14.0) * self.scale;
+            let size = Size::new(glyphs::width(text) / glyphs::BASE, 1.0) * (LABEL_PX * self.scale);
+            let place = Rect::from_origin_size(at, size).inflate(4.0 * self.scale, 3.5 * self.scale);
+            if self.seen(&[at]) && !taken.iter().any(|other| other.overlaps(place)) {
+                taken.push(place);
+                canvas.rect(place, 3.0 * self.scale, LABEL_GROUND);
+                canvas.text(text, at, LABEL_PX * self.scale, color_of(mark));
             }
         }
     }
@@ -130,6 +146,11 @@ impl Painter<'_> {
     }
 }
 
+fn color_of(mark: &Mark) -> Color {
+    let [r, g, b, a] = if mark.selected { SELECTED } else { mark.kind.style().color };
+    [r, g, b, (f32::from(a) * mark.strength).round() as u8]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,8 +164,12 @@ mod tests {
         camera
     }
 
+    fn mark(shape: Shape, selected: bool) -> Mark {
+        Mark { kind: Kind::FoldRegion, shape, selected, strength: 1.0 }
+    }
+
     fn strokes(shape: Shape, selected: bool) -> usize {
-        draw(&[Mark { kind: Kind::FoldRegion, shape, selected }], &camera(), AREA, 1.0).strokes.len()
+        draw(&[mark(shape, selected)], &camera(), AREA, 1.0).strokes.len()
     }
 
     #[test]
@@ -156,18 +181,26 @@ mod tests {
 
     #[test]
     fn labels_do_not_lie_on_one_another() {
-        let label =
-            |x: f64| Mark { kind: Kind::Anchor, shape: Shape::Label(Point::new(x, 50.0), "0".into()), selected: false };
+        let label = |x: f64| mark(Shape::Label(Point::new(x, 50.0), "0".into()), false);
         let count = |marks: &[Mark]| draw(marks, &camera(), AREA, 1.0).strokes.len();
         assert_eq!(count(&[label(10.0), label(12.0)]), count(&[label(10.0)]));
         assert_eq!(count(&[label(10.0), label(60.0)]), 2 * count(&[label(10.0)]));
     }
 
     #[test]
+    fn what_fades_is_less_opaque_and_cells_stand_on_whole_pixels() {
+        let faint = Mark { strength: 0.5, ..mark(Shape::Dot(Point::new(50.0, 50.0)), false) };
+        let canvas = draw(&[faint], &camera(), AREA, 1.0);
+        assert_eq!(canvas.strokes.last().unwrap().color[3], 128);
+        let cell = mark(Shape::Cell(Point::new(50.3, 50.0), 4.5, [9; 4]), false);
+        let canvas = draw(&[cell], &camera(), AREA, 1.0);
+        assert_eq!((canvas.strokes[0].a, canvas.strokes[0].b), ([48.0, 48.0], [53.0, 52.0]));
+    }
+
+    #[test]
     fn hatches_stay_inside() {
         let polygon = vec![(20.0, 20.0).into(), (60.0, 20.0).into(), (60.0, 60.0).into(), (20.0, 60.0).into()];
-        let mark = Mark { kind: Kind::FoldRegion, shape: Shape::Fill(polygon), selected: false };
-        let canvas = draw(&[mark], &camera(), AREA, 1.0);
+        let canvas = draw(&[mark(Shape::Fill(polygon), false)], &camera(), AREA, 1.0);
         assert!(canvas.strokes.len() > 5);
         let inside = |p: [f32; 2]| p.iter().all(|c| (19.9..=60.1).contains(c));
         assert!(canvas.strokes.iter().all(|s| inside(s.a) && inside(s.b)));

@@ -18,6 +18,7 @@ mod chrome;
 mod clock;
 mod glyphs;
 mod input;
+mod legend;
 mod marks;
 mod opened;
 mod screen;
@@ -38,6 +39,8 @@ pub struct Setup {
     pub replies: Sender<Reply>,
     /// How the pictures of a scene are loaded.
     pub load: Load,
+    /// The largest side of a picture that is given to the GPU, in pixels.
+    pub most: usize,
     /// Set by a signal: the window ends, interrupted.
     pub cancel: Arc<AtomicBool>,
 }
@@ -54,7 +57,7 @@ pub fn run(setup: Setup) -> Result<()> {
     let proxy = event_loop.create_proxy();
     worker::start(setup.updates, setup.load, setup.cancel, move |event| proxy.send_event(event).is_ok());
     let instance = crate::render::gpu::device::instance(Some(Box::new(event_loop.owned_display_handle())));
-    let mut app = app::App::new(instance, setup.title, setup.replies);
+    let mut app = app::App::new(instance, setup.title, setup.replies, setup.most);
     quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|e| Error::at(PLACE, e))?;
     app.ended()
 }

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use kurbo::Size;
 use winit::dpi::PhysicalSize;
-use winit::window::Window;
+use winit::window::{Fullscreen, Window};
 
 use super::chrome;
-use super::screen::{Drawn, Screen};
+use super::screen::{Drawn, Pictures, Screen};
 use super::show::{Cached, Show};
 use super::state::{BAR_PX, State};
 use crate::base::error::Result;
@@ -32,24 +32,47 @@ pub struct Opened {
 }
 
 impl Opened {
+    /// Draws all that the window shows.
     pub fn paint(&mut self, state: &mut State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
-        let (frame, frame_scale) = match show {
+        let pictures = match show {
             Some(show) => {
-                let synth = if state.shown.still { &show.still } else { &show.frames };
-                let time = state.transport.scene_time(&state.timeline);
                 marks.follow(state, show);
-                state.arrow_scale = marks.arrow_scale;
-                (self.gpu.texture(synth, time)?, show.frame_scale)
+                (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
+                self.pictures(state, show)?
             }
-            None => (self.gpu.texture(&Synth { size: (1, 1), layers: Vec::new() }, 0.0)?, 1.0),
+            None => {
+                let frame = self.gpu.texture(&Synth { size: (1, 1), layers: Vec::new() }, 0.0)?;
+                Pictures { frame, other: None, scale: 1.0 }
+            }
         };
         let chrome = chrome::draw(state);
-        let strokes = [&marks.canvas.strokes[..], &chrome.strokes[..]];
-        let drawn = self.screen.draw(&self.gpu, state, &frame, frame_scale, strokes);
+        let strokes = [&marks.fixed.strokes[..], &marks.moving.strokes[..], &chrome.strokes[..]];
+        let drawn = self.screen.draw(&self.gpu, state, &pictures, strokes);
         self.gpu.device().take_uncaught()?;
         drawn
     }
 
+    fn pictures(&mut self, state: &State, show: &Show) -> Result<Pictures> {
+        let time = state.transport.scene_time(&state.timeline);
+        let last = state.timeline.time_of(state.timeline.frames() - 1);
+        let (frame, other) = if state.shown.seam {
+            ((&show.frames, last), Some((&show.frames, 0.0)))
+        } else if state.shown.wipe {
+            ((&show.frames, time), Some((&show.still, 0.0)))
+        } else {
+            ((if state.shown.still { &show.still } else { &show.frames }, time), None)
+        };
+        let (frame, other) = self.gpu.textures(frame, other)?;
+        Ok(Pictures { frame, other, scale: show.frame_scale })
+    }
+
+    /// Fills the screen, or goes back to a window.
+    pub fn toggle_full_screen(&self) {
+        let full = self.window.fullscreen().is_none().then_some(Fullscreen::Borderless(None));
+        self.window.set_fullscreen(full);
+    }
+
+    /// How long a frame of the display lasts.
     pub fn interval(&self) -> Duration {
         let rate = self.window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
         Duration::from_secs_f64(1.0 / rate.map_or(RATE, |r| f64::from(r) / 1000.0).max(1.0))

@@ -42,10 +42,21 @@ pub struct Screen {
     pipelines: Pipelines,
 }
 
+/// The picture to be shown, as textures.
+pub struct Pictures {
+    /// The frame.
+    pub frame: wgpu::Texture,
+    /// What it is shown beside or compared with, of the same size.
+    pub other: Option<wgpu::Texture>,
+    /// Pixels of the textures a pixel of the picture.
+    pub scale: f64,
+}
+
 struct Pipelines {
     bindings: wgpu::BindGroupLayout,
     enlarged: wgpu::RenderPipeline,
     reduced: wgpu::RenderPipeline,
+    difference: wgpu::RenderPipeline,
     strokes: wgpu::RenderPipeline,
     uniform: wgpu::Buffer,
 }
@@ -74,15 +85,8 @@ impl Screen {
         Ok((gpu, Screen { window, surface, format, configured: (0, 0), pipelines }))
     }
 
-    /// Draws `frame`, whose pixels are `frame_scale` of the picture's, with strokes over it.
-    pub fn draw(
-        &mut self,
-        gpu: &Gpu,
-        state: &State,
-        frame: &wgpu::Texture,
-        frame_scale: f64,
-        layers: [&[Stroke]; 2],
-    ) -> Result<Drawn> {
+    /// Draws the picture with strokes over it.
+    pub fn draw(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, layers: [&[Stroke]; 3]) -> Result<Drawn> {
         let size = self.window.inner_size();
         if size.width == 0 || size.height == 0 {
             return Ok(Drawn::Hidden);
@@ -100,8 +104,7 @@ impl Screen {
             }
             wgpu::CurrentSurfaceTexture::Lost => return Ok(Drawn::Lost),
         };
-        let uniform = uniform(state, (frame.width(), frame.height()), frame_scale);
-        self.paint(gpu, &texture.texture, &uniform, frame, layers)?;
+        self.paint(gpu, &texture.texture, state, pictures, layers)?;
         self.window.pre_present_notify();
         gpu.device().queue.present(texture);
         Ok(Drawn::Yes)
@@ -121,14 +124,14 @@ impl Screen {
         &self,
         gpu: &Gpu,
         into: &wgpu::Texture,
-        uniform: &ScreenUniform,
-        frame: &wgpu::Texture,
-        layers: [&[Stroke]; 2],
+        state: &State,
+        pictures: &Pictures,
+        layers: [&[Stroke]; 3],
     ) -> Result<()> {
         let device = gpu.device();
+        let uniform = uniform(state, pictures);
         device.checked(|| {
-            device.queue.write_buffer(&self.pipelines.uniform, 0, bytemuck::bytes_of(uniform));
-            let group = self.pipelines.group(&device.raw, frame);
+            device.queue.write_buffer(&self.pipelines.uniform, 0, bytemuck::bytes_of(&uniform));
             let strokes = layers.map(|strokes| instances(device, strokes));
             let mut encoder = device.raw.create_command_encoder(&Default::default());
             let view = into.create_view(&Default::default());
@@ -141,10 +144,7 @@ impl Screen {
                 })],
                 ..Default::default()
             });
-            pass.set_bind_group(0, &group, &[]);
-            let reduces = uniform.zoom < 1.0;
-            pass.set_pipeline(if reduces { &self.pipelines.reduced } else { &self.pipelines.enlarged });
-            pass.draw(0..3, 0..1);
+            self.pictures(&device.raw, &mut pass, state, pictures, uniform.zoom < 1.0);
             pass.set_pipeline(&self.pipelines.strokes);
             for (buffer, strokes) in strokes.iter().zip(layers) {
                 if let Some(buffer) = buffer {
@@ -155,6 +155,29 @@ impl Screen {
             drop(pass);
             device.queue.submit([encoder.finish()]);
         })
+    }
+
+    /// The frame; or its difference from the other; or the other to the left of the border.
+    fn pictures(
+        &self,
+        device: &wgpu::Device,
+        pass: &mut wgpu::RenderPass<'_>,
+        state: &State,
+        Pictures { frame, other, .. }: &Pictures,
+        reduces: bool,
+    ) {
+        let frames = if reduces { &self.pipelines.reduced } else { &self.pipelines.enlarged };
+        let differs = state.shown.seam && other.is_some();
+        pass.set_pipeline(if differs { &self.pipelines.difference } else { frames });
+        pass.set_bind_group(0, &self.pipelines.group(device, frame, other.as_ref().unwrap_or(frame)), &[]);
+        pass.draw(0..3, 0..1);
+        if let (Some(other), Some(border)) = (other, state.wipe_at()) {
+            let (width, height) = (state.window.width as u32, state.window.height as u32);
+            pass.set_bind_group(0, &self.pipelines.group(device, other, other), &[]);
+            pass.set_scissor_rect(0, 0, border as u32, height);
+            pass.draw(0..3, 0..1);
+            pass.set_scissor_rect(0, 0, width, height);
+        }
     }
 }
 
@@ -170,8 +193,9 @@ impl Pipelines {
             });
             let maker = Maker { device: raw, module: &module, bindings: &bindings, format };
             Pipelines {
-                enlarged: maker.frame(false),
-                reduced: maker.frame(true),
+                enlarged: maker.frame(""),
+                reduced: maker.frame("reduces"),
+                difference: maker.frame("differs"),
                 strokes: maker.strokes(),
                 uniform: raw.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("screen"),
@@ -184,14 +208,15 @@ impl Pipelines {
         })
     }
 
-    fn group(&self, device: &wgpu::Device, frame: &wgpu::Texture) -> wgpu::BindGroup {
-        let view = frame.create_view(&Default::default());
+    fn group(&self, device: &wgpu::Device, frame: &wgpu::Texture, other: &wgpu::Texture) -> wgpu::BindGroup {
+        let views = [frame, other].map(|texture| texture.create_view(&Default::default()));
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.bindings,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&views[0]) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&views[1]) },
             ],
         })
     }
@@ -206,8 +231,9 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn frame(&self, reduces: bool) -> wgpu::RenderPipeline {
-        let constants = [("reduces", f64::from(u8::from(reduces)))];
+    /// `manner` is the constant of the shader that is set, where one is.
+    fn frame(&self, manner: &'static str) -> wgpu::RenderPipeline {
+        let constants = ["reduces", "differs"].map(|name| (name, f64::from(u8::from(name == manner))));
         self.make(["whole_screen", "show_frame"], &constants, &[], None)
     }
 
@@ -281,7 +307,7 @@ fn bindings(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     };
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
-        entries: &[entry(0, uniform), entry(1, frame)],
+        entries: &[entry(0, uniform), entry(1, frame), entry(2, frame)],
     })
 }
 
@@ -309,18 +335,22 @@ fn format(surface: &wgpu::Surface<'_>, gpu: &Gpu) -> Result<wgpu::TextureFormat>
     found.copied().ok_or_else(|| Error::at("window", "the GPU cannot show in this window"))
 }
 
-fn uniform(state: &State, (width, height): (u32, u32), frame_scale: f64) -> ScreenUniform {
+fn uniform(state: &State, Pictures { frame, scale, .. }: &Pictures) -> ScreenUniform {
     let linear = |color: Color| {
         let [r, g, b, _] = color.map(|code| linear_from_srgb(f64::from(code) / 255.0) as f32);
         [r, g, b, 1.0]
     };
     let origin = state.camera.origin(state.area());
-    let zoom = state.camera.zoom / frame_scale;
+    let zoom = state.camera.zoom / scale;
     let checks = if state.shown.plain { [GROUND; 2] } else { [LIGHT, DARK] };
     ScreenUniform {
         size: [state.window.width as f32, state.window.height as f32],
         origin: [origin.x as f32, origin.y as f32],
-        frame: [(f64::from(width) * zoom) as f32, (f64::from(height) * zoom) as f32],
+        frame: if state.has_picture() {
+            [frame.width(), frame.height()].map(|n| (f64::from(n) * zoom) as f32)
+        } else {
+            [0.0; 2]
+        },
         zoom: zoom as f32,
         check: (CHECK_PX * state.scale) as f32,
         ground: linear(GROUND),

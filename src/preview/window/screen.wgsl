@@ -1,6 +1,7 @@
 // The window: the frame, scaled, and strokes over it. Lengths are physical pixels of the window.
 
 override reduces: bool = false; // whether a pixel of the screen covers more than one of the frame
+override differs: bool = false; // whether the difference of two frames is shown
 override encodes: bool = true; // whether the surface takes sRGB codes; else it encodes linear light by itself
 
 struct Screen {
@@ -16,6 +17,9 @@ struct Screen {
 
 @group(0) @binding(0) var<uniform> screen: Screen;
 @group(0) @binding(1) var frame: texture_2d<f32>;
+@group(0) @binding(2) var other: texture_2d<f32>; // the frame that it is compared with
+
+const DIFFERENCE: f32 = 8.0; // how much stronger a difference is shown
 
 fn srgb_from_linear(light: vec3f) -> vec3f {
     let l = clamp(light, vec3f(0.0), vec3f(1.0));
@@ -54,6 +58,25 @@ fn reduced(at: vec2f) -> vec4f {
     return sum / (n * n);
 }
 
+// The largest difference of sRGB codes among up to 8 x 8 pixels under one of the screen.
+fn difference(at: vec2f) -> vec3f {
+    let size = vec2i(textureDimensions(frame));
+    let side = max(1.0 / screen.zoom, 1.0);
+    let n = min(ceil(side), 8.0);
+    var most = vec3f(0.0);
+    for (var y = 0.5; y < n; y += 1.0) {
+        for (var x = 0.5; x < n; x += 1.0) {
+            let place = vec2i(floor(at + (vec2f(x, y) / n - 0.5) * (side - 1.0)));
+            let texel = clamp(place, vec2i(0), size - 1);
+            let a = textureLoad(frame, texel, 0);
+            let b = textureLoad(other, texel, 0);
+            most = max(most, abs(srgb_from_linear(a.rgb) - srgb_from_linear(b.rgb)));
+            most = max(most, vec3f(abs(a.a - b.a)));
+        }
+    }
+    return most * DIFFERENCE;
+}
+
 @vertex
 fn whole_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
@@ -66,7 +89,9 @@ fn show_frame(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let odd = (i32(floor(place.x / screen.check)) + i32(floor(place.y / screen.check))) & 1;
     let beneath = select(screen.ground, select(screen.light, screen.dark, odd == 1), within);
     var color: vec4f;
-    if reduces {
+    if differs {
+        color = vec4f(linear_from_srgb(min(difference(place / screen.zoom), vec3f(1.0))), 1.0);
+    } else if reduces {
         color = reduced(place / screen.zoom);
     } else {
         color = enlarged(place / screen.zoom);

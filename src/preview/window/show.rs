@@ -9,8 +9,9 @@ use super::camera::Camera;
 use super::canvas::Canvas;
 use super::marks;
 use super::state::State;
-use crate::layers::folding;
-use crate::render::overlay::{View, field_scale, overlay};
+use crate::layers::{Layer, folding};
+use crate::render::overlay::{Samplers, View, field_scale, longest, overlay, samplers};
+use crate::render::reduce::reduced;
 use crate::render::{LayerSynth, Synth};
 use crate::scene::Scene;
 
@@ -26,38 +27,131 @@ pub struct Show {
     pub frame_scale: f64,
 }
 
+impl Show {
+    /// A scene on a GPU that holds pictures of at most `most` pixels a side; with it, what is to be said about that.
+    pub fn new(scene: Arc<Scene>, synth: Synth, most: usize) -> (Show, Option<String>) {
+        let (width, height) = synth.size;
+        let factor = largest_side(&synth).div_ceil(most.max(1)).max(1);
+        let frames = if factor > 1 { reduced(&synth, factor) } else { synth.clone() };
+        let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
+        (Show { scene, still: still(&frames), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
+    }
+}
+
+/// The largest side of any picture that a frame reads.
+fn largest_side(synth: &Synth) -> usize {
+    let of_layer = |LayerSynth::Picture(layer): &LayerSynth| {
+        let read = layer.zones.iter().map(|zone| &zone.source.picture).chain([&layer.picture]);
+        read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
+    };
+    synth.layers.iter().map(of_layer).max().unwrap_or(1)
+}
+
+/// What a JSON pointer leads to, by the names of layer and zone: `face/left eye/motion/3`; none for the scene itself.
+pub fn name(scene: &Scene, pointer: &str) -> Option<String> {
+    let mut tokens = pointer.split('/').skip(1);
+    let (list, Ok(layer)) = (tokens.next()?, tokens.next().unwrap_or_default().parse::<usize>()) else {
+        return Some(pointer.trim_start_matches('/').to_owned());
+    };
+    let Some(Layer::Picture(layer)) = scene.layers.get(layer).filter(|_| list == "layers") else { return None };
+    let rest: Vec<&str> = tokens.collect();
+    let zone = match rest[..] {
+        ["zones", zone, ..] => zone.parse::<usize>().ok().and_then(|zone| layer.zones.get(zone)),
+        _ => None,
+    };
+    let rest = zone.map_or(&rest[..], |_| &rest[2..]);
+    let names = std::iter::once(layer.name.as_str()).chain(zone.map(|zone| zone.name.as_str()));
+    Some(names.chain(rest.iter().copied()).collect::<Vec<_>>().join("/"))
+}
+
 /// The overlay's strokes, and what they were made for.
 #[derive(Default)]
 pub struct Cached {
-    pub made_for: Option<(View, Camera, Size, bool, u64)>,
-    pub canvas: Canvas,
+    /// Strokes that stay as they are while the animation runs.
+    pub fixed: Canvas,
+    made_for: Option<(View, Sight)>,
+    /// Those of the samplers.
+    pub moving: Canvas,
+    moved_for: Option<(Option<Samplers>, Sight)>,
+    /// See [`State::arrow_scale`].
     pub arrow_scale: f64,
+    /// See [`State::longest`].
+    pub longest: f64,
+    /// How many scenes there were.
     pub revision: u64,
+}
+
+/// How the picture is looked at.
+#[derive(Clone, Debug, PartialEq)]
+struct Sight {
+    camera: Camera,
+    window: Size,
+    scale: f64,
+    grid: bool,
+    revision: u64,
 }
 
 impl Cached {
     /// Makes the strokes again where anything that they show has changed.
     pub fn follow(&mut self, state: &State, show: &Show) {
-        let key = (state.overlay_view(), state.camera.clone(), state.window, state.shown.grid, self.revision);
-        if self.made_for.as_ref() == Some(&key) {
-            return;
+        let camera = state.camera.clone();
+        let (window, scale, grid) = (state.window, state.scale, state.shown.grid);
+        let sight = Sight { camera, window, scale, grid, revision: self.revision };
+        let (fixed, moving) = (Some((state.overlay_view(), sight.clone())), Some((state.samplers(), sight)));
+        if self.made_for != fixed {
+            self.made_for = fixed;
+            self.make_fixed(state, show);
         }
-        let found = overlay(&show.scene, Some(&show.synth), &key.0);
-        self.canvas = Canvas::default();
+        if self.moved_for != moving {
+            self.moved_for = moving;
+            let view = View { samplers: state.samplers(), selection: state.selection.clone(), ..View::default() };
+            let found = if view.samplers.is_some() { samplers(&show.synth, &view) } else { Vec::new() };
+            self.moving = marks::draw(&found, &state.camera, state.area(), state.scale);
+        }
+    }
+
+    fn make_fixed(&mut self, state: &State, show: &Show) {
+        let view = state.overlay_view();
+        let found = overlay(&show.scene, Some(&show.synth), &view);
+        self.fixed = Canvas::default();
         if state.shown.grid {
-            marks::grid(&mut self.canvas, state.picture, &state.camera, state.area());
+            marks::grid(&mut self.fixed, state.picture, &state.camera, state.area());
         }
-        self.canvas.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
-        let scale = |spacing| show.synth.layers.iter().map(move |LayerSynth::Picture(l)| field_scale(l, spacing));
-        self.arrow_scale = key.0.field.map_or(1.0, |spacing| scale(spacing).fold(1.0, f64::min));
-        self.made_for = Some(key);
+        self.fixed.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
+        self.arrow_scale = view.field.map_or(1.0, |spacing| field_scale(&show.synth, spacing));
+        self.longest = view.wheel.map_or(0.0, |_| longest(&show.synth));
     }
 }
 
 /// The same picture, nothing moving.
-pub fn still(synth: &Synth) -> Synth {
+fn still(synth: &Synth) -> Synth {
     let layers = synth.layers.iter().map(|LayerSynth::Picture(layer)| {
         LayerSynth::Picture(folding::synth::Synth { picture: layer.picture.clone(), zones: Vec::new() })
     });
     Synth { size: synth.size, layers: layers.collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_selected_has_names() {
+        let scene = serde_json::from_str(
+            r#"{ "plica": 1, "images": {"a": {"path": "a.png"}}, "layers": [{ "kind": "picture", "name": "face", "image": "a",
+              "zones": [{ "name": "left eye", "outline": {"kind": "rectangle", "x": 1, "y": 1, "width": 6, "height": 4}}]}]}"#,
+        )
+        .unwrap();
+        for (pointer, expected) in [
+            ("", None),
+            ("/timeline", Some("timeline")),
+            ("/layers/0", Some("face")),
+            ("/layers/0/image", Some("face/image")),
+            ("/layers/0/zones/0/motion/3", Some("face/left eye/motion/3")),
+            ("/layers/0/zones/7", Some("face/zones/7")),
+            ("/layers/7", None),
+        ] {
+            assert_eq!(name(&scene, pointer).as_deref(), expected, "{pointer}");
+        }
+    }
 }

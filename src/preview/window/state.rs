@@ -4,18 +4,27 @@ use kurbo::{Point, Size, Vec2};
 
 use super::camera::Camera;
 use super::transport::Transport;
-use crate::layers::timeline::Timeline;
-use crate::render::overlay::View;
+use crate::base::maths::pow;
+use crate::layers::timeline::{Timeline, Wrap};
+use crate::render::overlay::{Samplers, View};
 
-/// An arrow of the vector field stands about every so many logical pixels of the screen.
+/// An arrow of the vector field stands about every so many logical pixels of the screen, unless keys change it, by so many
+/// times twice or half.
 const FIELD_PX: f64 = 22.0;
+const FIELD_STEPS: std::ops::RangeInclusive<i32> = -2..=4;
+/// A square of the field in colours, in logical pixels of the screen.
+const WHEEL_PX: f64 = 4.0;
+/// How often samplers are shown where they were before, and how far apart that is, as a share of the timeline.
+const ONION: (u32, f64) = (6, 1.0 / 48.0);
+/// A key moves the border between still and moving by this share of the picture.
+const WIPE_STEP: f64 = 0.05;
 /// A key pans by this share of the area.
 const PAN: f64 = 0.1;
 /// Height of the bar, in logical pixels.
 pub const BAR_PX: f64 = 34.0;
 
 /// All that a picture of the window depends on, besides the scene.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct State {
     /// Size of the window, in physical pixels.
     pub window: Size,
@@ -41,8 +50,20 @@ pub struct State {
     pub problem: Option<String>,
     /// What lies over the picture.
     pub panel: Panel,
+    /// How often the spacing of the field is doubled.
+    pub field_step: i32,
+    /// The border between still and moving, as a share of the picture; see [`Shown::wipe`].
+    pub wipe: f64,
+    /// The point marked last, in pixels of the picture.
+    pub marked: Option<Point>,
+    /// What is selected in the editor, for people.
+    pub selected: Option<String>,
+    /// Frames a second, while it plays.
+    pub fps: Option<f64>,
     /// Length of the field's arrows on the picture, as a share of the jump vectors.
     pub arrow_scale: f64,
+    /// The longest jump vector, in pixels of the picture.
+    pub longest: f64,
 }
 
 /// What can be switched on and off.
@@ -56,14 +77,28 @@ pub struct Shown {
     pub anchors: bool,
     /// Curves and lassos.
     pub curves: bool,
-    /// The vector field.
+    /// The vector field as arrows.
     pub field: bool,
+    /// The vector field as colours.
+    pub wheel: bool,
+    /// Jump paths.
+    pub paths: bool,
+    /// Where jump paths meet fold regions.
+    pub thresholds: bool,
+    /// Samplers at their effective places.
+    pub samplers: bool,
+    /// Samplers where they were before.
+    pub onion: bool,
     /// Names and numbers.
     pub labels: bool,
     /// The pixel grid.
     pub grid: bool,
     /// The still picture instead of the moving one.
     pub still: bool,
+    /// The still picture to the left of a border, the moving one to the right.
+    pub wipe: bool,
+    /// The difference of the last frame and the first, instead of a frame.
+    pub seam: bool,
     /// A plain ground under transparency, not a checkerboard.
     pub plain: bool,
 }
@@ -85,16 +120,49 @@ pub enum Panel {
 pub enum Outcome {
     /// A new picture of the window.
     Redraw,
+    /// The whole screen, or the window again.
+    FullScreen,
     /// The end.
     Quit,
     /// Nothing: the command is not one of the window's.
     Unknown,
 }
 
+impl Default for State {
+    fn default() -> Self {
+        State {
+            window: Size::ZERO,
+            scale: 1.0,
+            picture: Size::ZERO,
+            camera: Camera::default(),
+            transport: Transport::default(),
+            timeline: Timeline::default(),
+            shown: Shown::default(),
+            selection: None,
+            pointer: None,
+            notice: None,
+            problem: None,
+            panel: Panel::None,
+            field_step: 0,
+            wipe: 0.5,
+            marked: None,
+            selected: None,
+            fps: None,
+            arrow_scale: 1.0,
+            longest: 0.0,
+        }
+    }
+}
+
 impl State {
     /// The part of the window in which the picture stands.
     pub fn area(&self) -> Size {
         Size::new(self.window.width, (self.window.height - (BAR_PX * self.scale).round()).max(1.0))
+    }
+
+    /// Whether there is a picture yet.
+    pub fn has_picture(&self) -> bool {
+        self.picture != Size::ZERO
     }
 
     /// Takes a new size of the window.
@@ -131,6 +199,14 @@ impl State {
             "frame-on" => self.transport.step(1, &self.timeline),
             "first-frame" => self.transport.go_to(0.0, &self.timeline),
             "last-frame" => self.transport.go_to_end(&self.timeline),
+            "slower" => self.transport.change_speed(-1),
+            "faster" => self.transport.change_speed(1),
+            "view-whole-frames" => self.transport.whole_frames = !self.transport.whole_frames,
+            "field-closer" => self.step_field(-1),
+            "field-wider" => self.step_field(1),
+            "wipe-left" => self.move_wipe(-WIPE_STEP),
+            "wipe-right" => self.move_wipe(WIPE_STEP),
+            "mark-point" => self.marked = self.pointed(),
             "zoom-in" => self.camera.zoom_step(1, about, area),
             "zoom-out" => self.camera.zoom_step(-1, about, area),
             "zoom-fit" => self.camera.fit(self.picture, area),
@@ -141,7 +217,8 @@ impl State {
             "pan-down" => self.camera.pan(pan(0.0, 1.0)),
             "view-menu" => self.panel = Panel::Menu,
             "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
-            "close-panel" => self.panel = Panel::None,
+            "close-panel" => (self.panel, self.marked) = (Panel::None, None),
+            "view-full-screen" => return Outcome::FullScreen,
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }
@@ -154,17 +231,59 @@ impl State {
         self.picture.to_rect().contains(at).then_some(at)
     }
 
-    /// What the overlay shows, its field as dense as the screen bears.
+    fn step_field(&mut self, by: i32) {
+        self.field_step = (self.field_step + by).clamp(*FIELD_STEPS.start(), *FIELD_STEPS.end());
+    }
+
+    fn move_wipe(&mut self, by: f64) {
+        self.shown.wipe = true;
+        self.wipe = (self.wipe + by).clamp(0.0, 1.0);
+    }
+
+    /// The border between still and moving on the screen, where it is shown.
+    pub fn wipe_at(&self) -> Option<f64> {
+        let at = self.camera.screen_from_image(Point::new(self.picture.width * self.wipe, 0.0), self.area());
+        (self.shown.wipe && !self.shown.seam).then(|| at.x.round().clamp(0.0, self.window.width))
+    }
+
+    /// Pixels of the picture between two of those whose jump vectors are shown, when they are about `px` logical pixels
+    /// of the screen apart: a power of two.
+    fn spacing(&self, px: f64) -> f64 {
+        let wanted = px * self.scale / self.camera.zoom;
+        (0..24).map(|k| f64::from(1 << k)).find(|&s| s >= wanted).unwrap_or(wanted)
+    }
+
+    /// The samplers that are shown: now, and where they were before.
+    pub fn samplers(&self) -> Option<Samplers> {
+        let now = self.transport.scene_time(&self.timeline);
+        let before = (1..=ONION.0).map(|k| now - f64::from(k) * ONION.1);
+        let before = before.filter_map(|t| match self.timeline.wrap {
+            Wrap::Once => (t >= 0.0).then_some(t),
+            Wrap::Repeat | Wrap::PingPong => Some(t.rem_euclid(1.0)),
+        });
+        let before = before.filter(|_| self.shown.onion);
+        let shown = self.shown.samplers || self.shown.onion;
+        shown.then(|| Samplers { spacing: self.field_spacing(), times: std::iter::once(now).chain(before).collect() })
+    }
+
+    fn field_spacing(&self) -> f64 {
+        self.spacing(FIELD_PX * pow(2.0, f64::from(self.field_step)))
+    }
+
+    /// What the overlay shows but the samplers, its field as dense as the screen bears.
     pub fn overlay_view(&self) -> View {
-        let spacing = FIELD_PX * self.scale / self.camera.zoom;
-        let doubled = (0..24).map(|k| f64::from(1 << k)).find(|&s| s >= spacing);
+        let spacing = Some(self.field_spacing());
         View {
             outlines: self.shown.outlines,
             regions: self.shown.regions,
             anchors: self.shown.anchors,
             curves: self.shown.curves,
             labels: self.shown.labels,
-            field: self.shown.field.then_some(doubled.unwrap_or(spacing)),
+            field: spacing.filter(|_| self.shown.field),
+            wheel: self.shown.wheel.then(|| self.spacing(WHEEL_PX)),
+            paths: spacing.filter(|_| self.shown.paths),
+            thresholds: spacing.filter(|_| self.shown.thresholds),
+            samplers: None,
             selection: self.selection.clone(),
         }
     }
@@ -179,6 +298,13 @@ impl Shown {
             "view-anchors" => &mut self.anchors,
             "view-curves" => &mut self.curves,
             "view-field" => &mut self.field,
+            "view-wheel" => &mut self.wheel,
+            "view-paths" => &mut self.paths,
+            "view-thresholds" => &mut self.thresholds,
+            "view-samplers" => &mut self.samplers,
+            "view-onion" => &mut self.onion,
+            "view-wipe" => &mut self.wipe,
+            "view-seam" => &mut self.seam,
             "view-labels" => &mut self.labels,
             "view-grid" => &mut self.grid,
             "view-still" => &mut self.still,

@@ -3,33 +3,62 @@
 
 use crate::layers::timeline::{Timeline, Wrap};
 
+/// The speeds that keys go through.
+const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
+
 /// Where the animation stands.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Transport {
     /// Whether it runs.
     pub playing: bool,
     /// Place in frames, from 0; between two frames while it runs.
     pub frame: f64,
+    /// Seconds of the scene a second.
+    pub speed: f64,
+    /// Whether only whole frames are shown, each as long as it lasts.
+    pub whole_frames: bool,
+}
+
+impl Default for Transport {
+    fn default() -> Self {
+        Transport { playing: false, frame: 0.0, speed: 1.0, whole_frames: false }
+    }
 }
 
 impl Transport {
-    /// Scene time t in [0, 1].
+    /// The place that is shown, in frames.
+    pub fn shown(&self) -> f64 {
+        if self.whole_frames { self.frame.floor() } else { self.frame }
+    }
+
+    /// Scene time t in [0, 1] of what is shown.
     pub fn scene_time(&self, timeline: &Timeline) -> f64 {
-        let n = timeline.frames() as f64;
-        match timeline.wrap {
-            Wrap::Repeat | Wrap::PingPong => self.frame / n,
-            Wrap::Once => (self.frame / (n - 1.0).max(1.0)).min(1.0),
-        }
+        self.shown() / frames_of_all(timeline)
     }
 
     /// Seconds from the beginning.
     pub fn secs(&self, timeline: &Timeline) -> f64 {
-        self.frame / timeline.fps
+        self.shown() / timeline.fps
     }
 
-    /// Stands at `secs` from the beginning.
-    pub fn seek(&mut self, secs: f64, timeline: &Timeline) {
-        self.frame = bounded(secs * timeline.fps, timeline);
+    /// Stands at scene time `t`.
+    pub fn seek(&mut self, t: f64, timeline: &Timeline) {
+        let frame = bounded(t * frames_of_all(timeline), timeline);
+        // A whole frame is meant where one is almost met.
+        self.frame = if (frame - frame.round()).abs() < 1e-6 { bounded(frame.round(), timeline) } else { frame };
+    }
+
+    /// One speed faster (1) or slower (-1).
+    pub fn change_speed(&mut self, by: i32) {
+        let faster = SPEEDS.iter().find(|&&speed| speed > self.speed);
+        let slower = SPEEDS.iter().rfind(|&&speed| speed < self.speed);
+        self.speed = *if by > 0 { faster } else { slower }.unwrap_or(&self.speed);
+    }
+
+    /// Seconds until another whole frame is shown; none where that is not waited for.
+    pub fn until_next(&self, timeline: &Timeline) -> Option<f64> {
+        let rest = 1.0 - (self.frame - self.frame.floor());
+        (self.playing && self.whole_frames).then(|| rest / (timeline.fps * self.speed))
     }
 
     /// Plays or pauses. What has come to its end begins again.
@@ -43,7 +72,7 @@ impl Transport {
     /// Runs on by `secs`, where it plays.
     pub fn advance(&mut self, secs: f64, timeline: &Timeline) {
         if self.playing {
-            self.seek(self.secs(timeline) + secs, timeline);
+            self.frame = bounded(self.frame + secs * self.speed * timeline.fps, timeline);
             self.playing = timeline.wrap != Wrap::Once || self.frame < last(timeline);
         }
     }
@@ -61,12 +90,20 @@ impl Transport {
 
     /// Pauses at a frame.
     pub fn go_to(&mut self, frame: f64, timeline: &Timeline) {
-        *self = Transport { playing: false, frame: bounded(frame, timeline) };
+        (self.playing, self.frame) = (false, bounded(frame, timeline));
     }
 
     /// Keeps the place within a timeline that has changed.
     pub fn follow(&mut self, timeline: &Timeline) {
         self.frame = bounded(self.frame, timeline);
+    }
+}
+
+/// The place at which scene time is 1, in frames.
+fn frames_of_all(timeline: &Timeline) -> f64 {
+    match timeline.wrap {
+        Wrap::Repeat | Wrap::PingPong => timeline.frames() as f64,
+        Wrap::Once => last(timeline).max(1.0),
     }
 }
 
@@ -100,9 +137,9 @@ mod tests {
             (Wrap::PingPong, 1.5, 1, 2.0),
             (Wrap::PingPong, 1.5, -1, 1.0),
         ] {
-            let mut transport = Transport { playing: true, frame: from };
+            let mut transport = Transport { playing: true, frame: from, ..Transport::default() };
             transport.step(by, &timeline(wrap));
-            assert_eq!(transport, Transport { playing: false, frame: to }, "{wrap:?} {from} {by}");
+            assert_eq!((transport.playing, transport.frame), (false, to), "{wrap:?} {from} {by}");
         }
     }
 
@@ -110,8 +147,11 @@ mod tests {
     fn frames_have_the_times_of_written_frames() {
         for wrap in [Wrap::Repeat, Wrap::PingPong, Wrap::Once] {
             for k in 0..4 {
-                let transport = Transport { playing: false, frame: k as f64 };
-                assert_eq!(transport.scene_time(&timeline(wrap)), timeline(wrap).time_of(k), "{wrap:?} {k}");
+                let mut transport = Transport { frame: k as f64, ..Transport::default() };
+                let time = timeline(wrap).time_of(k);
+                assert_eq!(transport.scene_time(&timeline(wrap)), time, "{wrap:?} {k}");
+                transport.seek(time, &timeline(wrap));
+                assert_eq!(transport.frame, k as f64, "{wrap:?} {k}: a time is where it came from");
             }
         }
     }
@@ -119,10 +159,26 @@ mod tests {
     #[test]
     fn what_plays_once_stops_and_begins_again() {
         let timeline = timeline(Wrap::Once);
-        let mut transport = Transport { playing: true, frame: 0.0 };
+        let mut transport = Transport { playing: true, ..Transport::default() };
         transport.advance(60.0, &timeline);
-        assert_eq!(transport, Transport { playing: false, frame: 3.0 });
+        assert_eq!((transport.playing, transport.frame), (false, 3.0));
         transport.toggle(&timeline);
-        assert_eq!(transport, Transport { playing: true, frame: 0.0 });
+        assert_eq!((transport.playing, transport.frame), (true, 0.0));
+    }
+
+    #[test]
+    fn speed_and_whole_frames() {
+        let timeline = timeline(Wrap::Repeat);
+        let mut transport = Transport { playing: true, ..Transport::default() };
+        transport.change_speed(-1);
+        transport.advance(1.25, &timeline);
+        assert_eq!((transport.speed, transport.frame, transport.until_next(&timeline)), (0.5, 1.25, None));
+        transport.whole_frames = true;
+        assert_eq!((transport.shown(), transport.secs(&timeline)), (1.0, 0.5));
+        assert_eq!(transport.until_next(&timeline), Some(0.75));
+        (0..9).for_each(|_| transport.change_speed(1));
+        assert_eq!(transport.speed, 4.0);
+        (0..9).for_each(|_| transport.change_speed(-1));
+        assert_eq!(transport.speed, 0.1);
     }
 }

@@ -46,7 +46,7 @@ pub struct Painter {
     replace: wgpu::RenderPipeline,
     over: wgpu::RenderPipeline,
     encode: wgpu::RenderPipeline,
-    frame: Target,
+    frames: [Target; 2],
     layer: Target,
 }
 
@@ -68,21 +68,22 @@ impl Painter {
                 zone_bindings,
                 zone_pipelines: HashMap::new(),
                 source_bindings,
-                frame: Target::default(),
+                frames: Default::default(),
                 layer: Target::default(),
             }
         })
     }
 
-    /// Draws the frame at `scene_time` into a texture of the scene's size, the same one for every frame.
+    /// Draws the frame at a scene time into a texture of the scene's size, the same one for every frame of this number, 0
+    /// or 1.
     pub fn frame(
         &mut self,
         device: &Device,
         textures: &mut Textures,
-        synth: &Synth,
-        scene_time: f64,
+        number: usize,
+        (synth, scene_time): (&Synth, f64),
     ) -> Result<wgpu::Texture> {
-        let frame = self.frame.get(device, synth.size)?;
+        let frame = self.frames[number].get(device, synth.size)?;
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         clear(&mut encoder, &frame.create_view(&Default::default()));
         for (i, layer) in synth.layers.iter().enumerate() {
@@ -99,7 +100,6 @@ impl Painter {
                 pass.draw(0..3, 0..1);
             }
         }
-        textures.end_frame();
         device.checked(|| device.queue.submit([encoder.finish()]))?;
         Ok(frame)
     }

@@ -59,8 +59,20 @@ impl Gpu {
 
     /// Draws the frame at `scene_time` in [0, 1] into a texture: linear, premultiplied, [`FRAME`].
     pub fn texture(&mut self, synth: &Synth, scene_time: f64) -> Result<wgpu::Texture> {
+        self.textures((synth, scene_time), None).map(|(frame, _)| frame)
+    }
+
+    /// As [`Gpu::texture`], with a second frame in a texture of its own where one is wanted.
+    pub fn textures(
+        &mut self,
+        first: (&Synth, f64),
+        second: Option<(&Synth, f64)>,
+    ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
         let Parts { device, painter, textures } = &mut self.parts;
-        painter.frame(device, textures, synth, scene_time)
+        let first = painter.frame(device, textures, 0, first)?;
+        let second = second.map(|second| painter.frame(device, textures, 1, second)).transpose()?;
+        textures.end_frame();
+        Ok((first, second))
     }
 
     /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once.

@@ -2,13 +2,11 @@
 //! `plica` (render, synth, ...) runs as there, with the same arguments.
 
 use super::app::{Mode, State};
-use super::keys::{EVERYWHERE, KEYS};
 use super::life;
 use super::recorder::{Ended, Kept};
 use super::update::Effect;
 use crate::base::problem;
 use crate::ops;
-use crate::preview::keys as window;
 
 mod cells;
 pub use cells::step_of;
@@ -185,12 +183,10 @@ fn subcommand(state: &mut State, said: &Said) -> Done {
     Ok(())
 }
 
-/// Runs a command of the window's table: what the same key does here.
+/// Runs a command that a window asks for: only marking a point is the editor's.
 pub fn run_of_window(state: &mut State, name: &str) {
-    let row = window::KEYS.iter().find(|row| row.command == name && row.context == window::PLAY);
-    let here = row.and_then(|row| KEYS.iter().find(|own| own.context == EVERYWHERE && own.key == row.key));
-    if let Some(row) = here {
-        run(state, row.command, None);
+    if name == "mark-point" {
+        run(state, "pointer mark", None);
     }
 }
 

@@ -5,13 +5,14 @@ use kurbo::Vec2;
 use super::items::go_to;
 use super::{Call, Command, Done, command, obey};
 use crate::tui::app::{Mode, Pane, State};
+use crate::tui::numbers::short;
 use crate::tui::update::Effect;
-use crate::tui::{place, seeing};
+use crate::tui::{entry, place, seeing};
 
 pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor),
     command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed).change(),
-    command("pointer", "", "Take the window's pointer into the field, else into the picture's cursor", pointer)
+    command("pointer", "[mark]", "Take the window's pointer into the field, else into the picture's cursor", pointer)
         .inside(),
 ];
 
@@ -61,9 +62,20 @@ fn placed(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Where the row under the cursor has a place, it goes to the window's pointer; the picture's cursor does always.
-fn pointer(state: &mut State, _: &Call) -> Done {
+/// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and the row under
+/// the cursor where it has a place, unless the point is only marked.
+fn pointer(state: &mut State, call: &Call) -> Done {
     let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
+    if matches!(state.mode, Mode::Entry(_)) {
+        return entry::offer(state, (x, y).into());
+    }
     obey(state, &format!("cursor at {x} {y}"), None)?;
-    if state.focus == Pane::Table { obey(state, "place move", None) } else { Ok(()) }
+    match (call.text, state.focus) {
+        ("mark", _) => {
+            state.say(format!("marked {}, {}: in the picture (g i) a adds a point there", short(x), short(y)));
+            Ok(())
+        }
+        (_, Pane::Table) => obey(state, "place move", None),
+        _ => Ok(()),
+    }
 }

@@ -2,11 +2,13 @@
 
 use super::{Call, Command, Done, command};
 use crate::tui::app::State;
+use crate::tui::transport::SPEEDS;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
     command("play", "", "Play or pause", play).inside(),
     command("frame", "next|previous|first|last|NUMBER", "Go to a frame", frame),
+    command("speed", "slower|faster|NUMBER", "Play slower or faster, 0.1 to 4 times", speed),
     command("time", "T", "Go to a scene time t, 0 to 1", time),
 ];
 
@@ -31,6 +33,22 @@ fn frame(state: &mut State, call: &Call) -> Done {
     }
     state.playing = false;
     state.time = state.document().scene().timeline.time_of(to);
+    state.ask(Effect::Show);
+    Ok(())
+}
+
+fn speed(state: &mut State, call: &Call) -> Done {
+    let here = state.speed;
+    let to = match call.text {
+        "slower" => SPEEDS.iter().rfind(|&&speed| speed < here).copied().unwrap_or(here),
+        "faster" => SPEEDS.iter().find(|&&speed| speed > here).copied().unwrap_or(here),
+        number => {
+            let speed = number.parse().ok().filter(|speed| (SPEEDS[0]..=SPEEDS[SPEEDS.len() - 1]).contains(speed));
+            speed.ok_or("speed takes slower, faster or a number from 0.1 to 4")?
+        }
+    };
+    state.speed = to;
+    state.say(format!("plays {to} times as fast"));
     state.ask(Effect::Show);
     Ok(())
 }

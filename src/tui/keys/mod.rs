@@ -5,7 +5,7 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use crate::base::keys::KeyRow;
 
 mod table;
-pub use table::{AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, PICTURE, RECORDING, TABLE, TREE, TYPING};
+pub use table::{AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PICTURE, RECORDING, TABLE, TREE, TYPING};
 
 /// Stands in a row for any letter from a to z.
 const LETTER: &str = "{a-z}";

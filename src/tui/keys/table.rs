@@ -22,6 +22,8 @@ pub const RECORDING: &str = "recording a macro";
 pub const TYPING: &str = "typing";
 /// A value being typed into a cell.
 pub const ENTRY: &str = "entry";
+/// A number being typed into a cell.
+pub const NUMBER: &str = "entry of a number";
 /// The command line.
 pub const LINE: &str = "command line";
 
@@ -72,11 +74,26 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "z r", "view view-regions", "Window: fold regions"),
     row(EVERYWHERE, "z a", "view view-anchors", "Window: anchors and their jump vectors"),
     row(EVERYWHERE, "z c", "view view-curves", "Window: curves, lassos and handles"),
-    row(EVERYWHERE, "z v", "view view-field", "Window: the vector field"),
+    row(EVERYWHERE, "z v", "view view-field", "Window: the vector field as arrows"),
+    row(EVERYWHERE, "z d", "view view-wheel", "Window: the vector field as colours of directions"),
+    row(EVERYWHERE, "z p", "view view-paths", "Window: jump paths"),
+    row(EVERYWHERE, "z x", "view view-thresholds", "Window: where jump paths meet fold regions"),
+    row(EVERYWHERE, "z e", "view view-samplers", "Window: samplers, at their effective places"),
+    row(EVERYWHERE, "z i", "view view-onion", "Window: where the samplers were before"),
+    row(EVERYWHERE, "z ,", "view field-closer", "Window: more of the field and its paths"),
+    row(EVERYWHERE, "z .", "view field-wider", "Window: less of the field and its paths"),
     row(EVERYWHERE, "z n", "view view-labels", "Window: names and numbers"),
     row(EVERYWHERE, "z g", "view view-grid", "Window: the pixel grid, when large enough"),
     row(EVERYWHERE, "z s", "view view-still", "Window: the still picture"),
+    row(EVERYWHERE, "z b", "view view-wipe", "Window: before and after, still on the left"),
+    row(EVERYWHERE, "z (", "view wipe-left", "Window: their border to the left"),
+    row(EVERYWHERE, "z )", "view wipe-right", "Window: their border to the right"),
+    row(EVERYWHERE, "z w", "view view-seam", "Window: the loop's seam, the last frame against the first"),
     row(EVERYWHERE, "z t", "view view-checkerboard", "Window: a checkerboard under transparency"),
+    row(EVERYWHERE, "z F", "view view-full-screen", "Window: the whole screen"),
+    row(EVERYWHERE, "z R", "view view-whole-frames", "Window: the display's rate, or the scene's frames only"),
+    row(EVERYWHERE, "z <", "speed slower", "Play slower"),
+    row(EVERYWHERE, "z >", "speed faster", "Play faster"),
     row(EVERYWHERE, "Space w", "w", "Save"),
     row(EVERYWHERE, "Space q", "q", "Leave"),
     row(EVERYWHERE, "Space v", "view", "Open the preview window"),
@@ -191,6 +208,7 @@ pub const KEYS: &[KeyRow] = &[
     row(TYPING, "Ctrl-u", "text clear", "Delete everything"),
     row(TYPING, "Esc", "cancel", "Leave it as it was"),
     row(TYPING, "Ctrl-c", "cancel", "Leave it as it was"),
+    row(NUMBER, "M", "pointer", "Take the window's pointer into the field"),
     row(ENTRY, "Enter", "commit", "Take the value"),
     row(ENTRY, "Tab", "commit next", "Take the value and edit the next cell"),
     row(ENTRY, "Up", "digit 1", "Step the digit under the cursor up"),

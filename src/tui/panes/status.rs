@@ -83,6 +83,9 @@ fn right(state: &State) -> String {
         parts.push(format!("field {ms:.0} ms"));
     }
     parts.push(format!("step {}", short(step_of(state.step))));
+    if let Some((x, y)) = state.seen.pointer {
+        parts.push(format!("at {}, {}", short(x), short(y)));
+    }
     if !state.seen.window.is_empty() {
         parts.push(terminal::plain(&state.seen.window));
     }

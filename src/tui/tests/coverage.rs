@@ -27,6 +27,7 @@ const TABLES: &[fn()] = &[
     super::lines::what_is_outside_is_asked_for,
     super::lines::the_pointer_of_a_window_is_kept_as_a_place,
     super::data::what_is_yanked_is_pasted_where_it_fits,
+    super::windows::speed_is_shared,
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::seeing::zooming_keeps_the_cursor_and_panning_takes_it_along,
     super::seeing::graphics_are_told_and_set,

@@ -15,6 +15,7 @@ mod macros;
 mod screens;
 mod seeing;
 pub mod support;
+pub mod windows;
 
 /// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them. The
 /// log of these keys leads to the same scene.

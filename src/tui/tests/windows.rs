@@ -1,0 +1,92 @@
+//! What the editor and its windows share: time, and the point that is marked in a window.
+
+use serde_json::json;
+
+use super::support::{press, state};
+use super::{motion, zone};
+use crate::preview::Transport;
+use crate::tui::app::State;
+use crate::tui::update::{Effect, Event, update};
+
+fn pass(state: &mut State, seconds: f64) -> Vec<Effect> {
+    update(state, Event::Tick(seconds))
+}
+
+#[test]
+fn a_window_leads_and_is_not_told_what_it_said() {
+    let mut state = state();
+    let told = update(&mut state, Event::Transport(Transport { playing: true, time: 0.5, speed: 0.5 }));
+    assert!(matches!(told[..], [Effect::Pass]), "{told:?}");
+    assert_eq!((state.playing, state.time, state.speed), (true, 0.25, 0.5));
+    let told = pass(&mut state, 1.0);
+    assert!(matches!(told[..], [Effect::Pass]), "windows run by themselves: {told:?}");
+    assert_eq!(state.time, 0.5);
+    let told = press(&mut state, "P");
+    assert!(matches!(told[..], [Effect::Show]), "{told:?}");
+    assert_eq!(state.transport(), Transport { playing: false, time: 1.0, speed: 0.5 });
+    update(&mut state, Event::Transport(Transport { playing: false, time: f64::NAN, speed: 1.0 }));
+    assert_eq!(state.time, 0.5);
+}
+
+#[test]
+fn what_plays_once_ends() {
+    let mut state = state();
+    press(&mut state, ": \"set timeline.loop=once\" Enter P");
+    pass(&mut state, 1.5);
+    let told = pass(&mut state, 1.5);
+    assert!(matches!(told[..], [Effect::Show]), "{told:?}");
+    assert_eq!((state.playing, state.time), (false, 1.0));
+}
+
+#[test]
+pub fn speed_is_shared() {
+    for (keys, speed) in [
+        ("z <", 0.5),
+        ("z < z < z < z < z <", 0.1),
+        ("z > z > z > z >", 4.0),
+        (": \"speed 0.7\" Enter", 0.7),
+        (": \"speed 0.7\" Enter z >", 1.0),
+        (": \"speed 7\" Enter", 1.0),
+    ] {
+        let mut state = state();
+        press(&mut state, keys);
+        assert_eq!(state.speed, speed, "{keys}");
+    }
+}
+
+#[test]
+fn a_point_marked_in_a_window_moves_the_cursor_only() {
+    let mut state = state();
+    press(&mut state, &motion(""));
+    let before = state.document().json().clone();
+    update(&mut state, Event::Pointer(12.5, 13.25));
+    update(&mut state, Event::Command("mark-point".into()));
+    assert_eq!(state.placing.cursor, (12.5, 13.25).into());
+    assert_eq!(state.document().json(), &before);
+    assert!(state.message.as_ref().is_some_and(|said| said.text.starts_with("marked 12.5, 13.25")));
+}
+
+#[test]
+fn the_pointer_goes_into_the_entry() {
+    let at = |field: &str| zone(&format!("/motion/0/{field}"));
+    for (keys, pointer, expected) in [
+        ("l i M Enter", at("at"), json!([12.5, 20])),
+        ("l l i M Enter", at("at"), json!([20, 13.25])),
+        ("l l l i M Enter", at("jump"), json!([-7.5, -18])),
+        ("l l l l i M Enter", at("jump"), json!([0, -6.75])),
+    ] {
+        let mut state = state();
+        update(&mut state, Event::Pointer(12.5, 13.25));
+        press(&mut state, &motion(keys));
+        assert_eq!(state.document().json().pointer(&pointer), Some(&expected), "{keys}");
+    }
+}
+
+#[test]
+fn a_name_takes_a_capital_m() {
+    let mut state = state();
+    update(&mut state, Event::Pointer(12.5, 13.25));
+    press(&mut state, "/ \"name\" Enter i Ctrl-u \"Mouth\" Enter");
+    let names = state.document().json().to_string();
+    assert!(names.contains("\"Mouth\""), "{names}");
+}
