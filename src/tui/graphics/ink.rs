@@ -41,7 +41,7 @@ fn draw_mark(frame: &mut Frame, part: &Part, mark: &Mark) {
         Shape::Arrow(from, to) => pen.arrow(frame, part.dot_of(*from), part.dot_of(*to)),
         Shape::Dot(at) => dot(frame, part.dot_of(*at), style.dot, f64::from(style.dot_px), &pen),
         Shape::Fill(points) => hatch(frame, part, points, &pen),
-        Shape::Label(..) => {}
+        Shape::Label(..) | Shape::Cell(..) => {}
     }
 }
 
@@ -160,7 +160,7 @@ mod tests {
     fn drawn(shape: Shape, kind: Kind, selected: bool) -> Vec<String> {
         let mut frame = Frame::filled(12, 6, DARK);
         let part = Part { corner: Point::new(10.0, 10.0), scale: 2.0, dots: (12, 6) };
-        draw(&mut frame, &part, &[Mark { kind, shape, selected }]);
+        draw(&mut frame, &part, &[Mark { kind, shape, selected, strength: 1.0 }]);
         text(&frame)
     }
 
