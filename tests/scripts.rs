@@ -37,6 +37,7 @@ fn run(folder: &Path, script: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
     command.args(["edit", "cat.plica.json", "--script", "script"]).current_dir(folder);
     command.env("XDG_STATE_HOME", folder.join("state")).env("XDG_RUNTIME_DIR", folder);
+    command.env("XDG_CONFIG_HOME", folder.join("config"));
     command.output().unwrap()
 }
 
@@ -92,4 +93,16 @@ fn the_log_of_a_session_makes_the_same_scene_elsewhere() {
     let scene = |folder: &Path| std::fs::read_to_string(folder.join("cat.plica.json")).unwrap();
     assert_eq!(scene(first.path()), scene(second.path()));
     assert_ne!(scene(first.path()), SCENE);
+}
+
+#[test]
+fn own_keys_are_shown_with_their_mistakes() {
+    let folder = folder();
+    std::fs::create_dir_all(folder.path().join("config/plica")).unwrap();
+    let keys = "[everywhere]\n\"Ctrl-s\" = \"w\"\n\"g\" = \"undo\"\n\"x\" = \"unod\"\n";
+    std::fs::write(folder.path().join("config/plica/keys.toml"), keys).unwrap();
+    let output = run(folder.path(), "keys");
+    let said = text(&output.stdout);
+    assert!(output.status.success() && said.contains("Ctrl-s"), "{said}");
+    assert!(said.contains("keys.toml:3: ") && said.contains("keys.toml:4: "), "{said}");
 }

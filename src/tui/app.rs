@@ -8,7 +8,7 @@ use super::clipboard::Kept;
 use super::colour::Depth;
 use super::door::Door;
 use super::entry::{self, Entry};
-use super::keys;
+use super::keys::{self, Keymap};
 use super::life::Life;
 use super::line::Line;
 use super::place::Placing;
@@ -63,6 +63,8 @@ pub struct State {
     pub message: Option<Message>,
     /// Commands that were run, the newest last.
     pub lines: Vec<String>,
+    /// The keys in force.
+    pub keymap: Keymap,
     /// Who listens to the lines that are run.
     pub recorder: Recorder,
     /// What was yanked and selected last.
@@ -171,6 +173,7 @@ impl State {
             speed: 1.0,
             message: None,
             lines: Vec::new(),
+            keymap: Keymap::default(),
             recorder: Recorder::default(),
             kept: Kept::default(),
             sought: String::new(),

@@ -4,14 +4,16 @@ use std::path::Path;
 
 use super::app::State;
 use super::door::Door;
+use super::keys::Keymap;
 use super::runner::{Editor, listen};
 use super::seeing::{self, Request};
 use super::terminal;
 use super::update::{Effect, Event};
 use super::worker::Job;
+use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
-use crate::files::write;
+use crate::files::{lines, write};
 use crate::ops;
 
 impl Editor {
@@ -43,6 +45,7 @@ impl Editor {
                     self.state.complain(error.to_string());
                 }
             }
+            Effect::Keymap => self.load_keys(),
             Effect::Open(path) => self.open(&path, self.options.mode()),
             Effect::TakeOver => self.open(&self.state.door.path().to_owned(), Mode::TakeOver),
             Effect::Run(words) => self.start(&words),
@@ -53,6 +56,21 @@ impl Editor {
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
+        }
+    }
+
+    /// Reads the person's own keys, and says what is wrong in them.
+    pub fn load_keys(&mut self) {
+        let path = folders::config().map(|folder| folder.join("keys.toml")).filter(|path| path.exists());
+        let Some(path) = path else { return self.state.keymap = Keymap::default() };
+        self.state.keymap = match lines::read(&path) {
+            Ok(text) => Keymap::with(&path.display().to_string(), &text),
+            Err(error) => Keymap::unread(error.to_string()),
+        };
+        match self.state.keymap.mistakes() {
+            [] => {}
+            [one] => self.state.complain(one.clone()),
+            [first, rest @ ..] => self.state.complain(format!("{first} ({} more: :keys)", rest.len())),
         }
     }
 
@@ -67,8 +85,9 @@ impl Editor {
                     self.preview.open_window();
                 }
                 let recorder = std::mem::take(&mut self.state.recorder);
+                let keymap = std::mem::take(&mut self.state.keymap);
                 let graphics = self.state.seeing.graphics.clone();
-                self.state = State { recorder, ..State::new(door, self.state.size, self.state.depth) };
+                self.state = State { recorder, keymap, ..State::new(door, self.state.size, self.state.depth) };
                 self.state.seeing.graphics = graphics;
                 self.begin();
             }

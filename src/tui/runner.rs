@@ -189,6 +189,7 @@ impl Editor {
             leaving: false,
         };
         editor.begin();
+        editor.load_keys();
         typed.into_iter().for_each(|key| editor.take(Event::Key(key)));
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();

@@ -7,7 +7,7 @@ use ratatui::layout::{Position, Rect};
 
 use super::app::{Mode, Pages, State};
 use super::graphics::Shown;
-use super::keys::{self, Found};
+use super::keys::Found;
 use super::panes::first_row;
 use super::{commands, life, tree, view};
 use crate::preview::Transport;
@@ -94,6 +94,8 @@ pub enum Effect {
     Write(PathBuf, String),
     /// Run the lines of a file.
     Source(PathBuf),
+    /// Read the person's own keys anew.
+    Keymap,
     /// Open another scene.
     Open(PathBuf),
     /// Open this scene to edit it, although somebody may do so elsewhere.
@@ -235,7 +237,7 @@ fn press(state: &mut State, key: &str) {
     }
     let pressed = if state.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.pressed) };
     state.pressed.clear();
-    match keys::find(&state.contexts(), &pressed) {
+    match state.keymap.find(&state.contexts(), &pressed) {
         Found::Prefix => state.pressed = pressed,
         Found::Line(line) => {
             let count = state.count.take();

@@ -132,13 +132,12 @@ fn choose(state: &mut State, call: &Call) -> Done {
 
 /// The word, where the list has it.
 fn word_of(choice: &Choice, word: &str) -> Result<String, String> {
-    let mut words = choice.options.iter().map(|(word, _)| word.as_str());
+    let words = choice.options.iter().map(|(word, _)| word.as_str());
     if words.clone().any(|one| one == word) {
         return Ok(word.to_owned());
     }
-    let near = problem::nearest(word, words.clone()).map(|near| format!(": {near}"));
-    let all = || format!(": it takes {}", words.by_ref().collect::<Vec<_>>().join(", "));
-    Err(format!("{} cannot be {word}{}", choice.title, near.unwrap_or_else(all)))
+    let near = problem::nearest(word, words).unwrap_or_default();
+    Err(format!("{} cannot be {}: {near}", choice.title, problem::quoted(word)))
 }
 
 fn take(state: &mut State, choice: Choice, word: &str) -> Done {

@@ -12,6 +12,7 @@ mod cells;
 pub use cells::step_of;
 mod files;
 mod items;
+mod keymap;
 mod macros;
 mod moving;
 mod pasting;
@@ -104,6 +105,7 @@ const TABLES: &[&[Command]] = &[
     scripts::COMMANDS,
     macros::COMMANDS,
     life::COMMANDS,
+    keymap::COMMANDS,
 ];
 
 /// Every command of the editor.

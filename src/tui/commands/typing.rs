@@ -2,7 +2,7 @@
 
 use super::{Call, Command, Done, all, command, obey, quoted, unquoted};
 use crate::tui::app::{Mode, Pages, State};
-use crate::tui::keys::KEYS;
+use crate::tui::keys::OWN_FILE;
 use crate::tui::line::{self, Line};
 
 pub const COMMANDS: &[Command] = &[
@@ -95,7 +95,7 @@ fn help(state: &mut State, call: &Call) -> Done {
     }
     let here = state.contexts();
     let mut contexts = here.clone();
-    for row in KEYS {
+    for row in state.keymap.rows() {
         if !contexts.contains(&row.context) {
             contexts.push(row.context);
         }
@@ -103,10 +103,12 @@ fn help(state: &mut State, call: &Call) -> Done {
     let mut lines = Vec::new();
     for context in contexts {
         lines.push(format!("-- {context} --"));
-        let rows = KEYS.iter().filter(|row| row.context == context);
+        let rows = state.keymap.rows().iter().filter(|row| row.context == context);
         lines.extend(rows.map(|row| format!("{:<10} {}", row.key, row.help)));
         lines.push(String::new());
     }
+    lines.push(format!("Your own keys stand in {OWN_FILE}; :keys shows them"));
+    lines.push(String::new());
     lines.push("-- entries --".into());
     lines.extend(entries_help());
     lines.push(String::new());
@@ -147,7 +149,7 @@ mod tests {
         obey(&mut state, "help", None).unwrap();
         let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
         let text = pages.lines.join("\n");
-        assert!(KEYS.iter().all(|row| text.contains(row.help)));
+        assert!(keys::KEYS.iter().all(|row| text.contains(row.help)));
         assert!(all().all(|command| text.contains(command.help)));
         assert!(text.starts_with(&format!("-- {} --", keys::TREE)));
     }

@@ -1,11 +1,17 @@
-//! What a key means: the rows of the one table (table.rs), looked up by context from the innermost out: a pane, then everywhere.
+//! What a key means: the rows of the one table (table.rs), with the person's own over them (keymap.rs), looked up by context
+//! from the innermost out: a pane, then everywhere.
 
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-use crate::base::keys::KeyRow;
+use super::commands;
 
+mod keymap;
+pub use keymap::Keymap;
 mod table;
 pub use table::{AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PICTURE, RECORDING, TABLE, TREE, TYPING};
+
+/// Where the person's own keys stand.
+pub const OWN_FILE: &str = "$XDG_CONFIG_HOME/plica/keys.toml (else ~/.config/plica/keys.toml)";
 
 /// Stands in a row for any letter from a to z.
 const LETTER: &str = "{a-z}";
@@ -21,38 +27,20 @@ pub enum Found {
     Nothing,
 }
 
-/// Looks the keys pressed up in the contexts, the innermost first.
-pub fn find(contexts: &[&str], pressed: &str) -> Found {
-    for context in contexts {
-        let mut rows = KEYS.iter().filter(|row| row.context == *context);
-        if let Some(line) = rows.clone().find_map(|row| line(row, pressed)) {
-            return Found::Line(line);
-        }
-        if rows.any(|row| continues(row, pressed)) {
-            return Found::Prefix;
-        }
-    }
-    Found::Nothing
-}
-
 /// The line that a row runs where the keys pressed are its own. A key `{a-z}` at the end stands for any letter, and in the
 /// line for the one that was pressed.
-fn line(row: &KeyRow, pressed: &str) -> Option<String> {
-    if row.key == pressed {
-        return Some(row.command.to_owned());
+fn line_of(key: &str, command: &str, pressed: &str) -> Option<String> {
+    if key == pressed {
+        return Some(command.to_owned());
     }
-    let letter = pressed.strip_prefix(row.key.strip_suffix(LETTER)?)?;
+    let letter = pressed.strip_prefix(key.strip_suffix(LETTER)?)?;
     let one = letter.len() == 1 && letter.starts_with(|c: char| c.is_ascii_lowercase());
-    one.then(|| row.command.replace(LETTER, letter))
+    one.then(|| command.replace(LETTER, letter))
 }
 
-/// The rows that begin with the keys pressed, for the hints.
-pub fn continuations<'a>(contexts: &'a [&str], pressed: &'a str) -> impl Iterator<Item = &'static KeyRow> + 'a {
-    KEYS.iter().filter(move |row| contexts.contains(&row.context) && continues(row, pressed))
-}
-
-fn continues(row: &KeyRow, pressed: &str) -> bool {
-    row.key.strip_prefix(pressed).is_some_and(|rest| rest.starts_with(' '))
+/// Whether the keys of a row go on from those pressed.
+fn continues(key: &str, pressed: &str) -> bool {
+    key.strip_prefix(pressed).is_some_and(|rest| rest.starts_with(' '))
 }
 
 /// The name of a key in the table; `None` where it has none.
@@ -72,6 +60,7 @@ pub fn name(event: KeyEvent) -> Option<String> {
         KeyCode::Right => "Right".into(),
         KeyCode::Home => "Home".into(),
         KeyCode::End => "End".into(),
+        KeyCode::F(n) => format!("F{n}"),
         KeyCode::PageUp => return Some("Ctrl-u".into()),
         KeyCode::PageDown => return Some("Ctrl-d".into()),
         _ => return None,
@@ -88,9 +77,20 @@ pub fn name(event: KeyEvent) -> Option<String> {
 
 /// docs/keys.md.
 pub fn manual() -> String {
+    let cell = |text: &str| text.replace('|', "\\|");
+    let row = |name: &str, args: &str, help: &str| {
+        let space = if args.is_empty() { "" } else { " " };
+        format!("| `{}{space}{}` | {} |\n", cell(name), cell(args), cell(help))
+    };
+    let own: String = commands::all().map(|command| row(command.name, command.args, command.help)).collect();
+    let others = crate::ops::names().filter(|name| commands::find(name).is_none());
+    let others: String = others.map(|name| row(&name, "...", &format!("As `plica {name}`, on this scene"))).collect();
     format!(
-        "# Keys of the editor\n\nMade from the table in `src/tui/keys/table.rs`; a test holds the two together. A number before a key is a \
-         count: `5j`.\nIn a pane its own keys come first, then those of \"{EVERYWHERE}\".\n{}",
+        "# Keys and commands of the editor\n\nMade from the tables that the editor itself reads; a test holds them together. A \
+         number before a key is a count: `5j`.\nIn a pane its own keys come first, then those of \"{EVERYWHERE}\". Your own keys \
+         stand over them: [keymap.md](keymap.md).\n{}\n## Commands\n\nEvery key runs one of these lines; they are typed after `:`, \
+         a count before the name (`:5 move down`),\nand stand in scripts (`:source`, `plica edit --script`) and in the log of a \
+         session (`:log`).\n\n| line | does |\n| --- | --- |\n{own}{others}",
         crate::base::keys::markdown(KEYS)
     )
 }
@@ -107,7 +107,7 @@ mod tests {
         let mut seen = BTreeSet::new();
         for row in KEYS {
             assert!(seen.insert((row.context, row.key)), "{row:?}");
-            let hidden = KEYS.iter().any(|other| other.context == row.context && continues(row, other.key));
+            let hidden = KEYS.iter().any(|other| other.context == row.context && continues(row.key, other.key));
             assert!(!hidden, "{row:?} can never be reached");
             assert!(row.help.starts_with(char::is_uppercase) && !row.help.ends_with('.'), "{row:?}");
         }
@@ -117,7 +117,7 @@ mod tests {
     fn every_binding_is_a_command() {
         for row in KEYS {
             let name = row.command.split(' ').next().unwrap();
-            assert!(crate::tui::commands::find(name).is_some(), "{row:?}");
+            assert!(commands::find(name).is_some(), "{row:?}");
         }
     }
 
@@ -137,20 +137,20 @@ mod tests {
     #[test]
     fn keys_are_found_from_the_inside_out() {
         let contexts = [PICTURE, EVERYWHERE];
+        let find = |contexts: &[&str], pressed: &str| Keymap::default().find(contexts, pressed);
         assert_eq!(find(&contexts, "J"), Found::Line("cursor 0 10".into()));
         assert_eq!(find(&contexts, "u"), Found::Line("undo".into()));
         assert_eq!(find(&contexts, "g"), Found::Prefix);
         assert_eq!(find(&contexts, "Q"), Found::Nothing);
-        assert!(continuations(&contexts, "g").any(|row| row.key == "g p"));
+        assert!(Keymap::default().continuations(&contexts, "g").any(|row| row.key == "g p"));
     }
 
     #[test]
     fn a_row_may_take_any_letter() {
-        let row = KeyRow { context: TREE, key: "q {a-z}", command: "record {a-z}", help: "Record" };
         for (pressed, expected) in
             [("q a", Some("record a")), ("q z", Some("record z")), ("q A", None), ("q", None), ("q Esc", None)]
         {
-            assert_eq!(line(&row, pressed).as_deref(), expected, "{pressed}");
+            assert_eq!(line_of("q {a-z}", "record {a-z}", pressed).as_deref(), expected, "{pressed}");
         }
     }
 

@@ -8,7 +8,7 @@ use ratatui::widgets::{Block, Clear, Widget};
 use super::{first_row, width, write};
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::choice::{Choice, Then};
-use crate::tui::{colour, keys, terminal, view};
+use crate::tui::{colour, terminal, view};
 
 /// Draws what there is; the cursor is in the list.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -70,11 +70,11 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
 /// The keys that may follow, above the status line.
 fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     let contexts = state.contexts();
-    let rows: Vec<_> = keys::continuations(&contexts, &state.pressed).collect();
+    let rows: Vec<_> = state.keymap.continuations(&contexts, &state.pressed).collect();
     let tall = rows.len() as u16 + 2;
     let column =
-        rows.iter().map(|row| width(row.key) + 1).max().unwrap_or(0).saturating_sub(width(&state.pressed)).max(4);
-    let wide = rows.iter().map(|row| width(row.help)).max().unwrap_or(0) + column + 8;
+        rows.iter().map(|row| width(&row.key) + 1).max().unwrap_or(0).saturating_sub(width(&state.pressed)).max(4);
+    let wide = rows.iter().map(|row| width(&row.help)).max().unwrap_or(0) + column + 8;
     let area = Rect {
         x: screen.right().saturating_sub(wide + 1),
         y: screen.bottom().saturating_sub(tall + 2),
@@ -86,8 +86,8 @@ fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     let inner = block.inner(area);
     block.render(area, buffer);
     for (y, row) in rows.iter().enumerate() {
-        let key = row.key.strip_prefix(&state.pressed).unwrap_or(row.key);
+        let key = row.key.strip_prefix(&state.pressed).unwrap_or(&row.key);
         write(buffer, inner, 0, y as u16, key, colour::strong());
-        write(buffer, inner, i32::from(column), y as u16, row.help, Style::new());
+        write(buffer, inner, i32::from(column), y as u16, &row.help, Style::new());
     }
 }

@@ -62,6 +62,7 @@ pub fn what_is_outside_is_asked_for() {
         ("wq", "Save { to: None, overwrite: false, leave: true }"),
         ("e b.json", "Open(\"b.json\")"),
         ("source a b", "Source(\"a b\")"),
+        ("keys reload", "Keymap"),
         ("log a", "Write(\"a\", \"\")"),
         ("view", "View(None)"),
         ("view view-field", "View(Some(\"view-field\"))"),

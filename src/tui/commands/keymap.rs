@@ -1,0 +1,32 @@
+//! The person's own keys: shown with what is wrong in their file, and read anew.
+
+use super::{Call, Command, Done, command};
+use crate::tui::app::{Mode, Pages, State};
+use crate::tui::keys::OWN_FILE;
+use crate::tui::terminal::plain;
+use crate::tui::update::Effect;
+
+pub const COMMANDS: &[Command] =
+    &[command("keys", "[reload]", "Show your own keys and what is wrong with them, or read them anew", keys).inside()];
+
+fn keys(state: &mut State, call: &Call) -> Done {
+    match call.text {
+        "" => {}
+        "reload" => {
+            state.ask(Effect::Keymap);
+            return Ok(());
+        }
+        other => return Err(format!("keys takes reload or nothing, not {other}")),
+    }
+    let mut lines = vec![format!("They stand in {OWN_FILE}; docs/keymap.md tells how."), String::new()];
+    if !state.keymap.mistakes().is_empty() {
+        lines.push("-- mistakes --".into());
+        lines.extend(state.keymap.mistakes().iter().map(|mistake| plain(mistake)));
+        lines.push(String::new());
+    }
+    lines.push("-- your keys --".into());
+    let own = state.keymap.rows().iter().filter(|row| row.own);
+    lines.extend(own.map(|row| format!("{:<12} {:<20} {}", plain(&row.key), row.context, plain(&row.command))));
+    state.mode = Mode::Pages(Pages { title: "keys".into(), lines, scroll: 0 });
+    Ok(())
+}
