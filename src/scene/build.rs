@@ -49,22 +49,9 @@ impl Edit {
     /// no item of a list.
     pub fn duplicate(document: &Document, path: &str) -> Option<(Edit, String)> {
         let (list, last) = pointer::split(path)?;
-        let items = document.json().pointer(list)?.as_array()?;
         let index = pointer::index(&last)?;
-        let mut copy = items.get(index)?.clone();
-        if let Some(name) = field::name_of(Some(&copy)) {
-            copy["name"] = unique(&name, items).into();
-        }
-        let (holder, name) = pointer::split(list)?;
-        let variant = variant_of(Place::of(document.json(), holder)?);
-        let mut to = index + 1;
-        if let Some(key) = layers::ascending(variant, &name) {
-            let (near, placed) = layers::item(variant, &name, items, to)?;
-            *copy.pointer_mut(key)? = placed.pointer(key)?.clone();
-            to = near;
-        }
-        let to = pointer::join(list, to);
-        Some((Edit::add(&to, copy), to))
+        let copy = document.json().pointer(list)?.as_array()?.get(index)?.clone();
+        Edit::insert_all(document, list, index + 1, vec![copy])
     }
 
     /// Moves the item at `path` to `index` of its list; and the pointer it gets. None where either is no item of a list.

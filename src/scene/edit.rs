@@ -52,12 +52,32 @@ impl Edit {
         Edit(Patch(vec![operation]))
     }
 
-    /// The pointer that the edit replaces, where that is all it does.
-    pub fn replaced(&self) -> Option<&str> {
-        match self.0.0.as_slice() {
-            [PatchOperation::Replace(one)] => Some(one.path.as_str()),
-            _ => None,
+    /// Takes in an edit that follows and only replaces what this one wrote; else gives it back.
+    pub fn absorb(&mut self, next: Edit) -> Result<(), Edit> {
+        let mut own = self.clone();
+        let taken = !own.is_empty() && next.0.iter().all(|operation| own.take(operation));
+        if !taken {
+            return Err(next);
         }
+        *self = own;
+        Ok(())
+    }
+
+    fn take(&mut self, operation: &PatchOperation) -> bool {
+        let PatchOperation::Replace(replace) = operation else { return false };
+        let writes = |one: &PatchOperation| matches!(one, PatchOperation::Add(_) | PatchOperation::Replace(_));
+        if !self.0.iter().all(writes) {
+            return false;
+        }
+        let place = self.0.0.iter_mut().rev().find_map(|one| {
+            let rest = replace.path.as_str().strip_prefix(one.path().as_str())?.to_owned();
+            match one {
+                PatchOperation::Add(AddOperation { value, .. })
+                | PatchOperation::Replace(ReplaceOperation { value, .. }) => value.pointer_mut(&rest),
+                _ => None,
+            }
+        });
+        place.map(|place| place.clone_from(&replace.value)).is_some()
     }
 
     /// Changes `json`, without looking at what comes out. Gives what takes the edit back, to the letter.

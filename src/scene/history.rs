@@ -4,7 +4,7 @@
 use serde_json::Value;
 
 use super::check::Rules;
-use super::{Document, Edit};
+use super::{Document, Edit, words};
 use crate::base::problem::Problem;
 
 /// When and how an edit was made.
@@ -12,7 +12,7 @@ use crate::base::problem::Problem;
 pub struct Stamp {
     /// Milliseconds since the epoch.
     pub time_ms: u64,
-    /// By a key held down: it joins the edit before it where both replace the same value, into one step.
+    /// By a key held down: it joins the edit before it where it only replaces what that one wrote, into one step.
     pub held: bool,
 }
 
@@ -31,12 +31,12 @@ pub struct Applied {
 
 /// One step of undo.
 #[derive(Clone, Debug)]
-struct Step {
+pub struct Step {
     id: u64,
     edit: Edit,
     inverse: Edit,
-    /// The last time it grew.
-    time_ms: u64,
+    /// The last time it grew, in milliseconds since the epoch.
+    pub time_ms: u64,
     /// Whether it may still take in a held key.
     open: bool,
     /// Names of the states before and after it.
@@ -91,15 +91,17 @@ impl History {
         self.revision += 1;
         self.undone.clear();
         let before = std::mem::replace(&mut self.state, self.revision);
-        let joins = |last: &&mut Step| {
-            stamp.held && last.open && edit.replaced().is_some() && edit.replaced() == last.edit.replaced()
+        let open = self.done.last_mut().filter(|last| stamp.held && last.open);
+        let joined = match open {
+            Some(last) => last.edit.absorb(edit).map(|()| last),
+            None => Err(edit),
         };
-        match self.done.last_mut().filter(joins) {
-            Some(last) => {
-                (last.edit, last.time_ms, last.after) = (edit, stamp.time_ms, self.state);
+        match joined {
+            Ok(last) => {
+                (last.time_ms, last.after) = (stamp.time_ms, self.state);
                 last.id
             }
-            None => {
+            Err(edit) => {
                 let id = self.next_step;
                 self.next_step += 1;
                 let time_ms = stamp.time_ms;
@@ -157,6 +159,45 @@ impl History {
             all.extend(self.redo());
         }
         all
+    }
+
+    /// The steps that can be undone, the last one last.
+    pub fn done(&self) -> &[Step] {
+        &self.done
+    }
+
+    /// The steps that can be done again, the next one last.
+    pub fn undone(&self) -> &[Step] {
+        &self.undone
+    }
+
+    /// What the last `most` steps did, in words, the last one first.
+    pub fn told(&self, most: usize) -> Vec<String> {
+        let mut json = self.document.json().clone();
+        let steps = self.done.iter().rev().take(most);
+        let back = steps.map_while(|step| {
+            step.inverse.patch(&mut json).ok()?;
+            Some(words::in_short(&json, &step.edit))
+        });
+        back.collect()
+    }
+
+    /// What the next `most` steps to be done again will do, in words, the next one first.
+    pub fn told_ahead(&self, most: usize) -> Vec<String> {
+        let mut json = self.document.json().clone();
+        let steps = self.undone.iter().rev().take(most);
+        let ahead = steps.map_while(|step| {
+            let words = words::in_short(&json, &step.edit);
+            step.edit.patch(&mut json).ok().map(|_| words)
+        });
+        ahead.collect()
+    }
+
+    /// How many steps lie between the present and the last save: back by so many, or on. None where neither leads there.
+    pub fn since_saved(&self) -> Option<(usize, usize)> {
+        let back = self.done.iter().rev().position(|step| Some(step.before) == self.saved).map(|i| (i + 1, 0));
+        let ahead = self.undone.iter().rev().position(|step| Some(step.after) == self.saved).map(|i| (0, i + 1));
+        if self.is_saved() { Some((0, 0)) } else { back.or(ahead) }
     }
 
     /// How many steps can be undone and redone.

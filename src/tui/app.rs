@@ -237,9 +237,17 @@ impl State {
     pub fn show(&mut self, node: impl Into<String>) {
         let node = node.into();
         if node != self.node {
-            (self.node, self.row, self.column, self.selected_from) = (node, 0, 0, None);
+            self.unselect();
+            (self.node, self.row, self.column) = (node, 0, 0);
             self.ask(Effect::Show);
         }
+    }
+
+    /// Ends the selection, which `gv` takes up again; false where there is none.
+    pub fn unselect(&mut self) -> bool {
+        let from = self.selected_from.take();
+        self.kept.selection = from.map(|from| (self.node.clone(), from, self.row)).or(self.kept.selection.take());
+        from.is_some()
     }
 
     /// Brings the cursor back to something that is there, after the scene has changed.

@@ -13,6 +13,8 @@ pub const MOST_BYTES: usize = 100_000;
 pub struct Kept {
     /// What was yanked last.
     pub yanked: Option<Yanked>,
+    /// The selection that ended last: its node, where it began, where the cursor was.
+    pub selection: Option<(String, usize, usize)>,
 }
 
 /// What `p` pastes.

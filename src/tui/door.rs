@@ -7,12 +7,13 @@ use std::time::Duration;
 use super::update::Change;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
+use crate::base::text;
 use crate::files::holder::Holder;
 use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
 use crate::files::{self, picture, write};
 use crate::scene::history::Applied;
 use crate::scene::merge::Side;
-use crate::scene::{Document, Edit};
+use crate::scene::{Document, Edit, History};
 
 /// What is said where the scene may only be looked at.
 const READ_ONLY: &str = "the scene is open for reading only: :w PATH saves a copy of it";
@@ -152,6 +153,43 @@ impl Door {
         Some(self.change(applied))
     }
 
+    /// Back to the scene as it was so long before now; before the present state where something is undone already. With
+    /// it, how many steps that is.
+    pub fn earlier(&mut self, time: Duration) -> (usize, Option<Change>) {
+        let history = self.session.history();
+        let now = if history.undone().is_empty() { files::now_ms() } else { self.state_time() };
+        let all = self.session.earlier(now.saturating_sub(millis(time)));
+        self.travelled(all)
+    }
+
+    /// On by so long a time from the present state, as far as it was undone. With it, how many steps that is.
+    pub fn later(&mut self, time: Duration) -> (usize, Option<Change>) {
+        let all = self.session.later(self.state_time().saturating_add(millis(time)));
+        self.travelled(all)
+    }
+
+    /// When the present state came to be, in milliseconds since the epoch; where it is the first one, when it was left.
+    fn state_time(&self) -> u64 {
+        let history = self.session.history();
+        history.done().last().or(history.undone().last()).map_or(0, |step| step.time_ms)
+    }
+
+    fn travelled(&self, all: Vec<Applied>) -> (usize, Option<Change>) {
+        let count = all.len();
+        let edit = Edit::all(all.into_iter().map(|applied| applied.edit));
+        (count, (count > 0).then(|| Change { document: self.document().clone(), revision: self.revision(), edit }))
+    }
+
+    /// What was done and can be undone.
+    pub fn history(&self) -> &History {
+        self.session.history()
+    }
+
+    /// How long ago a time (in milliseconds since the epoch) is, in words.
+    pub fn ago(&self, time_ms: u64) -> String {
+        text::ago(files::now_ms().saturating_sub(time_ms))
+    }
+
     /// Ends a held key.
     pub fn close_step(&mut self) {
         self.session.close_step();
@@ -205,6 +243,10 @@ impl Door {
             tracing::warn!("leaving without a journal: {reason}");
         }
     }
+}
+
+fn millis(time: Duration) -> u64 {
+    time.as_millis().try_into().unwrap_or(u64::MAX)
 }
 
 /// The scene beside a picture, and whether it had to be made.

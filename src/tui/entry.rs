@@ -54,20 +54,51 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(Row, Cell)> {
 /// The edit that `text` says for the cell under the cursor and the like ones of the selection.
 pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
     let sheet = state.sheet();
+    let is_number = sheet.row(state.row).is_some_and(|row| row.cells.get(state.column).is_some_and(Cell::is_number));
+    if is_number {
+        return each(state, |row, cell, place| evaluate(state, &sheet, row, cell, place, text));
+    }
+    let cells = cells(state, &sheet).into_iter();
+    Ok(Edit::all(cells.map(|(_, cell)| set(state.document(), &cell.pointer, Value::from(text)))))
+}
+
+/// The edit that gives every number of the selection its value, told from its row, its cell and its place among them.
+/// Vectors without a length stay as they are where others are turned.
+pub fn each(state: &State, value: impl Fn(&Row, &Cell, (usize, usize)) -> Result<f64, String>) -> Result<Edit, String> {
+    let document = state.document();
+    let cells = cells(state, &state.sheet());
+    let n = cells.len();
+    let turns = |cell: &Cell| cell.part != Part::Degrees || length(document, cell) > 0.0;
+    let some = cells.iter().any(|(_, cell)| turns(cell));
+    let each = cells.iter().enumerate().filter(|(_, (_, cell))| turns(cell) || !some);
+    let edits = each.map(|(i, (row, cell))| number(document, cell, value(row, cell, (i, n))?));
+    Ok(Edit::all(edits.collect::<Result<Vec<_>, _>>()?))
+}
+
+/// What the entry under way comes to, or what is wrong with it: the values of the first rows of the selection. None where
+/// no number is being typed.
+pub fn hint(state: &State) -> Option<Result<String, String>> {
+    const SHOWN: usize = 3;
+    let Mode::Entry(Entry { text }) = &state.mode else { return None };
+    let sheet = state.sheet();
     let cells = cells(state, &sheet);
     let n = cells.len();
-    let each = cells.into_iter().enumerate().map(|(i, (row, cell))| {
-        if !cell.is_number() {
-            return Ok(set(state.document(), &cell.pointer, Value::from(text)));
-        }
-        let value = evaluate(state, &sheet, &row, &cell, (i, n), text)?;
-        number(state.document(), &cell, value)
+    if text.value().trim().is_empty() || !cells.first()?.1.is_number() {
+        return None;
+    }
+    let values = cells.iter().take(SHOWN).enumerate().map(|(i, (row, cell))| {
+        let value = evaluate(state, &sheet, row, cell, (i, n), text.value())?;
+        in_range(&cell.field, cell.part, value).map(|()| numbers::exact(numbers::tidy(value)))
     });
-    Ok(Edit::all(each.collect::<Result<Vec<_>, _>>()?))
+    let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
+        let more = if n > SHOWN { format!(" … ({n} rows)") } else { String::new() };
+        format!("= {}{more}", values.join(", "))
+    });
+    Some(shown)
 }
 
 /// What `text` comes to for one cell, the `i`th of `n`.
-pub fn evaluate(
+fn evaluate(
     state: &State,
     sheet: &Sheet,
     row: &Row,
@@ -105,7 +136,7 @@ fn variables(state: &State, sheet: &Sheet, row: &Row, cell: &Cell, (i, n): (usiz
 }
 
 /// The edit that gives a cell this number; refused where it is out of the field's range.
-pub fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
+fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
     in_range(&cell.field, cell.part, value)?;
     if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
         return Err("a vector without a length has no direction: set |J| first".into());

@@ -84,6 +84,8 @@ impl Text {
         let unit = if place >= 0 { power } else { 1.0 / power };
         let Ok(value) = text.trim().parse::<f64>() else { return false };
         let stepped = format!("{:.decimals$}", value + steps as f64 * unit);
+        let nothing = stepped.strip_prefix('-').filter(|rest| rest.bytes().all(|b| b"0.".contains(&b)));
+        let stepped = nothing.map(str::to_owned).unwrap_or(stepped);
         let from_end = text.chars().count() - self.cursor().min(text.chars().count());
         let cursor = stepped.chars().count().saturating_sub(from_end);
         self.set(stepped, cursor);
@@ -99,6 +101,10 @@ fn digit_at(text: &str, cursor: usize) -> Option<(usize, i32)> {
     let point = text.find('.').unwrap_or(text.len());
     let decimals = text.len().saturating_sub(point + 1);
     let mut at = cursor.min(text.len() - 1);
+    // A sign stands for the first digit, the point for the ones.
+    if at == 0 && "+-".contains(&text[..1]) {
+        at = 1.min(text.len() - 1);
+    }
     if !text.as_bytes()[at].is_ascii_digit() {
         at = at.checked_sub(1)?;
     }
@@ -137,6 +143,20 @@ mod tests {
             ("0.95", 4, 1, "0.96"),
             ("-18", 2, -1, "-19"),
             ("9", 1, 1, "10"),
+            ("999", 1, 1, "1009"),
+            ("1000", 1, -1, "900"),
+            ("1", 1, -1, "0"),
+            ("0", 1, -1, "-1"),
+            ("1", 1, -3, "-2"),
+            ("-1", 2, 1, "0"),
+            ("-1", 2, 3, "2"),
+            ("-18", 0, 1, "-8"),
+            ("-0.3", 4, 3, "0.0"),
+            ("0.05", 4, -10, "-0.05"),
+            ("12.50", 2, 1, "13.50"),
+            ("12.50", 5, 1, "12.51"),
+            ("0.001", 5, -2, "-0.001"),
+            ("5", 1, 25, "30"),
         ] {
             let mut line = Text::new(text, true);
             line.set(text.into(), cursor);

@@ -11,6 +11,7 @@ use crate::tui::app::{Mode, State};
 use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry::{self, Entry};
 use crate::tui::life;
+use crate::tui::numbers;
 use crate::tui::sheet::{Cell, Row};
 
 pub const COMMANDS: &[Command] = &[
@@ -22,7 +23,6 @@ pub const COMMANDS: &[Command] = &[
     command("choose", "WORD", "Take a word of the list of choices", choose).answer(),
     command("step", "BY", "Step the number by the step", step).change(),
     command("step-size", "smaller|larger|POWER", "Change the step tenfold", step_size),
-    command("select", "", "Begin or end a selection of rows", select),
 ];
 
 pub fn current(state: &State) -> Option<(Row, Cell)> {
@@ -170,12 +170,9 @@ fn step(state: &mut State, call: &Call) -> Done {
         return take(state, choice, &word);
     }
     let unit = step_of(state.step);
-    let edits = entry::cells(state, &sheet).into_iter().map(|(_, cell)| {
-        let old = cell.number(state.document()).unwrap_or(0.0);
-        let value = crate::tui::numbers::tidy(old + by as f64 * unit);
-        entry::number(state.document(), &cell, value)
-    });
-    let edit = Edit::all(edits.collect::<Result<Vec<_>, _>>()?);
+    let edit = entry::each(state, |_, cell, _| {
+        Ok(numbers::tidy(cell.number(state.document()).unwrap_or(0.0) + by as f64 * unit))
+    })?;
     state.edit(edit, true)
 }
 
@@ -194,10 +191,5 @@ fn step_size(state: &mut State, call: &Call) -> Done {
     };
     state.step = power.clamp(-3, 3);
     state.say(format!("step {}", step_of(state.step)));
-    Ok(())
-}
-
-fn select(state: &mut State, _: &Call) -> Done {
-    state.selected_from = if state.selected_from.is_some() { None } else { Some(state.row) };
     Ok(())
 }

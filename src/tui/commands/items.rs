@@ -3,11 +3,12 @@
 use serde_json::Value;
 
 use super::{Call, Command, Done, command};
-use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
+use crate::scene::{Edit, pointer};
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry;
+use crate::tui::sheet::Cell;
 
 pub const COMMANDS: &[Command] = &[
     command("add", "", "Add an item to the list, or an optional node", add).change(),
@@ -69,6 +70,9 @@ fn insert(state: &mut State, list: &str, index: usize) -> Done {
     let (edit, pointer) = Edit::insert_new(state.document(), list, index).ok_or("nothing can be added here")?;
     state.edit(edit, false)?;
     go_to(state, &pointer);
+    let row = state.sheet().row(state.row).filter(|_| state.focus == Pane::Table);
+    let number = row.and_then(|row| row.cells.iter().position(Cell::is_number));
+    state.column = number.unwrap_or(state.column);
     Ok(())
 }
 
@@ -98,29 +102,87 @@ fn delete(state: &mut State, _: &Call) -> Done {
     if edits.is_empty() {
         return Err("there is nothing to delete here".into());
     }
+    let first = *entry::rows(state).start();
     state.edit(Edit::all(edits), false)?;
-    state.selected_from = None;
-    Ok(())
-}
-
-fn duplicate(state: &mut State, call: &Call) -> Done {
-    for _ in 0..call.times() {
-        let pointer = target(state)?;
-        let (edit, pointer) =
-            Edit::duplicate(state.document(), &pointer).ok_or("only items of lists are duplicated")?;
-        state.edit(edit, false)?;
-        go_to(state, &pointer);
+    if state.selected_from.take().is_some() {
+        state.row = first;
+        state.settle();
     }
     Ok(())
 }
 
-fn reorder(state: &mut State, call: &Call) -> Done {
-    let pointer = target(state)?;
-    let (_, index) = split_item(state, &pointer).ok_or("only items of lists are moved")?;
-    let to = index as i64 + if call.text == "up" { -call.times() } else { call.times() };
-    let moved = usize::try_from(to).ok().and_then(|to| Edit::move_item(state.document(), &pointer, to));
-    let (edit, pointer) = moved.ok_or("it cannot go farther")?;
+/// The items that an edit of whole rows applies to: their list, the first and the last.
+fn block(state: &State) -> Result<(String, usize, usize), String> {
+    let one = || -> Option<(String, usize, usize)> {
+        let (list, index) = split_item(state, &target(state).ok()?)?;
+        Some((list, index, index))
+    };
+    if state.focus == Pane::Tree || state.selected_from.is_none() {
+        return one().ok_or("only items of lists are duplicated and moved".into());
+    }
+    let (sheet, rows) = (state.sheet(), entry::rows(state));
+    let end = |row: usize| split_item(state, &sheet.pointer(row)?);
+    match (end(*rows.start()), end(*rows.end())) {
+        (Some((list, from)), Some((other, to))) if list == other => Ok((list, from, to)),
+        _ => Err("only items of one list are duplicated and moved together".into()),
+    }
+}
+
+/// Puts the cursor and the selection on the items that a block has become, `by` rows on.
+fn follow(state: &mut State, list: &str, at: usize, by: i64) {
+    let moved = |row: usize| usize::try_from(row as i64 + by).unwrap_or(0);
+    match state.selected_from.filter(|_| state.focus != Pane::Tree) {
+        Some(from) => (state.selected_from, state.row) = (Some(moved(from)), moved(state.row)),
+        None => go_to(state, &pointer::join(list, at)),
+    }
+    state.settle();
+}
+
+/// Copies follow the last of what they are copies of, and take over the selection.
+fn duplicate(state: &mut State, call: &Call) -> Done {
+    let path = target(state)?;
+    if let Some((map, name)) = pointer::split(&path).filter(|(map, _)| *map == "/images") {
+        let value = field::value(state.document(), &path).unwrap_or(Value::Null);
+        let added = Edit::insert_entries(state.document(), map, [(name, value)].into_iter().collect());
+        let (edit, path) = added.ok_or("there is nothing to duplicate here")?;
+        state.edit(edit, false)?;
+        go_to(state, &path);
+        return Ok(());
+    }
+    let (list, from, to) = block(state)?;
+    let items = field::value(state.document(), &list).unwrap_or(Value::Null);
+    let items = items.as_array().and_then(|items| items.get(from..=to)).unwrap_or_default();
+    let copies = items.iter().cloned().cycle().take(items.len() * call.times() as usize).collect();
+    let added = Edit::insert_all(state.document(), &list, to + 1, copies);
+    let (edit, path) = added.ok_or("only items of lists are duplicated")?;
+    let revision = state.door.revision();
     state.edit(edit, false)?;
-    go_to(state, &pointer);
+    if state.door.revision() == revision {
+        return Err("copies of several of these would stand where they do: duplicate them one by one".into());
+    }
+    match state.selected_from {
+        Some(_) => follow(state, &list, to + 1, (to + 1 - from) as i64),
+        None => go_to(state, &path),
+    }
+    Ok(())
+}
+
+/// A block moves as far as it can; what it passes goes to its other side.
+fn reorder(state: &mut State, call: &Call) -> Done {
+    let (list, from, to) = block(state)?;
+    let count = state.document().json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
+    let (up, times) = (call.text == "up", call.times() as usize);
+    let by = times.min(if up { from } else { count - 1 - to });
+    if by == 0 {
+        return Err("it cannot go farther".into());
+    }
+    let passed = (0..by).filter_map(|k| {
+        let (at, onto) = if up { (from - 1 - k, to - k) } else { (to + 1 + k, from + k) };
+        Edit::move_item(state.document(), &pointer::join(&list, at), onto).map(|(edit, _)| edit)
+    });
+    let edit = Edit::all(passed);
+    let by = if up { -(by as i64) } else { by as i64 };
+    state.edit(edit, false)?;
+    follow(state, &list, (from as i64 + by) as usize, by);
     Ok(())
 }

@@ -22,7 +22,9 @@ mod said;
 pub use said::{Said, quoted, unquoted, words};
 mod scripts;
 mod seeing;
+mod selecting;
 mod typing;
+mod undoing;
 mod values;
 mod yanking;
 pub use pasting::pasted;
@@ -95,7 +97,9 @@ const TABLES: &[&[Command]] = &[
     files::COMMANDS,
     cells::COMMANDS,
     items::COMMANDS,
+    selecting::COMMANDS,
     values::COMMANDS,
+    undoing::COMMANDS,
     yanking::COMMANDS,
     moving::COMMANDS,
     placing::COMMANDS,

@@ -121,7 +121,7 @@ fn up(state: &mut State, _: &Call) -> Done {
 }
 
 fn back(state: &mut State, _: &Call) -> Done {
-    if state.selected_from.take().is_some() {
+    if state.unselect() {
     } else if state.seen.work.is_some() {
         state.ask(Effect::Cancel);
     } else {

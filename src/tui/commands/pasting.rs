@@ -29,10 +29,8 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     let most = limits.points;
     let items =
         target(state).ok_or("no list here takes rows: go to anchors, points or keyframes")?.items(text, most)?;
-    let (count, value) = (items.len(), if let [one] = &items[..] { one.clone() } else { Value::from(items) });
-    obey(state, &format!("paste {value}"), None)?;
-    state.say(if count == 1 { "1 row pasted".into() } else { format!("{count} rows pasted") });
-    Ok(())
+    let value = if let [one] = &items[..] { one.clone() } else { Value::from(items) };
+    obey(state, &format!("paste {value}"), None)
 }
 
 /// The list that takes rows: the one under the cursor, one that holds it, one inside the node.

@@ -1,4 +1,4 @@
-//! Values by their paths, and undo.
+//! Values by their paths.
 
 use serde_json::Value;
 
@@ -6,15 +6,11 @@ use super::{Call, Command, Done, command};
 use crate::scene::address;
 use crate::scene::field::{self, Kind};
 use crate::tui::app::State;
-use crate::tui::door::Door;
 use crate::tui::entry;
-use crate::tui::update::Change;
 
 pub const COMMANDS: &[Command] = &[
     command("set", "PATH=VALUE", "Set a value by its path", set).change(),
     command("get", "PATH", "Say the value at a path", get).inside(),
-    command("undo", "[STEPS]", "Undo", undo),
-    command("redo", "[STEPS]", "Redo", redo),
 ];
 
 /// VALUE is JSON, else text.
@@ -46,24 +42,5 @@ fn get(state: &mut State, call: &Call) -> Done {
     let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
     let value = field::value(state.document(), &pointer).unwrap_or(Value::Null);
     state.say(crate::tui::terminal::plain(&value.to_string()));
-    Ok(())
-}
-
-fn undo(state: &mut State, call: &Call) -> Done {
-    repeat(state, call, "nothing to undo", Door::undo)
-}
-
-fn redo(state: &mut State, call: &Call) -> Done {
-    repeat(state, call, "nothing to redo", Door::redo)
-}
-
-fn repeat(state: &mut State, call: &Call, none: &str, step: fn(&mut Door) -> Option<Change>) -> Done {
-    state.door.writable()?;
-    let times = call.text.parse().unwrap_or(call.times()).max(1);
-    let done: Vec<Change> = (0..times).map_while(|_| step(&mut state.door)).collect();
-    if done.is_empty() {
-        return Err(none.into());
-    }
-    done.into_iter().for_each(|change| state.changed(change));
     Ok(())
 }

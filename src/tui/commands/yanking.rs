@@ -121,13 +121,10 @@ fn paste(state: &mut State, call: &Call) -> Done {
 /// field. Of several ways the first counts that the scene bears.
 fn paste_value(state: &mut State, yanked: &Yanked) -> Done {
     let mut why = None;
-    for (edit, pointer) in ways(state, yanked) {
-        if edit.is_empty() {
-            continue;
-        }
+    for Way { edit, pointer, count } in ways(state, yanked).into_iter().filter(|way| !way.edit.is_empty()) {
         match state.edit(edit, false) {
             Ok(()) => {
-                go_to_pasted(state, &pointer);
+                go_to_pasted(state, &pointer, count);
                 return Ok(());
             }
             Err(reason) => drop(why.get_or_insert(reason)),
@@ -136,13 +133,14 @@ fn paste_value(state: &mut State, yanked: &Yanked) -> Done {
     Err(why.unwrap_or_else(|| refusal(state, &yanked.value)))
 }
 
-fn go_to_pasted(state: &mut State, pointer: &str) {
-    let field = field::field(state.document(), pointer);
-    let name = field.map(|field| field.name).filter(|name| name.parse::<usize>().is_err() && !name.is_empty());
+fn go_to_pasted(state: &mut State, pointer: &str, count: usize) {
+    let name = field::field(state.document(), pointer).map(|field| field.name).unwrap_or_default();
     if is_item(state.document(), pointer) || in_map(state.document(), pointer) {
         go_to(state, pointer);
     }
-    state.say(name.map_or("pasted".to_string(), |name| format!("{} pasted", terminal::plain(&name))));
+    let named = count == 1 && !name.is_empty() && name.parse::<usize>().is_err();
+    let what = if named { terminal::plain(&name) } else { counted(count, "row") };
+    state.say(format!("{what} pasted"));
 }
 
 fn is_item(document: &Document, path: &str) -> bool {
@@ -174,11 +172,18 @@ pub fn here(state: &State) -> String {
     }
 }
 
+/// A way in which a value fits: the edit, where its first part comes to stand, how many parts it has.
+struct Way {
+    edit: Edit,
+    pointer: String,
+    count: usize,
+}
+
 /// Every way in which a value fits, the likeliest first.
-fn ways(state: &State, yanked: &Yanked) -> Vec<(Edit, String)> {
+fn ways(state: &State, yanked: &Yanked) -> Vec<Way> {
     let document = state.document();
     let here = here(state);
-    let mut ways: Vec<(Edit, String)> = over_cells(state, &yanked.value, &here).into_iter().collect();
+    let mut ways: Vec<Way> = over_cells(state, &yanked.value, &here).into_iter().collect();
     for path in upward(&here) {
         if let Some((list, index)) = item_of(document, path) {
             ways.extend(into_list(document, list, index + 1, &yanked.value));
@@ -192,7 +197,8 @@ fn ways(state: &State, yanked: &Yanked) -> Vec<(Edit, String)> {
         // Rows of a list of fixed length, as a matrix is, have no room for another.
         let loose = matches!(field.kind, Kind::Numbers(_)) || !is_item(document, path) && !in_map(document, path);
         if loose && misfit(document, path, &yanked.value).is_none() {
-            ways.push((Edit::set(document, path, yanked.value.clone()), path.to_owned()));
+            let edit = Edit::set(document, path, yanked.value.clone());
+            ways.push(Way { edit, pointer: path.to_owned(), count: 1 });
         }
     }
     ways.extend(fields(document, &state.node, &here, &yanked.value));
@@ -205,7 +211,7 @@ fn ways(state: &State, yanked: &Yanked) -> Vec<(Edit, String)> {
 }
 
 /// A number over a number, a text over a text: in every selected row, as if it were typed.
-fn over_cells(state: &State, value: &Value, here: &str) -> Option<(Edit, String)> {
+fn over_cells(state: &State, value: &Value, here: &str) -> Option<Way> {
     let row = state.sheet().row(state.row)?;
     let cell = row.cells.get(state.column).filter(|_| state.focus == Pane::Table)?;
     let text = match value {
@@ -213,11 +219,11 @@ fn over_cells(state: &State, value: &Value, here: &str) -> Option<(Edit, String)
         Value::String(text) if cell.field.kind == Kind::Text => text.clone(),
         _ => return None,
     };
-    Some((entry::edit(state, &text).ok()?, here.to_owned()))
+    Some(Way { edit: entry::edit(state, &text).ok()?, pointer: here.to_owned(), count: 1 })
 }
 
 /// A value as one item of a list, or its parts as several.
-fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Option<(Edit, String)> {
+fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Option<Way> {
     let item = pointer::join(list, "-");
     let fits = |value: &Value| misfit(document, &item, value).is_none();
     if !matches!(field::field(document, list)?.kind, Kind::List(_)) {
@@ -228,11 +234,13 @@ fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Op
         Value::Array(items) if items.iter().all(fits) => items.clone(),
         _ => return None,
     };
-    Edit::insert_all(document, list, index, items)
+    let count = items.len();
+    let (edit, pointer) = Edit::insert_all(document, list, index, items)?;
+    Some(Way { edit, pointer, count })
 }
 
 /// A value as one entry of a map, under the name it had or that of its file; or an object of such entries.
-fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<(Edit, String)> {
+fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<Way> {
     let field = field::field(document, map).filter(|field| matches!(field.kind, Kind::Map(_)))?;
     let fits = |value: &Value| misfit(document, &pointer::join(map, "new"), value).is_none();
     let entries = match &yanked.value {
@@ -244,7 +252,9 @@ fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<(Edit, St
         Value::Object(entries) if entries.values().all(fits) => entries.clone(),
         _ => return None,
     };
-    Edit::insert_entries(document, map, entries)
+    let count = entries.len();
+    let (edit, pointer) = Edit::insert_entries(document, map, entries)?;
+    Some(Way { edit, pointer, count })
 }
 
 /// The name of a file without its folder and its ending.
@@ -254,7 +264,7 @@ pub fn stem(path: &str) -> &str {
 }
 
 /// An object whose every key is a field of the form.
-fn fields(document: &Document, form: &str, here: &str, value: &Value) -> Option<(Edit, String)> {
+fn fields(document: &Document, form: &str, here: &str, value: &Value) -> Option<Way> {
     let object = value.as_object().filter(|object| !object.is_empty())?;
     let known = field::children(document, form);
     let known =
@@ -263,7 +273,8 @@ fn fields(document: &Document, form: &str, here: &str, value: &Value) -> Option<
         let child = known(name).filter(|child| misfit(document, &child.pointer, value).is_none())?;
         Some(Edit::set(document, &child.pointer, value.clone()))
     });
-    Some((Edit::all(edits.collect::<Option<Vec<_>>>()?), here.to_owned()))
+    let edit = Edit::all(edits.collect::<Option<Vec<_>>>()?);
+    Some(Way { edit, pointer: here.to_owned(), count: object.len() })
 }
 
 /// Why nothing takes the value: what the place under the cursor wants.

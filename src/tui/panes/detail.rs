@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::{width, write};
 use crate::scene::field::Kind;
-use crate::tui::app::{Mode, State};
+use crate::tui::app::State;
 use crate::tui::sheet::{Cell, Part};
 use crate::tui::{colour, entry, numbers, terminal};
 
@@ -32,21 +32,16 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     x = write(buffer, area, x, 0, &format!("   {value}{unit}"), Style::new());
     x = write(buffer, area, x, 0, &range, colour::faint());
     write(buffer, area, x, 0, set, colour::faint());
-    let entry = match &state.mode {
-        Mode::Entry(typed) if cell.is_number() && !typed.text.value().trim().is_empty() => Some(typed),
-        _ => None,
-    };
-    let lines = if entry.is_some() { 1 } else { 2 };
+    let hint = entry::hint(state);
+    let lines = if hint.is_some() { 1 } else { 2 };
     for (y, line) in wrapped(help(cell), area.width).iter().take(lines).enumerate() {
         write(buffer, area, 0, 1 + y as u16, line, Style::new());
     }
-    let Some(typed) = entry else { return };
-    let n = entry::cells(state, &sheet).len();
-    let (text, style) = match entry::evaluate(state, &sheet, &row, cell, (0, n), typed.text.value()) {
-        Ok(value) => (format!("= {}", numbers::exact(numbers::tidy(value))), colour::strong()),
-        Err(mistake) => (mistake, Style::new().add_modifier(Modifier::ITALIC)),
-    };
-    write(buffer, area, 0, 2, &text, style);
+    match hint {
+        Some(Ok(values)) => drop(write(buffer, area, 0, 2, &values, colour::strong())),
+        Some(Err(why)) => drop(write(buffer, area, 0, 2, &why, Style::new().add_modifier(Modifier::ITALIC))),
+        None => {}
+    }
 }
 
 /// What is told about a cell: about the word it has, where it is one of several.

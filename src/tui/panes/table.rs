@@ -79,7 +79,13 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         }
     }
     match (&state.mode, cursor) {
-        (Mode::Entry(typed), Some(at)) => Some(draw_entry(&typed.text, at, cells, buffer)),
+        (Mode::Entry(typed), Some(at)) => {
+            let end =
+                laid.get(state.row - first).and_then(|row| row.last()).map_or(0, |last| last.at + last.width - shift);
+            let (cursor, typed) = draw_entry(&typed.text, at, cells, buffer);
+            draw_hint(state, end.max(typed) + GAP, at.y - cells.y, cells, buffer);
+            Some(cursor)
+        }
         _ => cursor,
     }
 }
@@ -180,8 +186,20 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The entry stands where its cell does, and moves left where it would not fit.
-fn draw_entry(text: &crate::tui::text::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> Position {
+/// What the entry comes to stands beside it, where the row leaves room; under the table it stands in full.
+fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
+    let (text, style) = match entry::hint(state) {
+        Some(Ok(values)) => (values, colour::faint()),
+        Some(Err(why)) => (format!("? {why}"), colour::faint().add_modifier(Modifier::ITALIC)),
+        None => return,
+    };
+    if x + i32::from(width(&text)) <= i32::from(cells.width) {
+        write(buffer, cells, x, y, &text, style);
+    }
+}
+
+/// The entry stands where its cell does, and moves left where it would not fit. Gives the cursor and the column after it.
+fn draw_entry(text: &crate::tui::text::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
     let shown = terminal::plain(text.value());
     let wide = width(&shown).max(8) + 1;
     let x = at.x.min((cells.x + cells.width).saturating_sub(wide)).max(cells.x);
@@ -191,5 +209,6 @@ fn draw_entry(text: &crate::tui::text::Text, at: Position, cells: Rect, buffer: 
     let line = Rect { x, y: at.y, width: room.min(wide), height: 1 };
     write(buffer, line, 0, 0, &" ".repeat(usize::from(wide)), Style::new().add_modifier(Modifier::UNDERLINED));
     write(buffer, line, -i32::from(hidden), 0, &shown, style);
-    Position::new(x + (text.column() as u16).saturating_sub(hidden), at.y)
+    let end = i32::from(x + room.min(wide)) - i32::from(cells.x);
+    (Position::new(x + (text.column() as u16).saturating_sub(hidden), at.y), end)
 }

@@ -28,6 +28,8 @@ const TABLES: &[fn()] = &[
     super::lines::the_pointer_of_a_window_is_kept_as_a_place,
     super::data::what_is_yanked_is_pasted_where_it_fits,
     super::windows::speed_is_shared,
+    super::data::edits_apply_to_the_selection_which_stays,
+    super::data::undo_says_what_it_undid,
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::seeing::zooming_keeps_the_cursor_and_panning_takes_it_along,
     super::seeing::graphics_are_told_and_set,

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::super::app::{Mode, Pane, State};
+use super::super::door::Door;
 use super::super::update::{Effect, Event, update};
 use super::support::{press, state, state_of};
 use super::{check, motion, zone};
@@ -89,33 +90,32 @@ fn yanked_rows_go_to_the_clipboard_as_json_and_csv() {
 
 #[test]
 fn every_kind_of_node_can_be_yanked_and_pasted() {
-    let everything = include_str!("../../../tests/scenes/good/everything.json");
+    let mut state = state_of(include_str!("../../../tests/scenes/good/everything.json"));
+    let whole = state.document().clone();
     let mut open = vec![String::new()];
-    let mut seen = 0;
-    let whole = state_of(everything);
-    while let Some(pointer) = open.pop() {
-        for child in field::children(whole.document(), &pointer) {
+    let mut seen = std::collections::BTreeSet::new();
+    while let Some(holder) = open.pop() {
+        for child in field::children(&whole, &holder) {
             open.push(child.pointer.clone());
-            if field::value(whole.document(), &child.pointer).is_none_or(|value| value.is_null()) {
+            if field::value(&whole, &child.pointer).is_none_or(|value| value.is_null()) {
                 continue;
             }
-            for focus in [Pane::Tree, Pane::Table] {
-                let mut state = state_of(everything);
-                state.focus = focus;
-                match focus {
-                    Pane::Tree => state.show(child.pointer.clone()),
-                    _ => {
-                        state.show(pointer.clone());
-                        state.row = state.sheet().position(&child.pointer).unwrap();
-                    }
-                }
-                press(&mut state, "y p");
-                assert!(!said(&state).0, "{}: {}", child.pointer, said(&state).1);
-                seen += 1;
+            // One of each kind of thing in each kind of place.
+            let place: Vec<&str> = holder.split('/').filter(|token| token.parse::<usize>().is_err()).collect();
+            if !seen.insert(format!("{place:?} {} {:?}", child.field.help, child.field.kind)) {
+                continue;
+            }
+            state.focus = if seen.len() % 2 == 0 { Pane::Tree } else { Pane::Table };
+            state.show(if state.focus == Pane::Tree { &child.pointer } else { &holder }.clone());
+            state.row = state.sheet().position(&child.pointer).unwrap_or(0);
+            press(&mut state, "y p");
+            assert!(!said(&state).0, "{}: {}", child.pointer, said(&state).1);
+            while !state.door.is_saved() {
+                press(&mut state, "u");
             }
         }
     }
-    assert!(seen > 100, "{seen}");
+    assert!(seen.len() > 50, "{}", seen.len());
 }
 
 #[test]
@@ -211,4 +211,108 @@ fn a_number_is_pasted_into_its_cell() {
     press(&mut state, &motion("l i"));
     paste(&mut state, "12\n13");
     assert!(matches!(&state.mode, Mode::Entry(entry) if entry.text.value() == "12"));
+}
+
+#[test]
+pub fn edits_apply_to_the_selection_which_stays() {
+    check(&[
+        (&motion("l V i \"7\" Enter"), &zone("/motion/2/at"), json!([7, 30])),
+        (&motion("l % + +"), &zone("/motion/2/at"), json!([42, 30])),
+        (&motion("l v j + + + u"), &zone("/motion/1/at"), json!([30, 25])),
+        (&motion("l v 2 j i \"100+10*i/n\" Enter"), &zone("/motion/1/at"), json!([100.0 + 10.0 / 3.0, 25])),
+        (&motion("l v j Esc j g v +"), &zone("/motion/0/at"), json!([21, 20])),
+        (&motion("v j J"), &zone("/motion/0/at"), json!([40, 30])),
+        (&motion("v j J J"), &zone("/motion/3/at"), json!([30, 25])),
+        (&motion("v j 9 J 9 K"), &zone("/motion/1/at"), json!([30, 25])),
+        (&motion("v j J l +"), &zone("/motion/1/at"), json!([21, 20])),
+        (&motion("v j D"), &zone("/motion/2/at"), json!([20, 20])),
+        (&motion("v j D l +"), &zone("/motion/2/at"), json!([21, 20])),
+        (&motion("2 D u"), &zone("/motion/1/at"), json!([30, 25])),
+        (&motion("j v j d"), &zone("/motion/1/tool"), json!("scale")),
+        (&motion("v j y Esc p"), &zone("/motion/2/at"), json!([20, 20])),
+        (&motion("6 l v 2 j i \"0\" Enter"), &zone("/motion/1/jump"), json!([5, 0])),
+        (&motion("6 l v 2 j i \"0\" Enter"), &zone("/motion/2/jump"), Value::Null),
+        (&motion("5 l v 2 j i \"*2\" Enter"), &zone("/motion/1/jump"), json!([6, 8])),
+        (&motion("o i \"1\" Tab \"2\" Enter"), &zone("/motion/1/at"), json!([1, 2])),
+        ("d : \"history\" Enter j q u", &zone("/name"), json!("left eye")),
+        ("/ \"images\" Enter Enter D", "/images/cat 2/path", json!("cat.png")),
+        ("/ \"outline\" Enter Enter j V y", &zone("/outline/kind"), json!("polygon")),
+    ]);
+}
+
+#[test]
+fn a_held_key_is_one_step_whatever_it_steps() {
+    for keys in [
+        motion("l + + +"),
+        motion("l v j + + +"),
+        motion("2 j 3 l + + +"),
+        "/ \"feather\" Enter + + +".into(),
+        "/ \"mouth\" Enter / \"cycles\" Enter + + +".into(),
+    ] {
+        let mut state = state();
+        press(&mut state, &keys);
+        assert!(!state.door.is_saved(), "{keys}");
+        press(&mut state, "u");
+        assert!(state.door.is_saved(), "{keys}");
+    }
+}
+
+#[test]
+pub fn undo_says_what_it_undid() {
+    for (keys, words) in [
+        ("/ \"radius\" Enter i \"80\" Enter u", "undone: left eye · radius 60 → 80"),
+        ("/ \"radius\" Enter i \"80\" Enter u Ctrl-r", "done again: left eye · radius 60 → 80"),
+        ("/ \"radius\" Enter + j + : \"undo 2\" Enter", "2 steps undone, the last: left eye · radius 60 → 61"),
+        ("/ \"radius\" Enter + j + : \"earlier 2\" Enter", "2 steps undone, the last: left eye · radius 60 → 61"),
+        ("/ \"radius\" Enter + j + u u : \"later 2\" Enter", "2 steps done again, the last:"),
+        ("/ \"radius\" Enter + : \"earlier 1h\" Enter", "1 step undone"),
+        ("/ \"radius\" Enter + u : \"later 30s\" Enter", "1 step done again"),
+        ("u", "nothing to undo"),
+        (": \"undo x\" Enter", "x is no number of steps"),
+        (": \"earlier 3w\" Enter", "3w is no time"),
+        (": \"later 3m\" Enter", "nothing to redo within 3m"),
+    ] {
+        let mut state = state();
+        press(&mut state, keys);
+        assert!(said(&state).1.starts_with(words), "{keys}: {}", said(&state).1);
+    }
+}
+
+#[test]
+fn the_history_lists_what_each_step_did() {
+    let mut state = state();
+    press(&mut state, "/ \"radius\" Enter + k j / \"feather\" Enter + k j + u : \"history\" Enter");
+    let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+    let told: Vec<&str> = pages.lines.iter().map(|line| line.split("just now").last().unwrap().trim()).collect();
+    let expected =
+        ["left eye · feather 1 → 2", "-- now --", "left eye · feather 0 → 1", "left eye · radius 60 → 61  (as saved)"];
+    assert_eq!(told, expected);
+    assert!(pages.lines[0].starts_with("redo 1") && pages.lines[3].starts_with("undo 2"), "{:?}", pages.lines);
+}
+
+#[test]
+fn undo_goes_on_over_save_and_reopening_and_the_mark_follows() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cat.plica.json");
+    std::fs::write(&path, super::support::SCENE).unwrap();
+    let open = || {
+        let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
+        State::new(door, (80, 24), crate::tui::colour::Depth::None)
+    };
+    let marks = |state: &mut State, keys: &[(&str, bool, i64)]| {
+        for (key, saved, radius) in keys {
+            press(state, key);
+            let found = at(state, &zone("/interpolation/radius"));
+            assert_eq!((state.door.is_saved(), found), (*saved, json!(radius)), "{key}");
+        }
+    };
+    let mut first = open();
+    press(&mut first, "/ \"radius\" Enter");
+    marks(&mut first, &[("+", false, 61), ("k j +", false, 62)]);
+    first.door.save(None, false).unwrap();
+    marks(&mut first, &[("u", false, 61), ("Ctrl-r", true, 62), ("k j +", false, 63), ("u", true, 62)]);
+    drop(first);
+    let mut second = open();
+    marks(&mut second, &[("", true, 62), ("u", false, 61), ("Ctrl-r", true, 62), ("Ctrl-r", false, 63)]);
+    marks(&mut second, &[(": \"earlier 1h\" Enter", false, 60), (": \"later 1h\" Enter", false, 63), ("u", true, 62)]);
 }

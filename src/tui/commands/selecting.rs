@@ -1,0 +1,42 @@
+//! Rows that an edit applies to together.
+
+use super::{Call, Command, Done, command};
+use crate::tui::app::State;
+
+pub const COMMANDS: &[Command] =
+    &[command("select", "[all|again]", "Begin or end a selection of rows; take all, or the last one again", select)];
+
+fn select(state: &mut State, call: &Call) -> Done {
+    match call.text {
+        "" if state.unselect() => {}
+        "" => state.selected_from = Some(state.row),
+        "all" => all(state)?,
+        "again" => again(state)?,
+        other => return Err(format!("select takes all or again, not {other}")),
+    }
+    Ok(())
+}
+
+/// All rows of the table; in a form all items of the list under the cursor, else all fields.
+fn all(state: &mut State) -> Done {
+    let sheet = state.sheet();
+    let row = sheet.row(state.row).ok_or("there are no rows here")?;
+    let list = row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned()).filter(|_| row.item && !sheet.table);
+    let within = |row: usize| match &list {
+        Some(list) => sheet.pointer(row).is_some_and(|one| one.rsplit_once('/').is_some_and(|(own, _)| own == list)),
+        None => row < sheet.len(),
+    };
+    let first = (0..=state.row).rev().take_while(|&row| within(row)).last();
+    let last = (state.row..sheet.len()).take_while(|&row| within(row)).last();
+    (state.selected_from, state.row) = (first, last.unwrap_or(state.row));
+    state.settle();
+    Ok(())
+}
+
+fn again(state: &mut State) -> Done {
+    let (node, from, row) = state.kept.selection.clone().ok_or("nothing was selected yet: v begins")?;
+    state.show(node);
+    (state.selected_from, state.row) = (Some(from), row);
+    state.settle();
+    Ok(())
+}
