@@ -24,16 +24,21 @@ pub fn address(document: &Document, pointer: &str) -> String {
     let mut address = String::new();
     for token in pointer::tokens(pointer) {
         let Some(below) = place.step(&token) else { return pointer.to_owned() };
-        address.push_str(if address.is_empty() { "" } else { "." });
-        let step = match place.shape.body() {
-            Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
-            Body::Numbers(_) => pointer::index(&token).and_then(|i| place.shape.column(i)).map(str::to_owned),
-            _ => None,
-        };
-        address.push_str(&step.unwrap_or_else(|| spelled(&token, false)));
+        address = self::below(&address, place, &token, below);
         place = below;
     }
     address
+}
+
+/// The address of `below`, which is one token below `place`, whose own address is given.
+pub fn below(address: &str, place: Place, token: &str, below: Place) -> String {
+    let step = match place.shape.body() {
+        Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
+        Body::Numbers(_) => pointer::index(token).and_then(|i| place.shape.column(i)).map(str::to_owned),
+        _ => None,
+    };
+    let step = step.unwrap_or_else(|| spelled(token, false));
+    if address.is_empty() { step } else { format!("{address}.{step}") }
 }
 
 /// A name as it stands in an address: in quotes where it must be.

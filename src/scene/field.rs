@@ -110,16 +110,33 @@ pub fn children(document: &Document, pointer: &str) -> Vec<Child> {
 
 /// The places directly below `place`, which is at `pointer`: what each is, and its own place for its value.
 pub fn below<'a>(place: Place<'a>, pointer: &str) -> Vec<(Child, Place<'a>)> {
-    let child = |token: &str| child(place, pointer, token);
+    steps(place).into_iter().map(|(token, below)| (described(pointer, &token, below), below)).collect()
+}
+
+/// The places directly below `place`, each with its token.
+pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
     let value = place.value.filter(|value| !value.is_null());
     match place.shape.body() {
-        Body::List(..) => (0..count(place)).filter_map(|i| child(&i.to_string())).collect(),
+        Body::List(shape, ..) => {
+            let items = value.and_then(Value::as_array).into_iter().flatten().enumerate();
+            let item = |value| Place { shape, value: Some(value), set: place.set, required: true };
+            items.map(|(i, value)| (i.to_string(), item(value))).collect()
+        }
         Body::Map(_) => {
             let keys = value.and_then(Value::as_object).into_iter().flat_map(|map| map.keys());
-            keys.filter_map(|key| child(key)).collect()
+            keys.filter_map(|key| Some((key.clone(), place.step(key)?))).collect()
         }
         Body::Object | Body::Tagged(_) if value.is_some() => {
-            place.shape.properties(value).into_iter().filter_map(|(name, _)| child(name)).collect()
+            let branch = place.shape.branch(value);
+            let required = |name: &str| branch.is_some_and(|branch| branch.required().any(|one| one == name));
+            let properties = place.shape.properties(value).into_iter();
+            let inner = properties.map(|(name, shape)| {
+                let written = value.and_then(|value| value.get(name));
+                let set = place.set && written.is_some();
+                let value = written.or(shape.default());
+                (name.to_owned(), Place { shape, value, set, required: required(name) })
+            });
+            inner.collect()
         }
         _ => Vec::new(),
     }
@@ -128,9 +145,13 @@ pub fn below<'a>(place: Place<'a>, pointer: &str) -> Vec<(Child, Place<'a>)> {
 /// The place one token below `place`, which is at `pointer`.
 pub fn child<'a>(place: Place<'a>, pointer: &str, token: &str) -> Option<(Child, Place<'a>)> {
     let below = place.step(token)?;
-    let name = name_of(below.value).unwrap_or_else(|| token.to_owned());
-    let field = Field::new(name.clone(), below);
-    Some((Child { name, pointer: pointer::join(pointer, token), set: below.set, field }, below))
+    Some((described(pointer, token, below), below))
+}
+
+fn described(pointer: &str, token: &str, place: Place) -> Child {
+    let name = name_of(place.value).unwrap_or_else(|| token.to_owned());
+    let field = Field::new(name.clone(), place);
+    Child { name, pointer: pointer::join(pointer, token), set: place.set, field }
 }
 
 /// How many items the list at a place has.

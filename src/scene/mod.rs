@@ -13,6 +13,7 @@ pub mod check;
 mod document;
 pub mod edit;
 pub mod field;
+mod follow;
 pub mod history;
 pub mod insert;
 pub mod json;

@@ -8,6 +8,7 @@ use super::clipboard::Kept;
 use super::colour::Depth;
 use super::door::Door;
 use super::entry::{self, Entry};
+use super::finding::Finding;
 use super::keys::{self, Keymap};
 use super::life::Life;
 use super::line::Line;
@@ -69,8 +70,8 @@ pub struct State {
     pub recorder: Recorder,
     /// What was yanked and selected last.
     pub kept: Kept,
-    /// What was searched for last.
-    pub sought: String,
+    /// Marks, the jump list and the search.
+    pub finding: Finding,
     /// What the threads have found out.
     pub seen: Seen,
     /// What happens to the scene outside, and what is asked about it.
@@ -176,7 +177,7 @@ impl State {
             keymap: Keymap::default(),
             recorder: Recorder::default(),
             kept: Kept::default(),
-            sought: String::new(),
+            finding: Finding::default(),
             seen: Seen::default(),
             life,
             seeing: Seeing::default(),
@@ -229,6 +230,7 @@ impl State {
 
     /// Goes on from a document that has changed.
     pub fn changed(&mut self, change: Change) {
+        self.finding.follow(&change);
         self.settle();
         self.ask(Effect::Publish(Box::new(change)));
     }

@@ -9,6 +9,7 @@ mod commands;
 mod door;
 mod effects;
 mod entry;
+mod finding;
 mod graphics;
 mod input;
 mod keys;
@@ -16,8 +17,10 @@ mod life;
 mod line;
 mod lines;
 mod numbers;
+mod offscreen;
 mod panes;
 mod place;
+mod places;
 mod recorder;
 mod rows;
 mod runner;
@@ -34,6 +37,7 @@ mod view;
 mod worker;
 
 pub use keys::manual;
+pub use offscreen::Offscreen;
 pub use runner::{Options, run};
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use crate::ops;
 mod cells;
 pub use cells::step_of;
 mod files;
+mod finding;
 mod items;
 mod keymap;
 mod macros;
@@ -102,6 +103,7 @@ const TABLES: &[&[Command]] = &[
     undoing::COMMANDS,
     yanking::COMMANDS,
     moving::COMMANDS,
+    finding::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
     seeing::COMMANDS,

@@ -1,5 +1,6 @@
 //! Typing: the command line, texts, and the pages of the help.
 
+use super::finding::{search_left, search_typed};
 use super::{Call, Command, Done, all, command, obey, quoted, unquoted};
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::keys::OWN_FILE;
@@ -7,7 +8,9 @@ use crate::tui::line::{self, Line};
 
 pub const COMMANDS: &[Command] = &[
     command("line", "[/]", "Type a command, or with / a search", |state, call| {
-        state.mode = Mode::Line(Line::new(call.text.chars().next().unwrap_or(':')));
+        let kind = call.text.chars().next().unwrap_or(':');
+        state.finding.origin = (kind == '/').then(|| state.spot());
+        state.mode = Mode::Line(Line::new(kind));
         Ok(())
     })
     .inside(),
@@ -18,6 +21,7 @@ pub const COMMANDS: &[Command] = &[
     command("text", "left|right|start|end|rub|delete|clear", "Change the text being typed", text).inside(),
     command("cancel", "", "Leave what is being done as it was", |state, _| {
         state.mode = Mode::Normal;
+        search_left(state);
         Ok(())
     })
     .inside(),
@@ -33,16 +37,28 @@ fn type_text(state: &mut State, call: &Call) -> Done {
         Mode::Line(line) => {
             line.typed();
             line.text.insert(&typed);
+            seek(state);
         }
         _ => return Err("nothing is being typed: i edits a cell, : begins a command".into()),
     }
     Ok(())
 }
 
+/// While a search is being typed the cursor goes along.
+fn seek(state: &mut State) {
+    if let Mode::Line(line) = &state.mode
+        && line.kind == '/'
+    {
+        let typed = line.text.value().trim().to_owned();
+        search_typed(state, &typed);
+    }
+}
+
 fn run_typed(state: &mut State, _: &Call) -> Done {
     let Mode::Line(line) = &state.mode else { return Ok(()) };
     let (kind, typed) = (line.kind, line.text.value().trim().to_string());
     state.mode = Mode::Normal;
+    search_left(state);
     if typed.is_empty() {
         return Ok(());
     }
@@ -77,6 +93,7 @@ fn text(state: &mut State, call: &Call) -> Done {
             // Rubbing out an empty line leaves it, as in vim.
             if call.text == "rub" && line.text.value().is_empty() {
                 state.mode = Mode::Normal;
+                search_left(state);
                 return Ok(());
             }
             line.typed();
@@ -84,6 +101,7 @@ fn text(state: &mut State, call: &Call) -> Done {
         }
         _ => true,
     };
+    seek(state);
     if changed { Ok(()) } else { Err(format!("a text cannot {}", call.text)) }
 }
 

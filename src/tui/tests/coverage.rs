@@ -22,6 +22,7 @@ const TABLES: &[fn()] = &[
     super::macros::macros_play_what_was_asked_for,
     super::macros::the_last_change_is_repeated_here,
     super::life::what_another_program_writes_is_taken_in_merged_or_asked_about,
+    super::finding::what_is_found_is_edited,
     super::lines::lines_say_what_keys_do,
     super::lines::nodes_are_reached_by_folding_and_going_up,
     super::lines::what_is_outside_is_asked_for,

@@ -1,7 +1,30 @@
 //! Tests of moving and finding: (scene, keys, place).
 
-use super::support::state;
+use serde_json::json;
+
+use super::support::{press, state};
+use super::{check, motion, zone};
+use crate::tui::app::{Pane, State};
 use crate::tui::sheet::Sheet;
+
+/// What is under the cursor: the node in the tree, else the cell by its pointer and its name.
+fn place(state: &State) -> String {
+    if state.focus == Pane::Tree {
+        return state.node.clone();
+    }
+    let row = state.sheet().row(state.row).unwrap();
+    row.cells.get(state.column).map_or(row.pointer, |cell| format!("{} {}", cell.pointer, cell.head).trim().to_owned())
+}
+
+/// Keys from the opened editor, the place that they lead to, and a part of what is said there.
+fn leads(rows: &[(&str, &str, &str)]) {
+    for (keys, expected, said) in rows {
+        let mut state = state();
+        press(&mut state, keys);
+        let message = state.message.as_ref().map_or("", |message| message.text.as_str());
+        assert_eq!((place(&state), message.contains(said)), (expected.to_string(), true), "{keys}: {message}");
+    }
+}
 
 #[test]
 fn a_row_is_the_same_wherever_it_is_looked_at_from() {
@@ -18,4 +41,70 @@ fn a_row_is_the_same_wherever_it_is_looked_at_from() {
         }
         assert_eq!((sheet.row(rows.len()), sheet.pointer(rows.len())), (None, None));
     }
+}
+
+#[test]
+fn names_and_values_are_found() {
+    let (point, eye) = (zone("/motion/1/at y"), zone(""));
+    leads(&[
+        (
+            "/ \"radius\" Enter",
+            &zone("/interpolation/radius"),
+            "1 of 1   layers.face.zones.\"left eye\".interpolation.radius",
+        ),
+        ("/ \"60\" Enter", &zone("/interpolation/radius"), "1 of 1"),
+        ("/ \"25\" Enter", &point, "1 of 2   layers.face.zones.\"left eye\".motion.1.at"),
+        ("/ \"25\" Enter n", &zone("/motion/3/center y"), "2 of 2"),
+        ("/ \"25\" Enter n n", &point, "1 of 2"),
+        ("/ \"25\" Enter N", &zone("/motion/3/center y"), "2 of 2"),
+        ("/ \"25\" Enter 2 n", &point, "1 of 2"),
+        ("/ \"-18\" Enter", &zone("/motion/0/jump dy"), ""),
+        ("/ \"EYE\" Enter", &zone("/name"), "2 of 2"),
+        ("/ \"eye\" Enter n", &eye, "1 of 2"),
+        ("/ \"sine\" Enter", &zone("/position/function"), "1 of 1"),
+        ("/ \"nothing like it\" Enter", &eye, "nothing here is called or says nothing like it"),
+        ("/ \"mou\"", "/layers/0/zones/1", ""),
+        ("/ \"mou\" Esc", &eye, ""),
+        ("/ \"mou\" Backspace Backspace Backspace Backspace", &eye, ""),
+    ]);
+}
+
+#[test]
+fn marks_and_jumps_lead_back() {
+    let (first, second) = (zone("/motion/0/at y"), zone("/motion/1/at x"));
+    leads(&[
+        (&motion("2 l m a G ' a"), &first, ""),
+        (&motion("j l m b g g d ' b"), &zone("/motion/0/at x"), ""),
+        (&motion("j l m b g g D ' b"), &zone("/motion/2/at x"), ""),
+        (&motion("2 l G Ctrl-o"), &first, ""),
+        (&motion("j l G g g Ctrl-o Ctrl-o"), &second, ""),
+        (&motion("j l G g g 2 Ctrl-o"), &second, ""),
+        (&motion("j l G Ctrl-o g o"), &zone("/motion/3/center x"), ""),
+        ("' z", &zone(""), "mark z is not set"),
+        ("Ctrl-o", &zone(""), "no older jump"),
+        ("h / \"60\" Enter Ctrl-o", &zone(""), ""),
+    ]);
+}
+
+#[test]
+fn the_place_beside_this_one_is_reached() {
+    leads(&[
+        (")", "/layers/0/zones/1", ""),
+        (") (", &zone(""), ""),
+        (") )", "/layers/0/zones/1", "this is the last of its kind"),
+        ("/ \"speed\" Enter )", "/layers/0/zones/1/speed", ""),
+        (": \"go layers.face.zones.0.motion.0\" Enter 2 )", &zone("/motion/2"), ""),
+        (": \"go layers.face.zones.0.motion.2\" Enter )", &zone("/motion/2"), "this is the last of its kind"),
+        ("h h )", "/layers/0", "this is the last of its kind"),
+    ]);
+}
+
+#[test]
+pub fn what_is_found_is_edited() {
+    check(&[
+        ("/ \"25\" Enter i \"7\" Enter", &zone("/motion/1/at"), json!([30, 7])),
+        (&motion("j m a g g K G ' a d"), &zone("/motion/1/at"), json!([40, 30])),
+        (&motion("l G Ctrl-o g o +"), &zone("/motion/3/center"), json!([31, 25])),
+        (") D", "/layers/0/zones/2/name", json!("mouth 2")),
+    ]);
 }

@@ -95,7 +95,7 @@ fn the_log_is_short_and_says_what_was_meant() {
         ("/ \"method\" Enter i j Enter", &["search method", "enter", "choose modified-shepard-random"]),
         ("/ \"method\" Enter i j Esc", &["search method"]),
         ("? j q Ctrl-l", &[]),
-        ("/ \"nowhere\" Enter", &["# search nowhere: nothing here is called nowhere"]),
+        ("/ \"nowhere\" Enter", &["# search nowhere: nothing here is called or says nowhere"]),
         (": \"render -o a.gif\" Enter", &["render -o a.gif"]),
     ] {
         let mut state = state();

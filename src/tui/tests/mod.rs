@@ -8,7 +8,7 @@ use super::update::Effect;
 
 pub mod coverage;
 mod data;
-mod finding;
+pub mod finding;
 mod life;
 mod lines;
 mod macros;

@@ -1,0 +1,245 @@
+//! Finding: the search over names and values, marks, the jump list, the same place beside this one.
+
+use super::{Call, Command, Done, command, unquoted};
+use crate::scene::schema::{Body, Place};
+use crate::scene::{address, field, pointer};
+use crate::tui::app::{Mode, Pane, State};
+use crate::tui::places::Sought;
+use crate::tui::sheet::{Part, is_node};
+use crate::tui::terminal::plain;
+use crate::tui::update::Effect;
+
+pub const COMMANDS: &[Command] = &[
+    command("search", "next|previous|TEXT", "Go to the next place of that name or value", search),
+    command("go", "PATH", "Go to the node or the field at a path; without one, to the scene", go),
+    command("mark", "a..z", "Set a mark here", mark),
+    command("jump-mark", "a..z", "Go to a mark", jump_mark),
+    command("jumps", "older|newer", "Go back and on along the jumps", jumps),
+    command("sibling", "next|previous", "Go to the same place of the next zone or tool like this one", sibling),
+];
+
+/// The letter that a command is given.
+fn letter(call: &Call) -> Result<char, String> {
+    let mut letters = call.text.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) if letter.is_ascii_lowercase() => Ok(letter),
+        _ => Err("a mark is a letter from a to z".into()),
+    }
+}
+
+fn mark(state: &mut State, call: &Call) -> Done {
+    let (letter, spot) = (letter(call)?, state.spot());
+    state.finding.mark(letter, spot);
+    state.say(format!("mark {letter} is set: '{letter} comes back"));
+    Ok(())
+}
+
+fn jump_mark(state: &mut State, call: &Call) -> Done {
+    let letter = letter(call)?;
+    let spot =
+        state.finding.marked(letter).cloned().ok_or_else(|| format!("mark {letter} is not set: m{letter} sets it"))?;
+    leave(state);
+    state.return_to(&spot);
+    Ok(())
+}
+
+fn jumps(state: &mut State, call: &Call) -> Done {
+    for _ in 0..call.times() {
+        let here = state.spot();
+        let spot = state.finding.back(call.text != "newer", here);
+        let spot =
+            spot.ok_or_else(|| format!("there is no {} jump", if call.text == "newer" { "newer" } else { "older" }))?;
+        state.return_to(&spot);
+    }
+    Ok(())
+}
+
+/// A jump leaves this place.
+pub fn leave(state: &mut State) {
+    let spot = state.spot();
+    state.finding.left(spot);
+}
+
+fn go(state: &mut State, call: &Call) -> Done {
+    let pointer = match call.text {
+        "" => String::new(),
+        path => address::resolve(state.document(), path).map_err(|error| error.to_string())?,
+    };
+    let before = state.spot();
+    reveal(state, &pointer);
+    if before.node != state.node {
+        state.finding.left(before);
+    }
+    Ok(())
+}
+
+/// Goes to the next place whose name or value is looked for, in the order of the document, around its end.
+fn search(state: &mut State, call: &Call) -> Done {
+    match call.text {
+        "next" | "previous" => {}
+        text => state.finding.sought = unquoted(text),
+    }
+    if state.finding.sought.is_empty() {
+        return Err("nothing was searched for yet: / searches".into());
+    }
+    let steps = if call.text == "previous" { -call.times() } else { call.times() };
+    let Some(found) = find(state, steps) else {
+        return Err(format!("nothing here is called or says {}", state.finding.sought));
+    };
+    leave(state);
+    reveal_part(state, &found.pointer, found.part);
+    state.say(format!("{} of {}   {}", found.index + 1, found.count, plain(&found.address)));
+    Ok(())
+}
+
+/// A place that was found.
+struct Found {
+    pointer: String,
+    address: String,
+    part: usize,
+    index: usize,
+    count: usize,
+}
+
+/// The match so many steps from the cursor.
+fn find(state: &mut State, steps: i64) -> Option<Found> {
+    let document = state.document().clone();
+    let listed = state.finding.listed(&document);
+    let sought = Sought::new(&state.finding.sought);
+    let matches = listed.iter().enumerate().filter_map(|(i, one)| Some((i, one.matched(&sought)?)));
+    let matches: Vec<(usize, usize)> = matches.collect();
+    let count = matches.len();
+    let here = here(state);
+    let at = listed.iter().position(|one| one.pointer == here);
+    // The first match behind the cursor, or the last one before it.
+    let after = matches.partition_point(|&(i, _)| at.is_some_and(|at| i <= at));
+    let before = matches.partition_point(|&(i, _)| at.is_some_and(|at| i < at));
+    let index = if steps > 0 { after as i64 + steps - 1 } else { before as i64 + steps };
+    let index = usize::try_from(index.checked_rem_euclid(count as i64)?).ok()?;
+    let (i, part) = matches[index];
+    let one = &listed[i];
+    Some(Found { pointer: one.pointer.clone(), address: one.address.clone(), part, index, count })
+}
+
+/// What is under the cursor: the cell, else the row, else the node.
+fn here(state: &State) -> String {
+    if state.focus == Pane::Tree {
+        return state.node.clone();
+    }
+    let Some(row) = state.sheet().row(state.row) else { return state.node.clone() };
+    row.cells.get(state.column).map_or(row.pointer, |cell| cell.pointer.clone())
+}
+
+/// A search is being typed: the cursor goes to what would be found.
+pub fn search_typed(state: &mut State, typed: &str) {
+    let Some(origin) = state.finding.origin.clone() else { return };
+    state.return_to(&origin);
+    let before = std::mem::replace(&mut state.finding.sought, typed.to_owned());
+    let found = if typed.is_empty() { None } else { find(state, 1) };
+    state.finding.sought = before;
+    if let Some(found) = found {
+        let mode = std::mem::replace(&mut state.mode, Mode::Normal);
+        reveal_part(state, &found.pointer, found.part);
+        state.mode = mode;
+    }
+}
+
+/// The search is no longer being typed: the cursor is where it was before.
+pub fn search_left(state: &mut State) {
+    if let Some(origin) = state.finding.origin.take() {
+        state.return_to(&origin);
+    }
+}
+
+/// Shows the node or the field at `pointer`.
+pub fn reveal(state: &mut State, pointer: &str) {
+    reveal_part(state, pointer, 0);
+}
+
+/// Shows the node or the field at `pointer`, the cursor on one of its numbers. A field of an item without a name is shown
+/// in the table of those items.
+fn reveal_part(state: &mut State, at: &str, part: usize) {
+    let kind = field::field(state.document(), at).map(|field| field.kind);
+    let node = field::is_there(state.document(), at) && kind.is_some_and(|kind| is_node(&kind));
+    let parent = || pointer::split(at).map_or("", |(parent, _)| parent);
+    let in_table = if node { None } else { cell_in_table(state, parent(), at, part) };
+    let (shown, row, column) = match in_table {
+        Some((list, row, column)) => (list, Some(row), column),
+        None => (if node { at } else { parent() }.to_owned(), None, 0),
+    };
+    state.mode = Mode::Normal;
+    state.unfold(&shown);
+    state.show(shown);
+    state.row = row.or_else(|| state.sheet().position(at)).unwrap_or(state.row);
+    state.focus = if node { Pane::Tree } else { Pane::Table };
+    state.column = if node { state.column } else { column };
+    state.selected_from = None;
+    if !node && row.is_none() {
+        state.column = state.sheet().row(state.row).map_or(0, |row| column_of(&row, at, part).unwrap_or(0));
+    }
+    state.settle();
+    state.ask(Effect::Show);
+}
+
+/// The list, the row and the column where a field of one of its items stands, where the item has no name and no form of
+/// its own is needed for it.
+fn cell_in_table(state: &State, item: &str, at: &str, part: usize) -> Option<(String, usize, usize)> {
+    let (list, index) = pointer::split(item)?;
+    let index = pointer::index(&index)?;
+    let sheet = crate::tui::sheet::Sheet::of(state.document(), list);
+    let row = sheet.row(index).filter(|row| sheet.table && row.pointer == item)?;
+    let named = field::is_there(state.document(), &pointer::join(item, "name"));
+    Some((list.to_owned(), index, column_of(&row, at, part).filter(|_| !named)?))
+}
+
+fn column_of(row: &crate::tui::sheet::Row, at: &str, part: usize) -> Option<usize> {
+    let is = |wanted: Part| row.cells.iter().position(|cell| cell.pointer == at && cell.part == wanted);
+    is(Part::Number(part)).or_else(|| is(Part::Whole))
+}
+
+/// Goes to the same place in the next item like the innermost one that holds the node.
+fn sibling(state: &mut State, call: &Call) -> Done {
+    let next = call.text != "previous";
+    let (mut node, row, column) = (state.node.clone(), state.row, state.column);
+    for _ in 0..call.times() {
+        let end = if next { "last" } else { "first" };
+        node = beside(state, &node, next)?.ok_or_else(|| format!("this is the {end} of its kind"))?;
+    }
+    leave(state);
+    state.unfold(&node);
+    state.show(node);
+    (state.row, state.column) = (row, column);
+    state.settle();
+    Ok(())
+}
+
+/// The same place in the next or previous item of the same kind; none where there is no other.
+fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, String> {
+    let json = state.document().json();
+    let mut item = node;
+    loop {
+        let (list, last) = pointer::split(item).ok_or("this is in no list: go to a zone or a tool")?;
+        if let (Some(index), Some(items)) = (pointer::index(&last), json.pointer(list).and_then(|list| list.as_array()))
+        {
+            let tag = match Place::of(json, item).map(|place| place.shape.body()) {
+                Some(Body::Tagged(tag)) => tag,
+                _ => "",
+            };
+            let kind = |i: usize| items.get(i).and_then(|item| item.get(tag));
+            let alike = |i: &usize| kind(*i) == kind(index);
+            let there = if next { (index + 1..items.len()).find(alike) } else { (0..index).rev().find(alike) };
+            let rest = &node[item.len()..];
+            let place = there.map(|i| format!("{}{rest}", pointer::join(list, i)));
+            return Ok(place.map(|place| nearest(state, place)));
+        }
+        item = list;
+    }
+}
+
+/// The place, or what of it is there.
+fn nearest(state: &State, mut place: String) -> String {
+    while !field::is_there(state.document(), &place) {
+        place.truncate(place.rfind('/').unwrap_or(0));
+    }
+    place
+}
