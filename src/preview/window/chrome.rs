@@ -88,8 +88,8 @@ fn bar(canvas: &mut Canvas, state: &State) {
     let left = Point::new(rail.x0 + 18.0 * scale, y);
     let times = times(state);
     canvas.text(&times, left, TEXT_PX * scale, TEXT);
-    let right = right_text(state);
     let size = TEXT_PX * scale / glyphs::BASE;
+    let right = right_text(state, (rail.x1 - left.x) / size - glyphs::width(&times) - 4.0 * glyphs::BASE);
     let right_at = rail.x1 - glyphs::width(&right) * size;
     canvas.text(&right, Point::new(right_at, y), TEXT_PX * scale, DIM);
     let from = left.x + glyphs::width(&times) * size + 24.0 * scale;
@@ -105,7 +105,7 @@ fn said(state: &State) -> (String, Color) {
         Some("synthesising".to_owned())
     } else if state.shown.seam {
         let last = state.timeline.frames() - 1;
-        Some(format!("the seam: frame {last} against frame 0, differences 8 times as strong"))
+        Some(format!("seam: frame {last} against 0, differences x 8"))
     } else if state.shown.wipe {
         Some("still left, moving right".to_owned())
     } else {
@@ -159,15 +159,24 @@ fn times(state: &State) -> String {
     )
 }
 
-fn right_text(state: &State) -> String {
-    let place = state.pointed().map_or(String::new(), |p| format!("x {:.1}  y {:.1}   ", p.x, p.y));
+/// What stands on the right, as much of it as fits: the least important goes first.
+fn right_text(state: &State, room: f64) -> String {
     let percent = state.camera.zoom * 100.0;
-    let exactly = if state.transport.whole_frames { "whole frames   " } else { "" };
-    let fps = state.fps.map_or(String::new(), |fps| format!("{fps:.0} fps   "));
-    format!(
-        "{place}{exactly}{fps}{} %   ? keys",
-        if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 }
-    )
+    let percent = if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 };
+    let mut parts: Vec<(u8, String)> = Vec::new();
+    parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));
+    parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
+    parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
+    parts.push((4, format!("{percent} %")));
+    parts.push((1, "? keys".to_owned()));
+    loop {
+        let text = parts.iter().map(|(_, part)| part.as_str()).collect::<Vec<_>>().join("   ");
+        let least = parts.iter().map(|(weight, _)| *weight).min();
+        if parts.len() == 1 || glyphs::width(&text) <= room {
+            return text;
+        }
+        parts.retain(|(weight, _)| Some(*weight) != least);
+    }
 }
 
 /// As much of a text as fits.
@@ -195,11 +204,16 @@ fn panel(canvas: &mut Canvas, state: &State, rows: &mut dyn Iterator<Item = &Key
     // In logical pixels; then as much smaller as the window asks for.
     let (keys, line) = (widest(|r| r.key) + 1.5 * MARGIN_PX, glyphs::LINE * TEXT_PX / glyphs::BASE * 1.35);
     let column = keys + widest(|r| r.help) + 2.0 * MARGIN_PX;
-    let room = ((state.area().height / state.scale - 4.0 * MARGIN_PX) / line).floor().max(1.0) as usize;
-    let columns = rows.len().div_ceil(room);
-    let height = rows.len().div_ceil(columns.max(1));
-    let width = column * columns as f64 + 2.0 * MARGIN_PX;
-    let scale = state.scale * (state.area().width / state.scale / width).min(1.0);
+    // As many columns as leave the letters largest.
+    let area = state.area() / state.scale;
+    let fits = |columns: usize| {
+        let width = column * columns as f64 + 2.0 * MARGIN_PX;
+        let height = line * rows.len().div_ceil(columns) as f64 + 4.0 * MARGIN_PX;
+        (area.width / width).min(area.height / height).min(1.0)
+    };
+    let columns = (1..=4).rev().max_by(|&a, &b| fits(a).total_cmp(&fits(b))).unwrap_or(1);
+    let height = rows.len().div_ceil(columns);
+    let scale = state.scale * fits(columns);
     let [margin, keys, line, column] = [MARGIN_PX, keys, line, column].map(|length| length * scale);
     let frame = Rect::new(
         margin,
@@ -262,9 +276,13 @@ mod tests {
         assert_eq!(times(&state), "0.50 / 2.00 s   frame 15 / 60");
         state.transport.speed = 0.25;
         assert!(times(&state).ends_with("frame 15 / 60   speed 0.25"));
-        assert_eq!(right_text(&state), "200 %   ? keys");
+        assert_eq!(right_text(&state, 999.0), "200 %   ? keys");
         (state.fps, state.transport.whole_frames) = (Some(59.97), true);
-        assert_eq!(right_text(&state), "whole frames   60 fps   200 %   ? keys");
+        assert_eq!(right_text(&state, 999.0), "whole frames   60 fps   200 %   ? keys");
+        state.pointer = Some(Point::new(10.0, 20.0));
+        for text in ["x 5.0  y 10.0   60 fps   200 %   ? keys", "x 5.0  y 10.0   200 %", "200 %"] {
+            assert_eq!(right_text(&state, glyphs::width(text) + 0.1), text);
+        }
     }
 
     #[test]
@@ -272,7 +290,7 @@ mod tests {
         let mut state = State { notice: Some("joined".into()), selected: Some("face/eye".into()), ..state() };
         assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
         state.shown.seam = true;
-        assert!(said(&state).0.contains("frame 59 against frame 0"));
+        assert!(said(&state).0.contains("frame 59 against 0"));
         state.problem = Some("no picture".into());
         assert_eq!(said(&state), ("no picture".into(), WARNING));
     }

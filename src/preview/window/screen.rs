@@ -78,7 +78,7 @@ struct ScreenUniform {
 impl Screen {
     /// A GPU that can show in the window, and the window's surface.
     pub fn open(instance: wgpu::Instance, window: Arc<Window>) -> Result<(Gpu, Screen)> {
-        let surface = instance.create_surface(window.clone()).map_err(|e| Error::at("window", e))?;
+        let surface = instance.create_surface(window.clone()).map_err(|_| nothing_draws())?;
         let gpu = Gpu::open(instance, Some(&surface))?;
         let format = format(&surface, &gpu)?;
         let pipelines = Pipelines::new(&gpu, format)?;
@@ -324,6 +324,12 @@ fn instances(device: &crate::render::gpu::device::Device, strokes: &[Stroke]) ->
     });
     device.queue.write_buffer(&buffer, 0, bytes);
     Some(buffer)
+}
+
+/// The reason that the library gives is empty where no driver answers at all.
+fn nothing_draws() -> Error {
+    Error::at("window", "nothing here can draw in it: neither a GPU nor a software driver was found")
+        .cure("install a Vulkan or OpenGL driver, as Mesa; plica render and plica edit need none")
 }
 
 /// One that takes sRGB codes as they are, where there is one.

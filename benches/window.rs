@@ -1,0 +1,112 @@
+//! From an edit to pixels on the screen, and what that costs on the link: `cargo bench --bench window`. A 512 x 512 zone in a
+//! real window on a display of its own (Xvfb), fed as the editor feeds it.
+#![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
+
+mod scenes;
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use plica::preview::Reply;
+use plica::preview::editor::{Event, Preview};
+use plica::preview::message::{self, FromEditor};
+use plica::scene::Document;
+use plica::scene::edit::Edit;
+
+const SIDE: usize = 512;
+const EDITS: u64 = 40;
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Ends with the value.
+struct Process(Child);
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let scene = folder.path().join("s.plica.json");
+    let mut document = Document::parse(&text()).map_err(|problems| format!("{problems:?}"))?;
+    std::fs::write(&scene, document.to_text())?;
+    picture(&folder.path().join("a.png"))?;
+    let (sender, replies) = channel();
+    let editor = Preview::start(&scene, &document, 0, move |event| {
+        if let Event::Reply(reply) = event {
+            drop(sender.send(reply));
+        }
+    });
+    let (_server, display) = display()?;
+    let mut view = Command::new(env!("CARGO_BIN_EXE_plica"));
+    let _view = Process(view.arg("view").arg(&scene).env("DISPLAY", display).env_remove("WAYLAND_DISPLAY").spawn()?);
+    shown(&replies, 0)?;
+    let (mut times, mut synths, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+    for revision in 1..=EDITS {
+        let patch = serde_json::json!([{"op": "replace", "path": "/layers/0/zones/0/interpolation/radius", "value": 300 + revision}]);
+        let edit: Edit = serde_json::from_value(patch)?;
+        let began = Instant::now();
+        document = document.apply(&edit).map_err(|problems| format!("{problems:?}"))?;
+        editor.publish(&document, revision, &edit);
+        synths.push(shown(&replies, revision)?);
+        times.push(began.elapsed().as_secs_f64() * 1000.0);
+        let mut sent = Vec::new();
+        message::write(
+            &mut sent,
+            &FromEditor::Patch { from_revision: revision - 1, to_revision: revision, patch: edit },
+        )?;
+        bytes.push(sent.len() as f64);
+    }
+    println!(
+        "edit to pixels, {SIDE} x {SIDE} zone: median {:.1} ms, worst {:.1} ms",
+        median(&mut times),
+        worst(&times)
+    );
+    println!("of which loading and synthesis: median {:.1} ms", median(&mut synths));
+    println!("bytes on the link an edit: {}", worst(&bytes));
+    Ok(())
+}
+
+/// Waits until the window has put this revision on the screen; gives what loading and synthesis took, in milliseconds.
+fn shown(replies: &Receiver<Reply>, wanted: u64) -> Result<f64, Box<dyn std::error::Error>> {
+    loop {
+        match replies.recv_timeout(PATIENCE)? {
+            Reply::Shown { revision, synth_ms } if revision == wanted => return Ok(synth_ms),
+            _ => {}
+        }
+    }
+}
+
+fn display() -> Result<(Process, String), Box<dyn std::error::Error>> {
+    let mut server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "1000x800x24", "-nolisten", "tcp"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()?;
+    let mut number = String::new();
+    BufReader::new(server.stdout.take().ok_or("Xvfb says nothing")?).read_line(&mut number)?;
+    Ok((Process(server), format!(":{}", number.trim())))
+}
+
+fn text() -> String {
+    let zone = scenes::zone((SIDE, SIDE), 94, r#"{"method":"modified-shepard","radius":300}"#);
+    let layer = serde_json::json!({"kind": "picture", "name": "all", "image": "a", "zones": [zone]});
+    serde_json::json!({"plica": 1, "images": {"a": {"path": "a.png"}}, "layers": [layer]}).to_string()
+}
+
+fn picture(path: &std::path::Path) -> image::ImageResult<()> {
+    image::RgbImage::from_fn(SIDE as u32, SIDE as u32, |x, y| image::Rgb([x as u8, y as u8, 90])).save(path)
+}
+
+fn median(numbers: &mut [f64]) -> f64 {
+    numbers.sort_unstable_by(f64::total_cmp);
+    numbers[numbers.len() / 2]
+}
+
+fn worst(numbers: &[f64]) -> f64 {
+    numbers.iter().copied().fold(0.0, f64::max)
+}

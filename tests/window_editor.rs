@@ -1,0 +1,137 @@
+//! The window and an editor in this process: what each tells the other, and what the window gets over.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![cfg(feature = "window")]
+
+mod display;
+
+use std::sync::mpsc::{Receiver, channel};
+
+use display::{Display, Place, View, corner};
+use plica::files::{Options, scene};
+use plica::preview::editor::{Event, Preview};
+use plica::preview::{Reply, Transport};
+use plica::scene::edit::Edit;
+
+/// An editor of the scene, and what its windows say.
+fn editor(place: &Place) -> (Preview, Receiver<Reply>) {
+    let (sender, replies) = channel();
+    let document = scene::open(&place.scene, &Options::default()).unwrap();
+    let deliver = move |event| {
+        if let Event::Reply(reply) = event {
+            drop(sender.send(reply));
+        }
+    };
+    (Preview::start(&place.scene, &document, 0, deliver), replies)
+}
+
+/// The first reply that is looked for.
+fn heard<T>(replies: &Receiver<Reply>, wanted: impl Fn(&Reply) -> Option<T>) -> T {
+    loop {
+        let reply = replies.recv_timeout(display::PATIENCE).expect("a reply");
+        if let Some(found) = wanted(&reply) {
+            return found;
+        }
+    }
+}
+
+fn transport(replies: &Receiver<Reply>) -> Transport {
+    heard(replies, |reply| match reply {
+        Reply::Transport(transport) => Some(*transport),
+        _ => None,
+    })
+}
+
+#[test]
+fn editor_and_window_share_time_point_and_view() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let (editor, replies) = editor(&place);
+    let mut view = View::of(&display, &mut place.joining());
+    let timeline = place.scene().timeline;
+    let time = |frame: u64| timeline.time_of(frame) * timeline.duration;
+    editor.view("zoom-one");
+    view.shows("frame 0", &place.frame(0));
+
+    let stands = |frame: u64| Transport { playing: false, time: time(frame), speed: 1.0 };
+    editor.transport(stands(5));
+    view.shows("the editor's frame", &place.frame(5));
+    view.keys(&["bracketright"]);
+    let said = transport(&replies);
+    assert!(!said.playing && (said.time - time(6)).abs() < 1e-9, "{said:?}");
+    view.keys(&["greater"]);
+    assert_eq!(transport(&replies).speed, 2.0);
+    view.keys(&["P"]);
+    assert!(transport(&replies).playing);
+    view.keys(&["P"]);
+    assert!(!transport(&replies).playing);
+
+    let (left, top) = corner(&view.shot(), &place.frame(0));
+    let at = [left + 100, top + 60].map(|n| n.to_string());
+    display.tool("xdotool", &["mousemove", "--window", &view.window, &at[0], &at[1]]);
+    view.keys(&["Return"]);
+    heard(&replies, |reply| matches!(reply, Reply::Pointer { x: 100.0, y: 60.0 }).then_some(()));
+    heard(&replies, |reply| matches!(reply, Reply::Command(name) if name == "mark-point").then_some(()));
+
+    let bare = view.shot();
+    for command in ["view-outlines", "view-wheel", "view-samplers"] {
+        editor.view(command);
+        view.until(command, |v| v.shot() != bare);
+        editor.view(command);
+        view.until("no overlay", |v| v.shot() == bare);
+    }
+}
+
+#[test]
+fn what_is_lost_comes_back_in_the_same_window() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let (editor, replies) = editor(&place);
+    let mut view = View::of(&display, &mut place.joining());
+    view.keys(&["1"]);
+    view.shows("frame 0", &place.frame(0));
+    let window = view.window.clone();
+    editor.view("lose-device");
+    view.keys(&["bracketright"]);
+    view.shows("frame 1 on a new device", &place.frame(1));
+    display.tool("xdotool", &["windowunmap", "--sync", &window]);
+    display.tool("xdotool", &["windowmap", "--sync", &window]);
+    view.shows("frame 1 after it was hidden", &place.frame(1));
+    display.tool("xdotool", &["windowsize", &window, "1", "1"]);
+    display.tool("xdotool", &["windowsize", &window, "700", "600"]);
+    view.shows("frame 1 after it was tiny", &place.frame(1));
+
+    let document = scene::open(&place.scene, &Options::default()).unwrap();
+    let patch = serde_json::json!([{"op": "remove", "path": "/layers/0/zones"}]);
+    let edit: Edit = serde_json::from_value(patch).unwrap();
+    let edited = document.apply(&edit).unwrap();
+    editor.publish(&edited, 7, &edit);
+    heard(&replies, |reply| matches!(reply, Reply::Shown { revision: 7, .. }).then_some(()));
+    assert_eq!(view.window, window);
+}
+
+#[test]
+fn a_picture_that_the_gpu_cannot_hold_is_reduced_and_said_so() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let (_editor, replies) = editor(&place);
+    let mut command = place.joining();
+    let mut view = View::of(&display, command.args(["--limit", "texture=200"]));
+    let said = heard(&replies, |reply| match reply {
+        Reply::Report { notice, .. } if !notice.is_empty() => Some(notice.clone()),
+        _ => None,
+    });
+    assert_eq!(said, "480 x 360 is shown reduced 3 times");
+    let frame = place.frame(0);
+    view.keys(&["1"]);
+    let far = |a: [u8; 4], b: [u8; 4]| (0..3).any(|c| a[c].abs_diff(b[c]) > 60);
+    view.until("about the picture", |v| {
+        let shot = v.shot();
+        if shot.width() < frame.width() || shot.height() < frame.height() + display::BAR {
+            return false;
+        }
+        let (left, top) = corner(&shot, &frame);
+        let places = (0..frame.height()).flat_map(|y| (0..frame.width()).map(move |x| (x, y)));
+        let differ = places.filter(|&(x, y)| far(*shot.get(left + x, top + y), *frame.get(x, y))).count();
+        differ * 20 < frame.cells().len()
+    });
+}
