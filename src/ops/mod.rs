@@ -204,7 +204,7 @@ impl Progress for Stderr {
 }
 
 /// How long the rest will take, as text, once that can be told.
-fn left(spent: Duration, done: u64, total: u64) -> String {
+pub fn left(spent: Duration, done: u64, total: u64) -> String {
     if done == 0 || done >= total || spent.as_millis() < 500 {
         return String::new();
     }

@@ -21,7 +21,7 @@ impl Depth {
     /// As the environment says: NO_COLOR, COLORTERM, TERM.
     pub fn of_environment(get: impl Fn(&str) -> Option<String>) -> Depth {
         let is = |name: &str, part: &str| get(name).is_some_and(|value| value.contains(part));
-        if get("NO_COLOR").is_some_and(|value| !value.is_empty()) {
+        if get("NO_COLOR").is_some_and(|value| !value.is_empty()) || get("TERM").is_some_and(|term| term == "dumb") {
             Depth::None
         } else if is("COLORTERM", "truecolor") || is("COLORTERM", "24bit") || is("TERM", "direct") {
             Depth::True
@@ -127,6 +127,10 @@ mod tests {
             (&[("TERM", "xterm-256color"), ("COLORTERM", "truecolor")][..], Depth::True),
             (&[("TERM", "screen-256color")], Depth::Indexed),
             (&[("TERM", "linux")], Depth::Ansi),
+            (&[("TERM", "xterm-16color")], Depth::Ansi),
+            (&[("TERM", "xterm-direct")], Depth::True),
+            (&[("TERM", "dumb"), ("COLORTERM", "truecolor")], Depth::None),
+            (&[("TERM", "screen-256color"), ("COLORTERM", "")], Depth::Indexed),
             (&[("TERM", "xterm-256color"), ("NO_COLOR", "1")], Depth::None),
             (&[("TERM", "linux"), ("NO_COLOR", "")], Depth::Ansi),
         ] {

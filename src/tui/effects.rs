@@ -49,6 +49,8 @@ impl Editor {
             Effect::Open(path) => self.open(&path, self.options.mode()),
             Effect::TakeOver => self.open(&self.state.door.path().to_owned(), Mode::TakeOver),
             Effect::Run(words) => self.start(&words),
+            Effect::Probe(words) if self.screen.is_none() => self.start(&words),
+            Effect::Probe(_) => {}
             Effect::Copy(text) => terminal::copy(&text),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::View(None) => self.preview.open_window(),

@@ -9,9 +9,13 @@ use kurbo::Point;
 
 use super::app::{Mode, State};
 use super::graphics::{Graphics, Marks, Protocol, Shown, Wanted};
-use super::{place, sight, view};
+use super::{place, sight, tree, view};
+use crate::base::pixels::encode;
+use crate::layers::folding::probe::{Probe, probe};
+use crate::layers::{Layer, Materials};
 use crate::render::overlay::View;
 use crate::render::part::Part;
+use crate::render::{LayerSynth, Synth, cpu};
 use crate::scene::Scene;
 
 /// What there is to see.
@@ -21,6 +25,60 @@ pub struct Seeing {
     pub graphics: Graphics,
     /// The picture that the worker made last.
     pub shown: Option<Arc<Shown>>,
+    /// Whether the read-out of the pixel under the cursor is open.
+    pub probing: bool,
+    /// What the worker said about a pixel last.
+    pub probed: Option<Arc<Probed>>,
+    /// The longest jump vector of every zone, by layer and zone.
+    pub longest: Vec<(usize, usize, f64)>,
+    /// Whether the worker synthesises.
+    pub synthesising: bool,
+}
+
+/// A pixel that is asked about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// The layer.
+    pub layer: usize,
+    /// Column and row.
+    pub pixel: (usize, usize),
+    /// Scene time.
+    pub time: f64,
+}
+
+/// What one pixel does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probed {
+    /// What was asked.
+    pub asked: Asked,
+    /// What it does; none outside every zone.
+    pub probe: Option<Probe>,
+    /// The colour that the frame shows there: sRGB, straight alpha.
+    pub colour: [u8; 4],
+}
+
+impl Probed {
+    /// The answer, as `plica probe` has it; none where there is no such pixel.
+    pub fn new(asked: Asked, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
+        let Layer::Picture(layer) = scene.layers.get(asked.layer)?;
+        let (x, y) = asked.pixel;
+        let probe = probe(layer, scene.timeline.wrap, materials, asked.pixel, asked.time).ok()?;
+        let within = x < synth.size.0 && y < synth.size.1;
+        let colour = within.then(|| encode(*cpu::lattice(synth, asked.time, &[x], &[y]).get(0, 0)));
+        Some(Probed { asked, probe, colour: colour.unwrap_or_default() })
+    }
+}
+
+/// The longest jump vector of every zone, in pixels.
+pub fn longest(synth: &Synth) -> Vec<(usize, usize, f64)> {
+    let mut all = Vec::new();
+    for (i, LayerSynth::Picture(layer)) in synth.layers.iter().enumerate() {
+        for zone in &layer.zones {
+            let squares = zone.field.jumps.cells().iter().map(|&[x, y]| x * x + y * y);
+            all.push((i, zone.index, f64::from(squares.fold(0.0, f32::max)).sqrt()));
+        }
+    }
+    all
 }
 
 /// What the panes want to show.
@@ -36,6 +94,8 @@ pub struct Request {
     pub fresh: bool,
     /// The picture, where there is room for it.
     pub picture: Option<Wanted>,
+    /// The pixel whose read-out is open.
+    pub probe: Option<Asked>,
 }
 
 impl PartialEq for Request {
@@ -45,6 +105,7 @@ impl PartialEq for Request {
             && self.path == other.path
             && self.time == other.time
             && self.picture == other.picture
+            && self.probe == other.probe
     }
 }
 
@@ -52,7 +113,15 @@ impl PartialEq for Request {
 pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
     let path = state.door.path().to_owned();
-    Request { scene, path, time: state.time, fresh: false, picture: wanted(state) }
+    Request { scene, path, time: state.time, fresh: false, picture: wanted(state), probe: asked(state) }
+}
+
+/// The pixel under the cursor, where its read-out is open.
+pub fn asked(state: &State) -> Option<Asked> {
+    let at = state.placing.cursor;
+    let pixel = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
+    let layer = tree::place(&state.node).0.unwrap_or(0);
+    state.seeing.probing.then_some(Asked { layer, pixel, time: state.time })
 }
 
 /// The protocol in force.
@@ -128,7 +197,8 @@ impl Eyes {
             return None;
         }
         if !self.left().is_zero() {
-            if self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(&asked.scene, &request.scene)) {
+            let same = |asked: &Request| Arc::ptr_eq(&asked.scene, &request.scene) && asked.probe == request.probe;
+            if self.asked.as_ref().is_some_and(same) {
                 return None;
             }
             request.picture = None;

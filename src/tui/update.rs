@@ -9,6 +9,7 @@ use super::app::{Mode, Pages, State};
 use super::graphics::Shown;
 use super::keys::Found;
 use super::panes::first_row;
+use super::seeing::Probed;
 use super::{commands, life, tree, view};
 use crate::preview::Transport;
 use crate::preview::editor::Asked;
@@ -30,7 +31,11 @@ pub enum Event {
     /// This much time has passed while playing, in seconds.
     Tick(f64),
     /// A synthesis has ended: what it made and how long it took, or what kept it.
-    Synthesised(Result<(Arc<Synth>, f64), String>),
+    Synthesised(Result<Synthesis, String>),
+    /// A synthesis has begun.
+    Synthesising,
+    /// What a pixel does.
+    Probed(Arc<Probed>),
     /// A picture is there.
     Framed(Arc<Shown>),
     /// Long work has got on.
@@ -59,6 +64,16 @@ pub enum Event {
     Stop,
     /// A click, in cells of the terminal.
     Click(u16, u16),
+}
+
+/// What a synthesis has made.
+pub struct Synthesis {
+    /// What a frame needs.
+    pub synth: Arc<Synth>,
+    /// How long it took, in milliseconds.
+    pub ms: f64,
+    /// The longest jump vector of every zone, by layer and zone.
+    pub longest: Vec<(usize, usize, f64)>,
 }
 
 /// A change of the document, as the windows want it.
@@ -102,6 +117,8 @@ pub enum Effect {
     TakeOver,
     /// Load the pictures again.
     Reload,
+    /// The pixel that these arguments of `plica probe` are about was asked for: its read-out is open where there is a screen.
+    Probe(Vec<String>),
     /// Run a subcommand of the command line with these arguments.
     Run(Vec<String>),
     /// Hand a text to the terminal's clipboard.
@@ -129,13 +146,20 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Paste(text) => paste(state, &text),
         Event::Resize(width, height) => state.size = (width, height),
         Event::Tick(seconds) => state.pass(seconds),
-        Event::Synthesised(Ok((synth, ms))) => {
+        Event::Synthesising => state.seeing.synthesising = true,
+        Event::Probed(probed) => state.seeing.probed = Some(probed),
+        Event::Synthesised(Ok(Synthesis { synth, ms, longest })) => {
+            state.seeing.synthesising = false;
+            state.seeing.longest = longest;
             state.picture_size = Some(synth.size);
             state.seen.synth = Some(synth);
             state.seen.synth_ms = Some(ms);
             state.seen.problem = None;
         }
-        Event::Synthesised(Err(problem)) => state.seen.problem = Some(problem),
+        Event::Synthesised(Err(problem)) => {
+            state.seeing.synthesising = false;
+            state.seen.problem = Some(problem);
+        }
         Event::Framed(shown) => state.seeing.shown = Some(shown),
         Event::Progress(line) => state.seen.work = Some(line),
         Event::Done(result) => {
@@ -212,7 +236,7 @@ fn click(state: &mut State, x: u16, y: u16) {
     if !matches!(state.mode, Mode::Normal) {
         return;
     }
-    let areas = view::areas(Rect::new(0, 0, state.size.0, state.size.1));
+    let areas = view::areas(Rect::new(0, 0, state.size.0, state.size.1), state.seeing.probing);
     let at = Position::new(x, y);
     if areas.tree.contains(at) {
         let rows = tree::rows(state.document(), &state.folded);

@@ -32,8 +32,12 @@ pub struct Areas {
     pub line: Rect,
 }
 
-/// The areas of a screen.
-pub fn areas(screen: Rect) -> Areas {
+/// Rows of what is told about a field, and of the read-out of a pixel that takes its place, with their frames.
+const DETAIL: u16 = 5;
+const PROBE: u16 = 9;
+
+/// The areas of a screen, with the read-out of a pixel or without.
+pub fn areas(screen: Rect, probing: bool) -> Areas {
     let [body, status, line] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
     let right = if screen.width >= WIDE { screen.width * 2 / 5 } else { 0 };
@@ -43,7 +47,9 @@ pub fn areas(screen: Rect) -> Areas {
     let columns = Layout::horizontal(columns).spacing(Spacing::Overlap(1)).split(body);
     let (tree, middle, right) = (columns[0], columns[1], columns.get(2).copied().unwrap_or_default());
     let [table, detail] =
-        Layout::vertical([Constraint::Fill(1), Constraint::Length(5)]).spacing(Spacing::Overlap(1)).areas(middle);
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(if probing { PROBE } else { DETAIL })])
+            .spacing(Spacing::Overlap(1))
+            .areas(middle);
     let stack = [Constraint::Fill(3), Constraint::Length((body.height / 5).max(6)), Constraint::Fill(5)];
     let right = (right.width > 0).then(|| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
     Areas { tree, table, detail, right, status, line }
@@ -54,14 +60,19 @@ fn picture_in_middle(state: &State, areas: &Areas) -> bool {
     areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim))
 }
 
+/// The middle column, as far as the read-out leaves it.
+fn middle(state: &State, areas: &Areas) -> Rect {
+    if state.seeing.probing { areas.table } else { areas.table.union(areas.detail) }
+}
+
 /// The inside of the picture's pane, where it is on the screen.
 pub fn picture(state: &State) -> Option<Rect> {
     let (width, height) = state.size;
     if width < LEAST.0 || height < LEAST.1 {
         return None;
     }
-    let areas = areas(Rect::new(0, 0, width, height));
-    let middle = picture_in_middle(state, &areas).then(|| areas.table.union(areas.detail));
+    let areas = areas(Rect::new(0, 0, width, height), state.seeing.probing);
+    let middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
     areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
 }
 
@@ -71,17 +82,22 @@ pub fn draw(frame: &mut Frame, state: &State) {
     if screen.width < LEAST.0 || screen.height < LEAST.1 {
         return too_small(frame, screen);
     }
-    let areas = areas(screen);
+    let areas = areas(screen, state.seeing.probing);
     let mut cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
     if picture_in_middle(state, &areas) {
-        let whole = areas.table.union(areas.detail);
-        let inner = pane(frame, state, whole, Pane::Picture, &panes::picture::title(state));
+        let inner = pane(frame, state, middle(state, &areas), Pane::Picture, &panes::picture::title(state));
         cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
     } else {
         let inner = pane(frame, state, areas.table, Pane::Table, &panes::table::title(state));
         cursor = panes::table::draw(state, inner, frame.buffer_mut()).or(cursor);
-        let inner = block(frame, areas.detail, "");
-        panes::detail::draw(state, inner, frame.buffer_mut());
+        if !state.seeing.probing {
+            let inner = block(frame, areas.detail, "");
+            panes::detail::draw(state, inner, frame.buffer_mut());
+        }
+    }
+    if state.seeing.probing {
+        let inner = block(frame, areas.detail, "probe");
+        panes::probe::draw(state, inner, frame.buffer_mut());
     }
     if let Some([field, position, picture]) = areas.right {
         let inner = block(frame, field, "field");

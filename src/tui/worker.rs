@@ -6,10 +6,11 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use super::graphics::Shown;
-use super::seeing::Request;
-use super::update::Event;
+use super::seeing::{self, Probed, Request};
+use super::update::{Event, Synthesis};
 use crate::base::error::Error;
 use crate::files;
+use crate::layers::Materials;
 use crate::ops;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
@@ -26,7 +27,7 @@ impl Worker {
         let shared = slot.clone();
         std::thread::spawn(move || {
             let cache = files::materials::Cache::default();
-            let mut studio = Studio { options, cache, shown: None, picture: None };
+            let mut studio = Studio { options, cache, made: None, picture: None };
             while let Some(request) = next(&shared) {
                 if !studio.serve(&request, &events) {
                     return;
@@ -53,26 +54,41 @@ fn next((slot, wake): &(Mutex<Option<Request>>, Condvar)) -> Option<Request> {
     guard.take()
 }
 
+/// A scene and what was made of it.
+struct Made {
+    scene: Arc<Scene>,
+    synth: Arc<Synth>,
+    materials: Materials,
+}
+
 /// What the thread keeps from one request to the next.
 struct Studio {
     options: files::Options,
     cache: files::materials::Cache,
-    shown: Option<(Arc<Scene>, Arc<Synth>)>,
+    made: Option<Made>,
     picture: Option<Arc<Shown>>,
 }
 
 impl Studio {
     /// Serves a request; false where nobody listens any more.
     fn serve(&mut self, request: &Request, events: &mpsc::Sender<Event>) -> bool {
-        if request.fresh || !self.shown.as_ref().is_some_and(|(scene, _)| Arc::ptr_eq(scene, &request.scene)) {
+        if request.fresh || !self.made.as_ref().is_some_and(|made| Arc::ptr_eq(&made.scene, &request.scene)) {
+            if events.send(Event::Synthesising).is_err() {
+                return false;
+            }
             let begun = Instant::now();
             let result = self.synthesise(request);
             let ms = begun.elapsed().as_secs_f64() * 1000.0;
-            if events.send(Event::Synthesised(result.map(|synth| (synth, ms)))).is_err() {
+            let longest = result.as_ref().map_or(Vec::new(), |synth| seeing::longest(synth));
+            if events.send(Event::Synthesised(result.map(|synth| Synthesis { synth, ms, longest }))).is_err() {
                 return false;
             }
         }
-        let Some((scene, synth)) = &self.shown else { return true };
+        let Some(Made { scene, synth, materials }) = &self.made else { return true };
+        let probed = request.probe.and_then(|asked| Probed::new(asked, scene, synth, materials));
+        if probed.is_some_and(|probed| events.send(Event::Probed(Arc::new(probed))).is_err()) {
+            return false;
+        }
         let Some(wanted) = request.picture.clone() else { return true };
         let picture = Shown::new(synth, scene, request.time, wanted, self.picture.as_deref());
         self.picture = Some(picture.clone());
@@ -82,13 +98,13 @@ impl Studio {
     fn synthesise(&mut self, request: &Request) -> Result<Arc<Synth>, String> {
         let (materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
-        let previous = self.shown.as_ref().map(|(_, synth)| &**synth);
+        let previous = self.made.as_ref().map(|made| &*made.synth);
         let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
             // A picture that could not be read says more than that it is not there.
             problems.first().unwrap_or(&problem).to_string()
         })?;
         let synth = Arc::new(synth);
-        self.shown = Some((request.scene.clone(), synth.clone()));
+        self.made = Some(Made { scene: request.scene.clone(), synth: synth.clone(), materials });
         problems.first().map_or(Ok(synth), |problem| Err(problem.to_string()))
     }
 }
@@ -107,7 +123,8 @@ impl Job {
         let thread = std::thread::spawn(move || {
             let out = Buffer::default();
             let said = Buffer::default();
-            let messages = Messages { name: name.clone(), said: said.clone(), events: events.clone(), shown: None };
+            let messages =
+                Messages { name: name.clone(), said: said.clone(), events: events.clone(), begun: None, shown: None };
             let mut context =
                 ops::Context { out: Box::new(out.clone()), messages: Box::new(messages), cancel: shared, open };
             let result = command.run(&mut context);
@@ -164,7 +181,18 @@ struct Messages {
     name: String,
     said: Buffer,
     events: mpsc::Sender<Event>,
+    /// When the work in progress began.
+    begun: Option<Instant>,
     shown: Option<Instant>,
+}
+
+/// Work in progress as a line: what, how far, a bar, the share, and how long the rest will take.
+fn progress(name: &str, what: &str, (done, total): (u64, u64), spent: Duration) -> String {
+    const CELLS: u64 = 8;
+    let of = |whole: u64| done.min(total) * whole / total.max(1);
+    let bar: String = (0..CELLS).map(|i| if i < of(CELLS) { '█' } else { '░' }).collect();
+    let left = ops::left(spent, done, total);
+    format!("{name}: {what} {done}/{total} {bar} {}%{left}", of(100))
 }
 
 impl ops::Progress for Messages {
@@ -175,10 +203,32 @@ impl ops::Progress for Messages {
     }
 
     fn step(&mut self, what: &str, done: u64, total: u64) {
+        let begun = *self.begun.get_or_insert_with(Instant::now);
         if self.shown.is_none_or(|at| at.elapsed() > Duration::from_millis(100)) {
             self.shown = Some(Instant::now());
+            let line = progress(&self.name, what, (done, total), begun.elapsed());
             // Nobody listens once the editor has left.
-            let _ = self.events.send(Event::Progress(format!("{}: {what} {done}/{total}", self.name)));
+            let _ = self.events.send(Event::Progress(line));
+        }
+        if done >= total {
+            self.begun = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_tells_how_far_it_is() {
+        for (step, secs, line) in [
+            ((0, 60), 0, "render: frame 0/60 ░░░░░░░░ 0%"),
+            ((15, 60), 2, "render: frame 15/60 ██░░░░░░ 25%, 6 s left"),
+            ((60, 60), 9, "render: frame 60/60 ████████ 100%"),
+            ((0, 0), 1, "render: frame 0/0 ░░░░░░░░ 0%"),
+        ] {
+            assert_eq!(progress("render", "frame", step, Duration::from_secs(secs)), line);
         }
     }
 }

@@ -28,6 +28,8 @@ pub struct Probe {
     pub active: bool,
     /// Where it reads (or would read), in pixels of the sampler image.
     pub read: Point,
+    /// The stretches of s in [0, 1] in which the sampler is active, ascending.
+    pub active_parts: Vec<(f64, f64)>,
 }
 
 /// What the pixel in column `x`, row `y` of the layer does at `time`; none outside every zone.
@@ -42,14 +44,18 @@ pub fn probe(
     time: f64,
 ) -> Result<Option<Probe>, Problem> {
     let own = materials.picture(&layer.image, "/image")?;
+    let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
     for (index, zone) in layer.zones.iter().enumerate().rev() {
+        // Making a zone ready is work: only the one that may answer is.
+        if !zone.outline.polygon().bounds().contains(centre) {
+            continue;
+        }
         let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
         let pixel = Prepared::new(zone, &inputs, materials).row(x, y, 1).pop().unwrap_or_default();
         if pixel.inside {
             let source = source(zone, index, &own, materials)?;
             let clock = Clock::of(zone, wrap);
-            let q = Point::new(x as f64 + 0.5, y as f64 + 0.5);
-            return Ok(Some(at(zone, &pixel, &clock, q + source.offset, time)));
+            return Ok(Some(at(zone, &pixel, &clock, centre + source.offset, time)));
         }
     }
     Ok(None)
@@ -65,14 +71,52 @@ fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Pr
     };
     let still = if rule == Some(super::fold::Rule::Cover) { 0.0 } else { s };
     let e = effective.unwrap_or(still);
+    let thresholds: Vec<f64> = pixel.crossings.ahead.iter().copied().filter(|c| *c > 0.0 && *c <= 1.0).collect();
+    let active = |s: f64| rule.is_none_or(|r| r.effective(pixel.crossings.inside, &pixel.crossings.ahead, s).is_some());
     Probe {
         zone: zone.name.clone(),
         jump: pixel.jump,
-        thresholds: pixel.crossings.ahead.iter().copied().filter(|c| *c > 0.0 && *c <= 1.0).collect(),
+        active_parts: active_parts(&thresholds, active),
+        thresholds,
         tau: clock.tau(time),
         s,
         e,
         active: effective.is_some(),
         read: origin + pixel.jump * e,
+    }
+}
+
+/// The stretches between neighbouring thresholds (0 and 1 with them) in whose middle the sampler is active; those that
+/// touch are one.
+fn active_parts(thresholds: &[f64], active: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+    let ends = thresholds.iter().copied().chain([1.0]);
+    let (mut from, mut parts): (f64, Vec<(f64, f64)>) = (0.0, Vec::new());
+    for to in ends {
+        if to > from && active((from + to) / 2.0) {
+            match parts.last_mut().filter(|last| last.1 == from) {
+                Some(last) => last.1 = to,
+                None => parts.push((from, to)),
+            }
+        }
+        from = to;
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn active_parts_lie_between_thresholds() {
+        for (thresholds, changes, parts) in [
+            (&[][..], &[][..], &[(0.0, 1.0)][..]),
+            (&[0.25, 0.5], &[0.25, 0.5], &[(0.0, 0.25), (0.5, 1.0)]),
+            (&[0.25, 0.5], &[0.5], &[(0.0, 0.5)]),
+            (&[1.0], &[1.0], &[(0.0, 1.0)]),
+        ] {
+            let active = |s: f64| changes.iter().filter(|&&change| change < s).count() % 2 == 0;
+            assert_eq!(active_parts(thresholds, active), parts, "{thresholds:?}");
+        }
     }
 }

@@ -14,7 +14,7 @@ pub const COMMANDS: &[Command] = &[
     command("zoom", "in|out|fit|one", "Zoom the picture, here and in the window", zoom),
     command("pan", "left|right|up|down|cursor", "Show another part of the picture", pan),
     command("graphics", "[auto|kitty|iterm2|sixel|blocks|bytes N]", "Say or set how the picture is shown", graphics),
-    command("probe", "[X,Y]", "Say what a pixel does", probe),
+    command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
 ];
 
 fn zoom(state: &mut State, call: &Call) -> Done {
@@ -89,20 +89,25 @@ fn graphics(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Asks `plica probe` about the pixel under the cursor, or about X,Y, at the time that is shown.
+/// Opens the read-out of the pixel under the cursor, or of X,Y, and closes it when it is open already.
 fn probe(state: &mut State, call: &Call) -> Done {
+    if call.text == "off" || (call.text.is_empty() && state.seeing.probing) {
+        state.seeing.probing = false;
+        seeing::settle(state);
+        return Ok(());
+    }
     if !call.text.is_empty() {
         let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
-        let [x, y] = numbers[..] else { return Err("probe takes X,Y".into()) };
+        let [x, y] = numbers[..] else { return Err("probe takes X,Y or off".into()) };
         state.placing.cursor = (x, y).into();
         state.placing.step(Vec2::ZERO, state.picture_size);
-        seeing::settle(state);
-    }
-    if state.focus != Pane::Picture && call.text.is_empty() {
+    } else {
         state.focus = Pane::Picture;
     }
+    state.seeing.probing = true;
+    seeing::settle(state);
     let at = state.placing.cursor;
     let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.time.to_string()];
-    state.ask(Effect::Run(words.map(str::to_owned).to_vec()));
+    state.ask(Effect::Probe(words.map(str::to_owned).to_vec()));
     Ok(())
 }

@@ -1,68 +1,144 @@
-//! The vector field of the zone that is shown, as arrows: one a cell, by direction; bolder where longer. It shows what the
-//! worker synthesised last and evaluates nothing itself.
+//! The vector field of the zone that is shown, as arrows: direction by glyph and colour, length by the weight of the glyph
+//! and brightness, with a legend and the exact value under the picture's cursor. It shows what the worker synthesised last
+//! and evaluates nothing itself.
 
 use kurbo::Vec2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 
-use super::write;
+use super::{arrow, write};
+use crate::base::oklab;
 use crate::layers::folding::field::Field;
 use crate::render::LayerSynth;
 use crate::tui::app::State;
+use crate::tui::colour::{self, Depth};
 use crate::tui::numbers::{polar, short};
-use crate::tui::{colour, tree};
+use crate::tui::tree;
 
-/// Draws it, its longest vector and its scale below.
+/// Shorter than this share of the longest, a vector is a dot.
+const NOTHING: f64 = 0.02;
+/// From this share of the longest on, an arrow is a long one.
+const LONG: f64 = 0.5;
+
+/// Draws the arrows, and below them the legend and the value under the cursor.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
-    let Some(field) = field(state) else {
+    let Some((field, longest)) = field(state) else {
         let why = if tree::place(&state.node).1.is_none() { "select a zone" } else { "not there yet" };
         write(buffer, area, 1, 0, why, colour::faint());
         return;
     };
     let (width, height) = (field.inside.width(), field.inside.height());
-    if width == 0 || height == 0 || area.height < 2 {
+    if width == 0 || height == 0 || area.height < 3 || area.width < 4 {
         return;
     }
-    let rows = area.height - 1;
-    // A cell is about twice as high as it is wide.
-    let scale = (width as f64 / f64::from(area.width)).max(height as f64 / (2.0 * f64::from(rows)));
-    let longest = field.jumps.cells().iter().map(|j| vector(*j).hypot2()).fold(0.0, f64::max).sqrt();
-    for y in 0..rows {
-        for x in 0..area.width {
-            let (i, j) = (((f64::from(x) + 0.5) * scale) as usize, ((f64::from(y) + 0.5) * 2.0 * scale) as usize);
-            if i < width && j < height && *field.inside.get(i, j) {
-                let (text, style) = arrow(state, vector(*field.jumps.get(i, j)), longest);
-                write(buffer, area, i32::from(x), y, text, style);
-            }
+    let rows = area.height - 2;
+    // An arrow every second column: a cell is about twice as high as it is wide.
+    let across = area.width / 2;
+    let step = (width as f64 / f64::from(across)).max(height as f64 / f64::from(rows));
+    for (x, y) in (0..rows).flat_map(|y| (0..across).map(move |x| (x, y))) {
+        let (i, j) = (((f64::from(x) + 0.5) * step) as usize, ((f64::from(y) + 0.5) * step) as usize);
+        if i < width && j < height && *field.inside.get(i, j) {
+            let (text, style) = glyph(state.depth, vector(*field.jumps.get(i, j)), longest);
+            let style = if meets_fold(field, j * width + i) { style.add_modifier(Modifier::UNDERLINED) } else { style };
+            write(buffer, area, i32::from(x) * 2, y, text, style);
         }
     }
-    let legend = format!("longest {} px   a cell is {} px", short(longest), short((scale * 10.0).round() / 10.0));
-    write(buffer, area, 0, rows, &legend, colour::faint());
+    draw_legend(field, longest, step, Rect { y: area.y + rows, height: 1, ..area }, buffer);
+    write(buffer, area, 0, rows + 1, &under_cursor(state, field), Style::new());
 }
 
-/// The field of the zone that is shown.
-fn field(state: &State) -> Option<&Field> {
+/// How long arrows are, how far they are apart, and what an underline says.
+fn draw_legend(field: &Field, longest: f64, step: f64, area: Rect, buffer: &mut Buffer) {
+    let half = short((longest * LONG * 100.0).round() / 100.0);
+    let step = short((step * 10.0).round() / 10.0);
+    let longest = short(longest);
+    let text = format!("longest {longest} px  → to {half}  ⇒ more  · none  every {step} px");
+    let x = write(buffer, area, 0, 0, &text, colour::faint());
+    if field.folds.is_some() {
+        write(buffer, area, x + 2, 0, "folds", colour::faint().add_modifier(Modifier::UNDERLINED));
+    }
+}
+
+/// The jump vector of the pixel under the picture's cursor.
+fn under_cursor(state: &State, field: &Field) -> String {
+    let at = state.placing.cursor;
+    let (x, y) = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
+    let within = x >= field.x0 && y >= field.y0;
+    let (i, j) = (x.saturating_sub(field.x0), y.saturating_sub(field.y0));
+    if !within || i >= field.inside.width() || j >= field.inside.height() || !field.inside.get(i, j) {
+        return format!("at {x},{y}: outside the zone");
+    }
+    let jump = vector(*field.jumps.get(i, j));
+    let (length, degrees) = polar(jump);
+    format!("at {x},{y}: {}, {} px  {} px {}°", short(jump.x), short(jump.y), short(length), short(degrees))
+}
+
+/// Whether a pixel of the box lies in a fold region or its path meets one.
+fn meets_fold(field: &Field, i: usize) -> bool {
+    field.folds.as_ref().is_some_and(|folds| folds.inside.cells()[i] || !folds.ahead.of(i).is_empty())
+}
+
+/// The field of the zone that is shown, and its longest vector.
+fn field(state: &State) -> Option<(&Field, f64)> {
     let (layer, zone) = tree::place(&state.node);
     let LayerSynth::Picture(synth) = state.seen.synth.as_ref()?.layers.get(layer?)?;
-    let zone = synth.zones.iter().find(|one| Some(one.index) == zone)?;
-    Some(&zone.field)
+    let found = synth.zones.iter().find(|one| Some(one.index) == zone)?;
+    let longest = state.seeing.longest.iter().find(|one| Some(one.0) == layer && Some(one.1) == zone);
+    Some((&found.field, longest.map_or(0.0, |one| one.2)))
 }
 
 fn vector([x, y]: [f32; 2]) -> Vec2 {
     Vec2::new(x.into(), y.into())
 }
 
-/// One arrow: a dot where there is next to nothing.
-fn arrow(state: &State, jump: Vec2, longest: f64) -> (&'static str, Style) {
-    let (length, _) = polar(jump);
-    if longest == 0.0 || length < longest * 0.02 {
+/// One arrow: a dot where there is next to nothing, a double one where it is long; its colour is its direction.
+fn glyph(depth: Depth, jump: Vec2, longest: f64) -> (&'static str, Style) {
+    let (length, degrees) = polar(jump);
+    let share = if longest > 0.0 { length / longest } else { 0.0 };
+    if share < NOTHING {
         return ("·", colour::faint());
     }
-    let style = match length / longest {
-        share if share > 0.66 => state.depth.ink(Style::new().add_modifier(Modifier::BOLD), Color::Green),
-        share if share > 0.33 => state.depth.ink(Style::new(), Color::Green),
-        _ => state.depth.ink(colour::faint(), Color::Green),
-    };
-    (super::arrow(jump), style)
+    let style = hue(depth, degrees.rem_euclid(360.0) / 360.0);
+    if share > LONG {
+        return (double(arrow(jump)), style.add_modifier(Modifier::BOLD));
+    }
+    (arrow(jump), style)
+}
+
+fn double(arrow: &'static str) -> &'static str {
+    const PAIRS: [(&str, &str); 8] =
+        [("→", "⇒"), ("↗", "⇗"), ("↑", "⇑"), ("↖", "⇖"), ("←", "⇐"), ("↙", "⇙"), ("↓", "⇓"), ("↘", "⇘")];
+    PAIRS.iter().find(|(single, _)| *single == arrow).map_or(arrow, |(_, double)| double)
+}
+
+/// The colour of a direction: of a wheel of even lightness, which is read on light and on dark; one of six of the 16.
+fn hue(depth: Depth, turns: f64) -> Style {
+    const SIX: [Color; 6] = [Color::Red, Color::Yellow, Color::Green, Color::Cyan, Color::Blue, Color::Magenta];
+    match depth {
+        Depth::None => Style::new(),
+        Depth::Ansi => Style::new().fg(SIX[(turns * 6.0).round() as usize % 6]),
+        _ => depth.colour(oklab::hue(turns)).map_or(Style::new(), |ink| Style::new().fg(ink)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrows_tell_direction_and_length_without_colour() {
+        for (jump, glyph_there) in [
+            ((0.0, -18.0), "⇑"),
+            ((0.0, -5.0), "↑"),
+            ((18.0, 0.0), "⇒"),
+            ((-4.0, 4.0), "↙"),
+            ((0.1, 0.0), "·"),
+            ((0.0, 0.0), "·"),
+        ] {
+            for depth in [Depth::None, Depth::Ansi, Depth::Indexed, Depth::True] {
+                assert_eq!(glyph(depth, Vec2::from(jump), 18.0).0, glyph_there, "{jump:?}");
+            }
+        }
+    }
 }

@@ -7,12 +7,14 @@ use ratatui::text::Span;
 
 use super::numbers::polar;
 
+mod braille;
 pub mod detail;
 pub mod field;
 pub mod line;
 pub mod picture;
 pub mod popup;
 pub mod position;
+pub mod probe;
 pub mod status;
 pub mod table;
 pub mod tree;

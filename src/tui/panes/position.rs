@@ -1,94 +1,136 @@
-//! The position function of the zone that is shown: s over the whole timeline as a curve in braille, the present marked.
+//! The position functions of all zones of the layer on one time axis: s over the timeline in braille, each zone with a
+//! letter and an ANSI colour of its own, the selected one bold and on top, the present marked.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 
-use super::status::clock;
-use super::write;
+use super::braille::Braille;
+use super::{width, write};
+use crate::layers::Layer;
+use crate::layers::folding::position::Clock;
 use crate::tui::app::State;
-use crate::tui::colour;
 use crate::tui::numbers::short;
+use crate::tui::{colour, terminal, tree};
 
-/// Draws it: the greatest s at the top left, the least at the bottom left, a line and a dot at t.
+/// The colours of zones, over and over; letters tell what colours repeat.
+const COLOURS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];
+
+/// The curve of one zone.
+struct Curve {
+    name: String,
+    letter: char,
+    clock: Clock,
+    selected: bool,
+    style: Style,
+}
+
+/// Draws it: the range of s at the left, curves, the axis of time, and the legend; with few rows the places alone.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
-    let Some(clock) = clock(state) else {
-        write(buffer, area, 1, 0, "select a zone", colour::faint());
-        return;
-    };
-    if area.width < 4 || area.height < 2 {
+    let curves = curves(state);
+    if curves.is_empty() {
+        write(buffer, area, 1, 0, "the layer has no zones", colour::faint());
         return;
     }
+    if area.width < 12 || area.height < 3 {
+        draw_legend(&curves, state.time, true, area, buffer);
+        return;
+    }
+    // The axis where there is room for it.
+    let axis = u16::from(area.height >= 5);
+    let plot = Rect { height: area.height - 1 - axis, ..area };
+    draw_curves(&curves, state.time, plot, buffer);
+    if axis > 0 {
+        draw_axis(state.time, Rect { y: plot.bottom(), height: 1, ..area }, buffer);
+    }
+    draw_legend(&curves, state.time, false, Rect { y: area.bottom() - 1, height: 1, ..area }, buffer);
+}
+
+/// The curves of the layer that is shown, the first where none is; the selected one last, so that it lies on top.
+fn curves(state: &State) -> Vec<Curve> {
+    let (layer, selected) = tree::place(&state.node);
+    let scene = state.document().scene();
+    let Some(Layer::Picture(layer)) = scene.layers.get(layer.unwrap_or(0)) else { return Vec::new() };
+    let zones = layer.zones.iter().enumerate();
+    let curve = |(i, zone): (usize, &_)| {
+        let zone: &crate::layers::folding::model::Zone = zone;
+        let selected = selected == Some(i);
+        let style = state.depth.ink(Style::new(), COLOURS[i % COLOURS.len()]);
+        Curve {
+            name: terminal::plain(&zone.name),
+            letter: char::from(b'a' + (i % 26) as u8),
+            clock: Clock::of(zone, scene.timeline.wrap),
+            selected,
+            style: if selected { style.patch(colour::strong()) } else { style },
+        }
+    };
+    let mut curves: Vec<Curve> = zones.map(curve).collect();
+    curves.sort_by_key(|curve| curve.selected);
+    curves
+}
+
+fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     let columns = usize::from(area.width) * 2;
-    let curve: Vec<f64> = (0..columns).map(|x| clock.s(x as f64 / (columns - 1) as f64)).collect();
-    let (mut low, mut high) = curve.iter().fold((0.0f64, 0.0f64), |(low, high), &s| (low.min(s), high.max(s)));
+    let values =
+        |curve: &Curve| -> Vec<f64> { (0..columns).map(|x| curve.clock.s(x as f64 / (columns - 1) as f64)).collect() };
+    let all: Vec<Vec<f64>> = curves.iter().map(values).collect();
+    let (mut low, mut high) = all.iter().flatten().fold((0.0f64, 0.0f64), |(low, high), &s| (low.min(s), high.max(s)));
     if low == high {
         (low, high) = (low - 0.5, high + 0.5);
     }
     let dots = usize::from(area.height) * 4;
     let row = |s: f64| ((high - s) / (high - low) * (dots - 1) as f64).round().clamp(0.0, (dots - 1) as f64) as usize;
     let mut braille = Braille::new(area.width.into(), area.height.into());
-    for (x, pair) in curve.windows(2).enumerate() {
-        let (from, to) = (row(pair[0]), row(pair[1]));
-        // A jump in s is left open; a steep stretch is drawn through.
-        if from.abs_diff(to) * 3 < dots * 2 {
-            (from.min(to)..=from.max(to)).for_each(|y| braille.set(x + 1, y));
+    (0..columns).step_by(4).for_each(|x| braille.set(x, row(0.0), colour::faint()));
+    for (curve, values) in curves.iter().zip(&all) {
+        for (x, pair) in values.windows(2).enumerate() {
+            let (from, to) = (row(pair[0]), row(pair[1]));
+            // A jump in s is left open; a steep stretch is drawn through.
+            if from.abs_diff(to) * 3 < dots * 2 {
+                (from.min(to)..=from.max(to)).for_each(|y| braille.set(x + 1, y, curve.style));
+            }
+            braille.set(x, from, curve.style);
         }
-        braille.set(x, from);
     }
-    let zero = row(0.0);
-    (0..columns).step_by(4).for_each(|x| braille.set(x, zero));
-    let style = state.depth.ink(Style::new(), Color::Cyan);
-    braille.draw(area, style, buffer);
-    let now = (state.time.clamp(0.0, 1.0) * f64::from(area.width - 1)).round() as i32;
-    for y in 0..area.height {
+    braille.draw(area, buffer);
+    let now = now(time, area);
+    (0..area.height).for_each(|y| {
         write(buffer, area, now, y, "┊", colour::faint());
+    });
+    for (i, (curve, values)) in curves.iter().zip(&all).enumerate() {
+        // Letters on the curve, each zone's elsewhere.
+        let at = (i + 1) * columns / (curves.len() + 1);
+        write(buffer, area, (at / 2) as i32, (row(values[at]) / 4) as u16, &curve.letter.to_string(), curve.style);
+        let glyph = if curve.selected { "●" } else { "○" };
+        write(buffer, area, now, (row(curve.clock.s(time)) / 4) as u16, glyph, curve.style);
     }
-    let s = clock.s(state.time);
-    write(buffer, area, now, (row(s) / 4) as u16, "●", colour::strong());
     write(buffer, area, 0, 0, &short(high), colour::faint());
     write(buffer, area, 0, area.height - 1, &short(low), colour::faint());
 }
 
-/// Dots, eight a cell.
-struct Braille {
-    width: usize,
-    cells: Vec<u8>,
+fn now(time: f64, area: Rect) -> i32 {
+    (time.clamp(0.0, 1.0) * f64::from(area.width - 1)).round() as i32
 }
 
-impl Braille {
-    fn new(width: usize, height: usize) -> Self {
-        Braille { width, cells: vec![0; width * height] }
-    }
-
-    fn set(&mut self, x: usize, y: usize) {
-        const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-        if let (true, Some(cell)) = (x / 2 < self.width, self.cells.get_mut(y / 4 * self.width + x / 2)) {
-            *cell |= BITS[y % 4][x % 2];
-        }
-    }
-
-    fn draw(&self, area: Rect, style: Style, buffer: &mut Buffer) {
-        for (i, &bits) in self.cells.iter().enumerate().filter(|&(_, &bits)| bits != 0) {
-            let glyph = char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' ').to_string();
-            write(buffer, area, (i % self.width) as i32, (i / self.width) as u16, &glyph, style);
-        }
-    }
+/// The axis of time: 0 at the left, 1 at the right, t where it is.
+fn draw_axis(time: f64, area: Rect, buffer: &mut Buffer) {
+    let text = format!("t {}", short(time));
+    let most = i32::from(area.width) - i32::from(width(&text)) - 2;
+    let at = (now(time, area) - 1).clamp(2, most.max(2));
+    write(buffer, area, 0, 0, "0", colour::faint());
+    write(buffer, area, i32::from(area.width) - 1, 0, "1", colour::faint());
+    write(buffer, area, at, 0, &text, colour::faint());
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn dots_stand_where_they_are_set() {
-        let mut braille = Braille::new(2, 1);
-        braille.set(0, 0);
-        braille.set(3, 3);
-        braille.set(9, 9);
-        let mut buffer = Buffer::empty(Rect::new(0, 0, 2, 1));
-        braille.draw(buffer.area, Style::new(), &mut buffer);
-        assert_eq!(buffer.content()[0].symbol(), "⠁");
-        assert_eq!(buffer.content()[1].symbol(), "⢀");
+/// Letters and names, the selected zone first with its s; where there is no room for curves, the s of each.
+fn draw_legend(curves: &[Curve], time: f64, alone: bool, area: Rect, buffer: &mut Buffer) {
+    let (mut x, mut y) = (0, 0);
+    for curve in curves.iter().rev().take_while(|curve| curve.selected).chain(curves.iter().filter(|c| !c.selected)) {
+        let s = if curve.selected || alone { format!(" s {}", short(curve.clock.s(time))) } else { String::new() };
+        let text = format!("{} {}{s}", curve.letter, curve.name);
+        if alone && x > 0 && y + 1 < area.height && x + i32::from(width(&text)) > i32::from(area.width) {
+            (x, y) = (0, y + 1);
+        }
+        x = write(buffer, area, x, y, &text, curve.style) + 2;
     }
 }

@@ -73,13 +73,17 @@ fn right(state: &State) -> String {
         parts.push(format!("{}-", state.pressed));
     }
     if let Some(work) = &state.seen.work {
-        parts.push(terminal::plain(work));
+        // What it is about to say counts more than what stands still meanwhile.
+        parts.push(format!("{}  Esc cancels", terminal::plain(work)));
+        return parts.join("  ");
     }
     parts.push(format!("{}t {}", if state.playing { "> " } else { "" }, short(state.time)));
     if let Some(s) = place_on_path(state) {
         parts.push(format!("s {}", short(s)));
     }
-    if let Some(ms) = state.seen.synth_ms {
+    if state.seeing.synthesising {
+        parts.push("field ...".into());
+    } else if let Some(ms) = state.seen.synth_ms {
         parts.push(format!("field {ms:.0} ms"));
     }
     parts.push(format!("step {}", short(step_of(state.step))));

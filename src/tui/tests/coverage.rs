@@ -34,6 +34,7 @@ const TABLES: &[fn()] = &[
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::seeing::zooming_keeps_the_cursor_and_panning_takes_it_along,
     super::seeing::graphics_are_told_and_set,
+    super::seeing::the_read_out_opens_follows_and_closes,
 ];
 
 thread_local! {

@@ -11,12 +11,12 @@ use crate::base::pixels::Picture;
 use crate::layers::Materials;
 use crate::tui::app::State;
 use crate::tui::graphics::Shown;
-use crate::tui::seeing;
-use crate::tui::update::{Event, update};
+use crate::tui::seeing::{self, Probed};
+use crate::tui::update::{Event, Synthesis, update};
 use crate::tui::view;
 
 /// The states: a name, and the keys that lead there.
-const STATES: &[(&str, &str)] = &[
+pub const STATES: &[(&str, &str)] = &[
     ("start", ""),
     ("motion", "/ \"motion\" Enter Enter j 2 l"),
     ("entry", "/ \"motion\" Enter Enter 5 l i \"*1.1\""),
@@ -32,27 +32,35 @@ const STATES: &[(&str, &str)] = &[
     ("command", ": \"und\" Tab"),
     ("hints", "z"),
     ("help", "?"),
+    ("outside", ": \"probe 60,5\" Enter"),
     ("unsaved", "/ \"speed\" Enter +"),
 ];
 
-/// The state with a synthesis and a frame, as the worker would have brought them.
+/// The editor with the picture read, on a terminal of this size.
 pub fn opened(size: (u16, u16)) -> State {
     let mut state = state();
-    let shade = |i: usize| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, 0.3, 1.0];
-    let picture = Arc::new(Picture::from_cells(64, 64, (0..64 * 64).map(shade).collect()));
-    let materials = Materials { pictures: [("cat".to_string(), picture)].into(), ..Materials::default() };
-    let synth = crate::render::synth(state.document().scene(), &materials, None).unwrap();
-    update(&mut state, Event::Synthesised(Ok((Arc::new(synth), 12.0))));
     update(&mut state, Event::Resize(size.0, size.1));
     state.time = 0.25;
+    see(&mut state);
     state
 }
 
 /// What the worker would answer to what the panes want.
 pub fn see(state: &mut State) {
+    let shade = |i: usize| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, 0.3, 1.0];
+    let picture = Arc::new(Picture::from_cells(64, 64, (0..64 * 64).map(shade).collect()));
+    let materials = Materials { pictures: [("cat".to_string(), picture)].into(), ..Materials::default() };
     let request = seeing::request(state);
-    if let (Some(synth), Some(wanted)) = (state.seen.synth.clone(), request.picture) {
-        let shown = Shown::new(&synth, &request.scene, request.time, wanted, state.seeing.shown.as_deref());
+    let synth = Arc::new(crate::render::synth(&request.scene, &materials, None).unwrap());
+    let longest = seeing::longest(&synth);
+    update(state, Event::Synthesised(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest })));
+    if let Some(asked) = request.probe {
+        let probed = Probed::new(asked, &request.scene, &synth, &materials).unwrap();
+        update(state, Event::Probed(Arc::new(probed)));
+    }
+    if let Some(wanted) = request.picture {
+        let before = state.seeing.shown.clone();
+        let shown = Shown::new(&synth, &request.scene, request.time, wanted, before.as_deref());
         update(state, Event::Framed(shown));
     }
 }
@@ -72,24 +80,28 @@ pub fn screen(state: &State) -> String {
     format!("{text}cursor {} {}\n", cursor.x, cursor.y)
 }
 
+/// The screen, where it is not as it is kept under this name.
+pub fn changed(name: &str, state: &State) -> Option<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens");
+    let path = folder.join(format!("{name}-{}x{}.txt", state.size.0, state.size.1));
+    let found = screen(state);
+    if std::env::var_os("PLICA_UPDATE").is_some() {
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(&path, &found).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    (kept != found).then(|| format!("{}:\n{found}", path.display()))
+}
+
 #[test]
 fn screens_are_as_kept() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens");
     let mut old = Vec::new();
     for size in [(80, 24), (160, 48)] {
         for (name, keys) in STATES {
             let mut state = opened(size);
             press(&mut state, keys);
             see(&mut state);
-            let path = folder.join(format!("{name}-{}x{}.txt", size.0, size.1));
-            let found = screen(&state);
-            if std::env::var_os("PLICA_UPDATE").is_some() {
-                std::fs::create_dir_all(&folder).unwrap();
-                std::fs::write(&path, &found).unwrap();
-            }
-            if std::fs::read_to_string(&path).unwrap_or_default() != found {
-                old.push(format!("{}:\n{found}", path.display()));
-            }
+            old.extend(changed(name, &state));
         }
     }
     assert!(old.is_empty(), "PLICA_UPDATE=1 writes these anew:\n{}", old.join("\n"));

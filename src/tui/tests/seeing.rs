@@ -4,13 +4,17 @@ use kurbo::Point;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::{Buffer, CellDiffOption};
+use ratatui::layout::Rect;
+use ratatui::style::Color;
+use serde_json::json;
 
-use super::screens::{opened, screen, see};
+use super::screens::{STATES, changed, opened, screen, see};
 use super::support::{press, state};
 use crate::tui::app::State;
 use crate::tui::colour::Depth;
 use crate::tui::graphics::Protocol;
-use crate::tui::{seeing, view};
+use crate::tui::update::{Event, update};
+use crate::tui::{entry, seeing, view};
 
 /// The screen as cells.
 fn cells(state: &State) -> Buffer {
@@ -145,4 +149,130 @@ fn without_colours_kitty_is_not_used() {
     press(&mut state, ": \"graphics kitty\" Enter");
     assert_eq!(seeing::protocol(&state), Protocol::Blocks);
     assert!(screen(&state).contains("blocks"));
+}
+
+#[test]
+pub fn the_read_out_opens_follows_and_closes() {
+    for (keys, open, pixel) in [
+        ("g p", true, Some((30, 25))),
+        ("g p l l j", true, Some((32, 26))),
+        ("g p g p", false, None),
+        ("g i Enter", true, Some((30, 25))),
+        ("g i Enter Enter", false, None),
+        (": \"probe 12,13\" Enter", true, Some((12, 13))),
+        (": \"probe 12,13\" Enter : \"probe 14,15\" Enter", true, Some((14, 15))),
+        (": \"probe 12,13\" Enter : \"probe off\" Enter", false, None),
+        (": \"probe 1e9,13\" Enter", true, Some((63, 13))),
+    ] {
+        let mut state = opened((80, 24));
+        press(&mut state, keys);
+        see(&mut state);
+        assert_eq!(state.seeing.probing, open, "{keys}");
+        assert_eq!(seeing::asked(&state).map(|asked| asked.pixel), pixel, "{keys}");
+        assert_eq!(screen(&state).contains("┬ probe ─") || screen(&state).contains(" probe ─"), open, "{keys}");
+    }
+    let mut state = opened((160, 48));
+    press(&mut state, "g p");
+    see(&mut state);
+    let text = screen(&state);
+    for part in [
+        "pixel 30,25",
+        "left eye   active",
+        "jump 3.034, 3.936 px   length 4.969 px   -52.378°",
+        "s 0.707",
+        "no thresholds",
+        "reads 32.645, 28.283",
+    ] {
+        assert!(text.contains(part), "{part}:\n{text}");
+    }
+    press(&mut state, "] ]");
+    assert_ne!(seeing::asked(&state), state.seeing.probed.as_ref().map(|probed| probed.asked), "it follows the time");
+}
+
+#[test]
+fn thresholds_stand_on_the_path() {
+    let mut old = Vec::new();
+    for size in [(80, 24), (160, 48)] {
+        let mut state = opened(size);
+        let region = json!({"kind": "rectangle", "x": 15, "y": 10, "width": 20, "height": 4});
+        let fold = json!({"rule": "return", "regions": [region]});
+        let edit = entry::set(state.document(), "/layers/0/zones/0/fold", fold);
+        state.edit(edit, false).unwrap();
+        press(&mut state, ": \"probe 20,20\" Enter g i");
+        see(&mut state);
+        let probe = state.seeing.probed.clone().unwrap().probe.clone().unwrap();
+        assert_eq!((probe.thresholds.len(), probe.active_parts.len(), probe.active), (2, 2, true), "{probe:?}");
+        let text = screen(&state);
+        assert!(
+            text.contains('┃') && text.contains('━') && text.contains('┄') && text.contains("thresholds 0."),
+            "{text}"
+        );
+        old.extend(changed("probe", &state));
+    }
+    assert!(old.is_empty(), "PLICA_UPDATE=1 writes these anew:\n{}", old.join("\n"));
+}
+
+#[test]
+fn long_work_says_how_far_it_is_and_how_to_end_it() {
+    let mut old = Vec::new();
+    for size in [(80, 24), (160, 48)] {
+        let mut state = opened(size);
+        update(&mut state, Event::Progress("render: frame 12/60 █░░░░░░░ 20%, 6 s left".into()));
+        let text = screen(&state);
+        assert!(text.contains("render: frame 12/60 █░░░░░░░ 20%, 6 s left  Esc cancels"), "{text}");
+        old.extend(changed("work", &state));
+    }
+    assert!(old.is_empty(), "PLICA_UPDATE=1 writes these anew:\n{}", old.join("\n"));
+    let mut state = opened((80, 24));
+    update(&mut state, Event::Synthesising);
+    assert!(screen(&state).contains("field ..."));
+    update(&mut state, Event::Synthesised(Err("no".into())));
+    assert!(!screen(&state).contains("field ..."));
+}
+
+#[test]
+fn every_zone_has_its_curve_and_few_rows_its_place() {
+    let state = opened((160, 48));
+    let text = screen(&state);
+    assert!(text.contains("a left eye s 0.707  b mouth"), "{text}");
+    let text = screen(&opened((112, 24)));
+    assert!(text.contains("a left eye s 0.707"), "{text}");
+}
+
+/// Outside pictures and fields a screen has the same letters with and without colours, and only the terminal's own 16.
+#[test]
+fn colours_say_nothing_by_themselves() {
+    let chrome = |state: &State| {
+        let areas = view::areas(Rect::new(0, 0, 160, 48), state.seeing.probing);
+        let [field, _, picture] = areas.right.unwrap();
+        let all = cells(state);
+        let kept = all.area.positions().filter(|at| !field.contains(*at) && !picture.contains(*at));
+        kept.map(|at| all.cell(at).unwrap().clone()).collect::<Vec<_>>()
+    };
+    for (name, keys) in STATES {
+        let mut plain = None;
+        for depth in [Depth::None, Depth::Ansi, Depth::Indexed, Depth::True] {
+            let mut state = opened((160, 48));
+            state.depth = depth;
+            press(&mut state, keys);
+            see(&mut state);
+            let found = chrome(&state);
+            let text: String = found.iter().map(|cell| cell.symbol()).collect();
+            let covered = !state.pressed.is_empty() || name == &"help";
+            assert!(covered || *plain.get_or_insert_with(|| text.clone()) == text, "{name} {depth:?}");
+            for colour in found.iter().flat_map(|cell| [cell.fg, cell.bg]) {
+                let own = !matches!(colour, Color::Rgb(..) | Color::Indexed(_));
+                assert!(own && (depth != Depth::None || colour == Color::Reset), "{name} {depth:?}: {colour:?}");
+            }
+            for colour in cells(&state).content().iter().flat_map(|cell| [cell.fg, cell.bg]) {
+                let allowed = match colour {
+                    Color::Rgb(..) => depth == Depth::True,
+                    Color::Indexed(_) => depth == Depth::Indexed,
+                    Color::Reset => true,
+                    _ => depth != Depth::None,
+                };
+                assert!(allowed, "{name} {depth:?}: {colour:?}");
+            }
+        }
+    }
 }
