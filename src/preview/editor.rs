@@ -11,7 +11,7 @@ use super::host::{Shared, thread};
 use super::keeper::{Keeper, Life};
 use super::link::{Door, Listener};
 use super::outbox::{Latest, Measured, Topic};
-use super::{Reply, Transport};
+use super::{Reply, Transport, address};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::base::system;
@@ -205,7 +205,7 @@ impl Preview {
 
     /// Opens a window and keeps it open; does nothing where one of ours is.
     pub fn open_window(&mut self) {
-        if let Some(reason) = no_window() {
+        if let Some(reason) = no_window(&self.scene) {
             return self.shared.tell(|state| state.refused = Some(reason));
         }
         let (scene, options) = (self.scene.clone(), self.options.clone());
@@ -238,17 +238,28 @@ pub fn opens_by_itself() -> bool {
     has_display() && !system::over_ssh()
 }
 
-fn has_display() -> bool {
+/// Whether there is a display here.
+pub fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     cfg!(target_os = "macos") || set("DISPLAY") || set("WAYLAND_DISPLAY")
 }
 
 /// Why no window can be opened here, and what to do instead.
-fn no_window() -> Option<String> {
+fn no_window(scene: &Path) -> Option<String> {
     if !cfg!(feature = "window") {
         return Some("this plica was built without the window".into());
     }
-    (!has_display()).then(|| "no display here; plica view where there is one (or ssh -X) joins".into())
+    let home = || {
+        way_home(scene)
+            .map_or("plica view where there is one (or ssh -X) joins".into(), |line| format!("at home: {line}"))
+    };
+    (!has_display()).then(|| format!("no display here; {}", home()))
+}
+
+/// What to type at home to see `scene` there, for who came here through ssh.
+pub fn way_home(scene: &Path) -> Option<String> {
+    let address = address::of_scene_here(scene, |name| std::env::var(name).ok())?;
+    Some(format!("plica view {address}"))
 }
 
 /// The window's process, in a group of its own: what the terminal does to the editor's group is not meant for it.

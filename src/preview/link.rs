@@ -255,3 +255,29 @@ impl Read for Timed<'_> {
         self.stream.read(buffer)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_silent_end_counts_as_gone_and_a_speaking_one_does_not() {
+        let (here, mut there) = UnixStream::pair().unwrap();
+        let most = Duration::from_millis(200);
+        let Wire { mut reader, .. } = Wire::socket(here).unwrap().watched(most);
+        let began = Instant::now();
+        let speaking = std::thread::spawn(move || {
+            for _ in 0..6 {
+                std::thread::sleep(most / 4);
+                there.write_all(b"x").unwrap();
+            }
+            there
+        });
+        let mut heard = Vec::new();
+        // Ends because it was hung up: the other end is still there.
+        reader.read_to_end(&mut heard).unwrap();
+        assert_eq!(heard.len(), 6);
+        assert!(began.elapsed() > most, "{:?}", began.elapsed());
+        drop(speaking.join());
+    }
+}

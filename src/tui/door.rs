@@ -88,12 +88,15 @@ impl Door {
     }
 
     /// What is said when the scene has been opened.
-    pub fn greeting(&self) -> String {
+    pub fn greeting(&self, home: Option<String>) -> String {
         let name = self.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
         let made = if self.made { "made, " } else { "" };
         match self.session.kept_aside() {
             Some(aside) => format!("{name}: the journal was damaged, what could not be read is in {}", aside.display()),
-            None => format!("{name}: {made}? shows the keys, :q leaves"),
+            None => match home {
+                Some(line) => format!("at home: {line}; ? shows the keys, :q leaves"),
+                None => format!("{name}: {made}? shows the keys, :q leaves"),
+            },
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::app::State;
 use super::door::Door;
+use super::image_editor;
 use super::keys::Keymap;
 use super::runner::{Editor, listen};
 use super::seeing::{self, Request};
@@ -53,6 +54,10 @@ impl Editor {
             Effect::Probe(_) => {}
             Effect::Copy(text) => terminal::copy(&text),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
+            Effect::EditImage(path) => match image_editor::open(&path) {
+                Ok(said) => self.state.say(said),
+                Err(why) => self.state.complain(why),
+            },
             Effect::View(None) => self.preview.open_window(),
             Effect::View(Some(command)) => self.preview.view(&command),
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),

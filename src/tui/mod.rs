@@ -11,6 +11,7 @@ mod effects;
 mod entry;
 mod finding;
 mod graphics;
+mod image_editor;
 mod input;
 mod keys;
 mod life;

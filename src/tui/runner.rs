@@ -203,7 +203,7 @@ impl Editor {
     /// What is done once for every scene that is opened.
     pub fn begin(&mut self) {
         self.state.picture_size = picture_size(&self.state);
-        let greeting = self.state.door.greeting();
+        let greeting = self.state.door.greeting(editor::way_home(self.state.door.path()));
         self.state.say(greeting);
         self.watch_files();
     }

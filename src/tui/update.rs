@@ -127,6 +127,8 @@ pub enum Effect {
     Cancel,
     /// Open the preview window, or give it a command of its table.
     View(Option<String>),
+    /// Open a picture in another program.
+    EditImage(PathBuf),
     /// Draw everything anew.
     Redraw,
     /// Stop the process as Ctrl-Z does in a shell.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Call, Command, Done, command};
+use crate::files::paths;
 use crate::preview::keys as window;
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::terminal::plain;
@@ -23,6 +24,7 @@ pub const COMMANDS: &[Command] = &[
     }),
     command("e!", "[PATH]", "Open another scene, or take this one as its file has it", open),
     command("view", "[COMMAND]", "Open the preview window, or change what it shows", view),
+    command("image", "edit [NAME]", "Open a picture of the scene in another program", image).inside(),
     command("problems", "", "Say what is wrong in the scene", problems).inside(),
     command("redraw", "", "Draw the screen anew", |state, _| {
         state.ask(Effect::Redraw);
@@ -75,6 +77,27 @@ fn view(state: &mut State, call: &Call) -> Done {
         name if known(name) => state.ask(Effect::View(Some(name.to_owned()))),
         name => return Err(format!("the window knows no {name}")),
     }
+    Ok(())
+}
+
+/// `:image edit cat`; the name may be left out where there is one picture.
+fn image(state: &mut State, call: &Call) -> Done {
+    let name = match call.text.split_once(' ').unwrap_or((call.text, "")) {
+        ("edit", name) => name.trim(),
+        _ => return Err("image edit NAME opens a picture in another program".into()),
+    };
+    let images = &state.document().scene().images;
+    let names = || images.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+    let image = match (name, images.len()) {
+        ("", 1) => images.values().next(),
+        ("", _) => return Err(format!("which picture: {}", names())),
+        (name, _) => images.get(name),
+    };
+    let path = &image.ok_or_else(|| format!("there is no picture {name}: {}", names()))?.path;
+    // Nothing is opened that the scene may not name.
+    paths::open(state.door.path(), path, state.door.options()).map_err(|error| error.to_string())?;
+    let path = std::path::absolute(paths::beside(state.door.path(), path)).map_err(|error| error.to_string())?;
+    state.ask(Effect::EditImage(path));
     Ok(())
 }
 

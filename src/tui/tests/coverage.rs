@@ -21,6 +21,7 @@ const TABLES: &[fn()] = &[
     super::escape_ends_one_thing_after_the_other,
     super::macros::macros_play_what_was_asked_for,
     super::macros::the_last_change_is_repeated_here,
+    super::images::a_picture_of_the_scene_is_opened_and_nothing_else,
     super::life::what_another_program_writes_is_taken_in_merged_or_asked_about,
     super::finding::what_is_found_is_edited,
     super::lines::lines_say_what_keys_do,

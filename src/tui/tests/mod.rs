@@ -9,6 +9,7 @@ use super::update::Effect;
 pub mod coverage;
 mod data;
 pub mod finding;
+mod images;
 mod life;
 mod lines;
 mod macros;
