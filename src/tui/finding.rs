@@ -1,7 +1,7 @@
 //! Where the person has been and what was looked for: marks, the jump list, the search. Places go along with the items
 //! that they stand on.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::app::{Pane, State};
@@ -25,13 +25,23 @@ pub struct Spot {
     pub column: usize,
 }
 
+/// Where the cursor was, and all else that going elsewhere changes.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    spot: Spot,
+    folded: BTreeSet<String>,
+    selected_from: Option<usize>,
+    /// The selection before, its node, first and last row.
+    selection: Option<(String, usize, usize)>,
+}
+
 /// Marks, jumps and the search.
 #[derive(Clone, Debug, Default)]
 pub struct Finding {
     /// What was searched for last.
     pub sought: String,
     /// Where the cursor was when a search began to be typed.
-    pub origin: Option<Spot>,
+    pub origin: Option<Origin>,
     marks: BTreeMap<char, Spot>,
     older: Vec<Spot>,
     newer: Vec<Spot>,
@@ -66,9 +76,8 @@ impl Finding {
             true => (&mut self.older, &mut self.newer),
             false => (&mut self.newer, &mut self.older),
         };
-        while from.last() == Some(&here) {
-            from.pop();
-        }
+        let last = from.iter().rposition(|spot| *spot != here)?;
+        from.truncate(last + 1);
         let spot = from.pop()?;
         to.push(here);
         Some(spot)
@@ -120,6 +129,20 @@ impl State {
         (self.row, self.column, self.focus) = (row.unwrap_or(self.row), spot.column, spot.focus);
         self.settle();
         self.ask(Effect::Show);
+    }
+
+    /// Where the cursor is, to be gone back to as if nothing had been.
+    pub fn origin(&self) -> Origin {
+        let (folded, selection) = (self.folded.clone(), self.kept.selection.clone());
+        Origin { spot: self.spot(), folded, selected_from: self.selected_from, selection }
+    }
+
+    /// Goes back there.
+    pub fn return_to_origin(&mut self, origin: &Origin) {
+        self.return_to(&origin.spot);
+        self.folded.clone_from(&origin.folded);
+        self.selected_from = origin.selected_from;
+        self.kept.selection.clone_from(&origin.selection);
     }
 
     /// Unfolds what holds the node at `pointer` in the tree.

@@ -28,7 +28,9 @@ pub fn part(placing: &Placing, size: (usize, usize), dots: (usize, usize)) -> Pa
         let corner = (middle - seen / 2.0).clamp(0.0, size - seen);
         // Pixels stay whole: one is never cut in two by the edge.
         let corner = if scale < 1.0 { corner.round() } else { (corner / scale).round() * scale };
-        corner.clamp(cursor - seen + 0.5, cursor.max(0.5) - 0.5).clamp(0.0, size - seen)
+        // Where less than a pixel is in sight the cursor's own comes first.
+        let least = cursor - seen + 0.5;
+        corner.clamp(least, (cursor.max(0.5) - 0.5).max(least)).clamp(0.0, size - seen)
     };
     let corner = Point::new(
         axis(placing.middle.x, placing.cursor.x, size.0, dots.0),
@@ -58,11 +60,12 @@ pub fn pan(placing: &mut Placing, part: &Part, (width, height): (usize, usize), 
     let (x, y) = (part.corner.x, part.corner.y);
     placing.middle = Point::new(moved(x, seen.x, way.x, width), moved(y, seen.y, way.y, height)) + half;
     let within = |cursor: f64, middle: f64, half: f64| {
-        let clamped = cursor.clamp(middle - half + 0.5, middle + half - 0.5);
+        let reach = (half - 0.5).max(0.0);
+        let clamped = cursor.clamp(middle - reach, middle + reach);
         if clamped == cursor { cursor } else { clamped.floor() + 0.5 }
     };
-    placing.cursor.x = within(placing.cursor.x, placing.middle.x, half.x.max(0.5));
-    placing.cursor.y = within(placing.cursor.y, placing.middle.y, half.y.max(0.5));
+    placing.cursor.x = within(placing.cursor.x, placing.middle.x, half.x);
+    placing.cursor.y = within(placing.cursor.y, placing.middle.y, half.y);
 }
 
 /// How large the picture is shown, in words: dots a pixel, or pixels a dot.

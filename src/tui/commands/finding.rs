@@ -44,12 +44,14 @@ fn jump_mark(state: &mut State, call: &Call) -> Done {
 }
 
 fn jumps(state: &mut State, call: &Call) -> Done {
-    for _ in 0..call.times() {
+    let way = if call.text == "newer" { "newer" } else { "older" };
+    for done in 0..call.times() {
         let here = state.spot();
-        let spot = state.finding.back(call.text != "newer", here);
-        let spot =
-            spot.ok_or_else(|| format!("there is no {} jump", if call.text == "newer" { "newer" } else { "older" }))?;
-        state.return_to(&spot);
+        match state.finding.back(way == "older", here) {
+            Some(spot) => state.return_to(&spot),
+            None if done > 0 => break,
+            None => return Err(format!("there is no {way} jump")),
+        }
     }
     Ok(())
 }
@@ -75,6 +77,7 @@ fn go(state: &mut State, call: &Call) -> Done {
 
 /// Goes to the next place whose name or value is looked for, in the order of the document, around its end.
 fn search(state: &mut State, call: &Call) -> Done {
+    let before = state.finding.sought.clone();
     match call.text {
         "next" | "previous" => {}
         text => state.finding.sought = unquoted(text),
@@ -84,7 +87,9 @@ fn search(state: &mut State, call: &Call) -> Done {
     }
     let steps = if call.text == "previous" { -call.times() } else { call.times() };
     let Some(found) = find(state, steps) else {
-        return Err(format!("nothing here is called or says {}", state.finding.sought));
+        // What is refused changes nothing: n goes on with the search before.
+        let sought = std::mem::replace(&mut state.finding.sought, before);
+        return Err(format!("nothing here is called or says {sought}"));
     };
     leave(state);
     reveal_part(state, &found.pointer, found.part);
@@ -133,7 +138,7 @@ fn here(state: &State) -> String {
 /// A search is being typed: the cursor goes to what would be found.
 pub fn search_typed(state: &mut State, typed: &str) {
     let Some(origin) = state.finding.origin.clone() else { return };
-    state.return_to(&origin);
+    state.return_to_origin(&origin);
     let before = std::mem::replace(&mut state.finding.sought, typed.to_owned());
     let found = if typed.is_empty() { None } else { find(state, 1) };
     state.finding.sought = before;
@@ -147,7 +152,7 @@ pub fn search_typed(state: &mut State, typed: &str) {
 /// The search is no longer being typed: the cursor is where it was before.
 pub fn search_left(state: &mut State) {
     if let Some(origin) = state.finding.origin.take() {
-        state.return_to(&origin);
+        state.return_to_origin(&origin);
     }
 }
 
@@ -169,11 +174,11 @@ fn reveal_part(state: &mut State, at: &str, part: usize) {
     };
     state.mode = Mode::Normal;
     state.unfold(&shown);
+    state.unselect();
     state.show(shown);
     state.row = row.or_else(|| state.sheet().position(at)).unwrap_or(state.row);
     state.focus = if node { Pane::Tree } else { Pane::Table };
     state.column = if node { state.column } else { column };
-    state.selected_from = None;
     if !node && row.is_none() {
         state.column = state.sheet().row(state.row).map_or(0, |row| column_of(&row, at, part).unwrap_or(0));
     }

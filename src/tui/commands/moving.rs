@@ -25,7 +25,7 @@ fn go(state: &mut State, call: &Call) -> Done {
     let rows = (state.focus == Pane::Tree).then(|| tree::rows(state.document(), &state.folded));
     let count = rows.as_ref().map_or_else(|| state.sheet().len(), Vec::len);
     let at = rows.as_ref().map_or(state.row, |rows| tree::row_of(rows, &state.node));
-    let by = |steps: i64| (at as i64 + steps).clamp(0, count as i64 - 1).max(0) as usize;
+    let by = |steps: i64| (at as i64 + steps).clamp(0, (count as i64 - 1).max(0)) as usize;
     let to = match call.text {
         "down" => by(call.times()),
         "up" => by(-call.times()),

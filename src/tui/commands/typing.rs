@@ -9,7 +9,7 @@ use crate::tui::line::{self, Line};
 pub const COMMANDS: &[Command] = &[
     command("line", "[/]", "Type a command, or with / a search", |state, call| {
         let kind = call.text.chars().next().unwrap_or(':');
-        state.finding.origin = (kind == '/').then(|| state.spot());
+        state.finding.origin = (kind == '/').then(|| state.origin());
         state.mode = Mode::Line(Line::new(kind));
         Ok(())
     })

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::support::{press, replayed, state};
 use super::{check, motion, zone};
-use crate::tui::app::State;
+use crate::tui::app::{Mode, Pane, State};
 use crate::tui::commands::obey;
 use crate::tui::update::{Event, update};
 
@@ -111,5 +111,63 @@ fn a_step_of_undo_is_the_same_when_the_log_is_replayed() {
         let mut state = state();
         press(&mut state, &motion(keys));
         assert_eq!(replayed(&state).document().json(), state.document().json(), "{keys}");
+    }
+}
+
+/// All that the log has to lead to.
+#[derive(Debug, PartialEq)]
+struct Place(String, usize, usize, Option<usize>, i32, Pane);
+
+fn place(state: &State) -> Place {
+    Place(state.node.clone(), state.row, state.column, state.selected_from, state.step, state.focus)
+}
+
+/// A key as somebody might press it who does not know any: one that means something here, or something to type.
+fn any_key(state: &State, next: &mut impl FnMut(usize) -> usize) -> String {
+    let typed: &[&str] = match &state.mode {
+        Mode::Entry(_) => &["\"7\" Enter", "\"+=3\" Enter", "\"*0.5\" Tab", "\"w/2\" Enter", "\"nonsense\" Enter"],
+        Mode::Line(line) if line.kind == ':' => {
+            &["\"put 7\" Enter", "\"3 move down\" Enter", "\"set title=a\" Enter", "\"undo 2\" Enter"]
+        }
+        Mode::Line(_) => &["\"motion\" Enter", "\"radius\" Enter", "\"outline\" Enter", "\"speed\" Enter"],
+        _ => &[],
+    };
+    let contexts = state.contexts();
+    let rows = state.keymap.rows().iter().filter(|row| contexts.contains(&row.context) && row.command != "q");
+    let keys: Vec<String> = rows.map(|row| row.key.replace("{a-z}", "a")).collect();
+    match next(3) {
+        0 if !typed.is_empty() => typed[next(typed.len())].to_owned(),
+        0 => format!("{} {}", 1 + next(3), keys[next(keys.len())]),
+        _ => keys[next(keys.len())].clone(),
+    }
+}
+
+#[test]
+fn whatever_is_pressed_the_log_leads_to_the_same_place() {
+    for seed in 1..=40u64 {
+        let mut random = 0x9e37_79b9_7f4a_7c15 ^ seed;
+        let mut next = |n: usize| {
+            for shift in [13, -7, 17] {
+                random ^= if shift > 0 { random << shift } else { random >> -shift };
+            }
+            (random % n as u64) as usize
+        };
+        let [mut state, mut other] = [(); 2].map(|()| state());
+        let (mut keys, mut replayed) = (Vec::new(), 0);
+        for _ in 0..40 {
+            let key = any_key(&state, &mut next);
+            press(&mut state, &key);
+            keys.push(key);
+            for line in &state.recorder.log()[replayed..] {
+                if !line.starts_with('#') {
+                    obey(&mut other, line, None).unwrap_or_else(|why| panic!("{line}: {why}\n{keys:?}"));
+                }
+            }
+            replayed = state.recorder.log().len();
+            if matches!(state.mode, Mode::Normal) {
+                assert_eq!(other.document().json(), state.document().json(), "{keys:?}\n{:#?}", log(&state));
+                assert_eq!(place(&other), place(&state), "{keys:?}\n{:#?}", log(&state));
+            }
+        }
     }
 }
