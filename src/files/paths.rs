@@ -69,6 +69,26 @@ fn explain(place: &str, error: io::Error) -> Error {
     }
 }
 
+/// The most files that a completion offers.
+const MOST_OFFERED: usize = 500;
+
+/// The paths that begin with `typed`, relative to `folder` unless absolute: folders end in `/`; hidden ones only where a dot
+/// is typed. None where the folder cannot be read.
+pub fn complete(folder: &Path, typed: &str) -> Vec<String> {
+    let (parent, begun) = typed.rfind('/').map_or(("", typed), |at| typed.split_at(at + 1));
+    let Ok(entries) = std::fs::read_dir(folder.join(parent)) else { return Vec::new() };
+    let fits = |name: &String| name.starts_with(begun) && (begun.starts_with('.') || !name.starts_with('.'));
+    let path = |entry: std::fs::DirEntry| {
+        let name = entry.file_name().into_string().ok().filter(fits)?;
+        // A link to a folder counts as one.
+        let slash = if entry.path().is_dir() { "/" } else { "" };
+        Some(format!("{parent}{name}{slash}"))
+    };
+    let mut found: Vec<String> = entries.flatten().filter_map(path).take(MOST_OFFERED).collect();
+    found.sort();
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,5 +133,23 @@ mod tests {
         let link = outer.path().join("link.plica.json");
         symlink(&scene, &link).unwrap();
         open(&link, "sub/cat.png", &Options::default()).unwrap();
+    }
+
+    #[test]
+    fn paths_are_completed_a_folder_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("cats")).unwrap();
+        for name in ["cat.png", "dog.png", ".hidden", "cats/tom.png"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        for (typed, expected) in [
+            ("", &["cat.png", "cats/", "dog.png"][..]),
+            ("cat", &["cat.png", "cats/"]),
+            ("cats/", &["cats/tom.png"]),
+            (".", &[".hidden"]),
+            ("x/", &[]),
+        ] {
+            assert_eq!(complete(folder.path(), typed), expected, "{typed}");
+        }
     }
 }

@@ -14,7 +14,7 @@ use super::worker::Job;
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
-use crate::files::{lines, write};
+use crate::files::{lines, paths, write};
 use crate::ops;
 
 impl Editor {
@@ -52,7 +52,11 @@ impl Editor {
             Effect::Run(words) => self.start(&words),
             Effect::Probe(words) if self.screen.is_none() => self.start(&words),
             Effect::Probe(_) => {}
-            Effect::Copy(text) => terminal::copy(&text),
+            Effect::Complete { name, path, beside } => {
+                let found = paths::complete(beside.as_deref().unwrap_or(Path::new(".")), &path);
+                self.take(Event::Completed(found.into_iter().map(|path| format!("{name} {path}")).collect()));
+            }
+            Effect::Copy(text) => self.screen.iter().for_each(|_| terminal::copy(&text)),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::EditImage(path) => match image_editor::open(&path) {
                 Ok(said) => self.state.say(said),

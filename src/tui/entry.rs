@@ -37,18 +37,33 @@ pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
     from.min(state.row)..=from.max(state.row)
 }
 
-/// The cells that an edit of the cell under the cursor applies to: the like ones of every selected row.
-pub fn cells(state: &State, sheet: &Sheet) -> Vec<(Row, Cell)> {
-    let model = sheet.row(state.row).and_then(|row| row.cells.get(state.column).cloned());
-    let Some(model) = model else { return Vec::new() };
+/// The cells that an edit of the cell under the cursor applies to, with their rows: the like ones of every selected row.
+pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
+    let document = state.document();
+    let Some(row) = sheet.row(state.row) else { return Vec::new() };
+    let Some(model) = row.cells.get(state.column) else { return Vec::new() };
     let like =
         |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
-    let of_row = |row: Row| {
-        let cell = row.cells.get(state.column).filter(like)?.clone();
-        Some((row, cell))
+    let list = row.pointer.rsplit_once('/').map(|(list, _)| list).filter(|_| row.item);
+    let inner = model.pointer.strip_prefix(&row.pointer).unwrap_or_default();
+    let of_row = |i: usize| {
+        let pointer = sheet.pointer(i)?;
+        // An item of the same kind has the same cells: it need not be made to be known.
+        let alike = list.is_some_and(|list| pointer.rsplit_once('/').is_some_and(|(own, _)| own == list))
+            && kind_of(document, &row.field, &pointer) == kind_of(document, &row.field, &row.pointer);
+        let cell = match alike {
+            true => Cell { pointer: pointer + inner, ..model.clone() },
+            false => sheet.row(i)?.cells.get(state.column).filter(like)?.clone(),
+        };
+        Some((i, cell))
     };
-    let (from, to) = rows(state).into_inner();
-    sheet.rows(from..to + 1).into_iter().filter_map(of_row).collect()
+    rows(state).filter_map(of_row).collect()
+}
+
+/// The word that says what kind of item stands at a place; none where there are no kinds.
+fn kind_of<'a>(document: &'a Document, field: &Field, pointer: &str) -> Option<&'a str> {
+    let Kind::Tagged { tag, .. } = field.kind else { return None };
+    document.json().pointer(pointer)?.get(tag)?.as_str()
 }
 
 /// The edit that `text` says for the cell under the cursor and the like ones of the selection.
@@ -64,14 +79,17 @@ pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
 
 /// The edit that gives every number of the selection its value, told from its row, its cell and its place among them.
 /// Vectors without a length stay as they are where others are turned.
-pub fn each(state: &State, value: impl Fn(&Row, &Cell, (usize, usize)) -> Result<f64, String>) -> Result<Edit, String> {
+pub fn each(
+    state: &State,
+    value: impl Fn(usize, &Cell, (usize, usize)) -> Result<f64, String>,
+) -> Result<Edit, String> {
     let document = state.document();
     let cells = cells(state, &state.sheet());
     let n = cells.len();
     let turns = |cell: &Cell| cell.part != Part::Degrees || length(document, cell) > 0.0;
     let some = cells.iter().any(|(_, cell)| turns(cell));
     let each = cells.iter().enumerate().filter(|(_, (_, cell))| turns(cell) || !some);
-    let edits = each.map(|(i, (row, cell))| number(document, cell, value(row, cell, (i, n))?));
+    let edits = each.map(|(i, (row, cell))| number(document, cell, value(*row, cell, (i, n))?));
     Ok(Edit::all(edits.collect::<Result<Vec<_>, _>>()?))
 }
 
@@ -87,7 +105,7 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
         return None;
     }
     let values = cells.iter().take(SHOWN).enumerate().map(|(i, (row, cell))| {
-        let value = evaluate(state, &sheet, row, cell, (i, n), text.value())?;
+        let value = evaluate(state, &sheet, *row, cell, (i, n), text.value())?;
         in_range(&cell.field, cell.part, value).map(|()| numbers::exact(numbers::tidy(value)))
     });
     let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
@@ -101,21 +119,29 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
 fn evaluate(
     state: &State,
     sheet: &Sheet,
-    row: &Row,
+    row: usize,
     cell: &Cell,
     (i, n): (usize, usize),
     text: &str,
 ) -> Result<f64, String> {
-    let known = variables(state, sheet, row, cell, (i, n));
+    // Plain numbers and changes by them name nothing.
+    let row = text.contains(char::is_alphabetic).then(|| sheet.row(row)).flatten();
+    let known = variables(state, sheet, row.as_ref(), cell, (i, n));
     let known: Vec<(&str, f64)> = known.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     expression::evaluate(text, &Variables(&known)).map_err(|mistake| mistake.to_string())
 }
 
-fn variables(state: &State, sheet: &Sheet, row: &Row, cell: &Cell, (i, n): (usize, usize)) -> Vec<(String, f64)> {
+fn variables(
+    state: &State,
+    sheet: &Sheet,
+    row: Option<&Row>,
+    cell: &Cell,
+    (i, n): (usize, usize),
+) -> Vec<(String, f64)> {
     let document = state.document();
     let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
-    let others = if row.item { Vec::new() } else { sheet.fields() };
-    for row in std::iter::once(row).chain(&others) {
+    let others = if row.is_none_or(|row| row.item) { Vec::new() } else { sheet.fields() };
+    for row in row.into_iter().chain(&others) {
         for cell in row.cells.iter().filter(|cell| cell.is_number()) {
             let name = match cell.part {
                 Part::Length => "r",

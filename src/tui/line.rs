@@ -24,6 +24,11 @@ impl Line {
         Line { kind, text: Text::default(), recalled: None, offered: None }
     }
 
+    /// A command begun.
+    pub fn with(text: &str) -> Self {
+        Line { text: Text::new(text, false), ..Line::new(':') }
+    }
+
     /// What the completion offers, and which of it is shown.
     pub fn offered(&self) -> Option<(&[String], usize)> {
         self.offered.as_ref().map(|(all, at)| (all.as_slice(), *at))
@@ -58,6 +63,16 @@ impl Line {
         }
         self.offered = Some((all, at));
     }
+}
+
+/// Commands that take the path of a file, and whether it is meant relative to the scene.
+const PATHS: &[(&str, bool)] =
+    &[("add", true), ("e", false), ("e!", false), ("log", false), ("source", false), ("w", false)];
+
+/// The command, the path typed so far and whether it is relative to the scene, where `typed` asks for a file.
+pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
+    let (name, path) = typed.split_once(' ')?;
+    PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
 }
 
 /// The lines that `typed` could become: command names, paths of the scene after `set`.

@@ -24,6 +24,8 @@ pub enum Event {
     Line(String),
     /// A line of the line mode, none at the end of the input; lines.rs takes it before it comes here.
     Typed(Option<String>),
+    /// The lines that the one being typed could become.
+    Completed(Vec<String>),
     /// Text pasted by the terminal.
     Paste(String),
     /// The terminal has another size.
@@ -121,6 +123,15 @@ pub enum Effect {
     Probe(Vec<String>),
     /// Run a subcommand of the command line with these arguments.
     Run(Vec<String>),
+    /// Look for the files that a path could become.
+    Complete {
+        /// The command that takes the path.
+        name: String,
+        /// What has been typed of it.
+        path: String,
+        /// The folder it is relative to; the present one where none is given.
+        beside: Option<PathBuf>,
+    },
     /// Hand a text to the terminal's clipboard.
     Copy(String),
     /// End long work.
@@ -144,6 +155,11 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Line(line) => {
             state.message = None;
             commands::run(state, &line, None);
+        }
+        Event::Completed(lines) => {
+            if let Mode::Line(line) = &mut state.mode {
+                line.complete(|_| lines);
+            }
         }
         Event::Paste(text) => paste(state, &text),
         Event::Resize(width, height) => state.size = (width, height),

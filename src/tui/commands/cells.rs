@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::items::add;
+use super::items::add_here;
 use super::{Call, Command, Done, command, obey, quoted, unquoted};
 use crate::base::{maths, problem};
 use crate::scene::Edit;
@@ -35,7 +35,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
     let (row, cell) = current(state).ok_or("there is nothing to edit here: o adds an item")?;
     let missing = field::value(state.document(), &cell.pointer).is_none_or(|value| value.is_null());
     if cell.is_node() && missing {
-        return add(state, call);
+        return add_here(state);
     }
     // The kind of an item with an inside of its own stands for the item; its form has the kind again.
     let into = row.item && state.column == 0 && row.cells.iter().any(Cell::is_node);

@@ -1,17 +1,20 @@
 //! Rows and nodes as a whole: added, taken away, doubled and moved.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::{Call, Command, Done, command};
+use super::naming::unused;
+use super::yanking::stem;
+use super::{Call, Command, Done, command, unquoted};
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, pointer};
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry;
+use crate::tui::line::Line;
 use crate::tui::sheet::Cell;
 
 pub const COMMANDS: &[Command] = &[
-    command("add", "", "Add an item to the list, or an optional node", add).change(),
+    command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add).change(),
     command("delete", "", "Delete the row, the selection or the node", delete).change(),
     command("duplicate", "", "Duplicate the row or the node", duplicate).change(),
     command("reorder", "down|up", "Move the row or the node among its siblings", reorder).change(),
@@ -32,7 +35,22 @@ fn split_item(state: &State, pointer: &str) -> Option<(String, usize)> {
     is_list.then(|| (list.to_string(), index))
 }
 
-pub fn add(state: &mut State, _: &Call) -> Done {
+fn add(state: &mut State, call: &Call) -> Done {
+    if call.text.is_empty() { add_here(state) } else { add_picture(state, &unquoted(call.text)) }
+}
+
+/// A picture by its file, as written relative to the scene, under the file's name.
+fn add_picture(state: &mut State, path: &str) -> Done {
+    let entry = (stem(path).to_owned(), json!({ "path": path }));
+    let added = Edit::insert_entries(state.document(), "/images", [entry].into_iter().collect());
+    let (edit, pointer) = added.ok_or("there is no list of pictures")?;
+    state.edit(edit, false)?;
+    go_to(state, &pointer);
+    Ok(())
+}
+
+/// Adds where the cursor is; what is asked for is typed or chosen then.
+pub fn add_here(state: &mut State) -> Done {
     let pointer = target(state).unwrap_or(state.node.clone());
     let field = field::field(state.document(), &pointer).ok_or("nothing can be added here")?;
     let there = field::is_there(state.document(), &pointer);
@@ -45,9 +63,10 @@ pub fn add(state: &mut State, _: &Call) -> Done {
         }
         (Kind::Object, false) => add_object(state, &pointer),
         (Kind::List(_), _) => insert(state, &pointer.clone(), end()),
-        (Kind::Map(_), _) => Err("a picture is added by :set images.NAME.path=FILE".into()),
+        (Kind::Map(_), _) => ask_for_path(state),
         _ => match split_item(state, &pointer) {
             Some((list, index)) => insert(state, &list, index + 1),
+            None if pointer.starts_with("/images/") => ask_for_path(state),
             None if state.focus == Pane::Tree => Err("o adds to lists: go to a list or to one of its items".into()),
             None => match split_item(state, &state.node.clone()) {
                 Some((list, index)) => insert(state, &list, index + 1),
@@ -55,6 +74,12 @@ pub fn add(state: &mut State, _: &Call) -> Done {
             },
         },
     }
+}
+
+fn ask_for_path(state: &mut State) -> Done {
+    state.mode = Mode::Line(Line::with("add "));
+    state.say("the picture's file, relative to the scene (Tab completes)");
+    Ok(())
 }
 
 /// An optional object comes with its first field that must be written.
@@ -102,6 +127,7 @@ fn delete(state: &mut State, _: &Call) -> Done {
     if edits.is_empty() {
         return Err("there is nothing to delete here".into());
     }
+    pointers.iter().try_for_each(|pointer| unused(state.document(), pointer))?;
     let first = *entry::rows(state).start();
     state.edit(Edit::all(edits), false)?;
     if state.selected_from.take().is_some() {

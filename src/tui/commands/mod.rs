@@ -16,6 +16,7 @@ mod items;
 mod keymap;
 mod macros;
 mod moving;
+mod naming;
 mod pasting;
 mod placing;
 mod playing;
@@ -98,6 +99,7 @@ const TABLES: &[&[Command]] = &[
     files::COMMANDS,
     cells::COMMANDS,
     items::COMMANDS,
+    naming::COMMANDS,
     selecting::COMMANDS,
     values::COMMANDS,
     undoing::COMMANDS,
@@ -174,9 +176,9 @@ pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
     done
 }
 
-/// Whether something is being typed into a cell or chosen: a line that answers follows.
+/// Whether something is being typed or chosen: a line that answers follows.
 fn asks(state: &State) -> bool {
-    matches!(state.mode, Mode::Entry(_) | Mode::Choice(_))
+    matches!(state.mode, Mode::Entry(_) | Mode::Choice(_) | Mode::Line(_))
 }
 
 /// Asks for a subcommand of the command line, with the same arguments.

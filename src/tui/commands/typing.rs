@@ -1,10 +1,13 @@
 //! Typing: the command line, texts, and the pages of the help.
 
+use std::path::Path;
+
 use super::finding::{search_left, search_typed};
 use super::{Call, Command, Done, all, command, obey, quoted, unquoted};
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::keys::OWN_FILE;
 use crate::tui::line::{self, Line};
+use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
     command("line", "[/]", "Type a command, or with / a search", |state, call| {
@@ -72,6 +75,12 @@ fn run_typed(state: &mut State, _: &Call) -> Done {
 
 fn complete(state: &mut State, _: &Call) -> Done {
     let Mode::Line(mut line) = state.mode.clone() else { return Ok(()) };
+    let wanted = line::path_of(line.text.value()).filter(|_| line.kind == ':' && line.offered().is_none());
+    if let Some((name, path, beside)) = wanted {
+        let beside = beside.then(|| state.door.path().parent().map(Path::to_owned)).flatten();
+        state.effects.push_back(Effect::Complete { name: name.into(), path: path.into(), beside });
+        return Ok(());
+    }
     if line.kind == ':' {
         line.complete(|typed| line::candidates(state, typed));
     }

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::items::{go_to, target};
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
-use crate::scene::field::{self, Kind};
+use crate::scene::field::{self, Field, Kind};
 use crate::scene::insert::misfit;
 use crate::scene::{Document, Edit, address, json, pointer};
 use crate::tui::app::{Pane, State};
@@ -68,25 +68,21 @@ fn table(state: &State) -> Result<(Sheet, std::ops::RangeInclusive<usize>), Stri
 /// What `y` takes, and what it is called.
 fn yanked(state: &State) -> Result<(Yanked, String), String> {
     let sheet = state.sheet();
-    let rows = match state.focus {
-        Pane::Table if state.selected_from.is_some() => {
-            let rows = entry::rows(state);
-            sheet.rows(*rows.start()..rows.end() + 1)
-        }
+    let pointers: Vec<String> = match state.focus {
+        Pane::Table if state.selected_from.is_some() => entry::rows(state).filter_map(|i| sheet.pointer(i)).collect(),
         _ => Vec::new(),
     };
     let there = |pointer: &str| field::value(state.document(), pointer).filter(|value| !value.is_null());
     let nothing = "there is nothing to yank here";
-    let one = match rows.as_slice() {
+    let one = match pointers.as_slice() {
         [] => target(state)?,
-        [row] => row.pointer.clone(),
-        _ => {
-            let said = counted(rows.len(), "row");
-            let named = rows.iter().any(|row| !row.item) || in_map(state.document(), &rows[0].pointer);
-            let values = rows.iter().filter_map(|row| Some((row.label.clone(), there(&row.pointer)?)));
-            let value: Value = match named {
-                true => values.collect::<Map<_, _>>().into(),
-                false => values.map(|(_, value)| value).collect(),
+        [one] => one.clone(),
+        [first, ..] => {
+            let said = counted(pointers.len(), "row");
+            let values = pointers.iter().filter_map(|path| Some((pointer::split(path)?.1, there(path)?)));
+            let value: Value = match is_item(state.document(), first) {
+                true => values.map(|(_, value)| value).collect(),
+                false => values.collect::<Map<_, _>>().into(),
             };
             return Ok((Yanked { value, name: None }, said));
         }
@@ -121,7 +117,10 @@ fn paste(state: &mut State, call: &Call) -> Done {
 /// field. Of several ways the first counts that the scene bears.
 fn paste_value(state: &mut State, yanked: &Yanked) -> Done {
     let mut why = None;
-    for Way { edit, pointer, count } in ways(state, yanked).into_iter().filter(|way| !way.edit.is_empty()) {
+    for fit in fits(state) {
+        let Some(Way { edit, pointer, count }) = way(state, yanked, &fit).filter(|way| !way.edit.is_empty()) else {
+            continue;
+        };
         match state.edit(edit, false) {
             Ok(()) => {
                 go_to_pasted(state, &pointer, count);
@@ -179,39 +178,65 @@ struct Way {
     count: usize,
 }
 
-/// Every way in which a value fits, the likeliest first.
-fn ways(state: &State, yanked: &Yanked) -> Vec<Way> {
+/// Where a value may fit.
+enum Fit {
+    /// The cell under the cursor and its like.
+    Cells,
+    /// A list, before the item at an index.
+    List(String, usize),
+    /// A map.
+    Map(String),
+    /// A place, instead of what stands there.
+    Over(String),
+    /// The fields of the form that is shown.
+    Fields,
+}
+
+/// The places where a value may fit, the likeliest first: from the cursor outward, then inward.
+fn fits(state: &State) -> Vec<Fit> {
     let document = state.document();
-    let here = here(state);
-    let mut ways: Vec<Way> = over_cells(state, &yanked.value, &here).into_iter().collect();
-    for path in upward(&here) {
-        if let Some((list, index)) = item_of(document, path) {
-            ways.extend(into_list(document, list, index + 1, &yanked.value));
-        }
-        let Some(field) = field::field(document, path) else { continue };
-        if let Kind::List(_) = field.kind {
+    let mut fits = vec![Fit::Cells];
+    let into = |fits: &mut Vec<Fit>, path: &str, field: &Field| match field.kind {
+        Kind::List(_) => {
             let end = document.json().pointer(path).and_then(Value::as_array).map_or(0, Vec::len);
-            ways.extend(into_list(document, path, end, &yanked.value));
+            fits.push(Fit::List(path.to_owned(), end));
         }
-        ways.extend(into_map(document, path, yanked));
+        Kind::Map(_) => fits.push(Fit::Map(path.to_owned())),
+        _ => {}
+    };
+    for path in upward(&here(state)) {
+        let item = item_of(document, path);
+        fits.extend(item.map(|(list, index)| Fit::List(list.to_owned(), index + 1)));
+        let Some(field) = field::field(document, path) else { continue };
+        into(&mut fits, path, &field);
         // Rows of a list of fixed length, as a matrix is, have no room for another.
-        let loose = matches!(field.kind, Kind::Numbers(_)) || !is_item(document, path) && !in_map(document, path);
-        if loose && misfit(document, path, &yanked.value).is_none() {
-            let edit = Edit::set(document, path, yanked.value.clone());
-            ways.push(Way { edit, pointer: path.to_owned(), count: 1 });
-        }
+        let loose = matches!(field.kind, Kind::Numbers(_)) || item.is_none() && !in_map(document, path);
+        fits.extend(loose.then(|| Fit::Over(path.to_owned())));
     }
-    ways.extend(fields(document, &state.node, &here, &yanked.value));
+    fits.push(Fit::Fields);
     for child in field::children(document, &state.node) {
-        let end = document.json().pointer(&child.pointer).and_then(Value::as_array).map_or(0, Vec::len);
-        ways.extend(into_list(document, &child.pointer, end, &yanked.value));
-        ways.extend(into_map(document, &child.pointer, yanked));
+        into(&mut fits, &child.pointer, &child.field);
     }
-    ways
+    fits
+}
+
+/// How a value fits there, if it does.
+fn way(state: &State, yanked: &Yanked, fit: &Fit) -> Option<Way> {
+    let (document, value) = (state.document(), &yanked.value);
+    match fit {
+        Fit::Cells => over_cells(state, value),
+        Fit::List(list, index) => into_list(document, list, *index, value),
+        Fit::Map(map) => into_map(document, map, yanked),
+        Fit::Over(path) if misfit(document, path, value).is_some() => None,
+        Fit::Over(path) => {
+            Some(Way { edit: Edit::set(document, path, value.clone()), pointer: path.clone(), count: 1 })
+        }
+        Fit::Fields => fields(document, &state.node, value),
+    }
 }
 
 /// A number over a number, a text over a text: in every selected row, as if it were typed.
-fn over_cells(state: &State, value: &Value, here: &str) -> Option<Way> {
+fn over_cells(state: &State, value: &Value) -> Option<Way> {
     let row = state.sheet().row(state.row)?;
     let cell = row.cells.get(state.column).filter(|_| state.focus == Pane::Table)?;
     let text = match value {
@@ -219,19 +244,17 @@ fn over_cells(state: &State, value: &Value, here: &str) -> Option<Way> {
         Value::String(text) if cell.field.kind == Kind::Text => text.clone(),
         _ => return None,
     };
-    Some(Way { edit: entry::edit(state, &text).ok()?, pointer: here.to_owned(), count: 1 })
+    Some(Way { edit: entry::edit(state, &text).ok()?, pointer: here(state), count: 1 })
 }
 
 /// A value as one item of a list, or its parts as several.
 fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Option<Way> {
     let item = pointer::join(list, "-");
     let fits = |value: &Value| misfit(document, &item, value).is_none();
-    if !matches!(field::field(document, list)?.kind, Kind::List(_)) {
-        return None;
-    }
     let items = match value {
         value if fits(value) => vec![value.clone()],
-        Value::Array(items) if items.iter().all(fits) => items.clone(),
+        // The others are checked with the scene.
+        Value::Array(items) if items.first().is_some_and(fits) => items.clone(),
         _ => return None,
     };
     let count = items.len();
@@ -241,12 +264,11 @@ fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Op
 
 /// A value as one entry of a map, under the name it had or that of its file; or an object of such entries.
 fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<Way> {
-    let field = field::field(document, map).filter(|field| matches!(field.kind, Kind::Map(_)))?;
     let fits = |value: &Value| misfit(document, &pointer::join(map, "new"), value).is_none();
     let entries = match &yanked.value {
         value if fits(value) => {
             let file = || value.get("path").and_then(Value::as_str).map(stem).map(str::to_owned);
-            let name = yanked.name.clone().or_else(file).unwrap_or(field.name);
+            let name = yanked.name.clone().or_else(file).unwrap_or("picture".into());
             Map::from_iter([(name, value.clone())])
         }
         Value::Object(entries) if entries.values().all(fits) => entries.clone(),
@@ -264,7 +286,7 @@ pub fn stem(path: &str) -> &str {
 }
 
 /// An object whose every key is a field of the form.
-fn fields(document: &Document, form: &str, here: &str, value: &Value) -> Option<Way> {
+fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
     let object = value.as_object().filter(|object| !object.is_empty())?;
     let known = field::children(document, form);
     let known =
@@ -274,7 +296,7 @@ fn fields(document: &Document, form: &str, here: &str, value: &Value) -> Option<
         Some(Edit::set(document, &child.pointer, value.clone()))
     });
     let edit = Edit::all(edits.collect::<Option<Vec<_>>>()?);
-    Some(Way { edit, pointer: here.to_owned(), count: object.len() })
+    Some(Way { edit, pointer: form.to_owned(), count: object.len() })
 }
 
 /// Why nothing takes the value: what the place under the cursor wants.

@@ -332,7 +332,7 @@ mod tests {
             ("[everywhere]\n\"U\" = \"unod\"", 2, "did you mean \"undo\""),
             ("[everywhere]\n\"U\" = \"undo\"\n\"U\" = \"redo\"", 3, "duplicate"),
             ("[everywhere]\n\"g g g\" = \"undo\"", 2, "\"g g\" = \"\""),
-            ("[everywhere]\n\"g\" = \"undo\"", 2, "would hide g g and"),
+            ("[everywhere]\n\"g\" = \"undo\"", 2, "would hide g "),
             ("[everywhere]\n\"q a b\" = \"undo\"", 2, "q {a-z} alone"),
             ("[everywhere]\n\"Y Y\" = \"undo\"\n\"Y\" = \"redo\"", 3, "would hide Y Y"),
             ("[everywhere]\n\"ctrl-x\" = \"undo\"", 2, "keys are written as"),

@@ -32,6 +32,7 @@ const TABLES: &[fn()] = &[
     super::windows::speed_is_shared,
     super::data::edits_apply_to_the_selection_which_stays,
     super::data::undo_says_what_it_undid,
+    super::data::pictures_and_names_come_and_go,
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::seeing::zooming_keeps_the_cursor_and_panning_takes_it_along,
     super::seeing::graphics_are_told_and_set,

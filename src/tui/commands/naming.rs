@@ -1,0 +1,57 @@
+//! Names: of what carries one, and of pictures, which others name.
+
+use super::items::{go_to, target};
+use super::{Call, Command, Done, command, unquoted};
+use crate::base::problem::quoted;
+use crate::scene::{Document, Edit, address, field, pointer};
+use crate::tui::app::{Mode, State};
+use crate::tui::entry;
+use crate::tui::line::Line;
+use crate::tui::terminal::plain;
+
+pub const COMMANDS: &[Command] =
+    &[command("rename", "[NAME]", "Give the node or row another name, everywhere", rename).change()];
+
+/// The pictures of a scene, by name.
+const IMAGES: &str = "/images";
+
+fn rename(state: &mut State, call: &Call) -> Done {
+    let path = target(state)?;
+    let image = pointer::split(&path).filter(|(map, _)| *map == IMAGES).map(|(_, name)| name);
+    let value = field::value(state.document(), &path);
+    let old = image.clone().or_else(|| field::name_of(value.as_ref())).ok_or("this has no name")?;
+    let name = unquoted(call.text);
+    if name.is_empty() {
+        state.mode = Mode::Line(Line::with(&format!("rename {old}")));
+        return Ok(());
+    }
+    if image.is_none() {
+        let edit = entry::set(state.document(), &pointer::join(&path, "name"), name.into());
+        return state.edit(edit, false);
+    }
+    if state.document().scene().images.contains_key(&name) {
+        return Err(format!("there is a picture {} already", quoted(&name)));
+    }
+    let edit = Edit::rename_image(state.document(), &old, &name);
+    state.edit(edit, false)?;
+    go_to(state, &pointer::join(IMAGES, &name));
+    Ok(())
+}
+
+/// Whether nothing names what is to go; else who does. Only pictures are named.
+pub fn unused(document: &Document, path: &str) -> Done {
+    let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == IMAGES) else { return Ok(()) };
+    let layers = document.scene().layers.iter().enumerate();
+    let users = layers.flat_map(|(i, layer)| {
+        let own = layer.images().into_iter().filter(|(_, image)| *image == name);
+        own.map(move |(path, _)| format!("/layers/{i}{path}"))
+    });
+    let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();
+    match users.as_slice() {
+        [] => Ok(()),
+        [first, rest @ ..] => {
+            let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+            Err(plain(&format!("{name} is used by {first}{more}: choose another picture there first")))
+        }
+    }
+}
