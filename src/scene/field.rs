@@ -96,6 +96,12 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
     place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
 }
 
+/// What the kind of thing at `pointer` computes, by its tag; none where it computes nothing.
+pub fn formula(document: &Document, pointer: &str) -> Option<&'static str> {
+    let place = Place::of(document.json(), pointer)?;
+    place.shape.branch(place.value)?.formula()
+}
+
 /// Whether something stands at `pointer`, be it by default.
 pub fn is_there(document: &Document, pointer: &str) -> bool {
     Place::of(document.json(), pointer).is_some_and(|place| place.value.is_some_and(|value| !value.is_null()))

@@ -175,6 +175,11 @@ impl Shape {
         self.text("description").unwrap_or_default()
     }
 
+    /// What the branch of a tagged type computes.
+    pub fn formula(self) -> Option<&'static str> {
+        self.text("formula")
+    }
+
     /// The unit of its numbers.
     pub fn unit(self) -> Option<&'static str> {
         self.text("unit")

@@ -12,6 +12,7 @@ use super::finding::Finding;
 use super::keys::{self, Keymap};
 use super::life::Life;
 use super::line::Line;
+use super::palette::Palette;
 use super::place::Placing;
 use super::recorder::Recorder;
 use super::seeing::Seeing;
@@ -106,6 +107,8 @@ pub enum Mode {
     Choice(Choice),
     /// A text is shown: the help, or what a command printed.
     Pages(Pages),
+    /// Something is looked for among everything that can be run or gone to.
+    Palette(Palette),
     /// The picture's cursor sets a jump vector.
     Aim,
 }
@@ -272,6 +275,7 @@ impl State {
             (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
             (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
             (Mode::Choice(_), _) => vec![keys::LIST],
+            (Mode::Palette(_), _) => vec![keys::PALETTE, keys::TYPING],
             (Mode::Pages(_), _) => vec![keys::HELP],
             (Mode::Aim, _) => vec![keys::AIM, keys::PICTURE],
             (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],

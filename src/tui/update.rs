@@ -235,7 +235,7 @@ fn report(state: &mut State, result: Result<String, String>) {
 fn paste(state: &mut State, text: &str) {
     let first = text.lines().next().unwrap_or_default();
     match &state.mode {
-        Mode::Entry(_) | Mode::Line(_) => type_text(state, first),
+        Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_text(state, first),
         Mode::Normal => {
             if let Err(why) = commands::pasted(state, text) {
                 state.complain(why);
@@ -298,7 +298,7 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
     let typed = if key == "Space" { " " } else { key };
     let one = typed.chars().count() == 1;
     match &state.mode {
-        Mode::Entry(_) | Mode::Line(_) if one => type_text(state, typed),
+        Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         Mode::Normal | Mode::Aim => state.complain(format!("{pressed} means nothing here (? shows the keys)")),
         _ => {}

@@ -10,24 +10,28 @@ use super::outline::Outline;
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Fold {
     /// An eyelid over an eyeball: inside a region a sampler waits at the edge where it entered; one that never left keeps still.
+    #[schemars(extend("formula" = "outside e(s) = s; inside e(s) = the crossing nearest to s where it came in; still if it never was outside"))]
     Cover {
         /// The regions, which count as their union.
         #[schemars(length(min = 1))]
         regions: Vec<Outline>,
     },
     /// A sampler is still inside a region and active outside (equation 3.4).
+    #[schemars(extend("formula" = "e(s) = s outside every region; still inside"))]
     Return {
         /// The regions, which count as their union.
         #[schemars(length(min = 1))]
         regions: Vec<Outline>,
     },
     /// A car past a wall: a sampler is active inside a region and still outside.
+    #[schemars(extend("formula" = "e(s) = s inside a region; still outside"))]
     FlyOver {
         /// The regions, which count as their union.
         #[schemars(length(min = 1))]
         regions: Vec<Outline>,
     },
     /// A copy of the picture whose alpha is 0 in the fold regions; samplers read it, laid over what is beneath.
+    #[schemars(extend("formula" = "shown = mask(q + s J) over what lies beneath"))]
     Mask {
         /// Name of the mask, one of the scene's images, of the picture's size.
         #[schemars(extend("reference" = "images"))]

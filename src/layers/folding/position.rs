@@ -12,9 +12,11 @@ use crate::layers::timeline::Wrap;
 #[serde(tag = "function", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Position {
     /// s = τ.
+    #[schemars(extend("formula" = "s = τ"))]
     #[default]
     Linear,
     /// s = (e^(kτ) - 1) / (e^k - 1): slow, then fast.
+    #[schemars(extend("formula" = "s = (e^(kτ) - 1) / (e^k - 1)"))]
     Exponential {
         /// k, not 0; negative turns the curve over.
         #[serde(default = "three")]
@@ -22,6 +24,7 @@ pub enum Position {
         rate: f64,
     },
     /// s = (1 - e^(-kτ)) / (1 - e^(-k)): fast, then slow.
+    #[schemars(extend("formula" = "s = (1 - e^(-kτ)) / (1 - e^(-k))"))]
     ExponentialInverse {
         /// k, not 0; negative turns the curve over.
         #[serde(default = "three")]
@@ -29,6 +32,7 @@ pub enum Position {
         rate: f64,
     },
     /// The logistic curve through (0, 0) and (1, 1): slow at both ends.
+    #[schemars(extend("formula" = "s = (σ(k(τ - 1/2)) - σ(-k/2)) / (σ(k/2) - σ(-k/2)), where σ(x) = 1 / (1 + e^-x)"))]
     Sigmoid {
         /// k; larger is steeper in the middle.
         #[serde(default = "ten")]
@@ -36,6 +40,7 @@ pub enum Position {
         rate: f64,
     },
     /// s = offset + amplitude sin(2π (cycles τ + phase)).
+    #[schemars(extend("formula" = "s = offset + amplitude sin(2π (cycles τ + phase))"))]
     Sine {
         /// Cycles in one pass.
         #[serde(default = "half")]
@@ -55,6 +60,7 @@ pub enum Position {
         offset: f64,
     },
     /// s = offset + amplitude (1 - cos(2π (cycles τ + phase))) / 2: from 0 to 1 and back.
+    #[schemars(extend("formula" = "s = offset + amplitude (1 - cos(2π (cycles τ + phase))) / 2"))]
     Cosine {
         /// Cycles in one pass.
         #[serde(default = "one")]
@@ -74,6 +80,7 @@ pub enum Position {
         offset: f64,
     },
     /// CSS easing: a cubic Bezier from (0, 0) to (1, 1) with two handles.
+    #[schemars(extend("formula" = "s = 3(1-u)²u y1 + 3(1-u)u² y2 + u³ at the u where τ is the same of x1 and x2"))]
     CubicBezier {
         /// First handle, τ.
         #[schemars(range(min = 0.0, max = 1.0))]
@@ -89,6 +96,7 @@ pub enum Position {
         y2: f64,
     },
     /// Through given points; constant before the first and after the last.
+    #[schemars(extend("formula" = "s = s0 + (s1 - s0) f((τ - τ0) / (τ1 - τ0)) between points 0 and 1; f by between"))]
     Keyframes {
         /// [τ, s] with ascending τ.
         #[schemars(length(min = 1), extend("columns" = ["τ", "s"]))]
@@ -98,6 +106,7 @@ pub enum Position {
         between: Between,
     },
     /// Segments, each with its own easing; jumps in s between them are allowed.
+    #[schemars(extend("formula" = "s = from + (to - from) ease((τ - a) / (until - a)) for a < τ <= until, a where the segment begins"))]
     Piecewise {
         /// The segments, ascending; the last ends at 1.
         #[schemars(length(min = 1))]

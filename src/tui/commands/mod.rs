@@ -12,11 +12,13 @@ mod cells;
 pub use cells::step_of;
 mod files;
 mod finding;
+mod help;
 mod items;
 mod keymap;
 mod macros;
 mod moving;
 mod naming;
+mod palette;
 mod pasting;
 mod placing;
 mod playing;
@@ -106,6 +108,8 @@ const TABLES: &[&[Command]] = &[
     yanking::COMMANDS,
     moving::COMMANDS,
     finding::COMMANDS,
+    palette::COMMANDS,
+    help::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
     seeing::COMMANDS,

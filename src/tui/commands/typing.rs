@@ -3,17 +3,21 @@
 use std::path::Path;
 
 use super::finding::{search_left, search_typed};
-use super::{Call, Command, Done, all, command, obey, quoted, unquoted};
-use crate::tui::app::{Mode, Pages, State};
-use crate::tui::keys::OWN_FILE;
+use super::{Call, Command, Done, command, obey, quoted, unquoted};
+use crate::tui::app::{Mode, State};
 use crate::tui::line::{self, Line};
+use crate::tui::text::Text;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
-    command("line", "[/]", "Type a command, or with / a search", |state, call| {
-        let kind = call.text.chars().next().unwrap_or(':');
-        state.finding.origin = (kind == '/').then(|| state.origin());
-        state.mode = Mode::Line(Line::new(kind));
+    command("line", "[/|:TEXT]", "Type a command, one that begins so, or with / a search", |state, call| {
+        let mut begun = call.text.chars();
+        let mut line = Line::new(begun.next().unwrap_or(':'));
+        state.finding.origin = (line.kind == '/').then(|| state.origin());
+        if !begun.as_str().is_empty() {
+            line.text = Text::new(format!("{} ", begun.as_str()), false);
+        }
+        state.mode = Mode::Line(line);
         Ok(())
     })
     .inside(),
@@ -28,8 +32,6 @@ pub const COMMANDS: &[Command] = &[
         Ok(())
     })
     .inside(),
-    command("help", "[COMMAND]", "Show keys and commands", help).inside(),
-    command("scroll", "LINES", "Scroll the pages", scroll).inside(),
 ];
 
 /// Quotes, as JSON has them, keep spaces at the ends.
@@ -41,6 +43,10 @@ fn type_text(state: &mut State, call: &Call) -> Done {
             line.typed();
             line.text.insert(&typed);
             seek(state);
+        }
+        Mode::Palette(palette) => {
+            palette.text.insert(&typed);
+            palette.narrow();
         }
         _ => return Err("nothing is being typed: i edits a cell, : begins a command".into()),
     }
@@ -108,76 +114,13 @@ fn text(state: &mut State, call: &Call) -> Done {
             line.typed();
             line.text.change(call.text)
         }
+        Mode::Palette(palette) => {
+            let changed = palette.text.change(call.text);
+            palette.narrow();
+            changed
+        }
         _ => true,
     };
     seek(state);
     if changed { Ok(()) } else { Err(format!("a text cannot {}", call.text)) }
-}
-
-/// The keys in force, then all others, then the commands; all from the tables.
-fn help(state: &mut State, call: &Call) -> Done {
-    if let Some(command) = super::find(call.text) {
-        state.say(format!(":{} {}  {}", command.name, command.args, command.help));
-        return Ok(());
-    }
-    let here = state.contexts();
-    let mut contexts = here.clone();
-    for row in state.keymap.rows() {
-        if !contexts.contains(&row.context) {
-            contexts.push(row.context);
-        }
-    }
-    let mut lines = Vec::new();
-    for context in contexts {
-        lines.push(format!("-- {context} --"));
-        let rows = state.keymap.rows().iter().filter(|row| row.context == context);
-        lines.extend(rows.map(|row| format!("{:<10} {}", row.key, row.help)));
-        lines.push(String::new());
-    }
-    lines.push(format!("Your own keys stand in {OWN_FILE}; :keys shows them"));
-    lines.push(String::new());
-    lines.push("-- entries --".into());
-    lines.extend(entries_help());
-    lines.push(String::new());
-    lines.push("-- commands, after : --".into());
-    lines.extend(all().map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)));
-    lines.extend(crate::ops::names().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
-    state.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
-    Ok(())
-}
-
-fn entries_help() -> Vec<String> {
-    let functions: Vec<&str> = crate::base::expression::functions().collect();
-    vec![
-        "5  -18  +5           The value".into(),
-        "+=3  -=3  *=2  /=2   Changes the old value; so do *2 and /2".into(),
-        "w/2  sqrt(2)*r       Computed; v is the old value, x y dx dy the row's columns,".into(),
-        "                     r a length and degrees, w h the picture, i n the place in the selection".into(),
-        format!("functions            {} (angles in degrees)", functions.join(" ")),
-    ]
-}
-
-fn scroll(state: &mut State, call: &Call) -> Done {
-    let by = call.text.parse::<i64>().unwrap_or(1) * call.times();
-    if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.mode {
-        *scroll = (*scroll as i64 + by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
-    }
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tui::keys;
-
-    #[test]
-    fn the_help_holds_every_key_and_command() {
-        let mut state = crate::tui::tests::support::state();
-        obey(&mut state, "help", None).unwrap();
-        let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
-        let text = pages.lines.join("\n");
-        assert!(keys::KEYS.iter().all(|row| text.contains(row.help)));
-        assert!(all().all(|command| text.contains(command.help)));
-        assert!(text.starts_with(&format!("-- {} --", keys::TREE)));
-    }
 }

@@ -8,7 +8,9 @@ use super::commands;
 mod keymap;
 pub use keymap::Keymap;
 mod table;
-pub use table::{AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PICTURE, RECORDING, TABLE, TREE, TYPING};
+pub use table::{
+    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PALETTE, PICTURE, RECORDING, TABLE, TREE, TYPING,
+};
 
 /// Where the person's own keys stand.
 pub const OWN_FILE: &str = "$XDG_CONFIG_HOME/plica/keys.toml (else ~/.config/plica/keys.toml)";

@@ -14,6 +14,8 @@ pub const PICTURE: &str = "picture";
 pub const AIM: &str = "aiming a jump vector";
 /// A list to choose from.
 pub const LIST: &str = "list of choices";
+/// The palette.
+pub const PALETTE: &str = "palette";
 /// The help.
 pub const HELP: &str = "help";
 /// Every pane, while a macro is being recorded.
@@ -33,7 +35,7 @@ const fn row(context: &'static str, key: &'static str, command: &'static str, he
 
 /// Every binding.
 pub const KEYS: &[KeyRow] = &[
-    row(EVERYWHERE, "?", "help", "Show the keys of this pane, then all others"),
+    row(EVERYWHERE, "?", "help", "Show what is under the cursor, the keys of this pane, then all others"),
     row(EVERYWHERE, ":", "line", "Type a command"),
     row(EVERYWHERE, "Tab", "pane next", "Go to the next pane"),
     row(EVERYWHERE, "Shift-Tab", "pane previous", "Go to the pane before"),
@@ -58,10 +60,10 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "m {a-z}", "mark {a-z}", "Set a mark here"),
     row(EVERYWHERE, "' {a-z}", "jump-mark {a-z}", "Go to a mark"),
     row(EVERYWHERE, "Ctrl-o", "jumps older", "Go back to where the last jump came from"),
-    row(EVERYWHERE, "g o", "jumps newer", "Go on along the jumps again"),
     row(EVERYWHERE, "(", "sibling previous", "Go to the same place of the zone or tool before, of the same kind"),
     row(EVERYWHERE, ")", "sibling next", "Go to the same place of the next zone or tool of the same kind"),
     row(EVERYWHERE, "g g", "move first", "Go to the first row"),
+    row(EVERYWHERE, "g o", "jumps newer", "Go on along the jumps again"),
     row(EVERYWHERE, "G", "move last", "Go to the last row, or to the row of the count"),
     row(EVERYWHERE, "g p", "probe", "Open or close the read-out of the pixel under the picture's cursor"),
     row(EVERYWHERE, "g t", "pane tree", "Go to the tree"),
@@ -100,10 +102,24 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "z R", "view view-whole-frames", "Window: the display's rate, or the scene's frames only"),
     row(EVERYWHERE, "z <", "speed slower", "Play slower"),
     row(EVERYWHERE, "z >", "speed faster", "Play faster"),
+    row(EVERYWHERE, "Space Space", "palette", "Find a command, a node or a field"),
+    row(EVERYWHERE, "Space p", "palette", "Find a command, a node or a field"),
+    row(EVERYWHERE, "Space /", "line /", "Search names and values"),
     row(EVERYWHERE, "Space w", "w", "Save"),
+    row(EVERYWHERE, "Space x", "wq", "Save and leave"),
     row(EVERYWHERE, "Space q", "q", "Leave"),
     row(EVERYWHERE, "Space v", "view", "Open the preview window"),
+    row(EVERYWHERE, "Space r", "line :render", "Begin to type :render, for an animation"),
+    row(EVERYWHERE, "Space s", "line :synth", "Begin to type :synth, for the textures"),
+    row(EVERYWHERE, "Space f", "line :field", "Begin to type :field, for plots and tables"),
     row(EVERYWHERE, "Space c", "problems", "Say what is wrong in the scene"),
+    row(EVERYWHERE, "Space g", "probe", "Say what the pixel under the picture's cursor does"),
+    row(EVERYWHERE, "Space t", "pane tree", "Go to the tree"),
+    row(EVERYWHERE, "Space e", "pane table", "Go to the form or table"),
+    row(EVERYWHERE, "Space i", "pane picture", "Go to the picture"),
+    row(EVERYWHERE, "Space l", "log", "Show the lines of this session"),
+    row(EVERYWHERE, "Space k", "keys", "Show your own keys"),
+    row(EVERYWHERE, "Space ?", "help", "Show the help"),
     row(EVERYWHERE, "M", "pointer", "Take the window's pointer into the field, else into the picture's cursor"),
     row(EVERYWHERE, "Ctrl-l", "redraw", "Draw the screen anew"),
     row(EVERYWHERE, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
@@ -194,6 +210,13 @@ pub const KEYS: &[KeyRow] = &[
     row(LIST, "Esc", "cancel", "Take nothing"),
     row(LIST, "q", "cancel", "Take nothing"),
     row(LIST, "Ctrl-c", "cancel", "Take nothing"),
+    row(PALETTE, "Down", "palette next", "Go down"),
+    row(PALETTE, "Ctrl-n", "palette next", "Go down"),
+    row(PALETTE, "Tab", "palette next", "Go down"),
+    row(PALETTE, "Up", "palette previous", "Go up"),
+    row(PALETTE, "Ctrl-p", "palette previous", "Go up"),
+    row(PALETTE, "Shift-Tab", "palette previous", "Go up"),
+    row(PALETTE, "Enter", "palette take", "Run it, or go there"),
     row(HELP, "j", "scroll 1", "Scroll down"),
     row(HELP, "Down", "scroll 1", "Scroll down"),
     row(HELP, "k", "scroll -1", "Scroll up"),

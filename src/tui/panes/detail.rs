@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::{width, write};
+use super::{wrapped, write};
 use crate::scene::field::Kind;
 use crate::tui::app::State;
 use crate::tui::sheet::{Cell, Part};
@@ -52,33 +52,4 @@ fn help(cell: &Cell) -> &'static str {
     };
     let word = all.iter().find(|one| one.name == cell.text && !one.help.is_empty());
     word.map_or(cell.field.help, |one| one.help)
-}
-
-/// `text` in lines that fit.
-fn wrapped(text: &str, room: u16) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let line = lines.last_mut().filter(|line| line.is_empty() || width(line) + 1 + width(word) <= room);
-        match line {
-            Some(line) if line.is_empty() => line.push_str(word),
-            Some(line) => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            None => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn help_is_wrapped_at_words() {
-        assert_eq!(wrapped("one two  three", 8), ["one two", "three"]);
-        assert_eq!(wrapped("", 8), [""]);
-        assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
-    }
 }

@@ -11,6 +11,7 @@ mod braille;
 pub mod detail;
 pub mod field;
 pub mod line;
+pub mod palette;
 pub mod picture;
 pub mod popup;
 pub mod position;
@@ -42,6 +43,23 @@ pub fn arrow(vector: kurbo::Vec2) -> &'static str {
     ARROWS[(polar(vector).1 / 45.0).round().rem_euclid(8.0) as usize]
 }
 
+/// `text` in lines that fit.
+pub fn wrapped(text: &str, room: u16) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().filter(|line| line.is_empty() || width(line) + 1 + width(word) <= room);
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// The first of `count` rows that is shown in `height` lines, so that row `at` stands in the middle where it can.
 pub fn first_row(at: usize, count: usize, height: u16) -> usize {
     let height = usize::from(height);
@@ -57,6 +75,13 @@ mod tests {
         for (at, count, height, first) in [(0, 100, 10, 0), (50, 100, 10, 45), (99, 100, 10, 90), (3, 5, 10, 0)] {
             assert_eq!(first_row(at, count, height), first);
         }
+    }
+
+    #[test]
+    fn help_is_wrapped_at_words() {
+        assert_eq!(wrapped("one two  three", 8), ["one two", "three"]);
+        assert_eq!(wrapped("", 8), [""]);
+        assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
     }
 
     #[test]

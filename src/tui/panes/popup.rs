@@ -15,6 +15,7 @@ pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position
     match &state.mode {
         Mode::Choice(choice) => Some(draw_choice(choice, screen, buffer)),
         Mode::Pages(pages) => Some(draw_pages(pages, screen, buffer)),
+        Mode::Palette(palette) => Some(super::palette::draw(state, palette, screen, buffer)),
         _ if !state.pressed.is_empty() => {
             draw_hints(state, screen, buffer);
             None
@@ -67,27 +68,37 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     area.as_position()
 }
 
-/// The keys that may follow, above the status line.
+/// What the menus of the first keys are called.
+const MENUS: &[(&str, &str)] =
+    &[("Space", "leader"), ("g", "go"), ("z", "view"), ("m", "set a mark"), ("'", "go to a mark")];
+
+/// The keys that may follow, above the status line; in as many columns as they need.
 fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     let contexts = state.contexts();
+    let rest = |key: &str| key.strip_prefix(&state.pressed).unwrap_or(key).trim().to_owned();
     let rows: Vec<_> = state.keymap.continuations(&contexts, &state.pressed).collect();
-    let tall = rows.len() as u16 + 2;
-    let column =
-        rows.iter().map(|row| width(&row.key) + 1).max().unwrap_or(0).saturating_sub(width(&state.pressed)).max(4);
-    let wide = rows.iter().map(|row| width(&row.help)).max().unwrap_or(0) + column + 8;
+    let keys = rows.iter().map(|row| width(&rest(&row.key))).max().unwrap_or(0);
+    let wide = keys + rows.iter().map(|row| width(&row.help)).max().unwrap_or(0) + 4;
+    let most = usize::from(screen.height.saturating_sub(6)).max(1);
+    let columns = rows.len().div_ceil(most).max(1);
+    let tall = rows.len().div_ceil(columns);
+    let whole = (wide * columns as u16 + 2).min(screen.width);
     let area = Rect {
-        x: screen.right().saturating_sub(wide + 1),
-        y: screen.bottom().saturating_sub(tall + 2),
-        width: wide.min(screen.width),
-        height: tall.min(screen.height),
+        x: screen.right().saturating_sub(whole + 1),
+        y: screen.bottom().saturating_sub(tall as u16 + 4),
+        width: whole,
+        height: (tall as u16 + 2).min(screen.height),
     };
     Clear.render(area, buffer);
-    let block = Block::bordered().title(format!(" {} ", state.pressed));
+    let menu = MENUS.iter().find(|(key, _)| *key == state.pressed).map(|(_, name)| format!(": {name}"));
+    let block = Block::bordered().title(format!(" {}{} ", state.pressed, menu.unwrap_or_default()));
     let inner = block.inner(area);
     block.render(area, buffer);
-    for (y, row) in rows.iter().enumerate() {
-        let key = row.key.strip_prefix(&state.pressed).unwrap_or(&row.key);
-        write(buffer, inner, 0, y as u16, key, colour::strong());
-        write(buffer, inner, i32::from(column), y as u16, &row.help, Style::new());
+    let each = inner.width / columns as u16;
+    for (i, row) in rows.iter().enumerate() {
+        let column = Rect { x: inner.x + each * (i / tall) as u16, width: each, ..inner };
+        let y = (i % tall) as u16;
+        write(buffer, column, 1, y, &rest(&row.key), colour::strong());
+        write(buffer, column, i32::from(keys) + 3, y, &row.help, Style::new());
     }
 }

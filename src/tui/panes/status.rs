@@ -30,6 +30,7 @@ fn mode(state: &State) -> &'static str {
         (Mode::Line(line), _) if line.kind == '/' => "SEA",
         (Mode::Line(_), _) => "CMD",
         (Mode::Choice(_), _) => "CHO",
+        (Mode::Palette(_), _) => "FND",
         (Mode::Pages(_), _) => "HLP",
         (Mode::Aim, _) => "AIM",
         (Mode::Normal, _) if state.selected_from.is_some() => "SEL",

@@ -4,7 +4,8 @@ use serde_json::json;
 
 use super::support::{press, state};
 use super::{check, motion, zone};
-use crate::tui::app::{Pane, State};
+use crate::scene::schema::Place;
+use crate::tui::app::{Mode, Pane, State};
 use crate::tui::sheet::Sheet;
 
 /// What is under the cursor: the node in the tree, else the cell by its pointer and its name.
@@ -106,5 +107,55 @@ pub fn what_is_found_is_edited() {
         (&motion("j m a g g K G ' a d"), &zone("/motion/1/at"), json!([40, 30])),
         (&motion("l G Ctrl-o g o +"), &zone("/motion/3/center"), json!([31, 25])),
         (") D", "/layers/0/zones/2/name", json!("mouth 2")),
+        (": \"leader menu\" Enter p \"duplicate\" Enter", "/layers/0/zones/1/name", json!("left eye 2")),
+        ("Space Space \"mouth speed\" Enter +", "/layers/0/zones/1/speed", json!(2)),
+        ("Space p \"set images\" Ctrl-u \"undo\" Esc d", "/layers/0/zones/0/name", json!("mouth")),
+        ("d ? q Space p \"undo\" Enter", &zone("/name"), json!("left eye")),
     ]);
+}
+
+#[test]
+fn the_palette_goes_to_places_and_begins_lines() {
+    leads(&[
+        ("Space Space \"left radius\" Enter", &zone("/interpolation/radius"), ""),
+        ("Space Space \"lefteye motion 1 at\" Enter Ctrl-o", &zone(""), ""),
+        (": \"palette\" Enter \"eye outl\" Down Up Enter", &zone("/outline"), ""),
+        (": \"palette\" Enter \"no such thing at all\" Enter", &zone(""), ""),
+    ]);
+    for (keys, typed) in [("\"go path\"", "go "), ("\"time t\"", "time "), ("\"synth\"", "synth ")] {
+        let mut state = state();
+        press(&mut state, &format!("Space Space {keys} Enter"));
+        assert!(matches!(&state.mode, Mode::Line(line) if line.text.value() == typed), "{keys}: {:?}", state.mode);
+    }
+}
+
+#[test]
+fn the_help_begins_with_what_is_under_the_cursor() {
+    for (keys, expected) in [
+        (
+            "/ \"radius\" Enter ?",
+            &["-- radius --", "value     60 px", "range     0.001 to 1000000 px", ".radius=VALUE)", "(R d))²"][..],
+        ),
+        ("/ \"cycles\" Enter ?", &["default   0.5", "function  sine:", "formula   s = offset + amplitude sin(2π"]),
+        ("/ \"motion\" Enter Enter 6 l ?", &["-- jump ° --", "value     90 degrees"]),
+        ("?", &["-- left eye --", "path      layers.face.zones.\"left eye\""]),
+    ] {
+        let mut state = state();
+        press(&mut state, keys);
+        let Mode::Pages(pages) = &state.mode else { panic!("no pages after {keys}") };
+        let text = pages.lines[..16].join("\n");
+        expected.iter().for_each(|part| assert!(text.contains(part), "{keys}: {part}\n{text}"));
+    }
+}
+
+#[test]
+fn every_function_method_and_rule_says_its_formula() {
+    for tagged in ["/position", "/interpolation", "/fold"] {
+        let pointer = zone(tagged);
+        let document = state().document().clone();
+        let shape = Place::of(document.json(), &pointer).unwrap().shape;
+        for (name, _) in shape.choices() {
+            assert!(shape.variant(name).unwrap().formula().is_some(), "{tagged}: {name}");
+        }
+    }
 }

@@ -33,6 +33,12 @@ pub const STATES: &[(&str, &str)] = &[
     ("hints", "z"),
     ("help", "?"),
     ("outside", ": \"probe 60,5\" Enter"),
+    ("leader", "Space"),
+    ("palette", "Space Space \"eye rad\""),
+    ("palette-all", "Space Space Down"),
+    ("help-of-a-field", "/ \"radius\" Enter ?"),
+    ("found", "/ \"25\" Enter n"),
+    ("searching", "/ \"25\""),
     ("unsaved", "/ \"speed\" Enter +"),
 ];
 
@@ -109,7 +115,8 @@ fn screens_are_as_kept() {
 
 #[test]
 fn every_size_is_drawn_and_small_ones_say_so() {
-    for (width, height) in [(1, 1), (20, 5), (79, 24), (80, 23), (80, 24), (112, 30), (400, 120)] {
+    for (width, height) in [(1, 1), (20, 5), (79, 24), (80, 23), (80, 24), (111, 24), (112, 30), (200, 50), (400, 120)]
+    {
         for (_, keys) in STATES {
             let mut state = opened((width, height));
             press(&mut state, keys);

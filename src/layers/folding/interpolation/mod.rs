@@ -19,6 +19,7 @@ mod thin_plate;
 #[serde(tag = "method", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Interpolation {
     /// Every anchor counts, by a power of its inverse distance (equation 4.1).
+    #[schemars(extend("formula" = "J = Σ w u / Σ w, w = d^-power, d the distance to the anchor of vector u"))]
     Shepard {
         /// The power; larger makes flat plateaus around the anchors.
         #[serde(default = "two")]
@@ -26,12 +27,14 @@ pub enum Interpolation {
         power: f64,
     },
     /// Only anchors within a radius count (equation 4.2).
+    #[schemars(extend("formula" = "J = Σ w u / Σ w, w = (max(0, R - d) / (R d))², R the radius, d the distance"))]
     ModifiedShepard {
         /// Anchors farther than this do not count.
         #[schemars(range(min = 0.001, max = 1000000.0), extend("unit" = "px"))]
         radius: f64,
     },
     /// As modified-shepard, but in an outer ring each anchor counts or not at random, pixel by pixel (equation 4.3).
+    #[schemars(extend("formula" = "as modified-shepard; where R - ring < d < R an anchor counts or not by a hash of pixel, anchor, seed"))]
     ModifiedShepardRandom {
         /// Anchors farther than this do not count.
         #[schemars(range(min = 0.001, max = 1000000.0), extend("unit" = "px"))]
@@ -44,6 +47,7 @@ pub enum Interpolation {
         seed: u32,
     },
     /// A thin plate bent through the anchors: smooth everywhere, and beyond them.
+    #[schemars(extend("formula" = "J = affine part + Σ c d² ln d, through the anchors; smoothing stands on the diagonal"))]
     ThinPlate {
         /// 0 passes through every anchor; larger is stiffer.
         #[serde(default)]
@@ -51,6 +55,7 @@ pub enum Interpolation {
         smoothing: f64,
     },
     /// Moving least squares by rigid motions (Schaefer et al. 2006): turns, and keeps sizes.
+    #[schemars(extend("formula" = "J = the rigid motion that fits the anchors best by weights d^-2, less the pixel's own place"))]
     Rigid {},
 }
 

@@ -1,0 +1,150 @@
+//! The help: first what is under the cursor, then the keys of this pane, then everything; all of it from the tables and
+//! from the schema.
+
+use super::{Call, Command, Done, all, command};
+use crate::scene::field::{self, Field, Kind};
+use crate::scene::{address, pointer};
+use crate::tui::app::{Mode, Pages, Pane, State};
+use crate::tui::keys::OWN_FILE;
+use crate::tui::numbers;
+use crate::tui::panes::wrapped;
+use crate::tui::sheet::{self, Cell, Part};
+use crate::tui::terminal::plain;
+
+pub const COMMANDS: &[Command] = &[
+    command("help", "[COMMAND]", "Show what is under the cursor, then keys and commands", help).inside(),
+    command("scroll", "LINES", "Scroll the pages", scroll).inside(),
+];
+
+/// Columns of the text on the pages.
+const WIDTH: u16 = 70;
+
+fn help(state: &mut State, call: &Call) -> Done {
+    if let Some(command) = super::find(call.text) {
+        state.say(format!(":{} {}  {}", command.name, command.args, command.help));
+        return Ok(());
+    }
+    let here = state.contexts();
+    let mut contexts = here.clone();
+    for row in state.keymap.rows() {
+        if !contexts.contains(&row.context) {
+            contexts.push(row.context);
+        }
+    }
+    let mut lines = under_cursor(state);
+    for context in contexts {
+        lines.push(format!("-- {context} --"));
+        let rows = state.keymap.rows().iter().filter(|row| row.context == context);
+        lines.extend(rows.map(|row| format!("{:<10} {}", row.key, row.help)));
+        lines.push(String::new());
+    }
+    lines.push(format!("Your own keys stand in {OWN_FILE}; :keys shows them"));
+    lines.push(String::new());
+    lines.push("-- entries --".into());
+    lines.extend(entries());
+    lines.push(String::new());
+    lines.push("-- commands, after : --".into());
+    lines.extend(all().map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)));
+    lines.extend(crate::ops::names().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
+    state.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
+    Ok(())
+}
+
+/// The field under the cursor, in the tree the node: help, value, range, default, path, formula.
+fn under_cursor(state: &State) -> Vec<String> {
+    let row = (state.focus != Pane::Tree).then(|| state.sheet().row(state.row)).flatten();
+    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let at = cell.map_or_else(|| state.node.clone(), |cell| cell.pointer.clone());
+    let document = state.document();
+    let Some(field) = field::field(document, &at) else { return Vec::new() };
+    let name = if at.is_empty() { "scene".to_owned() } else { plain(&field.name) };
+    let part = cell.filter(|cell| cell.part != Part::Whole).map(|cell| format!(" {}", cell.head)).unwrap_or_default();
+    let mut lines = vec![format!("-- {name}{part} --")];
+    lines.extend(wrapped(field.help, WIDTH));
+    lines.push(String::new());
+    let mut say = |name: &str, text: String| {
+        let mut parts = wrapped(&text, WIDTH - 10).into_iter();
+        lines.push(format!("{name:<9} {}", parts.next().unwrap_or_default()));
+        lines.extend(parts.map(|line| format!("{:<9} {line}", "")));
+    };
+    say("value", value(state, &at, &field, cell));
+    if let Some(range) = field.range_text() {
+        say("range", range);
+    }
+    if let Some(default) = &field.default {
+        say("default", sheet::summary(&field, default));
+    }
+    let path = plain(&address::address(document, &at));
+    if !path.is_empty() {
+        say("path", format!("{path}   (:set {path}=VALUE)"));
+    }
+    if let Some((kind, help, formula)) = formula(state, &at) {
+        say(&kind, help);
+        say("formula", formula);
+    }
+    lines.push(String::new());
+    lines
+}
+
+fn value(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> String {
+    let number = cell.filter(|cell| cell.is_number()).and_then(|cell| Some((cell, cell.number(state.document())?)));
+    let Some((cell, number)) = number else {
+        let value = field::value(state.document(), at).unwrap_or_default();
+        return sheet::summary(field, &value);
+    };
+    let unit = if cell.part == Part::Degrees { Some("degrees, counter-clockwise") } else { field.unit };
+    format!("{}{}", numbers::exact(number), unit.map(|unit| format!(" {unit}")).unwrap_or_default())
+}
+
+/// What the innermost function, method or rule that holds the place is called, says of itself, and computes.
+fn formula(state: &State, at: &str) -> Option<(String, String, String)> {
+    let mut at = at;
+    loop {
+        let field = field::field(state.document(), at)?;
+        if let Kind::Tagged { tag, variants } = &field.kind {
+            let formula = field::formula(state.document(), at)?;
+            let word = field::value(state.document(), &pointer::join(at, tag))?;
+            let help = variants.iter().find(|one| word == one.name).map_or("", |one| one.help);
+            return Some(((*tag).to_owned(), format!("{}: {help}", word.as_str()?), formula.to_owned()));
+        }
+        at = pointer::split(at)?.0;
+    }
+}
+
+fn entries() -> Vec<String> {
+    let functions: Vec<&str> = crate::base::expression::functions().collect();
+    vec![
+        "5  -18  +5           The value".into(),
+        "+=3  -=3  *=2  /=2   Changes the old value; so do *2 and /2".into(),
+        "w/2  sqrt(2)*r       Computed; v is the old value, x y dx dy the row's columns,".into(),
+        "                     r a length and degrees, w h the picture, i n the place in the selection".into(),
+        format!("functions            {} (angles in degrees)", functions.join(" ")),
+    ]
+}
+
+fn scroll(state: &mut State, call: &Call) -> Done {
+    let by = call.text.parse::<i64>().unwrap_or(1) * call.times();
+    if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.mode {
+        *scroll = (*scroll as i64 + by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::obey;
+    use super::*;
+    use crate::tui::keys;
+
+    #[test]
+    fn the_help_holds_every_key_and_command() {
+        let mut state = crate::tui::tests::support::state();
+        obey(&mut state, "help", None).unwrap();
+        let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+        let text = pages.lines.join("\n");
+        assert!(keys::KEYS.iter().all(|row| text.contains(row.help)));
+        assert!(all().all(|command| text.contains(command.help)));
+        let (node, pane) = (text.find("-- left eye --"), text.find(&format!("-- {} --", keys::TREE)));
+        assert!(node == Some(0) && node < pane && pane < text.find(&format!("-- {} --", keys::EVERYWHERE)), "{text}");
+    }
+}
