@@ -35,7 +35,7 @@ pub fn ask(forced: Option<Protocol>, get: impl Fn(&str) -> Option<String>) -> (G
     }
     let patience = if system::over_ssh() { FAR } else { HERE };
     let mut answers = answers(KIND, patience);
-    if answers.complete && forced.is_none() && !takes_half_of_kitty(&get) {
+    if answers.complete && forced.is_none() && !takes_half_of_kitty(get) {
         let more = self::answers(KITTY, FAR);
         answers.sequences.extend(more.sequences);
         answers.typed.extend(more.typed);

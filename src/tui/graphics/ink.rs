@@ -16,47 +16,134 @@ const HEAD: f64 = 5.0;
 const HATCH: usize = 6;
 /// The cursor's arms, in dots from its middle: they leave the pixel itself free.
 const ARM: (f64, f64) = (3.0, 9.0);
+/// Dots are this much smaller than in the window: a pane of the terminal is small.
+const DOTS: f64 = 0.75;
 const DARK: [u8; 4] = [0, 0, 0, 255];
 const LIGHT: [u8; 4] = [255, 255, 255, 255];
 
-/// Draws all marks, the selected ones on top.
-pub fn draw(frame: &mut Frame, part: &Part, marks: &[Mark]) {
-    for selected in [false, true] {
-        marks.iter().filter(|mark| mark.selected == selected).for_each(|mark| draw_mark(frame, part, mark));
-    }
+/// Draws into a frame.
+pub struct Ink<'a> {
+    /// The frame.
+    pub frame: &'a mut Frame,
+    /// What it shows.
+    pub part: &'a Part,
+    /// How many times it is reduced: marks are smaller by as much.
+    pub by: usize,
 }
 
-fn draw_mark(frame: &mut Frame, part: &Part, mark: &Mark) {
-    let style = mark.kind.style();
-    let pen = Pen {
-        colour: if mark.selected { overlay::SELECTED } else { style.color },
-        wide: mark.selected,
-        dash: style.dash_px.map(|(on, off)| (f64::from(on), f64::from(off))),
-    };
-    match &mark.shape {
-        Shape::Line { points, closed } => {
-            let from = points.iter().chain(points.first().filter(|_| *closed));
-            from.clone().zip(from.skip(1)).for_each(|(&from, &to)| pen.line(frame, part.dot_of(from), part.dot_of(to)));
+impl Ink<'_> {
+    /// Draws all marks, the selected ones on top.
+    pub fn draw(&mut self, marks: &[Mark]) {
+        for selected in [false, true] {
+            marks.iter().filter(|mark| mark.selected == selected).for_each(|mark| self.mark(mark));
         }
-        Shape::Arrow(from, to) => pen.arrow(frame, part.dot_of(*from), part.dot_of(*to)),
-        Shape::Dot(at) => dot(frame, part.dot_of(*at), style.dot, f64::from(style.dot_px), &pen),
-        Shape::Fill(points) => hatch(frame, part, points, &pen),
-        Shape::Label(..) | Shape::Cell(..) => {}
     }
-}
 
-/// The jump vector that is being set.
-pub fn aim(frame: &mut Frame, part: &Part, from: Point, to: Point) {
-    Pen { colour: LIGHT, wide: true, dash: None }.arrow(frame, part.dot_of(from), part.dot_of(to));
-}
+    fn mark(&mut self, mark: &Mark) {
+        let style = mark.kind.style();
+        let dash = style.dash_px.map(|(on, off)| (self.less(on.into()).max(1.0), self.less(off.into()).max(1.0)));
+        let colour = if mark.selected { overlay::SELECTED } else { style.color };
+        let pen = Pen { colour, wide: mark.selected && self.by == 1, dash };
+        match &mark.shape {
+            Shape::Line { points, closed } => {
+                let from = points.iter().chain(points.first().filter(|_| *closed));
+                from.clone().zip(from.skip(1)).for_each(|(&from, &to)| self.line(&pen, self.at(from), self.at(to)));
+            }
+            Shape::Arrow(from, to) => self.arrow(&pen, self.at(*from), self.at(*to)),
+            Shape::Dot(at) => self.dot(&pen, self.at(*at), style.dot, f64::from(style.dot_px), mark.selected),
+            Shape::Fill(points) => self.hatch(&pen, points),
+            Shape::Cell(..) | Shape::Label(..) => {}
+        }
+    }
 
-/// The cursor: four arms around its place, light within dark, so that they show on anything.
-pub fn cross(frame: &mut Frame, part: &Part, at: Point) {
-    let at = part.dot_of(at);
-    for (colour, wide) in [(DARK, true), (LIGHT, false)] {
-        let pen = Pen { colour, wide, dash: None };
-        for way in [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)] {
-            pen.line(frame, at + way * ARM.0, at + way * ARM.1);
+    /// The jump vector that is being set.
+    pub fn aim(&mut self, from: Point, to: Point) {
+        let pen = Pen { colour: LIGHT, wide: self.by == 1, dash: None };
+        self.arrow(&pen, self.at(from), self.at(to));
+    }
+
+    /// The cursor: four arms around its place, light within dark, so that they show on anything.
+    pub fn cross(&mut self, at: Point) {
+        let at = self.at(at);
+        let (near, far) = (self.less(ARM.0).max(1.0), self.less(ARM.1).max(3.0));
+        for (colour, wide) in [(DARK, true), (LIGHT, false)] {
+            let pen = Pen { colour, wide, dash: None };
+            for way in [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)] {
+                self.line(&pen, at + way * near, at + way * far);
+            }
+        }
+    }
+
+    fn at(&self, place: Point) -> Point {
+        self.part.dot_of(place)
+    }
+
+    fn less(&self, dots: f64) -> f64 {
+        dots / self.by as f64
+    }
+
+    fn line(&mut self, pen: &Pen, from: Point, to: Point) {
+        let Some((a, b)) = clipped(from, to, (self.frame.width(), self.frame.height())) else { return };
+        let steps = (b.x - a.x).abs().max((b.y - a.y).abs()).ceil().max(1.0);
+        let (begun, length) = ((a - from).hypot2().sqrt(), (b - a).hypot2().sqrt());
+        for i in 0..=steps as usize {
+            let share = i as f64 / steps;
+            if pen.dash.is_none_or(|(on, off)| (begun + length * share) % (on + off) < on) {
+                let at = a.lerp(b, share);
+                blend(self.frame, at, pen.colour);
+                if pen.wide {
+                    blend(self.frame, at + Vec2::new(1.0, 0.0), pen.colour);
+                    blend(self.frame, at + Vec2::new(0.0, 1.0), pen.colour);
+                }
+            }
+        }
+    }
+
+    fn arrow(&mut self, pen: &Pen, from: Point, to: Point) {
+        self.line(pen, from, to);
+        let length = (to - from).hypot2().sqrt();
+        if length > 1.0 {
+            let back = (from - to) * (self.less(HEAD).max(2.0).min(length) / length);
+            for turn in [0.45, -0.45] {
+                let (sin, cos) = (maths::sin(turn), maths::cos(turn));
+                self.line(pen, to, to + Vec2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos));
+            }
+        }
+    }
+
+    /// A dot with a dark rim; where it is small its colour alone.
+    fn dot(&mut self, pen: &Pen, at: Point, shape: Dot, radius: f64, selected: bool) {
+        let growth = if selected { f64::from(overlay::SELECTED_GROWTH) } else { 1.0 };
+        let radius = self.less(radius * growth * DOTS);
+        let rim = if radius >= 1.5 { 1.0 } else { 0.0 };
+        let reach = (radius + rim).ceil() as i32;
+        for (x, y) in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (f64::from(x), f64::from(y)))) {
+            let far = match shape {
+                Dot::Disc => (x * x + y * y).sqrt(),
+                Dot::Square => x.abs().max(y.abs()),
+                Dot::Diamond => x.abs() + y.abs(),
+            };
+            if far <= radius + rim {
+                blend(self.frame, at + Vec2::new(x, y), if far <= radius { pen.colour } else { DARK });
+            }
+        }
+    }
+
+    /// Slanted lines over the inside of a region.
+    fn hatch(&mut self, pen: &Pen, points: &[Point]) {
+        let dots = Polygon::new(points.iter().map(|&at| self.at(at)).collect());
+        let every = (HATCH / self.by).max(3);
+        let mut crossings = Vec::new();
+        for y in 0..self.frame.height() {
+            crossings.clear();
+            dots.row_crossings(y as f64 + 0.5, &mut crossings);
+            for pair in crossings.chunks_exact(2) {
+                let end = pair[1].min(self.frame.width() as f64);
+                let inside = pair[0].max(0.0).ceil() as usize..end.max(0.0) as usize;
+                inside.filter(|x| (x + y).is_multiple_of(every)).for_each(|x| {
+                    blend(self.frame, Point::new(x as f64, y as f64), pen.colour);
+                });
+            }
         }
     }
 }
@@ -65,73 +152,6 @@ struct Pen {
     colour: [u8; 4],
     wide: bool,
     dash: Option<(f64, f64)>,
-}
-
-impl Pen {
-    fn line(&self, frame: &mut Frame, from: Point, to: Point) {
-        let Some((a, b)) = clipped(from, to, (frame.width(), frame.height())) else { return };
-        let steps = (b.x - a.x).abs().max((b.y - a.y).abs()).ceil().max(1.0);
-        let (begun, length) = ((a - from).hypot2().sqrt(), (b - a).hypot2().sqrt());
-        for i in 0..=steps as usize {
-            let share = i as f64 / steps;
-            let drawn = self.dash.is_none_or(|(on, off)| (begun + length * share) % (on + off) < on);
-            if drawn {
-                self.plot(frame, a.lerp(b, share));
-            }
-        }
-    }
-
-    fn arrow(&self, frame: &mut Frame, from: Point, to: Point) {
-        self.line(frame, from, to);
-        let length = (to - from).hypot2().sqrt();
-        if length > 1.0 {
-            let back = (from - to) * (HEAD.min(length) / length);
-            for turn in [0.45, -0.45] {
-                let (sin, cos) = (maths::sin(turn), maths::cos(turn));
-                self.line(frame, to, to + Vec2::new(back.x * cos - back.y * sin, back.x * sin + back.y * cos));
-            }
-        }
-    }
-
-    fn plot(&self, frame: &mut Frame, at: Point) {
-        blend(frame, at, self.colour);
-        if self.wide {
-            blend(frame, at + Vec2::new(1.0, 0.0), self.colour);
-            blend(frame, at + Vec2::new(0.0, 1.0), self.colour);
-        }
-    }
-}
-
-fn dot(frame: &mut Frame, at: Point, shape: Dot, radius: f64, pen: &Pen) {
-    let radius = if pen.wide { radius * f64::from(overlay::SELECTED_GROWTH) } else { radius };
-    let reach = radius.ceil() as i32;
-    for (x, y) in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (f64::from(x), f64::from(y)))) {
-        let far = match shape {
-            Dot::Disc => (x * x + y * y).sqrt(),
-            Dot::Square => x.abs().max(y.abs()),
-            Dot::Diamond => x.abs() + y.abs(),
-        };
-        if far <= radius + 1.0 {
-            blend(frame, at + Vec2::new(x, y), if far <= radius { pen.colour } else { DARK });
-        }
-    }
-}
-
-/// Slanted lines over the inside of a region.
-fn hatch(frame: &mut Frame, part: &Part, points: &[Point], pen: &Pen) {
-    let dots = Polygon::new(points.iter().map(|&at| part.dot_of(at)).collect());
-    let mut crossings = Vec::new();
-    for y in 0..frame.height() {
-        crossings.clear();
-        dots.row_crossings(y as f64 + 0.5, &mut crossings);
-        for pair in crossings.chunks_exact(2) {
-            let end = pair[1].min(frame.width() as f64);
-            let inside = pair[0].max(0.0).ceil() as usize..end.max(0.0) as usize;
-            inside.filter(|x| (x + y).is_multiple_of(HATCH)).for_each(|x| {
-                blend(frame, Point::new(x as f64, y as f64), pen.colour);
-            });
-        }
-    }
 }
 
 /// Lays a colour over the dot that holds `at`; what lies beyond the picture takes it too.
@@ -160,7 +180,7 @@ mod tests {
     fn drawn(shape: Shape, kind: Kind, selected: bool) -> Vec<String> {
         let mut frame = Frame::filled(12, 6, DARK);
         let part = Part { corner: Point::new(10.0, 10.0), scale: 2.0, dots: (12, 6) };
-        draw(&mut frame, &part, &[Mark { kind, shape, selected, strength: 1.0 }]);
+        Ink { frame: &mut frame, part: &part, by: 1 }.draw(&[Mark { kind, shape, selected, strength: 1.0 }]);
         text(&frame)
     }
 
@@ -176,6 +196,20 @@ mod tests {
         let far = Shape::Line { points: vec![Point::new(-1e9, 15.0), Point::new(1e9, 15.0)], closed: false };
         assert_eq!(drawn(far, Kind::Curve, false)[2], "############");
         assert_eq!(drawn(Shape::Fill(rectangle), Kind::FoldRegion, false)[1..4].concat().matches('#').count(), 3);
+    }
+
+    #[test]
+    fn marks_shrink_with_the_picture() {
+        let mut frame = Frame::filled(12, 6, DARK);
+        let part = Part { corner: Point::ZERO, scale: 8.0, dots: (12, 6) };
+        let mut ink = Ink { frame: &mut frame, part: &part, by: 4 };
+        ink.draw(&[Mark {
+            kind: Kind::Anchor,
+            shape: Shape::Dot(Point::new(20.0, 20.0)),
+            selected: false,
+            strength: 1.0,
+        }]);
+        assert_eq!(text(&frame).concat().matches('#').count(), 1);
     }
 
     #[test]

@@ -168,9 +168,10 @@ impl Shown {
         let mut frame = part::frame(synth, time, &part);
         ground(&mut frame, synth.size, &part);
         if let Some(marks) = &wanted.marks {
-            ink::draw(&mut frame, &part, &overlay(scene, Some(synth), &marks.view));
-            marks.aim.iter().for_each(|&from| ink::aim(&mut frame, &part, from, marks.cursor));
-            ink::cross(&mut frame, &part, marks.cursor);
+            let mut ink = ink::Ink { frame: &mut frame, part: &part, by };
+            ink.draw(&overlay(scene, Some(synth), &marks.view));
+            marks.aim.iter().for_each(|&from| ink.aim(from, marks.cursor));
+            ink.cross(marks.cursor);
         }
         let (cells, bytes) = encode::encode(&frame, by, wanted);
         Shown { wanted: wanted.clone(), frame, by, cells, bytes }

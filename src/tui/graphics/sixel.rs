@@ -1,18 +1,19 @@
-//! Sixels: bands of six rows, colour by colour, runs counted. At most 255 colours, cut at medians; nothing is dithered,
-//! since grains make runs short and pictures large.
+//! Sixels: bands of six rows, colour by colour, runs counted. At most 255 colours, cut at medians, and fewer in a picture
+//! that has to be small; nothing is dithered, since grains make runs short and pictures large.
 
 use std::fmt::Write;
 
 use crate::base::pixels::Frame;
 
-/// The most colours.
+/// The most colours, and of a picture that is reduced: pixels are worth more than shades.
 const COLOURS: usize = 255;
+const FEW_COLOURS: usize = 48;
 /// Colours are counted in 5 bits a channel.
 const BINS: usize = 1 << 15;
 
 /// The sequence that draws `frame` on `dots`, each of its pixels `by` dots wide and high. Transparent pixels are left out.
 pub fn encode(frame: &Frame, by: usize, (width, height): (usize, usize)) -> String {
-    let palette = Palette::of(frame);
+    let palette = Palette::of(frame, if by == 1 { COLOURS } else { FEW_COLOURS });
     let mut text = format!("\x1bP0;1;0q\"1;1;{width};{height}");
     for (i, colour) in palette.colours.iter().enumerate() {
         let [r, g, b] = colour.map(|code| (u32::from(code) * 100 + 127) / 255);
@@ -76,7 +77,7 @@ struct Bin {
 }
 
 impl Palette {
-    fn of(frame: &Frame) -> Palette {
+    fn of(frame: &Frame, most: usize) -> Palette {
         let mut sums = vec![[0u64; 4]; BINS];
         for cell in frame.cells().iter().filter(|cell| cell[3] > 0) {
             let sum = &mut sums[bin(*cell)];
@@ -86,7 +87,7 @@ impl Palette {
         let mean = |sum: &[u64; 4]| std::array::from_fn(|i| (sum[i] / sum[3]) as u8);
         let bins: Vec<Bin> = filled.map(|(number, sum)| Bin { number, mean: mean(sum), count: sum[3] }).collect();
         let mut palette = Palette { colours: Vec::new(), index: vec![0; BINS] };
-        for one in cut(bins) {
+        for one in cut(bins, most) {
             let count = one.iter().map(|bin| bin.count).sum::<u64>().max(1);
             let mean = |i: usize| (one.iter().map(|bin| u64::from(bin.mean[i]) * bin.count).sum::<u64>() / count) as u8;
             one.iter().for_each(|bin| palette.index[bin.number] = palette.colours.len() as u8);
@@ -97,10 +98,10 @@ impl Palette {
 }
 
 /// Cuts the box of the most pixels and the widest spread in two at its median, until there are enough.
-fn cut(bins: Vec<Bin>) -> Vec<Vec<Bin>> {
+fn cut(bins: Vec<Bin>, most: usize) -> Vec<Vec<Bin>> {
     let mut boxes = vec![bins];
     boxes.retain(|one| !one.is_empty());
-    while boxes.len() < COLOURS {
+    while boxes.len() < most {
         let worth = |one: &Vec<Bin>| one.iter().map(|bin| bin.count).sum::<u64>() * u64::from(widest(one).1).pow(2);
         let Some((at, best)) = boxes.iter().map(worth).enumerate().max_by_key(|&(_, worth)| worth) else { break };
         if best == 0 {
@@ -194,7 +195,7 @@ mod tests {
     fn many_colours_are_reduced_to_near_ones() {
         let colour = |i: usize| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, (i * 7 % 256) as u8, 255];
         let frame = Frame::from_cells(64, 64, (0..64 * 64).map(colour).collect());
-        let palette = Palette::of(&frame);
+        let palette = Palette::of(&frame, COLOURS);
         assert!(palette.colours.len() <= COLOURS && palette.colours.len() > 200);
         let error = |cell: &[u8; 4]| {
             let near = palette.colours[usize::from(palette.index[bin(*cell)])];

@@ -93,6 +93,9 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         }
     }
     braille.draw(area, buffer);
+    let label = Style::reset().patch(colour::faint());
+    write(buffer, area, 0, 0, &short(high), label);
+    write(buffer, area, 0, area.height - 1, &short(low), label);
     let now = now(time, area);
     (0..area.height).for_each(|y| {
         write(buffer, area, now, y, "┊", colour::faint());
@@ -104,8 +107,6 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         let glyph = if curve.selected { "●" } else { "○" };
         write(buffer, area, now, (row(curve.clock.s(time)) / 4) as u16, glyph, curve.style);
     }
-    write(buffer, area, 0, 0, &short(high), colour::faint());
-    write(buffer, area, 0, area.height - 1, &short(low), colour::faint());
 }
 
 fn now(time: f64, area: Rect) -> i32 {
