@@ -1,6 +1,10 @@
 //! The link across machines when it is bad: slow, cut in the middle, full of pieces. The far end and the window's side are in
 //! this process, and between them goes a wire that counts, delays and cuts.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on fails, and says what it measured"
+)]
 
 use std::io::{Read, Write};
 use std::net::Shutdown;

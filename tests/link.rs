@@ -22,6 +22,9 @@ use serde_json::{Value, json};
 /// How long a test waits for what must come, before it fails.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// How often each side is killed; `tests/kills.rs` has the rest of a hundred, with a real window.
+const KILLS: usize = 45;
+
 struct Stage {
     _folder: tempfile::TempDir,
     scene: PathBuf,
@@ -438,7 +441,7 @@ fn a_window_outlives_its_editors() {
     let stage = stage();
     let window = stage.window();
     assert_eq!(next_title(&window).0, "0");
-    for part in ["3", "5", "4"] {
+    for part in ["3", "5", "4"].into_iter().cycle().take(KILLS) {
         let (editor, mut wait_for) = Other::start(part, &stage.scene);
         wait_for("ready");
         loop {
@@ -458,7 +461,7 @@ fn an_editor_outlives_its_windows() {
     let stage = stage();
     let (editor, events) = stage.editor();
     let mut document = stage.document.clone();
-    for revision in 1..=3 {
+    for revision in 1..=KILLS as u64 {
         let (window, mut wait_for) = Other::start("window", &stage.scene);
         wait_for(&format!("shows {}", revision - 1));
         document = publish(&editor, &document, revision..=revision);

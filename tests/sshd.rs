@@ -7,7 +7,7 @@
     reason = "a test that cannot go on fails, and says what it leaves out"
 )]
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 
 use portable_pty::{CommandBuilder, PtySize, native_pty_system};
 
-/// Generous: the machine may be busy with other tests.
-const PATIENCE: Duration = Duration::from_secs(60);
+mod display;
+use display::{BAR, Display, PATIENCE};
 
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
     let began = Instant::now();
@@ -152,46 +152,21 @@ impl Drop for Editor {
     }
 }
 
-/// A display of its own.
-fn display() -> Option<(Running, String)> {
-    for tool in ["xdotool", "import"] {
-        find(tool)?;
-    }
-    let mut server = Command::new(find("Xvfb")?)
-        .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut number = String::new();
-    BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-    Some((Running(server), format!(":{}", number.trim())))
-}
-
 /// The colour in the middle of what the display shows.
-fn middle(display: &str, shot: &Path) -> [u8; 3] {
-    let file = shot.display().to_string();
-    Command::new("import").args(["-window", "root", &file]).env("DISPLAY", display).status().unwrap();
+fn middle(display: &Display, shot: &Path) -> [u8; 3] {
+    display.tool("import", &["-window", "root", &shot.display().to_string()]);
     let Ok(image) = image::open(shot) else { return [0; 3] };
-    let image = image.to_rgb8();
-    let found = Command::new("xdotool")
-        .args(["search", "--onlyvisible", "--name", "plica", "getwindowgeometry", "--shell"])
-        .env("DISPLAY", display)
-        .output()
-        .unwrap();
-    let found = String::from_utf8(found.stdout).unwrap();
-    let number = |name: &str| found.lines().find_map(|line| line.strip_prefix(name)?.parse::<i64>().ok());
-    let (Some(x), Some(y), Some(width), Some(height)) =
-        (number("X="), number("Y="), number("WIDTH="), number("HEIGHT="))
-    else {
-        return [0; 3];
-    };
-    image.get_pixel((x + width / 2) as u32, (y + height / 2 - 17) as u32).0
+    let search = ["search", "--onlyvisible", "--name", "plica", "getwindowgeometry", "--shell"];
+    let found = String::from_utf8(display.tool("xdotool", &search)).unwrap();
+    let number = |name: &str| found.lines().find_map(|line| line.strip_prefix(name)?.parse::<usize>().ok());
+    let all = (number("X="), number("Y="), number("WIDTH="), number("HEIGHT="));
+    let (Some(x), Some(y), Some(width), Some(height)) = all else { return [0; 3] };
+    image.to_rgb8().get_pixel((x + width / 2) as u32, (y + (height - BAR) / 2) as u32).0
 }
 
 #[test]
 fn an_edit_on_a_server_moves_the_window_here() {
-    let (Some(far), Some((_server, display))) = (far(), display()) else { return };
+    let (Some(far), Some(display)) = (far(), Display::open()) else { return };
     far.paint("red.png", [200, 30, 30]);
     far.paint("blue.png", [30, 30, 200]);
     let layer = serde_json::json!({"kind": "picture", "name": "l", "image": "cat"});
@@ -207,7 +182,7 @@ fn an_edit_on_a_server_moves_the_window_here() {
     let window = Command::new(env!("CARGO_BIN_EXE_plica"))
         .args(["view", address, "--remote-plica", env!("CARGO_BIN_EXE_plica")])
         .env("PLICA_SSH", &far.ssh)
-        .env("DISPLAY", &display)
+        .env("DISPLAY", &display.name)
         .env("XDG_CACHE_HOME", &cache)
         .env("XDG_RUNTIME_DIR", far.folder.path().join("here"))
         .env_remove("WAYLAND_DISPLAY")

@@ -39,7 +39,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let options = args.options.options()?;
     let most = usize::try_from(options.limits.texture).unwrap_or(usize::MAX);
     let (name, link, load) = match args.scene.to_str().filter(|text| text.starts_with(SCHEME)) {
-        Some(address) => there(Way::to(Address::parse(address)?, args.remote_plica, &options))?,
+        Some(address) => there(Way::to(Address::parse(address)?, args.remote_plica, &options), context)?,
         None => here(&args.scene, args.joined, options)?,
     };
     context.check_cancelled()?;
@@ -66,11 +66,12 @@ fn here(scene: &Path, joined: bool, options: Options) -> Result<Source> {
     Ok((name, link, Box::new(load)))
 }
 
-fn there(way: Way) -> Result<Source> {
+fn there(way: Way, context: &Context) -> Result<Source> {
     let kept = Cache::of_user()?;
     let name = format!("{} on {}", way.address.file_name(), way.address.host);
     let (copies, options) = (fetch::Shared::default(), way.options.clone());
-    let connected = way.connect(drop)?;
+    // Ctrl-C at a question of ssh's ends ssh first.
+    let connected = way.connect(drop).or_else(|error| context.check_cancelled().and(Err(error)))?;
     let link = far::follow(way, connected, kept, copies.clone())?;
     let mut cache = materials::Cache::default();
     let load = move |scene: &_| {
