@@ -158,7 +158,7 @@ impl Sources<'_> {
         let mut problems = Vec::new();
         let pictures = self.load(&named_pictures(scene), picture::decode, &mut cache.pictures, &mut problems);
         let fields = self.load(&named_fields(scene), fields::decode, &mut cache.fields, &mut problems);
-        (Materials { pictures, fields }, problems)
+        (Materials { pictures, fields, stop: None }, problems)
     }
 
     /// What a file is kept under.

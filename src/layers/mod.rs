@@ -1,6 +1,8 @@
 //! One folder a technique, the same file names in each. [`Layer`] is the only list of them.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use kurbo::Rect;
 use schemars::JsonSchema;
@@ -135,9 +137,16 @@ pub struct Materials {
     pub pictures: BTreeMap<String, Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
+    /// Set once nobody wants any more what is made of them: a synthesis under way then ends with an error.
+    pub stop: Option<Arc<AtomicBool>>,
 }
 
 impl Materials {
+    /// Whether nobody wants any more what is made of them.
+    pub fn stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
     /// The picture of that name.
     ///
     /// # Errors

@@ -18,27 +18,41 @@ use crate::scene::Scene;
 /// The thread that synthesises.
 pub struct Worker {
     slot: Arc<(Mutex<Option<Request>>, Condvar)>,
+    running: Running,
 }
+
+/// The synthesis that runs: its scene, when it began, and how to stop it.
+type Running = Arc<Mutex<Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>>>;
+
+/// A synthesis that has taken this long is given up for a newer one; quicker ones end, so that a held key shows its way.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 impl Worker {
     /// Starts it.
     pub fn start(options: files::Options, events: mpsc::Sender<Event>) -> Worker {
         let slot = Arc::new((Mutex::new(None), Condvar::new()));
-        let shared = slot.clone();
+        let running = Running::default();
+        let (shared, in_thread) = (slot.clone(), running.clone());
         std::thread::spawn(move || {
             let cache = files::materials::Cache::default();
-            let mut studio = Studio { options, cache, made: None, picture: None };
+            let mut studio = Studio { options, cache, made: None, picture: None, running: in_thread };
             while let Some(request) = next(&shared) {
                 if !studio.serve(&request, &events) {
                     return;
                 }
             }
         });
-        Worker { slot }
+        Worker { slot, running }
     }
 
     /// Asks for this; what was asked for before and not begun yet is forgotten.
     pub fn ask(&self, request: Request) {
+        if let Some((scene, begun, stop)) = &*self.running.lock().unwrap_or_else(PoisonError::into_inner)
+            && begun.elapsed() >= PATIENCE
+            && (request.fresh || !Arc::ptr_eq(scene, &request.scene))
+        {
+            stop.store(true, Ordering::Relaxed);
+        }
         let mut slot = self.slot.0.lock().unwrap_or_else(PoisonError::into_inner);
         let fresh = request.fresh || slot.as_ref().is_some_and(|waiting| waiting.fresh);
         *slot = Some(Request { fresh, ..request });
@@ -67,6 +81,7 @@ struct Studio {
     cache: files::materials::Cache,
     made: Option<Made>,
     picture: Option<Arc<Shown>>,
+    running: Running,
 }
 
 impl Studio {
@@ -76,8 +91,14 @@ impl Studio {
             if events.send(Event::Synthesising).is_err() {
                 return false;
             }
-            let begun = Instant::now();
-            let result = self.synthesise(request);
+            let (begun, stop) = (Instant::now(), Arc::new(AtomicBool::new(false)));
+            self.run(Some((request.scene.clone(), begun, stop.clone())));
+            let result = self.synthesise(request, stop.clone());
+            self.run(None);
+            if stop.load(Ordering::Relaxed) && result.is_err() {
+                // What stopped it waits to be served.
+                return true;
+            }
             let ms = begun.elapsed().as_secs_f64() * 1000.0;
             let longest = result.as_ref().map_or(Vec::new(), |synth| seeing::longest(synth));
             if events.send(Event::Synthesised(result.map(|synth| Synthesis { synth, ms, longest }))).is_err() {
@@ -95,15 +116,21 @@ impl Studio {
         events.send(Event::Framed(picture)).is_ok()
     }
 
-    fn synthesise(&mut self, request: &Request) -> Result<Arc<Synth>, String> {
-        let (materials, problems) =
+    fn run(&self, what: Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>) {
+        *self.running.lock().unwrap_or_else(PoisonError::into_inner) = what;
+    }
+
+    fn synthesise(&mut self, request: &Request, stop: Arc<AtomicBool>) -> Result<Arc<Synth>, String> {
+        let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
+        materials.stop = Some(stop);
         let previous = self.made.as_ref().map(|made| &*made.synth);
         let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
             // A picture that could not be read says more than that it is not there.
             problems.first().unwrap_or(&problem).to_string()
         })?;
         let synth = Arc::new(synth);
+        materials.stop = None;
         self.made = Some(Made { scene: request.scene.clone(), synth: synth.clone(), materials });
         problems.first().map_or(Ok(synth), |problem| Err(problem.to_string()))
     }

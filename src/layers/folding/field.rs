@@ -228,12 +228,12 @@ impl Prepared {
 }
 
 impl Field {
-    /// The field of `zone`; none where no pixel of the picture is in its bounding box.
+    /// The field of `zone`; none where no pixel of the picture is in its bounding box, or where nobody wants it any more.
     pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Option<Arc<Field>> {
         let prepared = Prepared::new(zone, inputs, materials);
         let (x0, y0, width, height) = pixel_box(prepared.outline.bounds(), inputs.size)?;
-        let row = |y: usize| Row::of(&prepared.row(x0, y, width));
-        let rows: Vec<Row> = (y0..y0 + height).into_par_iter().map(row).collect();
+        let row = |y: usize| (!materials.stopped()).then(|| Row::of(&prepared.row(x0, y, width)));
+        let rows: Vec<Row> = (y0..y0 + height).into_par_iter().map(row).collect::<Option<_>>()?;
         Some(Arc::new(Field {
             x0,
             y0,

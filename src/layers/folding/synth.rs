@@ -58,7 +58,8 @@ pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
 /// the place in each pixel that is looked at: [`CENTRE`], or another for supersampling.
 ///
 /// # Errors
-/// A picture that the layer names is not among the materials; the problem's path is relative to the layer.
+/// A picture that the layer names is not among the materials; the problem's path is relative to the layer. Or nobody wants
+/// it any more.
 pub fn synth(
     layer: &PictureLayer,
     wrap: Wrap,
@@ -78,6 +79,9 @@ pub fn synth(
             Some(known) => Some(known.field.clone()),
             None => Field::new(zone, &inputs, materials),
         };
+        if materials.stopped() {
+            return Err(Problem::error("", "stopped"));
+        }
         zones.extend(field.map(|field| ZoneSynth {
             name: zone.name.clone(),
             index,

@@ -122,3 +122,14 @@ fn a_missing_picture_is_a_problem_with_its_place() {
     let problem = synth::synth(&layer(&zone), Wrap::Repeat, &materials(), synth::CENTRE, None).unwrap_err();
     assert_eq!(problem.path, "/zones/0/sampler/image");
 }
+
+#[test]
+fn a_synthesis_that_nobody_wants_ends() {
+    let layer = layer(&zone("[4, 0]", ""));
+    for stopped in [false, true] {
+        let stop = Some(Arc::new(std::sync::atomic::AtomicBool::new(stopped)));
+        let materials = Materials { stop, ..materials() };
+        let made = synth::synth(&layer, Wrap::Once, &materials, synth::CENTRE, None);
+        assert_eq!(made.is_err(), stopped);
+    }
+}
