@@ -29,7 +29,12 @@ impl Editor {
         command.args(["edit", "--no-view"]);
         command.args(arguments);
         command.cwd(folder);
-        for (name, value) in [("TERM", "xterm-256color"), ("XDG_RUNTIME_DIR", "run"), ("XDG_STATE_HOME", "state")] {
+        for (name, value) in [
+            ("TERM", "xterm-256color"),
+            ("XDG_RUNTIME_DIR", "run"),
+            ("XDG_STATE_HOME", "state"),
+            ("XDG_CONFIG_HOME", "config"),
+        ] {
             let value = if name == "TERM" { value.into() } else { folder.join(value).into_os_string() };
             command.env(name, value);
         }
@@ -158,6 +163,35 @@ fn a_picture_becomes_a_scene_that_is_edited_and_saved() {
     assert_eq!(editor.end(), 0);
     editor.assert_restored();
     assert_eq!(json(&scene).pointer("/layers/0/zones/0/outline/y"), Some(&serde_json::json!(5.5)));
+}
+
+#[test]
+fn the_log_of_a_session_is_a_script_that_does_the_same_again() {
+    let (first, second) = (folder(), folder());
+    std::fs::create_dir_all(first.path().join("config/plica")).unwrap();
+    let keys = "[everywhere]\n\"F2\" = \"play-macro a\"\n\"g\" = \"undo\"\n";
+    std::fs::write(first.path().join("config/plica/keys.toml"), keys).unwrap();
+    let mut editor = Editor::open(first.path(), &["photo.png"]);
+    editor.wait_for("keys.toml:3: g would hide");
+    editor.press("/outline\r\rjj");
+    editor.press("qai+=5.5\rq");
+    editor.wait_for("macro a has 1 line:");
+    editor.press("\x1bOQi7");
+    editor.wait_for(" INS ");
+    editor.press("\x1b");
+    editor.wait_for(" NOR ");
+    editor.press(".:wq\r");
+    assert_eq!(editor.end(), 0);
+    let saved = json(&first.path().join("photo.plica.json"));
+    assert_eq!(saved.pointer("/layers/0/zones/0/outline/y"), Some(&serde_json::json!(16.5)));
+    let logs = std::fs::read_dir(first.path().join("state/plica/sessions")).unwrap().flatten();
+    let log = logs.map(|log| log.path()).next().unwrap();
+    let text = std::fs::read_to_string(&log).unwrap();
+    let expected = "search outline\npane table\nmove down\nmove down\nput +=5.5\nput +=5.5\nput +=5.5\nwq\n";
+    assert!(text.ends_with(expected) && text.starts_with("# plica "), "{text}");
+    let mut editor = Editor::open(second.path(), &["photo.png", "--script", log.to_str().unwrap()]);
+    assert_eq!(editor.end(), 0);
+    assert_eq!(json(&second.path().join("photo.plica.json")), saved);
 }
 
 #[test]

@@ -13,7 +13,8 @@ pub const COMMANDS: &[Command] = &[
 fn record(state: &mut State, call: &Call) -> Done {
     if call.text.is_empty() {
         let (letter, lines) = state.recorder.end_macro().ok_or("no macro is being recorded: qa begins a")?;
-        state.say(format!("macro {letter} has {lines} lines: @{letter} plays it"));
+        let lines = if lines == 1 { "1 line".into() } else { format!("{lines} lines") };
+        state.say(format!("macro {letter} has {lines}: @{letter} plays it"));
         return Ok(());
     }
     if let Some(letter) = state.recorder.recording() {
