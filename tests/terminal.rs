@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use base64::Engine;
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 
 /// Longer than anything here takes on a busy machine.
@@ -192,6 +193,26 @@ fn the_log_of_a_session_is_a_script_that_does_the_same_again() {
     let mut editor = Editor::open(second.path(), &["photo.png", "--script", log.to_str().unwrap()]);
     assert_eq!(editor.end(), 0);
     assert_eq!(json(&second.path().join("photo.plica.json")), saved);
+}
+
+#[test]
+fn rows_are_pasted_and_yanked_through_the_terminal() {
+    let folder = folder();
+    let scene = folder.path().join("photo.plica.json");
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("photo.plica.json: made");
+    editor.press("/motion\r");
+    editor.wait_for("zones.all.motion");
+    editor.press("\x1b[200~x,y,dx,dy\r1,2,3,4\r5,6,7,8\r\x1b[201~");
+    editor.wait_for("2 rows pasted");
+    editor.press("gtY");
+    let encoded = editor.wait_for_sequence("\x1b]52;c;", "\x07");
+    let yanked = base64::engine::general_purpose::STANDARD.decode(encoded).unwrap();
+    let expected = "tool,x,y,dx,dy,|J|,°\npoint,1,2,3,4,5,-53.130102354\npoint,5,6,7,8,10.630145813,-48.814074834\n";
+    assert_eq!(String::from_utf8(yanked).unwrap(), expected);
+    editor.press(":wq\r");
+    assert_eq!(editor.end(), 0);
+    assert_eq!(json(&scene).pointer("/layers/0/zones/0/motion/1/jump"), Some(&serde_json::json!([7, 8])));
 }
 
 #[test]

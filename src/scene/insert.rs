@@ -96,7 +96,8 @@ fn placed_alone(
     item: &Value,
     index: usize,
 ) -> Option<(Vec<Value>, usize)> {
-    let (mut item, mut to) = (item.clone(), old.partition_point(|one| key_of(one, key) < key_of(&item, key)));
+    let mut to = old.partition_point(|one| key_of(one, key) < key_of(item, key));
+    let mut item = item.clone();
     if old.get(to).is_some_and(|one| key_of(one, key) == key_of(&item, key)) {
         let (near, between) = layers::item(variant, list, old, index)?;
         (*item.pointer_mut(key)?, to) = (between.pointer(key)?.clone(), near);

@@ -233,6 +233,8 @@ fn report(state: &mut State, result: Result<String, String>) {
 
 /// Pasted text is typed where something is typed; a line end ends it.
 fn paste(state: &mut State, text: &str) {
+    // Terminals send the ends of lines as the Enter key does.
+    let text = &text.replace("\r\n", "\n").replace('\r', "\n");
     let first = text.lines().next().unwrap_or_default();
     match &state.mode {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_text(state, first),

@@ -119,6 +119,8 @@ fn entries() -> Vec<String> {
         "w/2  sqrt(2)*r       Computed; v is the old value, x y dx dy the row's columns,".into(),
         "                     r a length and degrees, w h the picture, i n the place in the selection".into(),
         format!("functions            {} (angles in degrees)", functions.join(" ")),
+        "|J|  °               A jump without a length takes one along x; it has no direction to turn".into(),
+        "p, or a paste        JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list".into(),
     ]
 }
 

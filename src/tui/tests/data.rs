@@ -130,6 +130,7 @@ fn rows_are_pasted_into_tables() {
         ("dy dx y x\n4 3 2 1\n", anchor(1.0, 2.0, 3.0, 4.0), 1),
         ("x;y;|J|;°\n1,5;2;18;90\n", anchor(1.5, 2.0, 0.0, -18.0), 1),
         ("tool,x,y,dx,dy,|J|,°\npoint,1,2,3,4,99,99\n", anchor(1.0, 2.0, 3.0, 4.0), 1),
+        ("1 2 3 4\r5 6 7 8\r", anchor(1.0, 2.0, 3.0, 4.0), 2),
         ("#,x,y\n1,7,8\n2,9,10\n", json!({"tool": "point", "at": [7, 8]}), 2),
         ("[{\"tool\": \"point\", \"at\": [1, 2]}]", json!({"tool": "point", "at": [1, 2]}), 1),
     ] {
@@ -175,6 +176,7 @@ fn every_list_of_numbers_takes_rows() {
 fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
     for (text, part) in [
         ("1,2,3,4\n5,six,7,8", "line 2, column 2: \"six\" is not a number"),
+        ("1,2,3,4\r\r5,six,7,8", "line 3, column 2: \"six\""),
         ("1,2\n3\n", "line 2 has 1 value, the lines before have 2"),
         ("1 2 3 4 5", "line 1 has 5 values, but a row takes x y dx dy"),
         ("x,y,colour\n1,2,3", "line 1, column 3: there is no column \"colour\""),
@@ -209,7 +211,7 @@ fn a_number_is_pasted_into_its_cell() {
     }
     let mut state = state();
     press(&mut state, &motion("l i"));
-    paste(&mut state, "12\n13");
+    paste(&mut state, "12\r13");
     assert!(matches!(&state.mode, Mode::Entry(entry) if entry.text.value() == "12"));
 }
 
