@@ -56,39 +56,56 @@ impl Items {
     }
 }
 
-fn fields(old: &Map<String, Value>, new: &Map<String, Value>) -> Change {
-    let common = |a: &Map<String, Value>, b: &Map<String, Value>| -> Vec<String> {
-        a.keys().filter(|key| b.contains_key(*key)).cloned().collect()
-    };
-    let ordered = old.keys().eq(new.keys());
-    if !ordered && common(old, new) != common(new, old) {
-        return Change::Other;
-    }
-    let gone = old.keys().filter(|key| !ordered && !new.contains_key(*key)).map(|key| (key.clone(), Change::Other));
-    let mut changed: Vec<(String, Change)> = gone.collect();
-    for (key, value) in new {
-        match old.get(key).map_or(Change::Other, |old| Change::of(old, value)) {
-            Change::Same => {}
-            change => changed.push((key.clone(), change)),
+/// Whether two values are the same to the last sign, the order of keys included (`==` on objects does not look at it).
+pub fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|((ka, a), (kb, b))| ka == kb && same(a, b))
         }
+        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
+        (a, b) => a == b,
+    }
+}
+
+fn fields(old: &Map<String, Value>, new: &Map<String, Value>) -> Change {
+    let mut changed = Vec::new();
+    let mut note = |key: &String, change: Change| {
+        if change != Change::Same {
+            changed.push((key.clone(), change));
+        }
+    };
+    if old.keys().eq(new.keys()) {
+        old.iter().zip(new).for_each(|((key, old), (_, new))| note(key, Change::of(old, new)));
+    } else {
+        let kept = |a: &Map<String, Value>, b: &Map<String, Value>| -> Vec<String> {
+            a.keys().filter(|key| b.contains_key(*key)).cloned().collect()
+        };
+        if kept(old, new) != kept(new, old) {
+            return Change::Other;
+        }
+        old.keys().filter(|key| !new.contains_key(*key)).for_each(|key| note(key, Change::Other));
+        new.iter().for_each(|(key, new)| note(key, old.get(key).map_or(Change::Other, |old| Change::of(old, new))));
     }
     if changed.is_empty() { Change::Same } else { Change::Fields(changed) }
 }
 
+/// Every item is looked at once: an edit of one among ten thousand is found by one walk.
 fn items(old: &[Value], new: &[Value]) -> Change {
-    let same = |(old, new): (&Value, &Value)| Change::of(old, new) == Change::Same;
-    let ahead = old.iter().zip(new).take_while(|&pair| same(pair)).count();
-    let least = old.len().min(new.len()) - ahead;
-    let behind = old.iter().rev().zip(new.iter().rev()).take(least).take_while(|&pair| same(pair)).count();
-    if ahead == new.len() && ahead == old.len() {
+    if old.len() != new.len() {
+        let ahead = old.iter().zip(new).take_while(|(old, new)| same(old, new)).count();
+        let least = old.len().min(new.len()) - ahead;
+        let behind = old.iter().rev().zip(new.iter().rev()).take(least).take_while(|(old, new)| same(old, new)).count();
+        return Change::Items(Items { ahead, behind, between: vec![Change::Other; new.len() - ahead - behind] });
+    }
+    let mut between: Vec<Change> = old.iter().zip(new).map(|(old, new)| Change::of(old, new)).collect();
+    let is_same = |change: &&Change| **change == Change::Same;
+    let ahead = between.iter().take_while(is_same).count();
+    if ahead == new.len() {
         return Change::Same;
     }
-    let (old, new) = (&old[ahead..old.len() - behind], &new[ahead..new.len() - behind]);
-    let between = match old.len() == new.len() {
-        true => old.iter().zip(new).map(|(old, new)| Change::of(old, new)).collect(),
-        false => vec![Change::Other; new.len()],
-    };
-    Change::Items(Items { ahead, behind, between })
+    let behind = between.iter().rev().take_while(is_same).count();
+    between.truncate(new.len() - behind);
+    Change::Items(Items { ahead, behind, between: between.split_off(ahead) })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use serde_json::Value;
 
 use super::field::name_of;
-use super::schema::{Body, Place};
+use super::schema::{Body, Place, Shape};
 use super::{Document, pointer};
 use crate::base::error::{Error, Result};
 use crate::base::problem::{nearest, quoted};
@@ -24,17 +24,17 @@ pub fn address(document: &Document, pointer: &str) -> String {
     let mut address = String::new();
     for token in pointer::tokens(pointer) {
         let Some(below) = place.step(&token) else { return pointer.to_owned() };
-        address = self::below(&address, place, &token, below);
+        address = self::below(&address, (place.shape, place.shape.body()), &token, below);
         place = below;
     }
     address
 }
 
-/// The address of `below`, which is one token below `place`, whose own address is given.
-pub fn below(address: &str, place: Place, token: &str, below: Place) -> String {
-    let step = match place.shape.body() {
+/// The address of `below`, which is one token below the place of that shape and address.
+pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Place) -> String {
+    let step = match body {
         Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
-        Body::Numbers(_) => pointer::index(token).and_then(|i| place.shape.column(i)).map(str::to_owned),
+        Body::Numbers(_) => pointer::index(token).and_then(|i| shape.column(i)).map(str::to_owned),
         _ => None,
     };
     let step = step.unwrap_or_else(|| spelled(token, false));

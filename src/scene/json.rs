@@ -7,6 +7,7 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
+pub use crate::base::change::same;
 use crate::base::problem::Problem;
 
 /// Objects and lists may be nested this deep.
@@ -227,17 +228,6 @@ fn inline(value: &Value, out: &mut String) {
 fn scalar(value: &Value, out: &mut String) {
     use std::fmt::Write;
     write!(out, "{value}").expect("writing to a string does not fail");
-}
-
-/// Whether two values are the same to the last sign, the order of keys included (`==` on objects does not look at it).
-pub fn same(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Object(a), Value::Object(b)) => {
-            a.len() == b.len() && a.iter().zip(b).all(|((ka, a), (kb, b))| ka == kb && same(a, b))
-        }
-        (Value::Array(a), Value::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
-        (a, b) => a == b,
-    }
 }
 
 #[cfg(test)]

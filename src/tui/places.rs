@@ -55,9 +55,11 @@ pub fn list(document: &Document) -> Vec<Listed> {
 }
 
 fn below(place: Place, at: &str, address: &str, all: &mut Vec<Listed>) {
-    let items = matches!(place.shape.body(), Body::List(..));
+    let body = place.shape.body();
+    let items = matches!(body, Body::List(..));
     for (token, inner) in field::steps(place) {
-        let (pointer, address) = (pointer::join(at, &token), address::below(address, place, &token, inner));
+        let (pointer, address) =
+            (pointer::join(at, &token), address::below(address, (place.shape, body), &token, inner));
         let mut words = match field::name_of(inner.value) {
             Some(name) => name.to_lowercase(),
             None if items => String::new(),
