@@ -381,7 +381,6 @@ impl ApplicationHandler<Event> for App {
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => self.resized(),
             WindowEvent::Occluded(hidden) => {
                 self.opened.iter_mut().for_each(|o| o.hidden = hidden);
-                self.clock.start();
                 self.redraw();
             }
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {

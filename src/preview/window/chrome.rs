@@ -147,6 +147,9 @@ fn sign(canvas: &mut Canvas, playing: bool, at: Point, height: f64) {
 }
 
 fn times(state: &State) -> String {
+    if !state.has_picture() {
+        return String::new();
+    }
     let (timeline, transport) = (&state.timeline, &state.transport);
     let still = if state.shown.still { "   still picture" } else { "" };
     let speed = if transport.speed == 1.0 { String::new() } else { format!("   speed {}", transport.speed) };
@@ -165,14 +168,15 @@ fn right_text(state: &State, room: f64) -> String {
     let percent = if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 };
     let mut parts: Vec<(u8, String)> = Vec::new();
     parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));
+    parts.extend(state.jump.map(|jump| (2, format!("jump {:.2}, {:.2}", jump.x, jump.y))));
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
-    parts.push((4, format!("{percent} %")));
+    parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
     parts.push((1, "? keys".to_owned()));
     loop {
         let text = parts.iter().map(|(_, part)| part.as_str()).collect::<Vec<_>>().join("   ");
         let least = parts.iter().map(|(weight, _)| *weight).min();
-        if parts.len() == 1 || glyphs::width(&text) <= room {
+        if parts.len() <= 1 || glyphs::width(&text) <= room {
             return text;
         }
         parts.retain(|(weight, _)| Some(*weight) != least);
@@ -279,7 +283,7 @@ mod tests {
         assert_eq!(right_text(&state, 999.0), "200 %   ? keys");
         (state.fps, state.transport.whole_frames) = (Some(59.97), true);
         assert_eq!(right_text(&state, 999.0), "whole frames   60 fps   200 %   ? keys");
-        state.pointer = Some(Point::new(10.0, 20.0));
+        state.pointer = Some(Point::new(10.0, 43.0));
         for text in ["x 5.0  y 10.0   60 fps   200 %   ? keys", "x 5.0  y 10.0   200 %", "200 %"] {
             assert_eq!(right_text(&state, glyphs::width(text) + 0.1), text);
         }

@@ -64,7 +64,7 @@ fn scale_bar(canvas: &mut Canvas, state: &State) {
     let y = state.area().height - 20.0 * scale;
     let from = Point::new(2.0 * MARGIN_PX * scale, y);
     let to = from + Vec2::new(jump * screen_from_jump * scale, 0.0);
-    let text = format!("{jump} px");
+    let text = format!("{jump} px   one every {} px", rounded(state.field_spacing()));
     let right = to.x + 12.0 * scale + glyphs::width(&text) * TEXT_PX * scale / glyphs::BASE;
     let back = Rect::new(MARGIN_PX * scale, y - 10.0 * scale, right + MARGIN_PX * scale, y + 10.0 * scale);
     canvas.rect(back, 4.0 * scale, PANEL);

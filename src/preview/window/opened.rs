@@ -9,7 +9,7 @@ use winit::window::{Fullscreen, Window};
 
 use super::chrome;
 use super::screen::{Drawn, Pictures, Screen};
-use super::show::{Cached, Show};
+use super::show::{Cached, Show, jump_at};
 use super::state::{BAR_PX, State};
 use crate::base::error::Result;
 use crate::render::Synth;
@@ -38,6 +38,8 @@ impl Opened {
             Some(show) => {
                 marks.follow(state, show);
                 (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
+                let asked = state.pointed().filter(|_| state.shows_jumps());
+                state.jump = asked.and_then(|at| jump_at(&show.synth, at));
                 self.pictures(state, show)?
             }
             None => {

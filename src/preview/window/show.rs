@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use kurbo::Size;
+use kurbo::{Point, Size, Vec2};
 
 use super::camera::Camera;
 use super::canvas::Canvas;
@@ -36,6 +36,18 @@ impl Show {
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
         (Show { scene, still: still(&frames), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
     }
+}
+
+/// The jump vector of the pixel at a place in the picture: that of the topmost zone there.
+pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
+    let zones = synth.layers.iter().rev().flat_map(|LayerSynth::Picture(layer)| layer.zones.iter().rev());
+    zones.map(|zone| &zone.field).find_map(|field| {
+        let inside = |x: f64, from: usize, n: usize| (x as usize).checked_sub(from).filter(|&i| x >= 0.0 && i < n);
+        let i = inside(at.x, field.x0, field.inside.width())?;
+        let j = inside(at.y, field.y0, field.inside.height())?;
+        let [dx, dy] = field.jumps.get(i, j).map(f64::from);
+        field.inside.get(i, j).then_some(Vec2::new(dx, dy))
+    })
 }
 
 /// The largest side of any picture that a frame reads.
@@ -134,6 +146,33 @@ fn still(synth: &Synth) -> Synth {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_topmost_zone_under_the_pointer_gives_the_jump() {
+        use crate::base::pixels::Picture;
+        use crate::layers::Materials;
+        let zone = |name: &str, x: u32, jump: u32| {
+            format!(
+                r#"{{ "name": "{name}", "outline": {{"kind": "rectangle", "x": {x}, "y": 2, "width": 4, "height": 4}},
+                    "motion": [{{"tool": "translate", "by": [{jump}, 0]}}]}}"#
+            )
+        };
+        let scene = format!(
+            r#"{{ "plica": 1, "images": {{"a": {{"path": "a.png"}}}}, "layers": [{{ "kind": "picture", "name": "l", "image": "a",
+              "zones": [{}, {}]}}]}}"#,
+            zone("below", 1, 3),
+            zone("above", 4, 5)
+        );
+        let scene = serde_json::from_str(&scene).unwrap();
+        let picture = Arc::new(Picture::filled(16, 16, [1.0; 4]));
+        let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
+        let synth = crate::render::synth(&scene, &materials, None).unwrap();
+        let table =
+            [(1.5, 2.0, Some(3.0)), (4.9, 3.0, Some(5.0)), (0.9, 3.0, None), (-1.0, 3.0, None), (5.0, 6.0, None)];
+        for (x, y, expected) in table {
+            assert_eq!(jump_at(&synth, Point::new(x, y)).map(|jump| jump.x), expected, "{x} {y}");
+        }
+    }
 
     #[test]
     fn what_is_selected_has_names() {

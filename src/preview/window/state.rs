@@ -56,6 +56,8 @@ pub struct State {
     pub wipe: f64,
     /// The point marked last, in pixels of the picture.
     pub marked: Option<Point>,
+    /// The jump vector under the pointer, where what is shown of jump vectors asks for it.
+    pub jump: Option<Vec2>,
     /// What is selected in the editor, for people.
     pub selected: Option<String>,
     /// Frames a second, while it plays.
@@ -146,6 +148,7 @@ impl Default for State {
             field_step: 0,
             wipe: 0.5,
             marked: None,
+            jump: None,
             selected: None,
             fps: None,
             arrow_scale: 1.0,
@@ -266,8 +269,15 @@ impl State {
         shown.then(|| Samplers { spacing: self.field_spacing(), times: std::iter::once(now).chain(before).collect() })
     }
 
-    fn field_spacing(&self) -> f64 {
+    /// Pixels of the picture between two arrows of the field, two jump paths or two samplers.
+    pub fn field_spacing(&self) -> f64 {
         self.spacing(FIELD_PX * pow(2.0, f64::from(self.field_step)))
+    }
+
+    /// Whether anything is shown of the jump vectors of pixels.
+    pub fn shows_jumps(&self) -> bool {
+        let shown = &self.shown;
+        shown.field || shown.wheel || shown.paths || shown.samplers || shown.onion || shown.thresholds
     }
 
     /// What the overlay shows but the samplers, its field as dense as the screen bears.

@@ -4,6 +4,7 @@
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::commands;
+use crate::preview::keys as window;
 
 mod keymap;
 pub use keymap::Keymap;
@@ -85,6 +86,7 @@ pub fn manual() -> String {
         format!("| `{}{space}{}` | {} |\n", cell(name), cell(args), cell(help))
     };
     let own: String = commands::all().map(|command| row(command.name, command.args, command.help)).collect();
+    let window: String = window::KEYS.iter().map(|own| row(own.key, "", own.help)).collect();
     let others = crate::ops::names().filter(|name| commands::find(name).is_none());
     let others: String = others.map(|name| row(&name, "...", &format!("As `plica {name}`, on this scene"))).collect();
     format!(
@@ -92,7 +94,8 @@ pub fn manual() -> String {
          number before a key is a count: `5j`.\nIn a pane its own keys come first, then those of \"{EVERYWHERE}\". Your own keys \
          stand over them: [keymap.md](keymap.md).\n{}\n## Commands\n\nEvery key runs one of these lines; they are typed after `:`, \
          a count before the name (`:5 move down`),\nand stand in scripts (`:source`, `plica edit --script`) and in the log of a \
-         session (`:log`).\n\n| line | does |\n| --- | --- |\n{own}{others}",
+         session (`:log`).\n\n| line | does |\n| --- | --- |\n{own}{others}\n## In the window\n\nThe keys of the preview window; \
+         the editor has most of them behind `z`.\n\n| key | does |\n| --- | --- |\n{window}",
         crate::base::keys::markdown(KEYS)
     )
 }
@@ -102,7 +105,6 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::preview::keys as window;
 
     #[test]
     fn no_two_bindings_clash() {
