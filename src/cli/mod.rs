@@ -41,6 +41,8 @@ fn run(line: CommandLine, context: &mut Context, cancel: Arc<AtomicBool>) -> Res
         #[cfg(feature = "tui")]
         Some(Command::Edit(args)) => tui::run(tui::Options::of(&args)?)?,
         #[cfg(feature = "tui")]
+        Some(Command::Tutor(_)) => tui::run(tui::Options::tutor()?)?,
+        #[cfg(feature = "tui")]
         Some(Command::Demo(args)) if !args.list && process::is_interactive() => {
             tui::run(tui::Options::new(args.unpack()?))?;
         }

@@ -19,13 +19,14 @@ pub struct Profile {
 }
 
 macro_rules! profile {
-    ($name:literal, $help:literal, $($file:literal),+) => {
+    ($name:literal, $help:literal, $($file:literal),+) => { profile!($name, $help, $($name / $file),+) };
+    ($name:literal, $help:literal, $($folder:literal / $file:literal),+) => {
         Profile {
             name: $name,
             help: $help,
             files: &[$((
                 $file,
-                include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/", $name, "/", $file)),
+                include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/", $folder, "/", $file)),
             )),+],
         }
     };
@@ -40,6 +41,9 @@ pub const TABLE: &[Profile] = &[
     profile!("pecs", "a chest bounces: two zones, one half a timeline ahead", "pecs.plica.json", "chest.png"),
     profile!("car", "a car flies past a sign", "car.plica.json", "road.png", "car.png", "light.png"),
 ];
+
+/// What the tutor begins with: a picture and a zone without motion.
+pub const TUTOR: Profile = profile!("tutor", "a first animation", "tutor" / "tutor.plica.json", "cat" / "cat.png");
 
 /// The demo scene called `name`.
 ///
@@ -60,6 +64,20 @@ impl Profile {
             Some(cache) => cache.join(folder),
             None => std::env::temp_dir().join(format!("{folder}-{}", system::user())),
         }
+    }
+
+    /// A new folder for it, with the temporary files.
+    ///
+    /// # Errors
+    /// When it cannot be made.
+    pub fn fresh(&self) -> Result<PathBuf> {
+        let names = (1..).map(|n| format!("plica-{}-{}-{n}", self.name, std::process::id()));
+        let folders = names.map(|name| std::env::temp_dir().join(name));
+        let folder = folders.take(1000).find(|folder| std::fs::create_dir(folder).is_ok());
+        folder.ok_or_else(|| {
+            Error::at(std::env::temp_dir().display(), "no folder can be made here")
+                .cure("set TMPDIR to one that you may write")
+        })
     }
 
     /// The name of the scene's file.

@@ -31,6 +31,7 @@ pub mod scene_options;
 pub mod schema;
 pub mod set;
 pub mod synth;
+pub mod tutor;
 #[cfg(feature = "window")]
 pub mod view;
 
@@ -43,6 +44,8 @@ pub enum Command {
     New(new::Args),
     /// Edit a scene, or a picture, in the terminal
     Edit(edit::Args),
+    /// Learn the terminal editor: a first animation, step by step
+    Tutor(tutor::Args),
     /// Set values in a scene
     Set(set::Args),
     /// Print a value of a scene
@@ -77,6 +80,7 @@ impl Command {
             Command::Demo(args) => demo::run(args, context),
             Command::New(args) => new::run(args, context),
             Command::Edit(_) => Err(Error::Usage("edit opens a terminal of its own: here :e opens a scene".into())),
+            Command::Tutor(_) => Err(Error::Usage("tutor opens a terminal of its own".into())),
             Command::Set(args) => set::run(args, context),
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),

@@ -18,6 +18,7 @@ use super::recorder::Recorder;
 use super::seeing::Seeing;
 use super::sheet::Sheet;
 use super::tree;
+use super::tutor::Tutor;
 use super::update::{Change, Effect};
 use crate::base::problem::Problem;
 use crate::render::Synth;
@@ -79,6 +80,8 @@ pub struct State {
     pub life: Life,
     /// What there is to see of the picture.
     pub seeing: Seeing,
+    /// The lesson that is on.
+    pub tutor: Option<Tutor>,
     /// What is still to happen outside.
     pub effects: VecDeque<Effect>,
 }
@@ -183,6 +186,7 @@ impl State {
             finding: Finding::default(),
             seen: Seen::default(),
             life,
+            tutor: None,
             seeing: Seeing::default(),
             effects: VecDeque::new(),
         };

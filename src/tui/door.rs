@@ -94,8 +94,9 @@ impl Door {
         match self.session.kept_aside() {
             Some(aside) => format!("{name}: the journal was damaged, what could not be read is in {}", aside.display()),
             None => match home {
-                Some(line) => format!("at home: {line}; ? shows the keys, :q leaves"),
-                None => format!("{name}: {made}? shows the keys, :q leaves"),
+                Some(line) => format!("at home: {line}; ? help, :tutor teaches"),
+                None if self.session.history().depth() == (0, 0) => format!("{name}: {made}? help, Space menu, :tutor"),
+                None => format!("{name}: ? help, :q leaves"),
             },
         }
     }

@@ -6,7 +6,7 @@ use super::app::State;
 use super::door::Door;
 use super::image_editor;
 use super::keys::Keymap;
-use super::runner::{Editor, listen};
+use super::runner::{Editor, Options, listen};
 use super::seeing::{self, Request};
 use super::terminal;
 use super::update::{Effect, Event};
@@ -47,8 +47,13 @@ impl Editor {
                 }
             }
             Effect::Keymap => self.load_keys(),
-            Effect::Open(path) => self.open(&path, self.options.mode()),
-            Effect::TakeOver => self.open(&self.state.door.path().to_owned(), Mode::TakeOver),
+            Effect::Open(path) => {
+                self.open(&path, self.options.mode());
+            }
+            Effect::TakeOver => {
+                self.open(&self.state.door.path().to_owned(), Mode::TakeOver);
+            }
+            Effect::Tutor => self.learn(),
             Effect::Run(words) => self.start(&words),
             Effect::Probe(words) if self.screen.is_none() => self.start(&words),
             Effect::Probe(_) => {}
@@ -85,7 +90,8 @@ impl Editor {
         }
     }
 
-    fn open(&mut self, path: &Path, mode: Mode) {
+    /// Opens another scene in the place of this one; says why where it cannot, and false.
+    fn open(&mut self, path: &Path, mode: Mode) -> bool {
         match Door::open(path, mode, &self.options.files) {
             Ok(door) => {
                 let window = self.preview.has_window();
@@ -101,6 +107,23 @@ impl Editor {
                 self.state = State { recorder, keymap, ..State::new(door, self.state.size, self.state.depth) };
                 self.state.seeing.graphics = graphics;
                 self.begin();
+                true
+            }
+            Err(error) => {
+                self.state.complain(error.to_string());
+                false
+            }
+        }
+    }
+
+    /// Begins the tutor on a scene of its own; the present folder becomes that scene's, so that what is written lies there.
+    fn learn(&mut self) {
+        match Options::tutor() {
+            Ok(options) => {
+                if self.open(&options.path, Mode::Edit) {
+                    self.options.tutor = options.tutor;
+                    self.begin_tutor();
+                }
             }
             Err(error) => self.state.complain(error.to_string()),
         }

@@ -34,6 +34,7 @@ mod terminal;
 mod text;
 mod transport;
 mod tree;
+mod tutor;
 mod update;
 mod view;
 mod worker;

@@ -11,12 +11,14 @@ use super::door::Door;
 use super::graphics::{self, Protocol, ask};
 use super::script::Scripts;
 use super::seeing::{self, Eyes};
+use super::tutor::Tutor;
 use super::update::{Event, update};
 use super::worker::{Job, Worker};
 use super::{input, lines, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::files::lines::Log;
+use crate::files::profiles;
 use crate::files::session::Mode;
 use crate::files::watch::Watch;
 use crate::preview::Reply;
@@ -33,6 +35,8 @@ pub struct Options {
     pub read_only: bool,
     /// The lines that are run at first.
     pub script: Option<PathBuf>,
+    /// The folder of the tutor, where it is to begin.
+    pub tutor: Option<PathBuf>,
     /// How the picture is shown; none: as the terminal answers.
     pub graphics: Option<Protocol>,
     /// How files are read.
@@ -42,8 +46,8 @@ pub struct Options {
 impl Options {
     /// As `plica edit` without options.
     pub fn new(path: PathBuf) -> Options {
-        let (script, graphics) = (None, None);
-        Options { path, window: true, read_only: false, script, graphics, files: files::Options::default() }
+        let (script, graphics, tutor) = (None, None, None);
+        Options { path, window: true, read_only: false, script, graphics, tutor, files: files::Options::default() }
     }
 
     /// How a scene is opened: where somebody else edits it, the person is asked, if there is one.
@@ -55,6 +59,21 @@ impl Options {
         }
     }
 
+    /// The tutor, on a scene of its own in a new folder.
+    ///
+    /// # Errors
+    /// The folder cannot be made, or there is no terminal that shows the lessons.
+    pub fn tutor() -> Result<Options> {
+        if !terminal::is_there() {
+            return Err(
+                Error::at("the terminal", "cannot show the lessons").cure("the tutor needs a screen to draw on")
+            );
+        }
+        let folder = profiles::TUTOR.fresh()?;
+        let path = profiles::TUTOR.unpack(&folder)?;
+        Ok(Options { tutor: Some(folder), ..Options::new(path) })
+    }
+
     /// As the command line says.
     ///
     /// # Errors
@@ -63,7 +82,7 @@ impl Options {
         let files = args.scene.options()?;
         let (path, script) = (args.path.clone(), args.script.clone());
         let graphics = Protocol::named(&args.graphics);
-        Ok(Options { path, window: !args.no_view, read_only: args.read_only, script, graphics, files })
+        Ok(Options { path, window: !args.no_view, read_only: args.read_only, script, graphics, tutor: None, files })
     }
 }
 
@@ -88,7 +107,10 @@ pub fn run(options: Options) -> Result<()> {
     let screen = terminal::enter()?;
     let result = Editor::new(options, door, Some(screen), sender).and_then(|editor| editor.run(&events));
     terminal::restore();
-    result
+    if let Some(folder) = result? {
+        terminal::remark(&format!("what you made in the tutor lies in {}", folder.display()));
+    }
+    Ok(())
 }
 
 /// The signal thread asks the editor to end, and ends the process where that takes too long: a terminal that went away
@@ -190,6 +212,7 @@ impl Editor {
         };
         editor.begin();
         editor.load_keys();
+        editor.begin_tutor();
         typed.into_iter().for_each(|key| editor.take(Event::Key(key)));
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();
@@ -198,6 +221,15 @@ impl Editor {
             editor.source(&script)?;
         }
         Ok(editor)
+    }
+
+    /// Begins the lessons; what they write without a path lies beside their scene.
+    pub fn begin_tutor(&mut self) {
+        let Some(folder) = self.options.tutor.clone() else { return };
+        if let Err(error) = std::env::set_current_dir(&folder) {
+            tracing::warn!("{}: {error}", folder.display());
+        }
+        self.state.tutor = Some(Tutor::begin());
     }
 
     /// What is done once for every scene that is opened.
@@ -219,7 +251,8 @@ impl Editor {
         }
     }
 
-    fn run(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
+    /// Edits until the person leaves; gives the folder of the tutor, where it was there.
+    fn run(mut self, events: &mpsc::Receiver<Event>) -> Result<Option<PathBuf>> {
         let mut ticked = Instant::now();
         while !self.leaving {
             self.eyes.request(&self.state).into_iter().for_each(|request| self.worker.ask(request));
@@ -231,7 +264,7 @@ impl Editor {
             let _ = screen.backend_mut().write_all(graphics::forget().as_bytes());
         }
         self.end();
-        Ok(())
+        Ok(self.options.tutor)
     }
 
     /// Brings everything to the disk.

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use ratatui::layout::{Position, Rect};
+use ratatui::layout::Position;
 
 use super::app::{Mode, Pages, State};
 use super::graphics::Shown;
 use super::keys::Found;
 use super::panes::first_row;
 use super::seeing::Probed;
-use super::{commands, life, tree, view};
+use super::{commands, life, tree, tutor, view};
 use crate::preview::Transport;
 use crate::preview::editor::Asked;
 use crate::render::Synth;
@@ -117,6 +117,8 @@ pub enum Effect {
     Open(PathBuf),
     /// Open this scene to edit it, although somebody may do so elsewhere.
     TakeOver,
+    /// Begin the tutor, on a scene of its own.
+    Tutor,
     /// Load the pictures again.
     Reload,
     /// The pixel that these arguments of `plica probe` are about was asked for: its read-out is open where there is a screen.
@@ -181,7 +183,9 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Framed(shown) => state.seeing.shown = Some(shown),
         Event::Progress(line) => state.seen.work = Some(line),
         Event::Done(result) => {
-            state.seen.work = None;
+            if let (Some(work), Ok(_)) = (state.seen.work.take(), &result) {
+                tutor::ended(state, &work);
+            }
             report(state, result);
         }
         Event::Saved(result) => {
@@ -204,6 +208,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),
     }
+    tutor::follow(state);
     life::ask(state);
     state.effects.drain(..).collect()
 }
@@ -256,7 +261,7 @@ fn click(state: &mut State, x: u16, y: u16) {
     if !matches!(state.mode, Mode::Normal) {
         return;
     }
-    let areas = view::areas(Rect::new(0, 0, state.size.0, state.size.1), state.seeing.probing);
+    let areas = view::areas(view::screen(state), state.seeing.probing);
     let at = Position::new(x, y);
     if areas.tree.contains(at) {
         let rows = tree::rows(state.document(), &state.folded);

@@ -55,6 +55,11 @@ pub fn areas(screen: Rect, probing: bool) -> Areas {
     Areas { tree, table, detail, right, status, line }
 }
 
+/// The screen without the lesson below.
+pub fn screen(state: &State) -> Rect {
+    panes::lesson::above(state, Rect::new(0, 0, state.size.0, state.size.1))
+}
+
 /// Whether the picture stands in the middle, for want of room at the right.
 fn picture_in_middle(state: &State, areas: &Areas) -> bool {
     areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim))
@@ -71,7 +76,7 @@ pub fn picture(state: &State) -> Option<Rect> {
     if width < LEAST.0 || height < LEAST.1 {
         return None;
     }
-    let areas = areas(Rect::new(0, 0, width, height), state.seeing.probing);
+    let areas = areas(screen(state), state.seeing.probing);
     let middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
     areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
 }
@@ -82,6 +87,10 @@ pub fn draw(frame: &mut Frame, state: &State) {
     if screen.width < LEAST.0 || screen.height < LEAST.1 {
         return too_small(frame, screen);
     }
+    if let Some(tutor) = &state.tutor {
+        panes::lesson::draw(tutor, &state.keymap, screen, frame.buffer_mut());
+    }
+    let screen = panes::lesson::above(state, screen);
     let areas = areas(screen, state.seeing.probing);
     let mut cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
     if picture_in_middle(state, &areas) {

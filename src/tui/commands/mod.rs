@@ -2,9 +2,9 @@
 //! `plica` (render, synth, ...) runs as there, with the same arguments.
 
 use super::app::{Mode, State};
-use super::life;
 use super::recorder::{Ended, Kept};
 use super::update::Effect;
+use super::{life, tutor};
 use crate::base::problem;
 use crate::ops;
 
@@ -82,7 +82,7 @@ impl Command {
     }
 
     /// One of which only the lines are kept that it runs itself, if any: it types, asks, or only shows.
-    const fn inside(self) -> Command {
+    pub const fn inside(self) -> Command {
         Command { kept: Kept::Inside, ..self }
     }
 }
@@ -118,6 +118,7 @@ const TABLES: &[&[Command]] = &[
     macros::COMMANDS,
     life::COMMANDS,
     keymap::COMMANDS,
+    tutor::COMMANDS,
 ];
 
 /// Every command of the editor.

@@ -110,6 +110,12 @@ impl Keymap {
         Found::Nothing
     }
 
+    /// The key that runs a line in a context; none where no key does.
+    pub fn key_of(&self, context: &str, command: &str) -> Option<&str> {
+        let row = self.rows.iter().find(|row| row.context == context && row.command == command);
+        row.map(|row| &*row.key)
+    }
+
     /// The keys that begin with those pressed, for the hints.
     pub fn continuations<'a>(
         &'a self,

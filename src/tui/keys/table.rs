@@ -112,6 +112,7 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "Space r", "line :render", "Begin to type :render, for an animation"),
     row(EVERYWHERE, "Space s", "line :synth", "Begin to type :synth, for the textures"),
     row(EVERYWHERE, "Space f", "line :field", "Begin to type :field, for plots and tables"),
+    row(EVERYWHERE, "Space T", "tutor", "Learn the editor, step by step"),
     row(EVERYWHERE, "Space c", "problems", "Say what is wrong in the scene"),
     row(EVERYWHERE, "Space g", "probe", "Say what the pixel under the picture's cursor does"),
     row(EVERYWHERE, "Space t", "pane tree", "Go to the tree"),

@@ -10,6 +10,7 @@ use super::numbers::polar;
 mod braille;
 pub mod detail;
 pub mod field;
+pub mod lesson;
 pub mod line;
 pub mod palette;
 pub mod picture;

@@ -24,6 +24,7 @@ const TABLES: &[fn()] = &[
     super::images::a_picture_of_the_scene_is_opened_and_nothing_else,
     super::life::what_another_program_writes_is_taken_in_merged_or_asked_about,
     super::finding::what_is_found_is_edited,
+    super::tutor::lessons_are_gone_through_by_command,
     super::lines::lines_say_what_keys_do,
     super::lines::nodes_are_reached_by_folding_and_going_up,
     super::lines::what_is_outside_is_asked_for,

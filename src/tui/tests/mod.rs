@@ -16,6 +16,7 @@ mod macros;
 mod screens;
 mod seeing;
 pub mod support;
+mod tutor;
 pub mod windows;
 
 /// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them. The

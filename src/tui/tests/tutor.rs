@@ -1,0 +1,96 @@
+//! The tutor: every lesson is done by the keys that it names, and by nothing before them.
+
+use super::support::press;
+use crate::files::Options;
+use crate::files::profiles::TUTOR;
+use crate::files::session::Mode as Open;
+use crate::tui::app::State;
+use crate::tui::colour::Depth;
+use crate::tui::door::Door;
+use crate::tui::keys::Keymap;
+use crate::tui::tutor::Tutor;
+use crate::tui::tutor::lessons::LESSONS;
+use crate::tui::update::{Effect, Event, update};
+
+/// The tutor's scene with its first lesson.
+fn begun() -> (tempfile::TempDir, State) {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = TUTOR.unpack(folder.path()).unwrap();
+    let door = Door::open(&scene, Open::Edit, &Options::default()).unwrap();
+    let mut state = State::new(door, (80, 24), Depth::None);
+    state.picture_size = Some((480, 360));
+    state.tutor = Some(Tutor::begin());
+    (folder, state)
+}
+
+/// Does what the runner would do, as far as the lessons look at it.
+fn perform(state: &mut State, effects: Vec<Effect>) {
+    for effect in effects {
+        match effect {
+            Effect::Save { overwrite, .. } => {
+                let result = state.door.save(None, overwrite).map_err(|error| error.to_string());
+                update(state, Event::Saved(result));
+            }
+            Effect::Run(words) => {
+                state.seen.work = Some(words[0].clone());
+                update(state, Event::Done(Ok("line\nline".into())));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn at(state: &State) -> usize {
+    state.tutor.as_ref().map_or(0, |tutor| tutor.at)
+}
+
+#[test]
+fn every_lesson_is_done_by_its_keys() {
+    let (_folder, mut state) = begun();
+    for (i, lesson) in LESSONS[..LESSONS.len() - 1].iter().enumerate() {
+        assert_eq!(at(&state), i, "{}", lesson.title);
+        for press_ in lesson.keys {
+            assert!(!(lesson.done)(&state), "{} is done before {press_:?}", lesson.title);
+            let label = press_.label(&state.keymap);
+            assert!(!label.starts_with(':') || label == ":", "{press_:?} of {} has no key", lesson.title);
+            let effects = press(&mut state, &label);
+            perform(&mut state, effects);
+            let bad = state.message.as_ref().is_some_and(|message| message.bad);
+            assert!(!bad, "{}: {press_:?}: {:?}", lesson.title, state.message);
+        }
+        assert_eq!(at(&state), i + 1, "{} is not done by its keys: {:?}", lesson.title, state.message);
+    }
+    assert!(press(&mut state, "Esc Esc : \"q\" Enter").iter().any(|effect| matches!(effect, Effect::Quit)));
+}
+
+#[test]
+fn lessons_fit_the_smallest_screen() {
+    let keymap = Keymap::default();
+    for lesson in LESSONS {
+        let keys: usize = lesson.keys.iter().map(|press| press.label(&keymap).chars().count() + 2).sum();
+        let wide = lesson.text.iter().map(|line| line.chars().count()).max().unwrap();
+        assert!(lesson.text.len() <= 3 && wide <= 76 && keys <= 68, "{}: {wide} {keys}", lesson.title);
+    }
+}
+
+#[test]
+pub fn lessons_are_gone_through_by_command() {
+    let (_folder, mut state) = begun();
+    for (line, expected) in [("next", 1), ("next", 2), ("back", 1), ("back", 0), ("back", 0)] {
+        press(&mut state, &format!(": \"tutor {line}\" Enter"));
+        assert_eq!(at(&state), expected, "{line}");
+    }
+    // One that was done before stays until it is done again.
+    let keys: Vec<String> = LESSONS[0].keys.iter().map(|press| press.label(&state.keymap)).collect();
+    for key in keys {
+        press(&mut state, &key);
+    }
+    assert_eq!(at(&state), 1);
+    press(&mut state, ": \"tutor back\" Enter");
+    assert_eq!(at(&state), 0, "looked at again");
+    press(&mut state, ": \"tutor quit\" Enter");
+    assert!(state.tutor.is_none());
+    assert!(press(&mut state, "Space t").iter().any(|effect| matches!(effect, Effect::Tutor)));
+    press(&mut state, "g t d Space t");
+    assert!(state.message.clone().unwrap().bad, "not over unsaved edits");
+}
