@@ -209,7 +209,8 @@ impl Door {
             return Ok(format!("{} is written", to.display()));
         }
         if !overwrite && let Err(why) = self.session.may_overwrite() {
-            return Err(why.cure(":merge takes it in, :w! overwrites it"));
+            tracing::warn!("not saved: {why}");
+            return Err(Error::Usage("another program changed the file: :merge takes it in, :w! overwrites it".into()));
         }
         self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
         Ok(format!("{} is saved", self.path().display()))

@@ -306,6 +306,8 @@ impl Editor {
     /// The status line says how the window is doing; why there is none is told once, where there is room for it.
     fn see_window(&mut self) {
         let seen = match self.preview.status() {
+            // Windows belong to whoever edits the scene.
+            _ if self.state.door.held_by().is_some() => String::new(),
             Status::Off => String::new(),
             status => format!("window: {status}"),
         };

@@ -90,7 +90,7 @@ pub fn lessons_are_gone_through_by_command() {
     assert_eq!(at(&state), 0, "looked at again");
     press(&mut state, ": \"tutor quit\" Enter");
     assert!(state.tutor.is_none());
-    assert!(press(&mut state, "Space t").iter().any(|effect| matches!(effect, Effect::Tutor)));
-    press(&mut state, "g t d Space t");
+    assert!(press(&mut state, "Space T").iter().any(|effect| matches!(effect, Effect::Tutor)));
+    press(&mut state, "g t d Space T");
     assert!(state.message.clone().unwrap().bad, "not over unsaved edits");
 }

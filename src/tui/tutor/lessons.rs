@@ -70,17 +70,10 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "numbers",
         text: &[
-            "Every number takes what you type. Go right to x and type 170, then y: 176.",
+            "Every number takes what you type. The cursor is on x: 170, then y: 176.",
             "One key takes a value and goes on to the next cell, one takes it and stays.",
         ],
-        keys: &[
-            Key(TABLE, "move right"),
-            Key(TABLE, "enter"),
-            Text("170"),
-            Key(ENTRY, "commit next"),
-            Text("176"),
-            Key(ENTRY, "commit"),
-        ],
+        keys: &[Key(TABLE, "enter"), Text("170"), Key(ENTRY, "commit next"), Text("176"), Key(ENTRY, "commit")],
         done: |state| anchors(state).first().is_some_and(|(at, _)| *at == Point::new(170.0, 176.0)),
     },
     Lesson {
@@ -100,7 +93,10 @@ pub const LESSONS: &[Lesson] = &[
     },
     Lesson {
         title: "arithmetic",
-        text: &["An entry may compute: *2 doubles what is there, +=3 adds, w/2 is half a width.", "Double the jump."],
+        text: &[
+            "An entry may compute: *2 doubles the old value, +=3 adds to it, w/2 is half",
+            "the width of the picture. Double the jump.",
+        ],
         keys: &[Key(TABLE, "enter"), Text("*2"), Key(ENTRY, "commit")],
         done: |state| lift(state) == [-36.0],
     },
@@ -161,7 +157,7 @@ pub const LESSONS: &[Lesson] = &[
         title: "the probe",
         text: &["Why does a pixel move as it does? Ask about the one under the cursor."],
         keys: &[Key(EVERYWHERE, "probe")],
-        done: |state| ran(state, "probe"),
+        done: |state| ran(state, "probe") && is_answered(state),
     },
     Lesson {
         title: "in time",
@@ -245,6 +241,11 @@ pub const LESSONS: &[Lesson] = &[
         done: |_| false,
     },
 ];
+
+/// Whether something was said.
+fn is_answered(state: &State) -> bool {
+    matches!(state.mode, Mode::Pages(_)) || state.message.is_some()
+}
 
 /// What stands at `path` of the zone; none where nothing is written.
 fn value(state: &State, path: &str) -> Option<Value> {

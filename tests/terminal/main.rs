@@ -2,150 +2,16 @@
 #![cfg(feature = "tui")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use std::io::{Read, Write};
-use std::path::Path;
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use base64::Engine;
-use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
+use portable_pty::PtySize;
 
-/// Longer than anything here takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+mod life;
+mod support;
+mod tutor;
 
-/// The editor in a terminal.
-struct Editor {
-    child: Box<dyn Child + Send + Sync>,
-    master: Option<Box<dyn MasterPty + Send>>,
-    keys: Option<Box<dyn Write + Send>>,
-    seen: Arc<Mutex<vt100::Parser>>,
-    sent: Arc<Mutex<Vec<u8>>>,
-}
-
-impl Editor {
-    fn open(folder: &Path, arguments: &[&str]) -> Editor {
-        let size = PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 };
-        let pair = native_pty_system().openpty(size).unwrap();
-        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_plica"));
-        command.args(["edit", "--no-view"]);
-        command.args(arguments);
-        command.cwd(folder);
-        for (name, value) in [
-            ("TERM", "xterm-256color"),
-            ("XDG_RUNTIME_DIR", "run"),
-            ("XDG_STATE_HOME", "state"),
-            ("XDG_CONFIG_HOME", "config"),
-        ] {
-            let value = if name == "TERM" { value.into() } else { folder.join(value).into_os_string() };
-            command.env(name, value);
-        }
-        std::fs::create_dir_all(folder.join("run")).unwrap();
-        let child = pair.slave.spawn_command(command).unwrap();
-        drop(pair.slave);
-        let seen = Arc::new(Mutex::new(vt100::Parser::new(24, 80, 0)));
-        let mut output = pair.master.try_clone_reader().unwrap();
-        let (parser, sent) = (seen.clone(), Arc::new(Mutex::new(Vec::new())));
-        let all = sent.clone();
-        std::thread::spawn(move || {
-            let mut bytes = [0; 4096];
-            while let Ok(n @ 1..) = output.read(&mut bytes) {
-                parser.lock().unwrap().process(&bytes[..n]);
-                all.lock().unwrap().extend_from_slice(&bytes[..n]);
-            }
-        });
-        let keys = pair.master.take_writer().unwrap();
-        Editor { child, master: Some(pair.master), keys: Some(keys), seen, sent }
-    }
-
-    fn press(&mut self, keys: &str) {
-        let writer = self.keys.as_mut().unwrap();
-        writer.write_all(keys.as_bytes()).unwrap();
-        writer.flush().unwrap();
-    }
-
-    fn screen(&self) -> String {
-        self.seen.lock().unwrap().screen().contents()
-    }
-
-    fn wait_for(&self, text: &str) {
-        let begun = Instant::now();
-        while !self.screen().contains(text) {
-            assert!(begun.elapsed() < PATIENCE, "no {text:?} on the screen:\n{}", self.screen());
-            std::thread::sleep(Duration::from_millis(10));
-        }
-    }
-
-    /// Waits until `start` was sent, and gives what followed it up to and with `end`.
-    fn wait_for_sequence(&self, start: &str, end: &str) -> String {
-        let begun = Instant::now();
-        loop {
-            let sent = String::from_utf8_lossy(&self.sent.lock().unwrap()).into_owned();
-            let found = sent.split_once(start).and_then(|(_, rest)| rest.split_once(end));
-            if let Some((body, _)) = found {
-                return body.to_owned();
-            }
-            assert!(begun.elapsed() < PATIENCE, "no {start:?} was sent:\n{}", self.screen());
-            std::thread::sleep(Duration::from_millis(10));
-        }
-    }
-
-    fn signal(&self, name: &str) {
-        let pid = self.child.process_id().unwrap().to_string();
-        assert!(std::process::Command::new("kill").args([&format!("-{name}"), &pid]).status().unwrap().success());
-    }
-
-    /// Waits for the end; gives the exit status.
-    fn end(&mut self) -> u32 {
-        let begun = Instant::now();
-        loop {
-            if let Some(status) = self.child.try_wait().unwrap() {
-                return status.exit_code();
-            }
-            assert!(begun.elapsed() < PATIENCE, "it does not end:\n{}", self.screen());
-            std::thread::sleep(Duration::from_millis(10));
-        }
-    }
-
-    /// Whether every mode that the editor sets is undone.
-    fn assert_restored(&self) {
-        let begun = Instant::now();
-        loop {
-            let parser = self.seen.lock().unwrap();
-            let screen = parser.screen();
-            let restored = !screen.alternate_screen()
-                && !screen.hide_cursor()
-                && !screen.bracketed_paste()
-                && screen.mouse_protocol_mode() == vt100::MouseProtocolMode::None;
-            if restored {
-                return;
-            }
-            assert!(begun.elapsed() < PATIENCE, "the terminal is not as it was");
-            drop(parser);
-            std::thread::sleep(Duration::from_millis(10));
-        }
-    }
-}
-
-impl Drop for Editor {
-    fn drop(&mut self) {
-        // It has ended, or the test has failed.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
-/// A folder with a picture in it.
-fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let mut picture = image::RgbImage::new(64, 48);
-    picture.enumerate_pixels_mut().for_each(|(x, y, pixel)| pixel.0 = [x as u8 * 4, y as u8 * 5, 90]);
-    picture.save(folder.path().join("photo.png")).unwrap();
-    folder
-}
-
-fn json(path: &Path) -> serde_json::Value {
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
+use support::{Editor, PATIENCE, folder, json};
 
 #[test]
 fn a_picture_becomes_a_scene_that_is_edited_and_saved() {
