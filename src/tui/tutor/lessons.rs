@@ -3,7 +3,7 @@
 use kurbo::Point;
 use serde_json::Value;
 
-use super::{has_ended, ran};
+use super::has_ended;
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, PICTURE, TABLE, TREE};
 
@@ -157,16 +157,16 @@ pub const LESSONS: &[Lesson] = &[
         title: "the probe",
         text: &["Why does a pixel move as it does? Ask about the one under the cursor."],
         keys: &[Key(EVERYWHERE, "probe")],
-        done: |state| ran(state, "probe") && is_answered(state),
+        done: |state| state.seeing.probing,
     },
     Lesson {
         title: "in time",
         text: &[
             "A position function says when the pixels are where along their jumps. Close",
-            "the answer, search for the node, go in, choose cosine: there and back again.",
+            "the read-out, search for the node, go in, choose cosine: there and back.",
         ],
         keys: &[
-            Key(EVERYWHERE, "back"),
+            Key(EVERYWHERE, "probe"),
             Key(EVERYWHERE, "pane tree"),
             Key(EVERYWHERE, "line /"),
             Text("position"),
@@ -241,11 +241,6 @@ pub const LESSONS: &[Lesson] = &[
         done: |_| false,
     },
 ];
-
-/// Whether something was said.
-fn is_answered(state: &State) -> bool {
-    matches!(state.mode, Mode::Pages(_)) || state.message.is_some()
-}
 
 /// What stands at `path` of the zone; none where nothing is written.
 fn value(state: &State, path: &str) -> Option<Value> {

@@ -19,8 +19,6 @@ pub struct Tutor {
     pub at: usize,
     /// Whether it is over once it is done: not while one that was done before is looked at again.
     armed: bool,
-    /// How long the log was when the lesson began.
-    log_from: usize,
     /// Long work that ended well since then.
     ended: Vec<String>,
 }
@@ -28,7 +26,7 @@ pub struct Tutor {
 impl Tutor {
     /// The first lesson.
     pub fn begin() -> Tutor {
-        Tutor { at: 0, armed: true, log_from: 0, ended: Vec::new() }
+        Tutor { at: 0, armed: true, ended: Vec::new() }
     }
 
     /// The lesson that is on.
@@ -59,9 +57,8 @@ fn tutor(state: &mut State, call: &Call) -> Done {
 }
 
 fn go(state: &mut State, at: usize, armed: bool) {
-    let log_from = state.recorder.log().len();
     if let Some(tutor) = &mut state.tutor {
-        (tutor.at, tutor.armed, tutor.log_from) = (at, armed, log_from);
+        (tutor.at, tutor.armed) = (at, armed);
         tutor.ended.clear();
     }
 }
@@ -82,15 +79,6 @@ pub fn follow(state: &mut State) {
     } else if let (false, Some(tutor)) = (done, &mut state.tutor) {
         tutor.armed = true;
     }
-}
-
-/// Whether a line of this command was run since the lesson began.
-fn ran(state: &State, name: &str) -> bool {
-    let from = state.tutor.as_ref().map_or(0, |tutor| tutor.log_from);
-    let lines = state.recorder.log().iter().skip(from);
-    lines
-        .map(|line| line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' '))
-        .any(|line| line.split(' ').next() == Some(name))
 }
 
 /// Whether long work of this name ended well since the lesson began.
