@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::has_ended;
 use crate::tui::app::{Mode, Pane, State};
-use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, PICTURE, TABLE, TREE};
+use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, PICTURE, TABLE, TREE, TYPING};
 
 /// A step of the tutor.
 #[derive(Debug)]
@@ -208,9 +208,12 @@ pub const LESSONS: &[Lesson] = &[
         done: |state| value(state, "/fold/rule").is_some(),
     },
     Lesson {
-        title: "help",
-        text: &["All keys of the pane you are in, and every command, are one key away."],
-        keys: &[Key(EVERYWHERE, "help")],
+        title: "finding and help",
+        text: &[
+            "The palette finds every command, node and field by a few letters: look, and",
+            "leave it. All keys of the pane you are in are one key away.",
+        ],
+        keys: &[Key(EVERYWHERE, "palette"), Key(TYPING, "cancel"), Key(EVERYWHERE, "help")],
         done: |state| matches!(state.mode, Mode::Pages(_)),
     },
     Lesson {
