@@ -189,7 +189,9 @@ impl Shown {
 
 /// How many times a picture must be reduced, after how many bytes one like it took.
 fn guess(before: &Shown, wanted: &Wanted) -> usize {
-    if before.wanted.protocol != wanted.protocol || before.wanted.part.dots != wanted.part.dots {
+    let (old, new) = (&before.wanted, wanted);
+    // Once playing has ended a picture becomes as sharp as it can be.
+    if (old.protocol, old.part.dots, old.bytes) != (new.protocol, new.part.dots, new.bytes) {
         return 1;
     }
     let more = (before.bytes as f64 / wanted.bytes.max(1) as f64).sqrt();

@@ -97,12 +97,13 @@ impl Palette {
     }
 }
 
-/// Cuts the box of the most pixels and the widest spread in two at its median, until there are enough.
+/// Cuts the box of the most pixels and the widest spread in two at its median, until there are enough. Spread counts most:
+/// a few dark pixels do not become black because marks nearby are.
 fn cut(bins: Vec<Bin>, most: usize) -> Vec<Vec<Bin>> {
     let mut boxes = vec![bins];
     boxes.retain(|one| !one.is_empty());
     while boxes.len() < most {
-        let worth = |one: &Vec<Bin>| one.iter().map(|bin| bin.count).sum::<u64>() * u64::from(widest(one).1).pow(2);
+        let worth = |one: &Vec<Bin>| one.iter().map(|bin| bin.count).sum::<u64>() * u64::from(widest(one).1).pow(4);
         let Some((at, best)) = boxes.iter().map(worth).enumerate().max_by_key(|&(_, worth)| worth) else { break };
         if best == 0 {
             break;

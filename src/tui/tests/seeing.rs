@@ -103,6 +103,18 @@ fn half_blocks_stay_within_their_bytes_too() {
 }
 
 #[test]
+fn a_picture_is_sharp_again_after_playing() {
+    let mut state = shown_by(Protocol::Sixel, "");
+    assert_eq!(state.seeing.shown.as_ref().unwrap().by, 1);
+    state.seeing.graphics.bytes = (4_000, 256_000);
+    for (playing, reduced) in [(true, true), (false, false)] {
+        state.playing = playing;
+        see(&mut state);
+        assert_eq!(state.seeing.shown.as_ref().unwrap().by > 1, reduced, "playing: {playing}");
+    }
+}
+
+#[test]
 fn what_lies_over_a_picture_is_not_painted_over() {
     for protocol in [Protocol::Kitty, Protocol::Iterm2, Protocol::Sixel] {
         let mut state = shown_by(protocol, "");
