@@ -164,11 +164,11 @@ fn an_editor_there_is_joined_and_hears_the_window() {
     editor.view("view-field");
     let window = stage.window();
     window.shows("0");
-    let selected = |update: &Update| matches!(update, Update::Selection(Some(at)) if at == "/layers/0").then_some(());
+    let selected = |update: &Update| matches!(update, Update::Selection(Some(at)) if at == "/images").then_some(());
     let (document, edit) = titled(&stage.document, "1");
     editor.publish(&document, 1, &edit);
     window.shows("1");
-    editor.select(Some("/layers/0".into()));
+    editor.select(Some("/images".into()));
     window.next(selected);
     for reply in [
         Reply::Report { fps: 60.0, adapter: "far".into(), notice: String::new() },

@@ -55,7 +55,7 @@ fn once_settled(mut sink: Sink, settled: Arc<AtomicBool>) -> Sink {
             waiting = Some(news);
             true
         }
-        News::Files => waiting.take().is_none_or(&mut sink) && sink(News::Files),
+        News::Files => sink(waiting.take().unwrap_or(News::Files)),
         other => sink(other),
     })
 }
