@@ -16,7 +16,7 @@ pub fn layer(old: &PictureLayer, json: &Value, change: &Change) -> Option<Pictur
 }
 
 fn zone(old: &Zone, json: &Value, change: &Change) -> Option<Zone> {
-    let motion = list(&old.motion, json, change, "motion", |_, json, _| Some(read(json)?))?;
+    let motion = list(&old.motion, json, change, "motion", |_, json, _| read(json))?;
     let bare: Zone = without(json, &["motion"])?;
     Some(Zone { motion, ..bare })
 }
