@@ -12,7 +12,7 @@ use super::graphics::{self, Protocol, ask};
 use super::script::Scripts;
 use super::seeing::{self, Eyes};
 use super::tutor::Tutor;
-use super::update::{Event, update};
+use super::update::{Effect, Event, update};
 use super::worker::{Job, Worker};
 use super::{input, lines, terminal, view};
 use crate::base::error::{Error, Result};
@@ -238,6 +238,8 @@ impl Editor {
         let greeting = self.state.door.greeting(editor::way_home(self.state.door.path()));
         self.state.say(greeting);
         self.watch_files();
+        // Windows learn what is selected before the first key.
+        self.perform(Effect::Show);
     }
 
     /// Watches the scene and all that it names.

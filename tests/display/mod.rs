@@ -1,6 +1,6 @@
 //! A display of its own (Xvfb), a scene in a folder of its own, and a real `plica view` on them, driven by keys (xdotool) and
 //! seen by screenshots (ImageMagick's import).
-#![allow(dead_code, reason = "each test program uses a part of it")]
+#![allow(dead_code, clippy::print_stdout, reason = "each test program uses a part of it, and says what it leaves out")]
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
