@@ -129,6 +129,7 @@ fn any_key(state: &State, next: &mut impl FnMut(usize) -> usize) -> String {
         Mode::Line(line) if line.kind == ':' => {
             &["\"put 7\" Enter", "\"3 move down\" Enter", "\"set title=a\" Enter", "\"undo 2\" Enter"]
         }
+        Mode::Palette(_) => &["\"radius\" Enter", "\"undo\" Enter", "\"dup\" Enter", "Down Enter"],
         Mode::Line(_) => &["\"motion\" Enter", "\"radius\" Enter", "\"outline\" Enter", "\"speed\" Enter"],
         _ => &[],
     };
