@@ -51,7 +51,8 @@ impl Editor {
                 self.open(&path, self.options.mode());
             }
             Effect::TakeOver => {
-                self.open(&self.state.door.path().to_owned(), Mode::TakeOver);
+                let path = self.state.door.path().to_owned();
+                self.open(&path, Mode::TakeOver);
             }
             Effect::Tutor => self.learn(),
             Effect::Run(words) => self.start(&words),
