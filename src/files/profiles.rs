@@ -43,7 +43,7 @@ pub const TABLE: &[Profile] = &[
 ];
 
 /// What the tutor begins with: a picture and a zone without motion.
-pub const TUTOR: Profile = profile!("tutor", "a first animation", "tutor" / "tutor.plica.json", "cat" / "cat.png");
+pub const TUTOR: Profile = profile!("tutor", "a first animation", "cat" / "tutor.plica.json", "cat" / "cat.png");
 
 /// The demo scene called `name`.
 ///
