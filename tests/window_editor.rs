@@ -72,6 +72,14 @@ fn editor_and_window_share_time_point_and_view() {
     heard(&replies, |reply| matches!(reply, Reply::Pointer { x: 100.0, y: 60.0 }).then_some(()));
     heard(&replies, |reply| matches!(reply, Reply::Command(name) if name == "mark-point").then_some(()));
 
+    for click in [false, true] {
+        match click {
+            true => drop(display.tool("xdotool", &["click", "1"])),
+            false => view.keys(&["space"]),
+        }
+        heard(&replies, |reply| matches!(reply, Reply::Command(name) if name == "select-point").then_some(()));
+    }
+
     let bare = view.shot();
     for command in ["view-outlines", "view-wheel", "view-samplers"] {
         editor.view(command);

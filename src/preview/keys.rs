@@ -55,6 +55,12 @@ pub const KEYS: &[KeyRow] = &[
     row(WINDOW, "Down", "pan-down", "Shows more below"),
     row(WINDOW, "F11", "view-full-screen", "The whole screen"),
     row(WINDOW, "Enter", "mark-point", "Marks the point under the pointer, for the editor"),
+    row(
+        WINDOW,
+        "Space",
+        "select-point",
+        "Selects the anchor or zone under the pointer, in the editor; so does a click",
+    ),
     row(WINDOW, "z", "view-menu", "The view menu"),
     row(WINDOW, "?", "help", "These keys"),
     row(WINDOW, "Esc", "close-panel", "Closes the help"),

@@ -26,6 +26,8 @@ use crate::preview::{Reply, Transport as Leading, Update};
 const PATIENCE: Duration = Duration::from_millis(500);
 /// A line of a mouse wheel is one step; a touchpad gives pixels.
 const WHEEL_PX: f64 = 60.0;
+/// A click may move the pointer so far, in logical pixels.
+const CLICK_PX: f64 = 3.0;
 
 /// Editor and window may be so far apart while both play, as a share of the timeline, before the window follows.
 const APART: f64 = 0.05;
@@ -44,6 +46,8 @@ pub struct App {
     opened: Option<Opened>,
     marks: Cached,
     drag: Drag,
+    /// Where the mouse button went down.
+    pressed_at: Option<Point>,
     clock: Clock,
     /// What is to be answered once it is on the screen.
     owed: Option<Reply>,
@@ -75,6 +79,7 @@ impl App {
             opened: None,
             marks: Cached::default(),
             drag: Drag::Nothing,
+            pressed_at: None,
             clock: Clock::default(),
             owed: None,
             reported: None,
@@ -223,7 +228,16 @@ impl App {
     /// A key: the window follows at once, and the editor is told what concerns it too.
     fn key(&mut self, event_loop: &ActiveEventLoop, command: &'static str) {
         self.leading(|app| app.run(event_loop, command));
-        if let ("mark-point", Some(Point { x, y })) = (command, self.state.marked) {
+        match command {
+            "mark-point" => self.tell(command, self.state.marked),
+            "select-point" => self.tell(command, self.state.pointed()),
+            _ => {}
+        }
+    }
+
+    /// Asks the editor to do something with a point of the picture.
+    fn tell(&self, command: &str, at: Option<Point>) {
+        if let Some(Point { x, y }) = at {
             self.reply(Reply::Pointer { x, y });
             self.reply(Reply::Command(command.to_owned()));
         }
@@ -264,7 +278,15 @@ impl App {
         self.redraw();
     }
 
+    /// The left button goes down or up; where it comes up at the same place that was a click.
     fn press(&mut self, pressed: bool) {
+        let clicked = (self.pressed_at, self.state.pointer);
+        if let (false, Drag::Picture, (Some(from), Some(to))) = (pressed, self.drag, clicked)
+            && from.distance(to) <= CLICK_PX * self.state.scale
+        {
+            self.tell("select-point", self.state.pointed());
+        }
+        self.pressed_at = self.state.pointer.filter(|_| pressed);
         self.drag = match self.state.pointer {
             Some(at) if pressed && at.y >= self.state.area().height => Drag::Time,
             Some(_) if pressed => Drag::Picture,

@@ -14,6 +14,7 @@ pub fn command(key: &Key) -> Option<&'static str> {
         Key::Named(NamedKey::Escape) => "Esc",
         Key::Named(NamedKey::Enter) => "Enter",
         Key::Named(NamedKey::F11) => "F11",
+        Key::Named(NamedKey::Space) => "Space",
         Key::Character(text) if text == "=" => "+", // the same key without Shift on many keyboards
         Key::Character(text) => text.as_str(),
         _ => return None,
@@ -35,6 +36,7 @@ mod tests {
             ("Esc", NamedKey::Escape),
             ("Enter", NamedKey::Enter),
             ("F11", NamedKey::F11),
+            ("Space", NamedKey::Space),
         ];
         for row in KEYS {
             let name = named.iter().find(|(written, _)| *written == row.key);

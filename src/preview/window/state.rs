@@ -222,6 +222,7 @@ impl State {
             "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
             "close-panel" => (self.panel, self.marked) = (Panel::None, None),
             "view-full-screen" => return Outcome::FullScreen,
+            "select-point" => {} // the editor's answer is a selection
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }

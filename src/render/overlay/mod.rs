@@ -12,9 +12,11 @@ use crate::layers::folding::outline::{Node, bezier, point, vector};
 use crate::layers::folding::tools::Tool;
 use crate::scene::Scene;
 
+mod pick;
 mod pixels;
 mod style;
 
+pub use pick::pick;
 pub use pixels::{field_scale, longest};
 pub use style::{Dot, FILL_ALPHA, Kind, SELECTED, SELECTED_GROWTH, STYLES, Style, wheel};
 

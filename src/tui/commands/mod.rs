@@ -200,8 +200,10 @@ fn subcommand(state: &mut State, said: &Said) -> Done {
 
 /// Runs a command that a window asks for: only marking a point is the editor's.
 pub fn run_of_window(state: &mut State, name: &str) {
-    if name == "mark-point" {
-        run(state, "pointer mark", None);
+    match name {
+        "mark-point" => run(state, "pointer mark", None),
+        "select-point" => run(state, "pointer select", None),
+        _ => {}
     }
 }
 

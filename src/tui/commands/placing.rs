@@ -1,9 +1,10 @@
 //! The picture: its cursor, its zoom, and what the cursor places.
 
-use kurbo::Vec2;
+use kurbo::{Point, Vec2};
 
 use super::items::go_to;
 use super::{Call, Command, Done, command, obey};
+use crate::render::overlay;
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::numbers::short;
 use crate::tui::update::Effect;
@@ -12,9 +13,17 @@ use crate::tui::{entry, place, seeing};
 pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor),
     command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed).change(),
-    command("pointer", "[mark]", "Take the window's pointer into the field, else into the picture's cursor", pointer)
-        .inside(),
+    command(
+        "pointer",
+        "[mark|select]",
+        "Take the window's pointer into the field, else into the picture's cursor",
+        pointer,
+    )
+    .inside(),
 ];
+
+/// An anchor is picked from this far, as a share of the picture's longer side.
+const PICK_REACH: f64 = 0.02;
 
 fn cursor(state: &mut State, call: &Call) -> Done {
     let (place, text) = call.text.strip_prefix("at ").map_or((false, call.text), |text| (true, text));
@@ -64,8 +73,24 @@ fn placed(state: &mut State, call: &Call) -> Done {
 
 /// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and the row under
 /// the cursor where it has a place, unless the point is only marked.
+/// Goes to what stands at a place of the picture: an anchor near it, else the zone.
+fn select(state: &mut State, at: Point) -> Done {
+    if !matches!(state.mode, Mode::Normal) {
+        return Err("something is being typed or chosen: end that first (Esc)".into());
+    }
+    let (width, height) = state.picture_size.unwrap_or_default();
+    let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
+    let pointer = overlay::pick(state.document().scene(), at, reach_px).ok_or("no zone is there")?;
+    // A tool's first cell stands in the table of all tools, beside its numbers.
+    let cell = if pointer.contains("/motion/") { "/tool" } else { "" };
+    obey(state, &format!("go {pointer}{cell}"), None)
+}
+
 fn pointer(state: &mut State, call: &Call) -> Done {
     let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
+    if call.text == "select" {
+        return select(state, (x, y).into());
+    }
     if matches!(state.mode, Mode::Entry(_)) {
         return entry::offer(state, (x, y).into());
     }

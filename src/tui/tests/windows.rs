@@ -67,6 +67,23 @@ fn a_point_marked_in_a_window_moves_the_cursor_only() {
 }
 
 #[test]
+fn what_is_selected_in_a_window_is_shown() {
+    for (at, keys, node, row) in [
+        ((29.6, 25.4), String::new(), zone("/motion"), 1),
+        ((11.0, 38.0), String::new(), zone(""), 0),
+        ((22.0, 50.0), motion(""), "/layers/0/zones/1".into(), 0),
+        ((63.0, 1.0), motion("j"), zone("/motion"), 1),
+        ((11.0, 38.0), motion("l i"), zone("/motion"), 0),
+    ] {
+        let mut state = state();
+        press(&mut state, &keys);
+        update(&mut state, Event::Pointer(at.0, at.1));
+        update(&mut state, Event::Command("select-point".into()));
+        assert_eq!((&state.node, state.row), (&node, row), "{at:?} {keys}");
+    }
+}
+
+#[test]
 fn the_pointer_goes_into_the_entry() {
     let at = |field: &str| zone(&format!("/motion/0/{field}"));
     for (keys, pointer, expected) in [
