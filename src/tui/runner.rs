@@ -11,6 +11,7 @@ use super::door::Door;
 use super::graphics::{self, Protocol, ask};
 use super::script::Scripts;
 use super::seeing::{self, Eyes};
+use super::transport::Stopwatch;
 use super::tutor::Tutor;
 use super::update::{Effect, Event, update};
 use super::worker::{Job, Worker};
@@ -255,11 +256,11 @@ impl Editor {
 
     /// Edits until the person leaves; gives the folder of the tutor, where it was there.
     fn run(mut self, events: &mpsc::Receiver<Event>) -> Result<Option<PathBuf>> {
-        let mut ticked = Instant::now();
+        let mut watch = Stopwatch::default();
         while !self.leaving {
             self.eyes.request(&self.state).into_iter().for_each(|request| self.worker.ask(request));
             self.draw()?;
-            self.wait(events, &mut ticked);
+            self.wait(events, &mut watch);
         }
         if let (Protocol::Kitty, Some(screen)) = (seeing::protocol(&self.state), &mut self.screen) {
             // A terminal that has gone away has nothing to forget.
@@ -285,7 +286,7 @@ impl Editor {
     }
 
     /// Waits for an event and takes all that are there, so that many cost one drawing.
-    fn wait(&mut self, events: &mpsc::Receiver<Event>, ticked: &mut Instant) {
+    fn wait(&mut self, events: &mpsc::Receiver<Event>, watch: &mut Stopwatch) {
         let script_goes_on = !self.scripts.is_empty() && self.state.seen.work.is_none();
         let patience = match self.state.playing {
             _ if script_goes_on => Duration::ZERO,
@@ -298,8 +299,7 @@ impl Editor {
         }
         self.run_scripts();
         self.see_window();
-        let passed = ticked.elapsed().as_secs_f64();
-        *ticked = Instant::now();
+        let passed = watch.lap(self.state.playing, Instant::now());
         if self.state.playing {
             self.take(Event::Tick(passed));
         }
