@@ -1,5 +1,5 @@
-//! From an edit to pixels on the screen, and what that costs on the link: `cargo bench --bench window`. A 512 x 512 zone in a
-//! real window on a display of its own (Xvfb), fed as the editor feeds it.
+//! From a key pressed in the editor to pixels in the window, and what that costs on the link: `cargo bench --bench window`. A
+//! 512 x 512 zone in a real window on a display of its own (Xvfb); the key steps the radius, its screen is drawn too.
 #![allow(clippy::print_stdout, reason = "a benchmark prints what it measured")]
 
 mod scenes;
@@ -13,7 +13,7 @@ use plica::preview::Reply;
 use plica::preview::editor::{Event, Preview};
 use plica::preview::message::{self, FromEditor};
 use plica::scene::Document;
-use plica::scene::edit::Edit;
+use plica::tui::{Change, Offscreen};
 
 const SIDE: usize = 512;
 const EDITS: u64 = 40;
@@ -32,9 +32,11 @@ impl Drop for Process {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let scene = folder.path().join("s.plica.json");
-    let mut document = Document::parse(&text()).map_err(|problems| format!("{problems:?}"))?;
+    let document = Document::parse(&text()).map_err(|problems| format!("{problems:?}"))?;
     std::fs::write(&scene, document.to_text())?;
     picture(&folder.path().join("a.png"))?;
+    let mut keys = Offscreen::open(&scene, (160, 48))?;
+    ["/", "r", "a", "d", "i", "u", "s", "Enter"].iter().try_for_each(|key| keys.press(key))?;
     let (sender, replies) = channel();
     let editor = Preview::start(&scene, &document, 0, move |event| {
         if let Event::Reply(reply) = event {
@@ -46,26 +48,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let _view = Process(view.arg("view").arg(&scene).env("DISPLAY", display).env_remove("WAYLAND_DISPLAY").spawn()?);
     shown(&replies, 0)?;
     let (mut times, mut synths, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
-    for revision in 1..=EDITS {
-        let patch = serde_json::json!([{"op": "replace", "path": "/layers/0/zones/0/interpolation/radius", "value": 300 + revision}]);
-        let edit: Edit = serde_json::from_value(patch)?;
+    for _ in 0..EDITS {
         let began = Instant::now();
-        document = document.apply(&edit).map_err(|problems| format!("{problems:?}"))?;
-        editor.publish(&document, revision, &edit);
-        synths.push(shown(&replies, revision)?);
+        let [Change { document, revision, edit }] = &keys.take("+")[..] else {
+            return Err("the key changes nothing".into());
+        };
+        editor.publish(document, *revision, edit);
+        keys.draw()?;
+        synths.push(shown(&replies, *revision)?);
         times.push(began.elapsed().as_secs_f64() * 1000.0);
+        let (from_revision, to_revision, patch) = (revision - 1, *revision, edit.clone());
         let mut sent = Vec::new();
-        message::write(
-            &mut sent,
-            &FromEditor::Patch { from_revision: revision - 1, to_revision: revision, patch: edit },
-        )?;
+        message::write(&mut sent, &FromEditor::Patch { from_revision, to_revision, patch })?;
         bytes.push(sent.len() as f64);
     }
-    println!(
-        "edit to pixels, {SIDE} x {SIDE} zone: median {:.1} ms, worst {:.1} ms",
-        median(&mut times),
-        worst(&times)
-    );
+    println!("key to pixels, {SIDE} x {SIDE} zone: median {:.1} ms, worst {:.1} ms", median(&mut times), worst(&times));
     println!("of which loading and synthesis: median {:.1} ms", median(&mut synths));
     println!("bytes on the link an edit: {}", worst(&bytes));
     Ok(())

@@ -42,6 +42,7 @@ mod worker;
 pub use keys::manual;
 pub use offscreen::Offscreen;
 pub use runner::{Options, run};
+pub use update::Change;
 
 #[cfg(test)]
 mod tests;

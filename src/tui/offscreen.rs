@@ -8,7 +8,7 @@ use ratatui::backend::TestBackend;
 use super::app::State;
 use super::colour::Depth;
 use super::door::Door;
-use super::update::{Event, update};
+use super::update::{Change, Effect, Event, update};
 use super::view;
 use crate::base::error::{Error, Result};
 use crate::files::{self, session::Mode};
@@ -36,7 +36,22 @@ impl Offscreen {
     /// # Errors
     /// It cannot be drawn.
     pub fn press(&mut self, key: &str) -> Result<()> {
-        update(&mut self.state, Event::Key(key.to_owned()));
+        self.take(key);
+        self.draw()
+    }
+
+    /// Takes a key without drawing: the changes of the scene that windows are told.
+    pub fn take(&mut self, key: &str) -> Vec<Change> {
+        let effects = update(&mut self.state, Event::Key(key.to_owned()));
+        let change = |effect| if let Effect::Publish(change) = effect { Some(*change) } else { None };
+        effects.into_iter().filter_map(change).collect()
+    }
+
+    /// Draws the screen.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
+    pub fn draw(&mut self) -> Result<()> {
         let Offscreen { state, terminal } = self;
         terminal.draw(|frame| view::draw(frame, state)).map(drop).map_err(|error| Error::at("the screen", error))
     }
