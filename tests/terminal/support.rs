@@ -148,8 +148,9 @@ impl Editor {
 
     pub fn resize(&self, rows: u16, cols: u16) {
         let size = PtySize { rows, cols, pixel_width: 0, pixel_height: 0 };
-        self.master.as_ref().unwrap().resize(size).unwrap();
+        // As terminals do it: first the own screen, then the program is told.
         self.seen.lock().unwrap().screen_mut().set_size(rows, cols);
+        self.master.as_ref().unwrap().resize(size).unwrap();
     }
 
     /// Waits until the process is stopped, as after Ctrl-Z.
