@@ -1,5 +1,6 @@
 //! Facts about numbers and pictures. Knows no scene.
 
+pub mod budget;
 pub mod change;
 pub mod crossings;
 pub mod error;

@@ -5,9 +5,10 @@
 use std::fs::File;
 use std::io::{Read, Seek};
 
-use image::DynamicImage;
+use image::{DynamicImage, ImageDecoder};
 
 use super::{Limits, picture};
+use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Grid;
 
@@ -25,13 +26,13 @@ const FLO_KNOWN: f32 = 1e9;
 ///
 /// # Errors
 /// One message when it is none of the three formats, is broken, or is larger than the limits allow.
-pub fn decode(mut file: File, place: &str, limits: &Limits) -> Result<VectorField> {
+pub fn decode(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
     let mut magic = Vec::new();
     (&mut file).take(4).read_to_end(&mut magic).map_err(|error| Error::at(place, error))?;
     file.rewind().map_err(|error| Error::at(place, error))?;
     match magic.as_slice() {
-        FLO => flo(file, place, limits),
-        PNG | EXR => from_image(file, place, limits),
+        FLO => flo(file, place, limits, budget),
+        PNG | EXR => from_image(file, place, limits, budget),
         _ => {
             Err(Error::at(place, "is not a vector field").cure("give a .flo, a KITTI PNG with 16 bits, or an OpenEXR"))
         }
@@ -39,7 +40,7 @@ pub fn decode(mut file: File, place: &str, limits: &Limits) -> Result<VectorFiel
 }
 
 /// 4 bytes PIEH, width and height as i32, then x and y as f32 by rows; little-endian.
-fn flo(mut file: File, place: &str, limits: &Limits) -> Result<VectorField> {
+fn flo(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
     let mut header = [0; 12];
     file.read_exact(&mut header).map_err(|_| cut_short(place))?;
     let side = |at: usize| i32::from_le_bytes(std::array::from_fn(|i| header[at + i]));
@@ -52,21 +53,28 @@ fn flo(mut file: File, place: &str, limits: &Limits) -> Result<VectorField> {
     let size = format!("is {width} x {height}:");
     picture::within(place, &size, "pixels wide or high", "side", width.max(height), limits.side)?;
     picture::within(place, &size, "pixels", "pixels", width * height, limits.pixels)?;
-    picture::within(place, &size, "bytes to read", "memory", width * height * 8, limits.memory)?;
     // The length first: a header alone must not cost the memory that it claims.
     if file.metadata().map_err(|error| Error::at(place, error))?.len() < 12 + width * height * 8 {
         return Err(cut_short(place));
     }
-    let mut bytes = vec![0; (width * height * 8) as usize];
-    file.read_exact(&mut bytes).map_err(|_| cut_short(place))?;
-    let vectors = bytes.as_chunks::<8>().0.iter().map(|&[a, b, c, d, e, f, g, h]| {
-        known([f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])], FLO_KNOWN)
-    });
-    Ok(Grid::from_cells(width as usize, height as usize, vectors.collect()))
+    let share = budget.take(width * height * 8, place)?;
+    // Row by row: the file is never there as a whole beside what is made of it.
+    let mut row = vec![0; (width * 8) as usize];
+    let mut vectors = Vec::with_capacity((width * height) as usize);
+    for _ in 0..height {
+        file.read_exact(&mut row).map_err(|_| cut_short(place))?;
+        vectors.extend(row.as_chunks::<8>().0.iter().map(|&[a, b, c, d, e, f, g, h]| {
+            known([f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h])], FLO_KNOWN)
+        }));
+    }
+    Ok((Grid::from_cells(width as usize, height as usize, vectors), share))
 }
 
-fn from_image(file: File, place: &str, limits: &Limits) -> Result<VectorField> {
+fn from_image(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
     let decoder = picture::decoder(file, place, limits)?;
+    let kept = u64::from(decoder.dimensions().0) * u64::from(decoder.dimensions().1) * 8;
+    // The decoded picture and the vectors stand beside one another for a moment.
+    let mut share = budget.take(kept.saturating_add(decoder.total_bytes()), place)?;
     let image = DynamicImage::from_decoder(decoder).map_err(|error| picture::explain(place, error))?;
     let (width, height) = (image.width() as usize, image.height() as usize);
     let vectors = match image {
@@ -78,7 +86,8 @@ fn from_image(file: File, place: &str, limits: &Limits) -> Result<VectorField> {
                 .cure("a KITTI PNG has red, green and blue with 16 bits each"));
         }
     };
-    Ok(Grid::from_cells(width, height, vectors))
+    share.shrink(kept);
+    Ok((Grid::from_cells(width, height, vectors), share))
 }
 
 /// x = (red - 2^15) / 64, y likewise from green; blue says whether they are valid.
@@ -103,7 +112,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
-        decode(File::open(&path).unwrap(), name, limits).map_err(|error| error.to_string())
+        let decoded = decode(File::open(&path).unwrap(), name, limits, &limits.budget());
+        decoded.map(|(field, _)| field).map_err(|error| error.to_string())
     }
 
     fn encoded(image: DynamicImage, format: image::ImageFormat) -> Vec<u8> {
@@ -133,6 +143,8 @@ mod tests {
         ] {
             let field = read(name, &bytes, &limits).unwrap();
             assert_eq!(field.cells(), [[1.5, -2.0], [0.0, 0.0]], "{name}");
+            let little = Limits { memory: 15, ..limits.clone() };
+            assert!(read(name, &bytes, &little).unwrap_err().contains("--limit memory"), "{name}");
         }
     }
 

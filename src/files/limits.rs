@@ -1,6 +1,7 @@
 //! How much a file may take, checked before memory is: one table of names, defaults and help, for the checks and for
 //! `--limit NAME=VALUE`.
 
+use crate::base::budget::Budget;
 use crate::base::error::{Error, Result};
 
 /// Limits on what is read. The defaults fit every sane file.
@@ -10,7 +11,7 @@ pub struct Limits {
     pub pixels: u64,
     /// Width and height of a picture, each.
     pub side: u64,
-    /// Bytes that decoding one picture may take.
+    /// Bytes that what is read and made may take, in sum.
     pub memory: u64,
     /// Bytes of a scene file.
     pub scene: u64,
@@ -52,7 +53,7 @@ const MIB: u64 = 1 << 20;
 pub const TABLE: [Limit; 13] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
-    limit("memory", "bytes that decoding one picture may take", 2048 * MIB, |l| &mut l.memory),
+    limit("memory", "bytes that what is read and made may take, in sum", 4096 * MIB, |l| &mut l.memory),
     limit("scene", "bytes of a scene file", 64 * MIB, |l| &mut l.scene),
     limit("depth", "depth of a scene's JSON", 64, |l| &mut l.depth),
     limit("anchors", "anchors of a scene", 1_000_000, |l| &mut l.anchors),
@@ -117,6 +118,11 @@ impl Limits {
         let mut limits = Limits::default();
         settings.iter().try_for_each(|setting| limits.set(setting))?;
         Ok(limits)
+    }
+
+    /// The memory that one piece of work may take; everything in it shares this.
+    pub fn budget(&self) -> Budget {
+        Budget::new(self.memory)
     }
 
     /// What sets these limits over the defaults, as `NAME=VALUE`.

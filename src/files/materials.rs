@@ -3,16 +3,19 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
+use std::io::Seek;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
 use super::fields::{self, VectorField};
 use super::{Limits, Options, paths, picture};
+use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
-use crate::base::pixels::Picture;
+use crate::base::pixels::{Picture, Rgba};
 use crate::base::problem::Problem;
 use crate::layers::folding::tools::Tool;
 use crate::layers::{Layer, Materials};
@@ -23,9 +26,34 @@ use crate::scene::Scene;
 pub struct Cache {
     pictures: Store<Picture>,
     fields: Store<VectorField>,
+    /// The memory that is left for them and what is made of them; as the limits said when it was first used.
+    budget: Option<Budget>,
+    /// Set once nobody wants any more what is being loaded.
+    pub stop: Option<Arc<AtomicBool>>,
 }
 
-type Store<T> = HashMap<PathBuf, (Stamp, Arc<T>)>;
+impl Cache {
+    /// An empty one, which loads only until `stop` is set.
+    pub fn until(stop: Arc<AtomicBool>) -> Self {
+        Cache { stop: Some(stop), ..Cache::default() }
+    }
+}
+
+type Store<T> = HashMap<PathBuf, Loaded<T>>;
+
+/// A file as it was loaded, and the memory that it takes.
+#[derive(Debug)]
+struct Loaded<T> {
+    stamp: Stamp,
+    value: Arc<T>,
+    share: Arc<Share>,
+}
+
+impl<T> Clone for Loaded<T> {
+    fn clone(&self) -> Self {
+        Loaded { stamp: self.stamp, value: self.value.clone(), share: self.share.clone() }
+    }
+}
 
 /// A file's identity and version; another program cannot change the file and keep it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,9 +184,12 @@ struct Sources<'a> {
 impl Sources<'_> {
     fn gather(&self, scene: &Scene, cache: &mut Cache) -> (Materials, Vec<Problem>) {
         let mut problems = Vec::new();
-        let pictures = self.load(&named_pictures(scene), picture::decode, &mut cache.pictures, &mut problems);
-        let fields = self.load(&named_fields(scene), fields::decode, &mut cache.fields, &mut problems);
-        (Materials { pictures, fields, stop: None }, problems)
+        let budget = cache.budget.get_or_insert_with(|| self.options.limits.budget()).clone();
+        let stop = cache.stop.clone();
+        let allowed = Allowed { limits: &self.options.limits, budget: &budget, stop: stop.as_deref() };
+        let pictures = self.load(&named_pictures(scene), allowed, decode_picture, &mut cache.pictures, &mut problems);
+        let fields = self.load(&named_fields(scene), allowed, decode_field, &mut cache.fields, &mut problems);
+        (Materials { pictures, fields, stop, budget }, problems)
     }
 
     /// What a file is kept under.
@@ -183,16 +214,17 @@ impl Sources<'_> {
     fn load<T: Send + Sync>(
         &self,
         named: &[Named],
-        decode: impl Fn(File, &str, &Limits) -> Result<T> + Sync,
+        allowed: Allowed,
+        decode: Decode<T>,
         store: &mut Store<T>,
         problems: &mut Vec<Problem>,
     ) -> BTreeMap<String, Arc<T>> {
         // One decoding a file, however often it is named.
         let files: BTreeMap<PathBuf, &str> = named.iter().map(|named| (self.key(named.path), named.path)).collect();
-        let loaded: HashMap<PathBuf, Result<(Stamp, Arc<T>)>> = files
+        let loaded: HashMap<PathBuf, Result<Loaded<T>>> = files
             .into_par_iter()
             .map(|(file, path)| {
-                let loaded = self.load_one(path, &decode, store.get(&file));
+                let loaded = self.load_one(path, allowed, decode, store.get(&file));
                 (file, loaded)
             })
             .collect();
@@ -208,7 +240,7 @@ impl Sources<'_> {
                 }
             };
             if let Some(entry) = entry {
-                materials.insert(named.key.to_owned(), entry.1.clone());
+                materials.insert(named.key.to_owned(), entry.value.clone());
                 kept.insert(file, entry);
             }
         }
@@ -219,16 +251,45 @@ impl Sources<'_> {
     fn load_one<T>(
         &self,
         path: &str,
-        decode: impl Fn(File, &str, &Limits) -> Result<T>,
-        old: Option<&(Stamp, Arc<T>)>,
-    ) -> Result<(Stamp, Arc<T>)> {
+        allowed: Allowed,
+        decode: Decode<T>,
+        old: Option<&Loaded<T>>,
+    ) -> Result<Loaded<T>> {
+        if allowed.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+            return Err(Error::Interrupted);
+        }
         let file = self.open(path)?;
         let stamp = Stamp::of(&file).map_err(|error| Error::at(path, error))?;
-        match old {
-            Some(old) if old.0 == stamp => Ok(old.clone()),
-            _ => Ok((stamp, Arc::new(decode(file, path, &self.options.limits)?))),
+        if let Some(old) = old.filter(|old| old.stamp == stamp) {
+            return Ok(old.clone());
         }
+        let (value, share) = decode(file, path, allowed)?;
+        Ok(Loaded { stamp, value: Arc::new(value), share: Arc::new(share) })
     }
+}
+
+/// What loading may take, and whether it is still wanted.
+#[derive(Clone, Copy)]
+struct Allowed<'a> {
+    limits: &'a Limits,
+    budget: &'a Budget,
+    stop: Option<&'a AtomicBool>,
+}
+
+/// Reads an open file that messages call by its path, and tells what memory it takes.
+type Decode<T> = fn(File, &str, Allowed) -> Result<(T, Share)>;
+
+fn decode_picture(file: File, place: &str, allowed: Allowed) -> Result<(Picture, Share)> {
+    let same = file.try_clone().map_err(|error| Error::at(place, error))?;
+    let (width, height) = picture::header(same, place, allowed.limits)?;
+    let share = allowed.budget.take((width * height * size_of::<Rgba>()) as u64, place)?;
+    let mut file = file;
+    file.rewind().map_err(|error| Error::at(place, error))?;
+    Ok((picture::decode(file, place, allowed.limits)?, share))
+}
+
+fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorField, Share)> {
+    fields::decode(file, place, allowed.limits, allowed.budget)
 }
 
 fn problem(named: &Named, error: impl std::borrow::Borrow<Error>) -> Problem {

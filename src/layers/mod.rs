@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::pixels::{Grid, Picture};
 use crate::base::problem::Problem;
@@ -139,6 +140,8 @@ pub struct Materials {
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
     /// Set once nobody wants any more what is made of them: a synthesis under way then ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
+    /// The memory that is left for what is made of them.
+    pub budget: Budget,
 }
 
 impl Materials {

@@ -60,7 +60,9 @@ fn problems(args: &Args, context: &Context) -> Result<Vec<Problem>> {
     };
     let scene = document.scene();
     // All of each file is read, not only its header: a picture that is cut short is a problem too.
-    let (materials, unreadable) = files::materials::gather(&args.scene, scene, &options, &mut Cache::default());
+    let mut cache = Cache::until(context.cancel.clone());
+    let (materials, unreadable) = files::materials::gather(&args.scene, scene, &options, &mut cache);
+    context.check_cancelled()?;
     let size = |(name, picture): (&String, &Arc<Picture>)| (name.clone(), (picture.width(), picture.height()));
     let sizes = materials.pictures.iter().map(size).collect();
     let mut problems = document.warnings().to_vec();

@@ -46,8 +46,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         Some(name) => only_zone(opened.document.scene(), name)?,
         None => Scene::clone(opened.document.scene()),
     };
-    let synth = render::synth(&scene, &opened.materials, None);
-    let synth = synth.map_err(|p| Error::Scene { file: args.scene.display().to_string(), problems: vec![p] })?;
+    let synth = render::synth(&scene, &opened.materials, None).map_err(|problem| opened.failed(problem))?;
     context.check_cancelled()?;
     let step = args.step.map(|step| step as usize);
     let plot = || plot(&scene, &synth, step, !args.no_picture);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Context, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
+use crate::base::problem::Problem;
 use crate::files::materials;
 use crate::layers::Materials;
 use crate::render::{self, Synth};
@@ -30,7 +31,9 @@ impl Opened {
         for warning in document.warnings() {
             context.messages.say(&format!("{}: {warning}", path.display()));
         }
-        let loaded = materials::load(path, document.scene(), &options, &mut materials::Cache::default());
+        let mut cache = materials::Cache::until(context.cancel.clone());
+        let loaded = materials::load(path, document.scene(), &options, &mut cache);
+        context.check_cancelled()?;
         let materials = loaded.map_err(|problems| Error::Scene { file: path.display().to_string(), problems })?;
         Ok(Opened { path: path.to_path_buf(), document, materials })
     }
@@ -40,8 +43,7 @@ impl Opened {
     /// # Errors
     /// As [`render::synth`].
     pub fn synth(&self) -> Result<Synth> {
-        let synth = render::synth(self.document.scene(), &self.materials, None);
-        synth.map_err(|problem| Error::Scene { file: self.path.display().to_string(), problems: vec![problem] })
+        render::synth(self.document.scene(), &self.materials, None).map_err(|problem| self.failed(problem))
     }
 
     /// The same for n x n samples a pixel.
@@ -49,7 +51,14 @@ impl Opened {
     /// # Errors
     /// As [`render::samples`].
     pub fn samples(&self, n: u32) -> Result<Vec<Synth>> {
-        let samples = render::samples(self.document.scene(), &self.materials, n);
-        samples.map_err(|problem| Error::Scene { file: self.path.display().to_string(), problems: vec![problem] })
+        render::samples(self.document.scene(), &self.materials, n).map_err(|problem| self.failed(problem))
+    }
+
+    /// Why a synthesis failed.
+    pub fn failed(&self, problem: Problem) -> Error {
+        if self.materials.stopped() {
+            return Error::Interrupted;
+        }
+        Error::Scene { file: self.path.display().to_string(), problems: vec![problem] }
     }
 }

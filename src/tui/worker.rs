@@ -121,9 +121,9 @@ impl Studio {
     }
 
     fn synthesise(&mut self, request: &Request, stop: Arc<AtomicBool>) -> Result<Arc<Synth>, String> {
+        self.cache.stop = Some(stop);
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
-        materials.stop = Some(stop);
         let previous = self.made.as_ref().map(|made| &*made.synth);
         let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
             // A picture that could not be read says more than that it is not there.
