@@ -5,7 +5,7 @@ mod scenes;
 use std::sync::Arc;
 
 use divan::Bencher;
-use plica::base::pixels::{Grid, Picture};
+use plica::base::picture::Picture;
 use plica::layers::folding::model::PictureLayer;
 use plica::layers::timeline::Wrap;
 use plica::layers::{Layer, Materials};
@@ -39,5 +39,5 @@ fn frame(bencher: Bencher, size: (usize, usize)) {
 
 fn picture((width, height): (usize, usize)) -> Picture {
     let cell = |i: usize| [(i * 7 % 251) as f32 / 251.0, (i * 13 % 241) as f32 / 241.0, (i % 97) as f32 / 97.0, 1.0];
-    Grid::from_cells(width, height, (0..width * height).map(cell).collect())
+    Picture::from_cells(width, height, (0..width * height).map(cell).collect())
 }

@@ -12,7 +12,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use plica::base::maths;
-use plica::base::pixels::{Frame, Grid, Picture, decode};
+use plica::base::picture::Picture;
+use plica::base::pixels::{Frame, decode};
 use plica::files;
 use plica::layers::Materials;
 use plica::render::{self, Synth, cpu, gpu::Gpu};
@@ -40,7 +41,7 @@ fn waves(width: usize, height: usize, seed: usize, alpha: bool) -> Arc<Picture> 
         let opacity = if alpha { (((x / 5 + y / 7) % 4) * 85) as u8 } else { 255 };
         decode([wave(17), if (x / 9 + y / 6) % 2 == 0 { 230 } else { 20 }, wave(29), opacity])
     });
-    Arc::new(Grid::from_cells(width, height, cells.collect()))
+    Arc::new(Picture::from_cells(width, height, cells.collect()))
 }
 
 fn materials() -> Materials {

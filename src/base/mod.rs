@@ -9,6 +9,7 @@ pub mod geometry;
 pub mod keys;
 pub mod maths;
 pub mod oklab;
+pub mod picture;
 pub mod pixels;
 pub mod problem;
 pub mod system;

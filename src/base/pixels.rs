@@ -1,5 +1,5 @@
-//! Pictures: 2-D arrays, colour spaces and bilinear reads. Pictures are kept as linear, premultiplied RGBA in `f32`, so
-//! that filtering and compositing need no conversion; sRGB is met only where a file is read or written.
+//! 2-D arrays, colour spaces and bilinear reads. What is filtered and composed is linear, premultiplied RGBA in `f32`;
+//! pictures from files stay as they were read (`picture.rs`).
 
 use std::sync::LazyLock;
 
@@ -33,6 +33,11 @@ impl<T> Grid<T> {
         &self.cells
     }
 
+    /// The cells, row by row, alone.
+    pub fn into_cells(self) -> Vec<T> {
+        self.cells
+    }
+
     /// The cells, row by row, to be changed.
     pub fn cells_mut(&mut self) -> &mut [T] {
         &mut self.cells
@@ -59,8 +64,8 @@ impl<T: Clone> Grid<T> {
 /// One colour: linear light, premultiplied by its alpha.
 pub type Rgba = [f32; 4];
 
-/// A picture in linear, premultiplied RGBA.
-pub type Picture = Grid<Rgba>;
+/// What was computed, in linear, premultiplied RGBA.
+pub type Linear = Grid<Rgba>;
 
 /// A finished frame: sRGB, straight alpha, 8 bits a channel.
 pub type Frame = Grid<[u8; 4]>;
@@ -80,29 +85,40 @@ pub enum Beyond {
     Transparent,
 }
 
-impl Picture {
-    /// The bilinear read at image coordinates (x, y); the centre of pixel (i, j) is (i + 0.5, j + 0.5).
-    pub fn read(&self, x: f64, y: f64, beyond: Beyond) -> Rgba {
-        let (gx, gy) = (x - 0.5, y - 0.5);
-        let (fx, fy) = (gx.floor(), gy.floor());
-        let (wx, wy) = ((gx - fx) as f32, (gy - fy) as f32);
-        let (ix, iy) = (fx as i64, fy as i64);
-        let [a, b] = [self.texel(ix, iy, beyond), self.texel(ix.saturating_add(1), iy, beyond)];
-        let iy = iy.saturating_add(1);
-        let [c, d] = [self.texel(ix, iy, beyond), self.texel(ix.saturating_add(1), iy, beyond)];
-        std::array::from_fn(|i| {
-            let top = a[i] + (b[i] - a[i]) * wx;
-            let bottom = c[i] + (d[i] - c[i]) * wx;
-            top + (bottom - top) * wy
-        })
-    }
-
-    fn texel(&self, x: i64, y: i64, beyond: Beyond) -> Rgba {
-        let (w, h) = (self.width as i64, self.height as i64);
+/// The bilinear read at image coordinates (x, y) of a picture of `size` whose pixel number i is `texel(i)`; the centre of
+/// pixel (i, j) is (i + 0.5, j + 0.5).
+#[inline]
+pub fn bilinear(
+    (width, height): (usize, usize),
+    (x, y): (f64, f64),
+    beyond: Beyond,
+    texel: impl Fn(usize) -> Rgba,
+) -> Rgba {
+    let (w, h) = (width as i64, height as i64);
+    let texel = |x: i64, y: i64| {
         if beyond == Beyond::Transparent && (x < 0 || y < 0 || x >= w || y >= h) {
             return [0.0; 4];
         }
-        self.cells[y.clamp(0, h - 1) as usize * self.width + x.clamp(0, w - 1) as usize]
+        texel(y.clamp(0, h - 1) as usize * width + x.clamp(0, w - 1) as usize)
+    };
+    let (gx, gy) = (x - 0.5, y - 0.5);
+    let (fx, fy) = (gx.floor(), gy.floor());
+    let (wx, wy) = ((gx - fx) as f32, (gy - fy) as f32);
+    let (ix, iy) = (fx as i64, fy as i64);
+    let [a, b] = [texel(ix, iy), texel(ix.saturating_add(1), iy)];
+    let iy = iy.saturating_add(1);
+    let [c, d] = [texel(ix, iy), texel(ix.saturating_add(1), iy)];
+    std::array::from_fn(|i| {
+        let top = a[i] + (b[i] - a[i]) * wx;
+        let bottom = c[i] + (d[i] - c[i]) * wx;
+        top + (bottom - top) * wy
+    })
+}
+
+impl Linear {
+    /// The bilinear read at image coordinates (x, y).
+    pub fn read(&self, x: f64, y: f64, beyond: Beyond) -> Rgba {
+        bilinear((self.width, self.height), (x, y), beyond, |i| self.cells[i])
     }
 
     /// Encodes to sRGB with straight alpha.
@@ -113,7 +129,7 @@ impl Picture {
 
 impl Frame {
     /// Decodes sRGB with straight alpha.
-    pub fn to_picture(&self) -> Picture {
+    pub fn to_linear(&self) -> Linear {
         Grid { width: self.width, height: self.height, cells: self.cells.iter().map(|&c| decode(c)).collect() }
     }
 }
@@ -205,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_read_at_a_centre_is_the_pixel() {
-        let mut p = Picture::filled(3, 2, [0.0; 4]);
+        let mut p = Linear::filled(3, 2, [0.0; 4]);
         p.cells_mut()[4] = [1.0, 0.5, 0.25, 1.0];
         assert_eq!(p.read(1.5, 1.5, Beyond::Clamp), [1.0, 0.5, 0.25, 1.0]);
         assert_eq!(p.read(1.0, 1.5, Beyond::Clamp)[0], 0.5);

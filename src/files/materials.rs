@@ -15,7 +15,8 @@ use super::fields::{self, VectorField};
 use super::{Limits, Options, paths, picture};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
-use crate::base::pixels::{Picture, Rgba};
+use crate::base::picture::Picture;
+use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::layers::folding::tools::Tool;
 use crate::layers::{Layer, Materials};
@@ -282,10 +283,12 @@ type Decode<T> = fn(File, &str, Allowed) -> Result<(T, Share)>;
 fn decode_picture(file: File, place: &str, allowed: Allowed) -> Result<(Picture, Share)> {
     let same = file.try_clone().map_err(|error| Error::at(place, error))?;
     let (width, height) = picture::header(same, place, allowed.limits)?;
-    let share = allowed.budget.take((width * height * size_of::<Rgba>()) as u64, place)?;
+    let mut share = allowed.budget.take((width * height * size_of::<Rgba>()) as u64, place)?;
     let mut file = file;
     file.rewind().map_err(|error| Error::at(place, error))?;
-    Ok((picture::decode(file, place, allowed.limits)?, share))
+    let picture = picture::decode(file, place, allowed.limits)?;
+    share.shrink(picture.bytes());
+    Ok((picture, share))
 }
 
 fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorField, Share)> {

@@ -1,4 +1,4 @@
-//! Pictures from files, as linear, premultiplied RGBA. The header is read first and held against the limits, so that a
+//! Pictures from files, kept as they were read. The header is read first and held against the limits, so that a
 //! huge picture is refused before memory is taken for it.
 //!
 //! 8 and 16 bits a channel are sRGB with straight alpha; floating point (OpenEXR, HDR, TIFF) is linear light, with
@@ -8,7 +8,6 @@
 use std::fs::File;
 use std::io::{BufReader, Seek, SeekFrom};
 use std::path::Path;
-use std::sync::LazyLock;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
@@ -16,7 +15,7 @@ use rayon::prelude::*;
 
 use super::{Limits, paths};
 use crate::base::error::{Error, Result};
-use crate::base::pixels::{self, Picture, Rgba};
+use crate::base::picture::{Channels, Picture, SRGB_8, SRGB_16, Samples};
 
 /// What a PNG may take besides its pixels: profiles and comments are made small and then dropped.
 const BESIDES_PIXELS: u64 = 32 << 20;
@@ -46,7 +45,7 @@ pub fn decode(file: File, place: &str, limits: &Limits) -> Result<Picture> {
     let orientation = orientation(&mut decoder);
     let mut image = DynamicImage::from_decoder(decoder).map_err(|error| explain(place, error))?;
     image.apply_orientation(orientation);
-    linear(image).ok_or_else(|| Error::at(place, "has a kind of pixels that is not known"))
+    kept(image).ok_or_else(|| Error::at(place, "has a kind of pixels that is not known"))
 }
 
 /// Width and height of the picture in an open file, upright.
@@ -122,50 +121,45 @@ pub(super) fn explain(place: &str, error: ImageError) -> Error {
     }
 }
 
-/// Linear light of every 16-bit sRGB code.
-static LINEAR_16: LazyLock<Vec<f32>> =
-    LazyLock::new(|| (0..=u16::MAX).map(|code| pixels::linear_from_srgb(f64::from(code) / 65535.0) as f32).collect());
-
-fn linear(image: DynamicImage) -> Option<Picture> {
+/// The picture as it was decoded: nothing is computed but floats that no light has.
+fn kept(image: DynamicImage) -> Option<Picture> {
     let (width, height) = (image.width() as usize, image.height() as usize);
-    let cells = match image {
-        DynamicImage::ImageLuma8(b) => convert(b.as_raw(), |&[g]: &[u8; 1]| pixels::decode([g, g, g, u8::MAX])),
-        DynamicImage::ImageLumaA8(b) => convert(b.as_raw(), |&[g, a]: &[u8; 2]| pixels::decode([g, g, g, a])),
-        DynamicImage::ImageRgb8(b) => convert(b.as_raw(), |&[r, g, b]: &[u8; 3]| pixels::decode([r, g, b, u8::MAX])),
-        DynamicImage::ImageRgba8(b) => convert(b.as_raw(), |&c: &[u8; 4]| pixels::decode(c)),
-        DynamicImage::ImageLuma16(b) => convert(b.as_raw(), |&[g]: &[u16; 1]| decode_16([g, g, g, u16::MAX])),
-        DynamicImage::ImageLumaA16(b) => convert(b.as_raw(), |&[g, a]: &[u16; 2]| decode_16([g, g, g, a])),
-        DynamicImage::ImageRgb16(b) => convert(b.as_raw(), |&[r, g, b]: &[u16; 3]| decode_16([r, g, b, u16::MAX])),
-        DynamicImage::ImageRgba16(b) => convert(b.as_raw(), |&c: &[u16; 4]| decode_16(c)),
-        DynamicImage::ImageRgb32F(b) => convert(b.as_raw(), |&[r, g, b]: &[f32; 3]| finite([r, g, b, 1.0])),
-        DynamicImage::ImageRgba32F(b) => convert(b.as_raw(), |&c: &[f32; 4]| finite(c)),
+    let channels = Channels::of(image.color().channel_count().into())?;
+    let samples = match image {
+        DynamicImage::ImageLuma8(b) => Samples::Bytes(b.into_raw(), SRGB_8.clone()),
+        DynamicImage::ImageLumaA8(b) => Samples::Bytes(b.into_raw(), SRGB_8.clone()),
+        DynamicImage::ImageRgb8(b) => Samples::Bytes(b.into_raw(), SRGB_8.clone()),
+        DynamicImage::ImageRgba8(b) => Samples::Bytes(b.into_raw(), SRGB_8.clone()),
+        DynamicImage::ImageLuma16(b) => Samples::Words(b.into_raw(), SRGB_16.clone()),
+        DynamicImage::ImageLumaA16(b) => Samples::Words(b.into_raw(), SRGB_16.clone()),
+        DynamicImage::ImageRgb16(b) => Samples::Words(b.into_raw(), SRGB_16.clone()),
+        DynamicImage::ImageRgba16(b) => Samples::Words(b.into_raw(), SRGB_16.clone()),
+        DynamicImage::ImageRgb32F(b) => Samples::Floats(finite(b.into_raw(), channels)),
+        DynamicImage::ImageRgba32F(b) => Samples::Floats(finite(b.into_raw(), channels)),
         _ => return None,
     };
-    Some(Picture::from_cells(width, height, cells))
-}
-
-fn convert<T: Sync, const N: usize>(samples: &[T], pixel: impl Fn(&[T; N]) -> Rgba + Sync + Send) -> Vec<Rgba> {
-    samples.as_chunks::<N>().0.par_iter().map(pixel).collect()
-}
-
-fn decode_16([r, g, b, a]: [u16; 4]) -> Rgba {
-    let alpha = f32::from(a) / 65535.0;
-    let linear = |code: u16| LINEAR_16[usize::from(code)] * alpha;
-    [linear(r), linear(g), linear(b), alpha]
+    Some(Picture::new(width, height, channels, samples))
 }
 
 /// Renderers leave NaN and infinite pixels behind: they become 0 and the largest half float, so that no bilinear read
 /// spreads them.
-fn finite([r, g, b, a]: Rgba) -> Rgba {
+fn finite(mut values: Vec<f32>, channels: Channels) -> Vec<f32> {
     const LARGEST: f32 = 65504.0;
-    let light = |x: f32| if x.is_nan() { 0.0 } else { x.clamp(-LARGEST, LARGEST) };
-    let alpha = if a.is_nan() { 0.0 } else { a.clamp(0.0, 1.0) };
-    [light(r), light(g), light(b), alpha]
+    let count = channels.count();
+    let alpha = if channels.have_alpha() { count - 1 } else { count };
+    values.par_chunks_mut(count).for_each(|cell| {
+        for (i, x) in cell.iter_mut().enumerate() {
+            let (low, high) = if i == alpha { (0.0, 1.0) } else { (-LARGEST, LARGEST) };
+            *x = if x.is_nan() { 0.0 } else { x.clamp(low, high) };
+        }
+    });
+    values
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::pixels::{self, Rgba};
     use image::{ImageBuffer, Luma, LumaA, Rgb, Rgba as ImageRgba};
 
     fn folder() -> tempfile::TempDir {
@@ -240,7 +234,7 @@ mod tests {
             let picture = read(&path, &Limits::default()).unwrap();
             assert_eq!((picture.width(), picture.height()), (2, 1), "{name}");
             assert_eq!(size(&path, &Limits::default()).unwrap(), (2, 1), "{name}");
-            for (found, expected) in picture.get(1, 0).iter().zip(expected) {
+            for (found, expected) in picture.texel(1, 0).iter().zip(expected) {
                 assert!((found - expected).abs() <= 1e-6, "{name}: {found} for {expected}");
             }
         }
@@ -258,7 +252,7 @@ mod tests {
         encoder.write_header().unwrap().write_image_data(&[0, 1]).unwrap();
         std::fs::write(&path, bytes).unwrap();
         let picture = read(&path, &Limits::default()).unwrap();
-        assert_eq!(picture.cells(), [[1.0, 0.0, 0.0, 1.0], [0.0; 4]]);
+        assert_eq!(picture.to_linear().cells(), [[1.0, 0.0, 0.0, 1.0], [0.0; 4]]);
     }
 
     #[test]
@@ -275,7 +269,7 @@ mod tests {
         assert_eq!(size(&path, &Limits::default()).unwrap(), (1, 3));
         let picture = read(&path, &Limits::default()).unwrap();
         assert_eq!((picture.width(), picture.height()), (1, 3));
-        assert_eq!(pixels::encode(*picture.get(0, 2))[0], 200);
+        assert_eq!(pixels::encode(picture.texel(0, 2))[0], 200);
     }
 
     #[test]
@@ -315,7 +309,7 @@ mod tests {
             let limits = Limits::from_settings(&[setting.into()]).unwrap();
             let mut decoder = decoder(File::open(&path).unwrap(), "bomb.png", &limits).unwrap();
             assert_eq!(decoder.icc_profile().unwrap().is_some(), unpacked, "{setting}");
-            assert_eq!(read(&path, &limits).unwrap().get(0, 0)[0], 1.0);
+            assert_eq!(read(&path, &limits).unwrap().texel(0, 0)[0], 1.0);
         }
     }
 

@@ -11,7 +11,8 @@ use serde_json::Value;
 
 use crate::base::budget::Budget;
 use crate::base::change::Change;
-use crate::base::pixels::{Grid, Picture};
+use crate::base::picture::Picture;
+use crate::base::pixels::Grid;
 use crate::base::problem::Problem;
 
 pub mod check;

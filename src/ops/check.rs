@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
-use crate::base::pixels::Picture;
+use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
 use crate::scene::check;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Context, opened::Opened, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
-use crate::base::pixels::{Frame, Picture};
+use crate::base::pixels::{Frame, Linear};
 use crate::export::animation::{Show, Target, range, rate::Rate, scale, table};
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::{Synth, cpu};
@@ -115,13 +115,13 @@ impl Renderer {
             let frames = self.samples.iter().map(|synth| gpu.frame(synth, time)).collect::<Result<Vec<_>>>()?;
             return Ok(match &frames[..] {
                 [frame] if (frame.width(), frame.height()) == self.size => frame.clone(),
-                frames => self.finish(&cpu::mean_of(frames.iter().map(Frame::to_picture))),
+                frames => self.finish(&cpu::mean_of(frames.iter().map(Frame::to_linear))),
             });
         }
         Ok(self.finish(&cpu::mean(&self.samples, time)))
     }
 
-    fn finish(&self, picture: &Picture) -> Frame {
+    fn finish(&self, picture: &Linear) -> Frame {
         cpu::finish(&scale::resize(picture, self.size))
     }
 }

@@ -4,13 +4,13 @@
 use rayon::prelude::*;
 
 use super::{LayerSynth, Synth};
-use crate::base::pixels::{Frame, Grid, Picture, Rgba, encode, over};
+use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
 use crate::layers::folding;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
-pub fn linear(synth: &Synth, scene_time: f64) -> Picture {
+pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
     let (width, height) = synth.size;
-    let mut picture = Picture::filled(width, height, [0.0; 4]);
+    let mut picture = Linear::filled(width, height, [0.0; 4]);
     picture.cells_mut().par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
         for layer in &synth.layers {
             lay(layer, scene_time, y, row);
@@ -21,8 +21,8 @@ pub fn linear(synth: &Synth, scene_time: f64) -> Picture {
 
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame), and no others: what a
 /// small view of a large picture costs.
-pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Picture {
-    let mut picture = Picture::filled(columns.len(), rows.len(), [0.0; 4]);
+pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
+    let mut picture = Linear::filled(columns.len(), rows.len(), [0.0; 4]);
     let lines = picture.cells_mut().par_chunks_mut(columns.len().max(1)).zip(rows.par_iter());
     lines.for_each(|(out, &y)| {
         for LayerSynth::Picture(layer) in &synth.layers {
@@ -38,14 +38,14 @@ pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]
 }
 
 /// The mean of the frames of several samples of each pixel, in linear light.
-pub fn mean(samples: &[Synth], scene_time: f64) -> Picture {
+pub fn mean(samples: &[Synth], scene_time: f64) -> Linear {
     mean_of(samples.iter().map(|synth| linear(synth, scene_time)))
 }
 
 /// The mean of linear frames of one size.
-pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Picture>) -> Picture {
+pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Linear>) -> Linear {
     let share = 1.0 / frames.len() as f32;
-    let Some(mut sum) = frames.next() else { return Picture::filled(0, 0, [0.0; 4]) };
+    let Some(mut sum) = frames.next() else { return Linear::filled(0, 0, [0.0; 4]) };
     for frame in frames {
         let add = |sum: &mut Rgba, more: &Rgba| *sum = std::array::from_fn(|i| sum[i] + more[i]);
         sum.cells_mut().par_iter_mut().zip(frame.cells().par_iter()).for_each(|(sum, more)| add(sum, more));
@@ -62,7 +62,7 @@ pub fn frame(synth: &Synth, scene_time: f64) -> Frame {
 }
 
 /// Encodes a linear frame.
-pub fn finish(picture: &Picture) -> Frame {
+pub fn finish(picture: &Linear) -> Frame {
     let cells = picture.cells().par_iter().map(|&colour| encode(colour)).collect();
     Grid::from_cells(picture.width(), picture.height(), cells)
 }

@@ -4,7 +4,7 @@
 use kurbo::{Point, Vec2};
 
 use super::{Synth, cpu};
-use crate::base::pixels::{Frame, Picture, Rgba, encode};
+use crate::base::pixels::{Frame, Linear, Rgba, encode};
 
 /// Which part of a picture is shown, on how many dots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +64,7 @@ pub fn frame(synth: &Synth, scene_time: f64, part: &Part) -> Frame {
     Frame::from_cells(part.dots.0, part.dots.1, cells)
 }
 
-fn mean(pixels: &Picture, columns: &[Option<usize>], rows: &[Option<usize>]) -> [u8; 4] {
+fn mean(pixels: &Linear, columns: &[Option<usize>], rows: &[Option<usize>]) -> [u8; 4] {
     let (mut sum, mut count): (Rgba, f32) = ([0.0; 4], 0.0);
     for &y in rows.iter().flatten() {
         for &x in columns.iter().flatten() {
@@ -110,13 +110,13 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::base::pixels::Grid;
+    use crate::base::picture::Picture;
     use crate::layers::Materials;
     use crate::render::synth;
 
     fn moving() -> Synth {
         let cell = |i: usize| [(i % 40) as f32 / 40.0, (i / 40) as f32 / 30.0, 0.25, 1.0];
-        let picture = Arc::new(Grid::from_cells(40, 30, (0..40 * 30).map(cell).collect()));
+        let picture = Arc::new(Picture::from_cells(40, 30, (0..40 * 30).map(cell).collect()));
         let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
         let scene = serde_json::from_str(
             r#"{"plica": 1, "layers": [{"kind": "picture", "name": "l", "image": "a", "zones": [{"name": "z",

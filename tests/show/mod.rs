@@ -44,7 +44,7 @@ impl Show {
 
     /// The layer's own picture, as a frame.
     pub fn still(&self) -> Frame {
-        render::cpu::finish(&self.materials.pictures[&self.layer().image])
+        render::cpu::finish(&self.materials.pictures[&self.layer().image].to_linear())
     }
 
     /// For every pixel, how many zones hold it.

@@ -3,7 +3,7 @@
 use image::{ImageBuffer, Rgba, imageops};
 
 use crate::base::error::{Error, Result};
-use crate::base::pixels::Picture;
+use crate::base::pixels::Linear;
 
 /// The size `text` asks for, `WxH`, of frames that are `size` large. A 0 keeps the ratio.
 ///
@@ -26,7 +26,7 @@ pub fn parse(text: &str, size: (usize, usize)) -> Result<(usize, usize)> {
 }
 
 /// `picture` at another size (Catmull-Rom, widened where it shrinks).
-pub fn resize(picture: &Picture, (width, height): (usize, usize)) -> Picture {
+pub fn resize(picture: &Linear, (width, height): (usize, usize)) -> Linear {
     if (picture.width(), picture.height()) == (width, height) {
         return picture.clone();
     }
@@ -38,7 +38,7 @@ pub fn resize(picture: &Picture, (width, height): (usize, usize)) -> Picture {
         let alpha = p.0[3].clamp(0.0, 1.0); // the filter overshoots at edges
         [p.0[0].clamp(0.0, alpha), p.0[1].clamp(0.0, alpha), p.0[2].clamp(0.0, alpha), alpha]
     };
-    Picture::from_cells(width, height, resized.pixels().map(within).collect())
+    Linear::from_cells(width, height, resized.pixels().map(within).collect())
 }
 
 #[cfg(test)]
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn halving_is_linear_and_makes_no_fringe() {
-        let mut picture = Picture::filled(64, 64, [0.0; 4]);
+        let mut picture = Linear::filled(64, 64, [0.0; 4]);
         for (i, cell) in picture.cells_mut().iter_mut().enumerate() {
             if (i % 2 + i / 64 % 2) % 2 == 0 {
                 *cell = [1.0, 1.0, 1.0, 1.0];

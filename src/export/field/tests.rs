@@ -12,7 +12,7 @@ fn scene() -> (Scene, Synth) {
             "motion": [{ "tool": "translate", "by": [3, -4] }, { "tool": "point", "at": [20, 16] }] }] }] }"#,
     )
     .unwrap();
-    let picture = std::sync::Arc::new(crate::base::pixels::Picture::filled(60, 40, [0.2, 0.4, 0.1, 1.0]));
+    let picture = std::sync::Arc::new(crate::base::picture::Picture::filled(60, 40, [0.2, 0.4, 0.1, 1.0]));
     let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
     let synth = render::synth(&scene, &materials, None).unwrap();
     (scene, synth)

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::*;
-use crate::base::pixels::{Frame, Picture, decode, encode, over};
+use crate::base::pixels::{Frame, Linear, decode, encode, over};
 use crate::layers::Materials;
 use crate::render;
 
@@ -57,7 +57,7 @@ fn index(value: &Value, name: &str) -> usize {
 /// The player.
 struct Player {
     manifest: Value,
-    colour: Picture,
+    colour: Linear,
     function: Read,
     /// The zones of each layer.
     zones: Vec<Vec<Played>>,
@@ -95,7 +95,7 @@ impl Player {
             let piece = self.piece(layer);
             let (w, h) = (index(piece, "width"), index(piece, "height"));
             let own = |i: usize| *self.colour.get(index(piece, "x") + i % w, index(piece, "y") + i / w);
-            let mut shown: Picture = Grid::from_cells(w, h, (0..w * h).map(own).collect());
+            let mut shown: Linear = Grid::from_cells(w, h, (0..w * h).map(own).collect());
             for zone in zones {
                 self.zone(zone, t, &mut shown);
             }
@@ -113,7 +113,7 @@ impl Player {
         &self.manifest["colour"]["pieces"][index(of, "piece")]
     }
 
-    fn zone(&self, Played { note: zone, init, jump, thresholds }: &Played, t: f64, shown: &mut Picture) {
+    fn zone(&self, Played { note: zone, init, jump, thresholds }: &Played, t: f64, shown: &mut Linear) {
         let bounds = &zone["box"];
         let (x0, y0, w, h) = (index(bounds, "x"), index(bounds, "y"), index(bounds, "width"), index(bounds, "height"));
         let columns = shown.width();
@@ -209,7 +209,7 @@ fn materials() -> Materials {
             let [r, g, b, _] = smooth(i % w, i / w, k);
             [r, g, b, alpha(i % w, i / w)]
         };
-        Arc::new(Frame::from_cells(w, h, (0..w * h).map(cell).collect()).to_picture())
+        Arc::new(Frame::from_cells(w, h, (0..w * h).map(cell).collect()).to_linear().into())
     };
     let hole = |x: usize, y: usize| if x.abs_diff(45) + y.abs_diff(30) < 15 { 0 } else { 255 };
     Materials {

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use kurbo::{Point, Rect, Vec2};
 
 use super::synth::ZoneSynth;
-use crate::base::pixels::{Beyond, Grid, Picture, Rgba};
+use crate::base::picture::Picture;
+use crate::base::pixels::{Beyond, Grid, Linear, Rgba};
 
 /// A part of a picture: columns `x0..x1`, rows `y0..y1`. Where reads beyond the edge give nothing, it may hold one
 /// column or row beyond, which is transparent.
@@ -80,7 +81,7 @@ pub struct Piece {
 #[derive(Clone, Debug)]
 pub struct Atlas {
     /// The texels.
-    pub colors: Picture,
+    pub colors: Linear,
     /// The pieces.
     pub pieces: Vec<Piece>,
 }
@@ -133,7 +134,7 @@ impl Piece {
         Vec2::new(self.x as f64 - self.need.area.x0 as f64, self.y as f64 - self.need.area.y0 as f64)
     }
 
-    fn draw(&self, gutter: i64, colors: &mut Picture) {
+    fn draw(&self, gutter: i64, colors: &mut Linear) {
         let Area { x0, y0, x1, y1 } = self.need.area;
         let atlas_width = colors.width();
         for row in -gutter..y1 - y0 + gutter {
@@ -149,7 +150,7 @@ impl Piece {
     fn texel(&self, x: i64, y: i64) -> Rgba {
         let picture = &self.need.picture;
         let within = x >= 0 && y >= 0 && x < picture.width() as i64 && y < picture.height() as i64;
-        if within { *picture.get(x as usize, y as usize) } else { [0.0; 4] }
+        if within { picture.texel(x as usize, y as usize) } else { [0.0; 4] }
     }
 }
 
@@ -210,7 +211,7 @@ mod tests {
 
     fn picture(width: usize, height: usize, shade: f32) -> Arc<Picture> {
         let cells = (0..width * height).map(|i| [shade, (i % width) as f32, (i / width) as f32, 1.0]);
-        Arc::new(Grid::from_cells(width, height, cells.collect()))
+        Arc::new(Picture::from_cells(width, height, cells.collect()))
     }
 
     fn need(image: &str, picture: &Arc<Picture>, beyond: Beyond, area: [i64; 4]) -> Need {
@@ -225,7 +226,7 @@ mod tests {
             need("a", &only, Beyond::Clamp, [0, 0, 7, 5]),
             need("a", &only, Beyond::Clamp, [2, 2, 4, 4]),
         ]);
-        assert_eq!((&atlas.colors, piece_of), (&*only, vec![0, 0]));
+        assert_eq!((atlas.colors, piece_of), (only.to_linear(), vec![0, 0]));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::base::pixels::{Rgba, over};
 
 /// Writes row `y` of the layer at scene time `time` to `out`.
 pub fn row(synth: &Synth, time: f64, y: usize, out: &mut [Rgba]) {
-    out.copy_from_slice(synth.picture.row(y));
+    synth.picture.row(0, y, out);
     for zone in &synth.zones {
         let field = &*zone.field;
         if (field.y0..field.y0 + field.inside.height()).contains(&y) {
@@ -19,8 +19,7 @@ pub fn row(synth: &Synth, time: f64, y: usize, out: &mut [Rgba]) {
 
 /// As [`row`] for some of its columns only, each within the picture: equal to what [`row`] writes there.
 pub fn columns(synth: &Synth, time: f64, y: usize, columns: &[usize], out: &mut [Rgba]) {
-    let still = synth.picture.row(y);
-    out.iter_mut().zip(columns).for_each(|(out, &x)| *out = still[x]);
+    out.iter_mut().zip(columns).for_each(|(out, &x)| *out = synth.picture.texel(x, y));
     for zone in &synth.zones {
         let field = &*zone.field;
         if (field.y0..field.y0 + field.inside.height()).contains(&y) {

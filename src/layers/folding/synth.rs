@@ -9,7 +9,8 @@ use super::fold::Fold;
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
 use super::position::Clock;
-use crate::base::pixels::{Beyond, Picture};
+use crate::base::picture::Picture;
+use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
 use crate::layers::{Materials, timeline::Wrap};
 

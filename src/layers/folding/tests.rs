@@ -6,21 +6,22 @@ use kurbo::Vec2;
 
 use super::model::PictureLayer;
 use super::{frame, probe, synth};
-use crate::base::pixels::{Grid, Picture, Rgba};
+use crate::base::picture::Picture;
+use crate::base::pixels::{Grid, Rgba};
 use crate::layers::{Materials, timeline::Wrap};
 
 /// A picture whose red tells the column and whose green the row.
-fn ramp(width: usize, height: usize) -> Picture {
+fn ramp(width: usize, height: usize) -> Grid<Rgba> {
     let cell = |i: usize| [(i % width) as f32 / 100.0, (i / width) as f32 / 100.0, 0.0, 1.0];
     Grid::from_cells(width, height, (0..width * height).map(cell).collect())
 }
 
 fn materials() -> Materials {
     let mut materials = Materials::default();
-    materials.pictures.insert("ramp".into(), Arc::new(ramp(40, 30)));
+    materials.pictures.insert("ramp".into(), Arc::new(ramp(40, 30).into()));
     let mut mask = ramp(40, 30);
     mask.cells_mut().iter_mut().enumerate().filter(|(i, _)| i % 40 >= 20).for_each(|(_, c)| *c = [0.0; 4]);
-    materials.pictures.insert("mask".into(), Arc::new(mask));
+    materials.pictures.insert("mask".into(), Arc::new(mask.into()));
     materials.pictures.insert("dot".into(), Arc::new(Picture::filled(1, 1, [0.5, 0.5, 0.5, 0.5])));
     materials
 }

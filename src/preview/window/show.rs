@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn the_topmost_zone_under_the_pointer_gives_the_jump() {
-        use crate::base::pixels::Picture;
+        use crate::base::picture::Picture;
         use crate::layers::Materials;
         let zone = |name: &str, x: u32, jump: u32| {
             format!(

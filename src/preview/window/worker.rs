@@ -105,7 +105,7 @@ fn synthesise(work: &Receiver<(Arc<Scene>, u64)>, mut load: Load, send: &impl Fn
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::pixels::Picture;
+    use crate::base::picture::Picture;
 
     fn scene(image: &str) -> Arc<Scene> {
         let text = format!(r#"{{"plica": 1, "layers": [{{"kind": "picture", "name": "a", "image": "{image}"}}]}}"#);

@@ -1,11 +1,13 @@
 //! What is kept on the device between frames: pictures and fields, known by the `Arc` they came in, so that an edit of
 //! one zone uploads only that zone. What a scene no longer uses is let go.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::device::{Device, failed};
 use crate::base::error::Result;
-use crate::base::pixels::{Grid, Picture};
+use crate::base::picture::Picture;
+use crate::base::pixels::Grid;
 use crate::layers::folding::field::Field;
 use crate::layers::folding::texels::Texels;
 
@@ -31,8 +33,14 @@ pub struct Textures {
 impl Textures {
     /// The picture as a texture, uploaded where it is new.
     pub fn picture(&mut self, device: &Device, picture: &Arc<Picture>) -> Result<wgpu::TextureView> {
-        let upload = |p: &Picture| upload(device, p, wgpu::TextureFormat::Rgba32Float);
-        self.pictures.get(picture, upload)
+        self.pictures.get(picture, |picture| {
+            let (width, height) = (picture.width(), picture.height());
+            upload(device, (width, height), wgpu::TextureFormat::Rgba32Float, |y, rows| {
+                let mut band = vec![[0.0; 4]; rows * width];
+                band.chunks_mut(width).enumerate().for_each(|(row, out)| picture.row(0, y + row, out));
+                band.into()
+            })
+        })
     }
 
     /// The field as textures, uploaded where it is new.
@@ -40,8 +48,8 @@ impl Textures {
         self.fields.get(field, |field| {
             let texels = Texels::pack(field);
             Ok(FieldTextures {
-                pixels: upload(device, &texels.pixels, wgpu::TextureFormat::Rgba32Uint)?,
-                crossings: upload(device, &texels.crossings, wgpu::TextureFormat::R32Float)?,
+                pixels: upload_grid(device, &texels.pixels, wgpu::TextureFormat::Rgba32Uint)?,
+                crossings: upload_grid(device, &texels.crossings, wgpu::TextureFormat::R32Float)?,
             })
         })
     }
@@ -81,22 +89,37 @@ impl<K, V: Clone> Kept<K, V> {
     }
 }
 
-fn upload<T: bytemuck::Pod>(device: &Device, grid: &Grid<T>, format: wgpu::TextureFormat) -> Result<wgpu::TextureView> {
-    let (width, height) = (grid.width(), grid.height());
+fn upload_grid<T: bytemuck::Pod>(
+    device: &Device,
+    grid: &Grid<T>,
+    format: wgpu::TextureFormat,
+) -> Result<wgpu::TextureView> {
+    let width = grid.width();
+    upload(device, (width, grid.height()), format, |y, rows| grid.cells()[y * width..][..rows * width].into())
+}
+
+/// Makes a texture of bands of rows; `band` gives as many as it is asked for, from row y on.
+fn upload<'a, T: bytemuck::Pod>(
+    device: &Device,
+    (width, height): (usize, usize),
+    format: wgpu::TextureFormat,
+    band: impl Fn(usize, usize) -> Cow<'a, [T]>,
+) -> Result<wgpu::TextureView> {
     check_size(device, width, height)?;
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = texture(device, (width, height), format, usage)?;
     let row_bytes = width * size_of::<T>();
-    let band = (BAND_BYTES / row_bytes.max(1)).max(1);
-    for y in (0..height).step_by(band) {
-        let rows = band.min(height - y);
+    let most = (BAND_BYTES / row_bytes.max(1)).max(1);
+    for y in (0..height).step_by(most) {
+        let rows = most.min(height - y);
+        let cells = band(y, rows);
         device.checked(|| {
             device.queue.write_texture(
                 wgpu::TexelCopyTextureInfo {
                     origin: wgpu::Origin3d { x: 0, y: y as u32, z: 0 },
                     ..texture.as_image_copy()
                 },
-                bytemuck::cast_slice(&grid.cells()[y * width..(y + rows) * width]),
+                bytemuck::cast_slice(&cells),
                 wgpu::TexelCopyBufferLayout { bytes_per_row: Some(row_bytes as u32), ..Default::default() },
                 wgpu::Extent3d { width: width as u32, height: rows as u32, depth_or_array_layers: 1 },
             );

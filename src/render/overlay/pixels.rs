@@ -134,7 +134,8 @@ impl Drawing<'_> {
 mod tests {
     use super::super::{View, overlay};
     use super::*;
-    use crate::base::pixels::{Grid, Picture};
+    use crate::base::picture::Picture;
+    use crate::base::pixels::Grid;
     use crate::layers::Materials;
     use std::sync::Arc;
 

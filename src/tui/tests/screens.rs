@@ -7,7 +7,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::support::{press, state};
-use crate::base::pixels::Picture;
+use crate::base::picture::Picture;
 use crate::layers::Materials;
 use crate::tui::app::State;
 use crate::tui::graphics::Shown;
