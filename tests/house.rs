@@ -12,7 +12,7 @@ const ORDER: [&str; 11] =
 const DOORS: &[(&[&str], &[&str])] = &[
     (&["wgpu"], &["render/gpu", "preview/window"]),
     (&["winit", "raw_window_handle"], &["preview/window"]),
-    (&["ratatui", "crossterm", "tui_input", "nucleo_matcher"], &["tui/"]),
+    (&["ratatui", "crossterm", "terminput", "tui_input", "nucleo_matcher"], &["tui/"]),
     (&["toml", "base64", "csv"], &["tui/"]),
     (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),
     // The link keeps the file of its socket; `base/system` makes the user's folders.

@@ -21,7 +21,7 @@ const GRACE: Duration = Duration::from_secs(5);
 /// When signals cannot be listened to.
 pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
     let handler = move |signal| match signal {
-        Signal::Stop | Signal::Continue => Answer::Pass,
+        Signal::Stop | Signal::Continue | Signal::Resize => Answer::Pass,
         _ if cancel.swap(true, Ordering::Relaxed) => end(),
         _ => {
             std::thread::spawn(|| {

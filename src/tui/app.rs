@@ -20,6 +20,7 @@ use super::sheet::Sheet;
 use super::tree;
 use super::tutor::Tutor;
 use super::update::{Change, Effect};
+use super::view;
 use crate::base::problem::Problem;
 use crate::render::Synth;
 use crate::scene::{Document, Edit, field};
@@ -272,8 +273,16 @@ impl State {
         self.selected_from = self.selected_from.map(|row| row.min(last));
     }
 
+    /// Whether the terminal is too small to draw on, so that nobody sees what is edited.
+    pub fn is_small(&self) -> bool {
+        !view::fits(self.size)
+    }
+
     /// The contexts of the key table that are in force, the innermost first.
     pub fn contexts(&self) -> Vec<&'static str> {
+        if self.is_small() && !matches!(self.mode, Mode::Line(_)) {
+            return vec![keys::SMALL];
+        }
         let mut contexts = match (&self.mode, self.focus) {
             (Mode::Entry(_), _) if entry::of_number(self) => vec![keys::NUMBER, keys::ENTRY, keys::TYPING],
             (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],

@@ -138,6 +138,11 @@ fn end_on_signals(sender: mpsc::Sender<Event>, lines: bool) -> Result<signals::R
             let _ = sender.send(Event::Stop);
             Answer::Done
         }
+        Signal::Resize => {
+            // As above.
+            let _ = terminal::size().map(|(width, height)| sender.send(Event::Resize(width, height)));
+            Answer::Done
+        }
         Signal::Continue => Answer::Pass,
     };
     signals::handle(handler).map_err(|error| Error::at("signals", error))
@@ -179,13 +184,14 @@ impl Editor {
         sender: mpsc::Sender<Event>,
     ) -> Result<Self> {
         let size = screen.as_ref().map(|screen| screen.size()).transpose().map_err(|e| Error::at("the terminal", e))?;
-        let size = size.map_or(view::LEAST, |size| (size.width, size.height));
+        let size = size.map_or(view::USUAL, |size| (size.width, size.height));
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
         let mut typed = Vec::new();
         let mut graphics = graphics::Graphics::default();
         if screen.is_some() {
-            (graphics, typed) = ask::ask(options.graphics, |name| std::env::var(name).ok());
-            input::read(sender.clone());
+            let mut pieces = input::Pieces::new();
+            (graphics, typed) = ask::ask(options.graphics, &mut pieces, |name| std::env::var(name).ok());
+            input::read(pieces, sender.clone());
         }
         let worker = Worker::start(options.files.clone(), sender.clone());
         let preview = listen(&door, &options.files, sender.clone());
@@ -214,7 +220,7 @@ impl Editor {
         editor.begin();
         editor.load_keys();
         editor.begin_tutor();
-        typed.into_iter().for_each(|key| editor.take(Event::Key(key)));
+        typed.iter().filter_map(input::event).for_each(|event| editor.take(event));
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();
         }

@@ -48,6 +48,11 @@ pub fn enter() -> Result<Screen> {
     })
 }
 
+/// The size of the terminal, in cells.
+pub fn size() -> Option<(u16, u16)> {
+    terminal::size().ok()
+}
+
 /// Undoes every mode, shows the cursor and gives the screen back. May be called at any time, from any thread, twice.
 pub fn restore() {
     if SET.swap(false, Ordering::SeqCst) {

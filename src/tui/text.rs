@@ -67,6 +67,7 @@ impl Text {
             "rub" => InputRequest::DeletePrevChar,
             "delete" => InputRequest::DeleteNextChar,
             "rub-word" => InputRequest::DeletePrevWord,
+            "delete-word" => InputRequest::DeleteNextWord,
             "clear" => InputRequest::DeleteLine,
             _ => return false,
         };

@@ -238,6 +238,11 @@ fn report(state: &mut State, result: Result<String, String>) {
 
 /// Pasted text is typed where something is typed; a line end ends it.
 fn paste(state: &mut State, text: &str) {
+    state.pressed.clear();
+    state.count = None;
+    if state.is_small() && !matches!(state.mode, Mode::Line(_)) {
+        return state.complain(TOO_SMALL);
+    }
     // Terminals send the ends of lines as the Enter key does.
     let text = &text.replace("\r\n", "\n").replace('\r', "\n");
     let first = text.lines().next().unwrap_or_default();
@@ -258,7 +263,7 @@ fn type_text(state: &mut State, text: &str) {
 
 /// A click goes to the pane under it, and in the tree to the row.
 fn click(state: &mut State, x: u16, y: u16) {
-    if !matches!(state.mode, Mode::Normal) {
+    if !matches!(state.mode, Mode::Normal) || state.is_small() {
         return;
     }
     let areas = view::areas(view::screen(state), state.seeing.probing);
@@ -267,8 +272,10 @@ fn click(state: &mut State, x: u16, y: u16) {
         let rows = tree::rows(state.document(), &state.folded);
         let first = first_row(tree::row_of(&rows, &state.node), rows.len(), areas.tree.height.saturating_sub(2));
         let row = rows.get(first + usize::from(y.saturating_sub(areas.tree.y + 1)));
-        let line = row.map_or("pane tree".to_owned(), |row| format!("go {}", row.pointer));
-        commands::run(state, &line, None);
+        if let Some(row) = row {
+            commands::run(state, &format!("go {}", row.pointer), None);
+        }
+        commands::run(state, "pane tree", None);
     } else if areas.right.is_some_and(|[.., picture]| picture.contains(at)) {
         commands::run(state, "pane picture", None);
     } else if areas.table.contains(at) {
@@ -276,8 +283,12 @@ fn click(state: &mut State, x: u16, y: u16) {
     }
 }
 
+/// Said where the terminal is too small for a key.
+const TOO_SMALL: &str = ":q leaves, :wq saves and leaves";
+
 fn press(state: &mut State, key: &str) {
-    let counting = matches!(state.mode, Mode::Normal | Mode::Aim) && state.pressed.is_empty();
+    let counting = matches!(state.mode, Mode::Normal | Mode::Aim | Mode::Choice(_) | Mode::Pages(_));
+    let counting = counting && state.pressed.is_empty() && !state.is_small();
     if let (true, Some(digit)) =
         (counting, key.parse::<usize>().ok().filter(|&d| d < 10 && (d > 0 || state.count.is_some())))
     {
@@ -295,8 +306,25 @@ fn press(state: &mut State, key: &str) {
         }
         Found::Nothing => {
             state.count = None;
-            unbound(state, key, &pressed);
+            match after_escape(key) {
+                Some(after) => {
+                    // An Esc after the first key of several only ends those.
+                    if pressed == key {
+                        press(state, "Esc");
+                    }
+                    press(state, &after);
+                }
+                None => unbound(state, key, &pressed),
+            }
         }
+    }
+}
+
+/// The key that was pressed right after Esc: terminals send the two as they send one key with Alt.
+fn after_escape(key: &str) -> Option<String> {
+    match key.strip_prefix("Ctrl-Alt-") {
+        Some(plain) => Some(format!("Ctrl-{plain}")),
+        None => key.strip_prefix("Alt-").filter(|plain| !plain.is_empty()).map(str::to_owned),
     }
 }
 
@@ -307,6 +335,7 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
     match &state.mode {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
+        _ if state.is_small() => state.complain(TOO_SMALL),
         Mode::Normal | Mode::Aim => state.complain(format!("{pressed} means nothing here (? shows the keys)")),
         _ => {}
     }

@@ -1,4 +1,4 @@
-//! The screen: where the panes stand, at every size from 80 x 24 on. Draws the state and changes nothing.
+//! The screen: where the panes stand, at every size from 80 x 20 on. Draws the state and changes nothing.
 
 use ratatui::Frame;
 use ratatui::layout::{Alignment, Constraint, Layout, Margin, Position, Rect, Spacing};
@@ -10,8 +10,10 @@ use super::app::{Mode, Pane, State};
 use super::colour;
 use super::panes;
 
-/// The least terminal that the editor draws on.
-pub const LEAST: (u16, u16) = (80, 24);
+/// The least terminal that the editor draws on: one of 80 x 24 less the lines that a multiplexer takes.
+pub const LEAST: (u16, u16) = (80, 20);
+/// The terminal that is meant where there is none.
+pub const USUAL: (u16, u16) = (80, 24);
 /// From this width on there are panes at the right.
 const WIDE: u16 = 112;
 
@@ -35,6 +37,11 @@ pub struct Areas {
 /// Rows of what is told about a field, and of the read-out of a pixel that takes its place, with their frames.
 const DETAIL: u16 = 5;
 const PROBE: u16 = 9;
+
+/// Whether the editor draws on a terminal of this size; on a smaller one nothing can be edited, for nothing is seen of it.
+pub fn fits((width, height): (u16, u16)) -> bool {
+    width >= LEAST.0 && height >= LEAST.1
+}
 
 /// The areas of a screen, with the read-out of a pixel or without.
 pub fn areas(screen: Rect, probing: bool) -> Areas {
@@ -72,8 +79,7 @@ fn middle(state: &State, areas: &Areas) -> Rect {
 
 /// The inside of the picture's pane, where it is on the screen.
 pub fn picture(state: &State) -> Option<Rect> {
-    let (width, height) = state.size;
-    if width < LEAST.0 || height < LEAST.1 {
+    if !fits(state.size) {
         return None;
     }
     let areas = areas(screen(state), state.seeing.probing);
@@ -84,8 +90,8 @@ pub fn picture(state: &State) -> Option<Rect> {
 /// Draws the screen.
 pub fn draw(frame: &mut Frame, state: &State) {
     let screen = frame.area();
-    if screen.width < LEAST.0 || screen.height < LEAST.1 {
-        return too_small(frame, screen);
+    if !fits((screen.width, screen.height)) {
+        return too_small(frame, state, screen);
     }
     if let Some(tutor) = &state.tutor {
         panes::lesson::draw(tutor, &state.keymap, screen, frame.buffer_mut());
@@ -156,9 +162,14 @@ pub fn window(screen: Rect, width: u16, height: u16, title: &str, buffer: &mut r
     inner
 }
 
-fn too_small(frame: &mut Frame, screen: Rect) {
+/// What stands there instead, and below it the line in which `:q` is typed.
+fn too_small(frame: &mut Frame, state: &State, screen: Rect) {
     let text = format!("Plica needs {} x {}\nthis is {} x {}", LEAST.0, LEAST.1, screen.width, screen.height);
-    let middle = Rect { y: screen.y + screen.height.saturating_sub(2) / 2, height: screen.height.min(2), ..screen };
+    let middle = Rect { y: screen.y + screen.height.saturating_sub(3) / 2, height: screen.height.min(2), ..screen };
     frame.render_widget(Paragraph::new(Text::from(text)).alignment(Alignment::Center), middle);
-    frame.set_cursor_position(Position::new(screen.x, screen.y));
+    let below = screen.height.min(1);
+    let line = Rect { y: screen.bottom() - below, height: below, ..screen };
+    let said = screen.height > 2 || matches!(state.mode, Mode::Line(_));
+    let cursor = if said { panes::line::draw(state, line, frame.buffer_mut()) } else { None };
+    frame.set_cursor_position(cursor.unwrap_or(Position::new(screen.x, screen.y)));
 }

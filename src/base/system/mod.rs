@@ -75,6 +75,12 @@ pub fn readable(stream: impl AsFd, within: std::time::Duration) -> bool {
     rustix::event::poll(&mut one, within.as_ref()).is_ok_and(|ready| ready > 0)
 }
 
+/// Reads what is there, at most as much as there is room for; nothing at the end. No buffer of the library lies between, so
+/// nothing can stay in one.
+pub fn read(stream: impl AsFd, into: &mut [u8]) -> io::Result<usize> {
+    Ok(rustix::io::retry_on_intr(|| rustix::io::read(&stream, &mut *into))?)
+}
+
 /// Whether this process was started from an SSH session.
 pub fn over_ssh() -> bool {
     ["SSH_CONNECTION", "SSH_TTY"].iter().any(|name| std::env::var_os(name).is_some_and(|v| !v.is_empty()))

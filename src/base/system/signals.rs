@@ -4,7 +4,7 @@
 use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
+use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGWINCH};
 
 /// What the thread listens to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,15 +19,18 @@ pub enum Signal {
     Stop,
     /// Going on after a stop.
     Continue,
+    /// The terminal has another size.
+    Resize,
 }
 
 /// One row a signal.
-const TABLE: [(Signal, i32); 5] = [
+const TABLE: [(Signal, i32); 6] = [
     (Signal::Hangup, SIGHUP),
     (Signal::Terminate, SIGTERM),
     (Signal::Interrupt, SIGINT),
     (Signal::Stop, SIGTSTP),
     (Signal::Continue, SIGCONT),
+    (Signal::Resize, SIGWINCH),
 ];
 
 /// Whether a handler has done what the signal asks for; else the next older one is called.

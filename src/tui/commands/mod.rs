@@ -126,9 +126,36 @@ pub fn all() -> impl Iterator<Item = &'static Command> {
     TABLES.iter().copied().flatten()
 }
 
-/// The command of this name.
+/// Other names of commands, as vim has them.
+const ALIASES: &[(&str, &str)] = &[
+    ("edit", "e"),
+    ("edit!", "e!"),
+    ("h", "help"),
+    ("qa", "q"),
+    ("qa!", "q!"),
+    ("quit", "q"),
+    ("quit!", "q!"),
+    ("quitall", "q"),
+    ("red", "redo"),
+    ("u", "undo"),
+    ("wa", "w"),
+    ("wqa", "wq"),
+    ("write", "w"),
+    ("write!", "w!"),
+    ("x", "wq"),
+    ("xa", "wq"),
+    ("xit", "wq"),
+];
+
+/// The command of this name, or of this other name.
 pub fn find(name: &str) -> Option<&'static Command> {
+    let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
     all().find(|command| command.name == name)
+}
+
+/// Whether a line only saves or leaves.
+pub fn leaves(line: &str) -> bool {
+    find(Said::parse(line, None).name).is_some_and(|command| matches!(command.name, "q" | "q!" | "w" | "w!" | "wq"))
 }
 
 /// The names of all commands, those of the command line included, in order.

@@ -12,7 +12,7 @@ pub const COMMANDS: &[Command] = &[
     command("fold", "", "Fold the node of the tree, else go to its parent", fold),
     command("open", "", "Unfold the node of the tree, else edit it", open),
     command("up", "", "Go to the node that holds this one", up),
-    command("back", "", "End the selection, else running work, else go to the tree", back),
+    command("back", "", "End the selection, else running work", back),
     command("leave", "", "As back, and say how to leave", leave),
 ];
 
@@ -121,11 +121,8 @@ fn up(state: &mut State, _: &Call) -> Done {
 }
 
 fn back(state: &mut State, _: &Call) -> Done {
-    if state.unselect() {
-    } else if state.seen.work.is_some() {
+    if !state.unselect() && state.seen.work.is_some() {
         state.ask(Effect::Cancel);
-    } else {
-        state.focus = Pane::Tree;
     }
     Ok(())
 }

@@ -25,7 +25,13 @@ pub const COMMANDS: &[Command] = &[
     command("run", "", "Run the line being typed", run_typed).inside(),
     command("complete", "", "Complete the line being typed", complete).inside(),
     command("recall", "older|newer", "Recall a line typed before", recall).inside(),
-    command("text", "left|right|start|end|rub|delete|clear", "Change the text being typed", text).inside(),
+    command(
+        "text",
+        "left|right|start|end|word-left|word-right|rub|delete|rub-word|delete-word|clear",
+        "Change the text being typed",
+        text,
+    )
+    .inside(),
     command("cancel", "", "Leave what is being done as it was", |state, _| {
         state.mode = Mode::Normal;
         search_left(state);
@@ -71,8 +77,11 @@ fn run_typed(state: &mut State, _: &Call) -> Done {
     if typed.is_empty() {
         return Ok(());
     }
-    if kind == '/' {
+    if kind == '/' && !state.is_small() {
         return obey(state, &format!("search {}", quoted(&typed)), None);
+    }
+    if state.is_small() && !super::leaves(&typed) {
+        return Err("the terminal is too small for that: :q leaves, :wq saves and leaves".into());
     }
     state.lines.retain(|old| *old != typed);
     state.lines.push(typed.clone());

@@ -1,13 +1,14 @@
 //! What pictures the terminal takes: asked once, before anything else reads its answers. First what every terminal
 //! answers and late answers do no harm to; only one that has answered is asked for kitty's protocol.
 
-use std::io::{Read, Write, stdin, stdout};
+use std::io::{Write, stdin, stdout};
 use std::time::{Duration, Instant};
 
 use ratatui::crossterm::terminal;
 
 use super::{Graphics, Protocol};
 use crate::base::system;
+use crate::tui::input::{self, Piece, Pieces};
 
 /// How long a terminal has to answer at all; further away it has longer.
 const HERE: Duration = Duration::from_millis(400);
@@ -19,8 +20,12 @@ const KITTY: &str = "\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[5n";
 /// Terminals with iTerm2's images, by what they call themselves.
 const ITERM2: [&str; 4] = ["iTerm", "WezTerm", "mintty", "rio"];
 
-/// What the terminal takes, and the keys that were typed meanwhile.
-pub fn ask(forced: Option<Protocol>, get: impl Fn(&str) -> Option<String>) -> (Graphics, Vec<String>) {
+/// What the terminal takes, and what was typed and pasted meanwhile. What has only begun of that stays in `pieces`.
+pub fn ask(
+    forced: Option<Protocol>,
+    pieces: &mut Pieces,
+    get: impl Fn(&str) -> Option<String>,
+) -> (Graphics, Vec<Piece>) {
     let get = |name: &str| get(name).filter(|value| !value.is_empty());
     let term = get("TERM").unwrap_or_default();
     let between =
@@ -34,11 +39,10 @@ pub fn ask(forced: Option<Protocol>, get: impl Fn(&str) -> Option<String>) -> (G
         return (graphics, Vec::new());
     }
     let patience = if system::over_ssh() { FAR } else { HERE };
-    let mut answers = answers(KIND, patience);
+    let mut answers = Answers::default();
+    answers.wait_for(KIND, patience, pieces);
     if answers.complete && forced.is_none() && !takes_half_of_kitty(get) {
-        let more = self::answers(KITTY, FAR);
-        answers.sequences.extend(more.sequences);
-        answers.typed.extend(more.typed);
+        answers.wait_for(KITTY, FAR, pieces);
     }
     graphics.cell = measured.or(answers.cell()).unwrap_or(graphics.cell);
     let named = ["TERM_PROGRAM", "LC_TERMINAL"].iter().filter_map(|name| get(name)).collect::<Vec<_>>();
@@ -49,20 +53,7 @@ pub fn ask(forced: Option<Protocol>, get: impl Fn(&str) -> Option<String>) -> (G
         () if answers.sixel() => Protocol::Sixel,
         () => Protocol::Blocks,
     };
-    (graphics, String::from_utf8_lossy(&answers.typed).chars().map(key).collect())
-}
-
-/// The name of a key in the table, by the character that the terminal sends.
-fn key(c: char) -> String {
-    match c {
-        '\r' => "Enter".into(),
-        '\t' => "Tab".into(),
-        '\x1b' => "Esc".into(),
-        '\x7f' => "Backspace".into(),
-        ' ' => "Space".into(),
-        '\x01'..='\x1a' => format!("Ctrl-{}", char::from(c as u8 + b'a' - 1)),
-        c => c.to_string(),
-    }
+    (graphics, answers.typed)
 }
 
 /// The size of a cell in pixels, where the system knows it.
@@ -70,6 +61,11 @@ pub fn cell() -> Option<(u16, u16)> {
     let size = terminal::window_size().ok()?;
     let cell = (size.width.checked_div(size.columns)?, size.height.checked_div(size.rows)?);
     (cell.0 > 0 && cell.1 > 0).then_some(cell)
+}
+
+/// Whether a control sequence is an answer to one of the questions: no key and no click ends so.
+fn is_answer(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x1b[") && matches!(bytes.last(), Some(b'c' | b't' | b'n'))
 }
 
 /// Terminals that say they know kitty's protocol and do not draw its placeholders.
@@ -83,53 +79,43 @@ struct Answers {
     /// Control sequences, without their first escape.
     sequences: Vec<String>,
     /// What was typed between them.
-    typed: Vec<u8>,
-    /// Whether the last answer is there.
+    typed: Vec<Piece>,
+    /// Whether the last answer to the question is there.
     complete: bool,
 }
 
-fn answers(question: &str, patience: Duration) -> Answers {
-    let mut out = stdout();
-    let mut bytes = Vec::new();
-    // Whoever cannot be asked does not answer.
-    let asked = out.write_all(question.as_bytes()).and_then(|()| out.flush());
-    let end = Instant::now() + patience;
-    let mut input = stdin();
-    while asked.is_ok() && !bytes.windows(4).any(|four| four == b"\x1b[0n") {
-        let left = end.saturating_duration_since(Instant::now());
-        if left.is_zero() || !system::readable(&input, left) {
-            break;
-        }
-        // As much as the buffer of standard input: nothing may stay in it.
-        let mut some = [0; 8192];
-        match input.read(&mut some) {
-            Ok(n @ 1..) => bytes.extend_from_slice(&some[..n]),
-            _ => break,
+impl Answers {
+    /// Asks, and listens until the last answer is there.
+    fn wait_for(&mut self, question: &str, patience: Duration, pieces: &mut Pieces) {
+        let mut out = stdout();
+        // Whoever cannot be asked does not answer.
+        let asked = out.write_all(question.as_bytes()).and_then(|()| out.flush());
+        let end = Instant::now() + patience;
+        self.complete = false;
+        while asked.is_ok() && !self.complete {
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() || !system::readable(stdin(), left) || !input::feed(pieces) {
+                break;
+            }
+            self.take(pieces, Instant::now());
         }
     }
-    Answers::of(&bytes)
-}
 
-impl Answers {
-    fn of(bytes: &[u8]) -> Answers {
-        let mut found = Answers::default();
-        let mut rest = bytes;
-        while let Some((&first, after)) = rest.split_first() {
-            let end = match (first, after.first()) {
-                (0x1b, Some(b'[')) => after[1..].iter().position(|byte| (0x40..=0x7e).contains(byte)).map(|at| at + 2),
-                (0x1b, Some(b'_' | b'P' | b']')) => after.windows(2).position(|two| two == b"\x1b\\").map(|at| at + 2),
+    /// Takes the pieces that are whole.
+    fn take(&mut self, pieces: &mut Pieces, now: Instant) {
+        while let Some(piece) = pieces.take(now) {
+            let sequence = match &piece {
+                Piece::Key(bytes) if is_answer(bytes) => bytes,
+                Piece::Answer(bytes) => bytes,
                 _ => {
-                    found.typed.push(first);
-                    rest = after;
+                    self.typed.push(piece);
                     continue;
                 }
             };
-            let Some(end) = end else { break };
-            found.sequences.push(String::from_utf8_lossy(&after[..end]).trim_end_matches("\x1b\\").to_owned());
-            rest = &after[end..];
+            let text = String::from_utf8_lossy(&sequence[1..]);
+            self.complete |= text == "[0n";
+            self.sequences.push(text.trim_end_matches("\x1b\\").to_owned());
         }
-        found.complete = found.has("[0n");
-        found
     }
 
     fn has(&self, answer: &str) -> bool {
@@ -155,19 +141,32 @@ impl Answers {
 mod tests {
     use super::*;
 
+    fn answers(bytes: &[u8]) -> (Answers, Pieces) {
+        let (mut found, mut pieces) = (Answers::default(), Pieces::new());
+        for byte in bytes {
+            pieces.feed(&[*byte], Instant::now());
+            found.take(&mut pieces, Instant::now());
+        }
+        (found, pieces)
+    }
+
     #[test]
     fn answers_are_told_from_what_was_typed() {
-        let found = Answers::of(b"j\x1b[?64;4;6c:w\x1b[6;20;10t\x1b_Gi=31;OK\x1b\\\x1b[0nq");
-        assert_eq!(found.typed, b"j:wq");
-        assert_eq!(["\r", " ", "\x12", "z"].map(|c| key(c.chars().next().unwrap())), ["Enter", "Space", "Ctrl-r", "z"]);
+        let (found, mut pieces) =
+            answers(b"j\x1b[?64;4;6c:w\x1b[6;20;10t\x1b[B\x1b_Gi=31;OK\x1b\\\x1b[200~:q!\r\x1b[201~\x1b[0n\x1bOA\x1b[");
+        let key = |bytes: &[u8]| Piece::Key(bytes.to_vec());
+        let typed = [key(b"j"), key(b":"), key(b"w"), key(b"\x1b[B"), Piece::Paste(":q!\r".into()), key(b"\x1bOA")];
+        assert_eq!(found.typed, typed);
         assert!(found.complete && found.sixel() && found.has("_Gi=31;OK"));
         assert_eq!(found.cell(), Some((10, 20)));
+        pieces.feed(b"A", Instant::now());
+        assert_eq!(pieces.take(Instant::now()), Some(key(b"\x1b[A")), "what has begun goes on");
     }
 
     #[test]
     fn silence_and_halves_are_no_answers() {
         for bytes in [&b""[..], b"\x1b[?6", b"\x1b[?62;22c\x1b[6;0;0t", b"\x1b_Gi=31;EINVAL\x1b\\"] {
-            let found = Answers::of(bytes);
+            let (found, _) = answers(bytes);
             assert!(
                 !found.complete && !found.sixel() && !found.has("_Gi=31;OK") && found.cell().is_none(),
                 "{found:?}"
@@ -185,7 +184,7 @@ mod tests {
         ];
         for (environment, tmux) in environments {
             let get = |name: &str| environment.iter().find(|(key, _)| *key == name).map(|(_, v)| v.to_string());
-            let (graphics, typed) = ask(None, get);
+            let (graphics, typed) = ask(None, &mut Pieces::new(), get);
             assert_eq!((graphics.found, graphics.tmux, typed.len()), (Protocol::Blocks, tmux, 0), "{environment:?}");
         }
     }

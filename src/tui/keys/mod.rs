@@ -1,7 +1,7 @@
 //! What a key means: the rows of the one table (table.rs), with the person's own over them (keymap.rs), looked up by context
 //! from the innermost out: a pane, then everywhere.
 
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use terminput::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::commands;
 use crate::preview::keys as window;
@@ -10,7 +10,7 @@ mod keymap;
 pub use keymap::Keymap;
 mod table;
 pub use table::{
-    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PALETTE, PICTURE, RECORDING, TABLE, TREE, TYPING,
+    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PALETTE, PICTURE, RECORDING, SMALL, TABLE, TREE, TYPING,
 };
 
 /// Where the person's own keys stand.
@@ -48,13 +48,15 @@ fn continues(key: &str, pressed: &str) -> bool {
 
 /// The name of a key in the table; `None` where it has none.
 pub fn name(event: KeyEvent) -> Option<String> {
+    let shift = event.modifiers.contains(KeyModifiers::SHIFT);
     let plain = match event.code {
         KeyCode::Char(' ') => "Space".to_string(),
+        KeyCode::Char(c) if shift => c.to_uppercase().to_string(),
         KeyCode::Char(c) => c.to_string(),
         KeyCode::Enter => "Enter".into(),
         KeyCode::Esc => "Esc".into(),
+        KeyCode::Tab if shift => return Some("Shift-Tab".into()),
         KeyCode::Tab => "Tab".into(),
-        KeyCode::BackTab => return Some("Shift-Tab".into()),
         KeyCode::Backspace => "Backspace".into(),
         KeyCode::Delete => "Delete".into(),
         KeyCode::Up => "Up".into(),
@@ -68,7 +70,7 @@ pub fn name(event: KeyEvent) -> Option<String> {
         KeyCode::PageDown => return Some("Ctrl-d".into()),
         _ => return None,
     };
-    let control = event.modifiers.contains(KeyModifiers::CONTROL).then_some("Ctrl-");
+    let control = event.modifiers.contains(KeyModifiers::CTRL).then_some("Ctrl-");
     let alt = event.modifiers.contains(KeyModifiers::ALT).then_some("Alt-");
     // Terminals without the newer protocols send Ctrl-h for Backspace and Ctrl-j for Enter.
     match (control, plain.as_str()) {

@@ -22,6 +22,8 @@ pub const HELP: &str = "help";
 pub const RECORDING: &str = "recording a macro";
 /// Any text being typed.
 pub const TYPING: &str = "typing";
+/// A terminal that is too small for the panes.
+pub const SMALL: &str = "too small a terminal";
 /// A value being typed into a cell.
 pub const ENTRY: &str = "entry";
 /// A number being typed into a cell.
@@ -39,7 +41,7 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, ":", "line", "Type a command"),
     row(EVERYWHERE, "Tab", "pane next", "Go to the next pane"),
     row(EVERYWHERE, "Shift-Tab", "pane previous", "Go to the pane before"),
-    row(EVERYWHERE, "Esc", "back", "End the selection, else running work, else go to the tree"),
+    row(EVERYWHERE, "Esc", "back", "End the selection, else running work"),
     row(EVERYWHERE, "Ctrl-c", "leave", "As Esc, and say how to leave"),
     row(EVERYWHERE, "u", "undo", "Undo"),
     row(EVERYWHERE, "Ctrl-r", "redo", "Redo"),
@@ -124,6 +126,9 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "M", "pointer", "Take the window's pointer into the field, else into the picture's cursor"),
     row(EVERYWHERE, "Ctrl-l", "redraw", "Draw the screen anew"),
     row(EVERYWHERE, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
+    row(SMALL, ":", "line", "Type :q, :wq or :w; nothing else is done before the terminal is larger"),
+    row(SMALL, "Ctrl-l", "redraw", "Draw the screen anew"),
+    row(SMALL, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
     row(RECORDING, "q", "record", "End the macro"),
     row(TREE, "j", "move down", "Go down"),
     row(TREE, "Down", "move down", "Go down"),
@@ -238,9 +243,15 @@ pub const KEYS: &[KeyRow] = &[
     row(TYPING, "Ctrl-e", "text end", "Go to the end"),
     row(TYPING, "Alt-b", "text word-left", "Go a word left"),
     row(TYPING, "Alt-f", "text word-right", "Go a word right"),
+    row(TYPING, "Alt-Left", "text word-left", "Go a word left"),
+    row(TYPING, "Ctrl-Left", "text word-left", "Go a word left"),
+    row(TYPING, "Alt-Right", "text word-right", "Go a word right"),
+    row(TYPING, "Ctrl-Right", "text word-right", "Go a word right"),
     row(TYPING, "Backspace", "text rub", "Delete the character before"),
     row(TYPING, "Delete", "text delete", "Delete the character under the cursor"),
     row(TYPING, "Ctrl-w", "text rub-word", "Delete the word before"),
+    row(TYPING, "Alt-Backspace", "text rub-word", "Delete the word before"),
+    row(TYPING, "Alt-d", "text delete-word", "Delete the word after"),
     row(TYPING, "Ctrl-u", "text clear", "Delete everything"),
     row(TYPING, "Esc", "cancel", "Leave it as it was"),
     row(TYPING, "Ctrl-c", "cancel", "Leave it as it was"),

@@ -1,4 +1,4 @@
-//! The lesson that is on, below everything else: always in sight, also at 80 x 24.
+//! The lesson that is on, below everything else: always in sight, also on the least terminal.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;

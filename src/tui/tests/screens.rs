@@ -114,15 +114,16 @@ fn screens_are_as_kept() {
 
 #[test]
 fn every_size_is_drawn_and_small_ones_say_so() {
-    for (width, height) in [(1, 1), (20, 5), (79, 24), (80, 23), (80, 24), (111, 24), (112, 30), (200, 50), (400, 120)]
+    for (width, height) in
+        [(1, 1), (20, 5), (79, 24), (80, 19), (80, 20), (80, 23), (80, 24), (111, 24), (112, 30), (200, 50), (400, 120)]
     {
         for (_, keys) in STATES {
             let mut state = opened((width, height));
             press(&mut state, keys);
             see(&mut state);
-            let small = width < 80 || height < 24;
+            let small = width < 80 || height < 20;
             let text = screen(&state);
-            assert!(!small || width < 20 || text.contains("Plica needs 80 x 24"), "{width} x {height}:\n{text}");
+            assert!(!small || width < 20 || text.contains("Plica needs 80 x 20"), "{width} x {height}:\n{text}");
         }
     }
 }
