@@ -3,38 +3,31 @@
 //!
 //! Coordinates are image pixels, x right, y down (folding.md, section 1).
 
+use std::ops::Range;
+
 use kurbo::{BezPath, Point, Rect, Vec2};
 
-/// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
-/// should.
-pub const FLATNESS_PX: f64 = 2e-5;
+use super::chains::{Chains, Line, Part};
 
-/// Sides that share a box, so that most of a curve is passed over at a glance.
-const GROUP: usize = 32;
+/// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
+/// should. That many sides are looked at only where it matters ([`Chains`]): eight of them lie within 0.003 px of their
+/// chord, and a path that keeps farther from it is done with them.
+pub const FLATNESS_PX: f64 = 2e-5;
 
 /// A closed polygon, even-odd; the closing side is implied. At least three vertices, all finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     vertices: Vec<Point>,
     bounds: Rect,
-    /// The box of each [`GROUP`] of sides.
-    groups: Vec<Rect>,
+    chains: Chains,
 }
 
 impl Polygon {
     /// The polygon through `vertices`. A repeated last vertex is harmless.
     pub fn new(vertices: Vec<Point>) -> Self {
-        let box_of = |points: &mut dyn Iterator<Item = Point>| {
-            let corner = |r: Rect, p: Point| r.union_pt(p);
-            points.next().map_or(Rect::ZERO, |first| points.fold(Rect::from_points(first, first), corner))
-        };
-        let n = vertices.len();
-        let group = |start: usize| {
-            let end = (start + GROUP).min(n);
-            box_of(&mut (start..=end).map(|i| vertices[i % n]))
-        };
-        let groups = (0..n).step_by(GROUP).map(group).collect();
-        Polygon { bounds: box_of(&mut vertices.iter().copied()), groups, vertices }
+        let corner = |r: Option<Rect>, &p: &Point| Some(r.map_or(Rect::from_points(p, p), |r| r.union_pt(p)));
+        let bounds = vertices.iter().fold(None, corner).unwrap_or(Rect::ZERO);
+        Polygon { bounds, chains: Chains::new(&vertices), vertices }
     }
 
     /// The polygon of a closed path, flattened to [`FLATNESS_PX`].
@@ -84,15 +77,11 @@ impl Polygon {
         (0..n).map(move |i| (self.vertices[i], self.vertices[(i + 1) % n]))
     }
 
-    /// The sides that may meet `area`: all that do, and a few more.
-    pub fn sides_near(&self, area: Rect) -> impl Iterator<Item = (Point, Point)> + '_ {
-        let meets = move |r: &Rect| r.x0 <= area.x1 && area.x0 <= r.x1 && r.y0 <= area.y1 && area.y0 <= r.y1;
-        let n = self.vertices.len();
-        let groups = self.groups.iter().enumerate().filter(move |(_, group)| meets(group));
-        groups
-            .flat_map(move |(g, _)| g * GROUP..((g + 1) * GROUP).min(n))
-            .map(move |i| (self.vertices[i], self.vertices[(i + 1) % n]))
-            .filter(move |(a, b)| meets(&Rect::from_points(*a, *b)))
+    /// The chains of sides that may meet `area`: all sides that do lie in one of them.
+    pub fn parts_near(&self, area: Rect) -> Vec<Part> {
+        let mut found = Vec::new();
+        self.chains.whole().into_iter().for_each(|whole| self.chains.near(whole, area, &mut found));
+        found
     }
 
     /// Whether `q` is inside: even-odd; on a left or top edge in, on a right or bottom edge out.
@@ -107,13 +96,22 @@ impl Polygon {
     pub fn row_crossings(&self, y: f64, out: &mut Vec<f64>) {
         out.clear();
         let row = Rect::new(f64::NEG_INFINITY, y, f64::INFINITY, y);
-        out.extend(self.sides_near(row).filter_map(|(a, b)| crossing_of_row(a, b, y)));
+        let crossings = |sides| self.some(sides).filter_map(|(a, b)| crossing_of_row(a, b, y));
+        if let Some(whole) = self.chains.whole() {
+            self.chains.each_near(whole, row, &mut |sides| out.extend(crossings(sides)));
+        }
         out.sort_unstable_by(f64::total_cmp);
     }
 
     /// Distance from `q` to the nearest side, in pixels.
     pub fn distance(&self, q: Point) -> f64 {
-        distance(q, self.sides())
+        self.distance_to(self.chains.whole().as_slice(), q)
+    }
+
+    /// Distance from `q` to the nearest side in `parts`, in pixels; infinite without any.
+    pub fn distance_to(&self, parts: &[Part], q: Point) -> f64 {
+        let nearest = |nearest2, &part: &Part| self.chains.nearest2(part, q, nearest2, &self.vertices);
+        parts.iter().fold(f64::INFINITY, nearest).sqrt()
     }
 
     /// Length of all sides, in pixels.
@@ -123,15 +121,33 @@ impl Polygon {
 
     /// The places s (any sign, in no order) where the line q + s d crosses a side: the parity of the crossings beyond s
     /// is the membership at s. `d` is not zero.
-    pub fn line_crossings(&self, q: Point, d: Vec2) -> impl Iterator<Item = f64> + '_ {
-        self.sides().filter_map(move |(a, b)| side_crossing(a, b, q, d))
+    pub fn line_crossings(&self, q: Point, d: Vec2) -> Vec<f64> {
+        let mut found = Vec::new();
+        if let Some(whole) = self.chains.whole() {
+            self.crossings_in(whole, &Line::new(q, d), &mut |s| found.push(s));
+        }
+        found
+    }
+
+    /// Hands over the places s where a line crosses a side of `part`, in no order.
+    pub fn crossings_in(&self, part: Part, line: &Line, each: &mut impl FnMut(f64)) {
+        self.chains.each_met(part, line, &mut |sides| {
+            self.some(sides).filter_map(|(a, b)| side_crossing(a, b, line.q, line.d)).for_each(&mut *each);
+        });
+    }
+
+    /// The sides whose first vertices have these numbers.
+    fn some(&self, sides: Range<usize>) -> impl Iterator<Item = (Point, Point)> + '_ {
+        let n = self.vertices.len();
+        (sides.start..sides.end.min(n))
+            .map(move |i| (self.vertices[i], self.vertices[if i + 1 == n { 0 } else { i + 1 }]))
     }
 }
 
 /// The s where the line q + s d crosses the side from `a` to `b`. Ties are decided as if the line lay a hair lower and
 /// to the right, which is the half-open rule: along a left or top edge it is in, and a vertex counts with one of its
 /// two sides. `d` is not zero.
-pub fn side_crossing(a: Point, b: Point, q: Point, d: Vec2) -> Option<f64> {
+fn side_crossing(a: Point, b: Point, q: Point, d: Vec2) -> Option<f64> {
     let rightward = if d.x != 0.0 { d.x > 0.0 } else { d.y < 0.0 };
     let left_of_line = |c: f64| if rightward { c > 0.0 } else { c >= 0.0 };
     let (ca, cb) = (d.cross(a - q), d.cross(b - q));
@@ -141,27 +157,15 @@ pub fn side_crossing(a: Point, b: Point, q: Point, d: Vec2) -> Option<f64> {
     })
 }
 
-/// Distance from `q` to the nearest of some sides, in pixels; infinite without any.
-pub fn distance(q: Point, sides: impl IntoIterator<Item = (Point, Point)>) -> f64 {
-    let nearest = sides.into_iter().map(|(a, b)| distance2_to_segment(q, a, b)).fold(f64::INFINITY, f64::min);
-    nearest.sqrt()
-}
-
 /// Where the horizontal line at `y` crosses the side, by the half-open rule.
 fn crossing_of_row(a: Point, b: Point, y: f64) -> Option<f64> {
     ((a.y > y) != (b.y > y)).then(|| a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x))
 }
 
-fn distance2_to_segment(q: Point, a: Point, b: Point) -> f64 {
-    let side = b - a;
-    let length2 = side.hypot2();
-    let along = if length2 > 0.0 { ((q - a).dot(side) / length2).clamp(0.0, 1.0) } else { 0.0 };
-    (q - (a + side * along)).hypot2()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::chains::distance2_to_segment;
 
     fn square() -> Polygon {
         Polygon::new(vec![(1.5, 1.5).into(), (4.5, 1.5).into(), (4.5, 4.5).into(), (1.5, 4.5).into()])
@@ -176,15 +180,73 @@ mod tests {
         }
     }
 
+    /// A star, an ellipse, a curve that crosses itself, and a polygon of many corners.
+    fn several() -> Vec<Polygon> {
+        let star = [(5.0, 0.3), (8.1, 9.7), (0.2, 3.9), (9.9, 4.1), (1.7, 9.5)];
+        let mut loops = BezPath::new();
+        loops.move_to((2.0, 2.0));
+        loops.curve_to((30.0, 1.0), (-12.0, 14.0), (9.0, 8.0));
+        loops.curve_to((20.0, 0.0), (20.0, -9.0), (2.0, 2.0));
+        let comb = (0..77).map(|i| Point::new(f64::from(i) * 0.13, f64::from(i * i % 10)));
+        vec![
+            Polygon::new(star.iter().map(|&p| p.into()).collect()),
+            Polygon::ellipse(Point::new(5.0, 5.0), Vec2::new(4.0, 2.5)),
+            Polygon::flatten(&loops),
+            Polygon::new(comb.collect()),
+            Polygon::new(vec![(1.0, 1.0).into(), (1.0, 1.0).into(), (7.0, 3.0).into()]),
+        ]
+    }
+
     #[test]
-    fn groups_hide_no_side() {
-        let round = Polygon::ellipse(Point::new(30.0, 30.0), Vec2::new(20.0, 25.0));
-        assert!(round.groups.len() > 10);
-        for area in
-            [Rect::new(8.0, 3.0, 12.0, 40.0), Rect::new(49.9, 0.0, 60.0, 60.0), Rect::new(20.0, 20.0, 21.0, 21.0)]
-        {
-            let meets = |(a, b): &(Point, Point)| area.overlaps(Rect::from_points(*a, *b));
-            assert_eq!(round.sides_near(area).filter(meets).count(), round.sides().filter(meets).count());
+    fn chains_hide_no_side() {
+        let sorted = |mut s: Vec<f64>| {
+            s.sort_unstable_by(f64::total_cmp);
+            s
+        };
+        for polygon in several() {
+            for i in 0..400 {
+                let (x, y) = (f64::from(i % 20) * 0.61 - 1.0, f64::from(i / 20) * 0.61 - 1.0);
+                let q = Point::new(x, y);
+                // Lines through every second vertex too, where the half-open rule decides, and tangents of the ellipse.
+                let vertex = polygon.vertices()[i as usize * 2 % polygon.vertices().len()];
+                for d in [Vec2::new(x - 3.0, 2.0 - y), vertex - q, Vec2::new(1e-3, 0.0), Vec2::new(0.0, -9.0)] {
+                    if d == Vec2::ZERO {
+                        continue;
+                    }
+                    let all = polygon.sides().filter_map(|(a, b)| side_crossing(a, b, q, d)).collect();
+                    assert_eq!(sorted(polygon.line_crossings(q, d)), sorted(all), "{q:?} {d:?}");
+                }
+                let nearest = polygon.sides().map(|(a, b)| distance2_to_segment(q, a, b)).fold(f64::INFINITY, f64::min);
+                assert_eq!(polygon.distance(q), nearest.sqrt());
+            }
+        }
+    }
+
+    #[test]
+    fn tangents_are_decided_to_the_full_fineness() {
+        let round = Polygon::ellipse(Point::new(0.0, 0.0), Vec2::new(8.0, 8.0));
+        for (y, crossings) in [(7.9999, 2), (8.0001, 0), (-7.9999, 2), (-8.0001, 0)] {
+            let found = round.line_crossings(Point::new(-20.0, y), Vec2::new(10.0, 0.0));
+            assert_eq!(found.len(), crossings, "{y}");
+        }
+    }
+
+    #[test]
+    fn parts_near_an_area_hold_all_that_meets_it() {
+        for polygon in several() {
+            for area in [Rect::new(0.0, 3.0, 2.0, 9.0), Rect::new(4.9, 0.0, 6.0, 6.0), Rect::new(2.0, 2.0, 2.1, 2.1)] {
+                let line = Line::new(area.center(), Vec2::new(0.3, 0.7));
+                let within = |s: &f64| area.contains(line.q + line.d * *s);
+                let mut found = Vec::new();
+                polygon
+                    .parts_near(area)
+                    .iter()
+                    .for_each(|&part| polygon.crossings_in(part, &line, &mut |s| found.push(s)));
+                found.retain(within);
+                let mut all = polygon.line_crossings(line.q, line.d);
+                all.retain(within);
+                assert_eq!(found.len(), all.len(), "{area:?}");
+            }
         }
     }
 
@@ -218,7 +280,7 @@ mod tests {
     #[test]
     fn line_crossings_have_the_parity_of_membership() {
         let (q, d) = (Point::new(0.0, 2.0), Vec2::new(3.0, 0.0));
-        let mut s: Vec<f64> = square().line_crossings(q, d).collect();
+        let mut s = square().line_crossings(q, d);
         s.sort_unstable_by(f64::total_cmp);
         assert_eq!(s, [0.5, 1.5]);
     }
@@ -235,7 +297,7 @@ mod tests {
             ((4.5, 0.0), (0.0, 1.0), 0),
             ((4.5, 9.0), (0.0, -1.0), 0),
         ] {
-            assert_eq!(square().line_crossings(q.into(), d.into()).count(), crossings, "{q:?} {d:?}");
+            assert_eq!(square().line_crossings(q.into(), d.into()).len(), crossings, "{q:?} {d:?}");
         }
     }
 

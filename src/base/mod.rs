@@ -1,6 +1,7 @@
 //! Facts about numbers and pictures. Knows no scene.
 
 pub mod budget;
+pub mod chains;
 pub mod change;
 pub mod crossings;
 pub mod error;

@@ -77,7 +77,11 @@ pub fn files(layer: &PictureLayer) -> Vec<(String, &str)> {
 pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     for (i, zone) in layer.zones.iter().enumerate() {
         let path = || format!("/zones/{i}/outline");
-        each(Count { what: "points", path: &path, count: counts::points(zone) });
+        each(Count { what: "points", path: &path, count: counts::points(&zone.outline) });
+        for (k, region) in zone.fold.iter().flat_map(|fold| fold.regions()).enumerate() {
+            let path = || format!("/zones/{i}/fold/regions/{k}");
+            each(Count { what: "points", path: &path, count: counts::points(region) });
+        }
         for (j, tool) in zone.motion.iter().enumerate() {
             let path = || format!("/zones/{i}/motion/{j}");
             each(Count { what: "anchors", path: &path, count: counts::anchors(tool, &zone.outline) });

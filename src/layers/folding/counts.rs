@@ -3,7 +3,6 @@
 
 use kurbo::Vec2;
 
-use super::model::Zone;
 use super::outline::{Node, Outline, vector};
 use super::tools::Tool;
 use crate::base::geometry::FLATNESS_PX;
@@ -20,14 +19,8 @@ pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
     }
 }
 
-/// Points of the outlines of a zone and its fold regions.
-pub fn points(zone: &Zone) -> f64 {
-    let regions = zone.fold.iter().flat_map(|fold| fold.regions());
-    std::iter::once(&zone.outline).chain(regions).map(flattened).sum()
-}
-
-/// A little more than the points that flattening gives.
-fn flattened(outline: &Outline) -> f64 {
+/// Points of an outline: a little more than flattening gives.
+pub fn points(outline: &Outline) -> f64 {
     match outline {
         Outline::Rectangle { .. } => 4.0,
         Outline::Ellipse { radii: [x, y], .. } => 16.0 + TAU * (x.abs().max(y.abs()) / FLATNESS_PX).sqrt() / 4.0,
@@ -90,7 +83,7 @@ mod tests {
         ] {
             let outline: Outline = serde_json::from_value(outline).unwrap();
             let polygon = outline.polygon();
-            let (estimate, exact) = (flattened(&outline), polygon.vertices().len() as f64);
+            let (estimate, exact) = (points(&outline), polygon.vertices().len() as f64);
             assert!(estimate >= exact && estimate < 20.0 * exact.max(50.0), "{outline:?}: {estimate} for {exact}");
             assert!(perimeter(&outline) >= polygon.perimeter());
         }

@@ -13,7 +13,7 @@ use super::model::Zone;
 use super::outline::Outline;
 use super::regions::{Crossings, Regions};
 use super::tools::Tool;
-use crate::base::geometry::{Polygon, distance};
+use crate::base::geometry::Polygon;
 use crate::base::maths::smoothstep;
 use crate::base::pixels::Grid;
 use crate::layers::Materials;
@@ -221,9 +221,9 @@ impl Prepared {
     /// The feather weight within `bounds`: only the outline's sides near it are looked at.
     fn feather_of(&self, bounds: Rect) -> impl Fn(Point) -> f64 {
         let near = bounds.inflate(self.feather, self.feather);
-        let sides: Vec<_> = if self.feather > 0.0 { self.outline.sides_near(near).collect() } else { Vec::new() };
-        let feather = self.feather;
-        move |q| if sides.is_empty() { 1.0 } else { smoothstep(0.0, feather, distance(q, sides.iter().copied())) }
+        let sides = if self.feather > 0.0 { self.outline.parts_near(near) } else { Vec::new() };
+        let weight = |distance| smoothstep(0.0, self.feather, distance);
+        move |q| if sides.is_empty() { 1.0 } else { weight(self.outline.distance_to(&sides, q)) }
     }
 }
 

@@ -4,7 +4,8 @@
 use kurbo::{Point, Rect, Vec2};
 
 use super::outline::Outline;
-use crate::base::geometry::{Polygon, side_crossing};
+use crate::base::chains::{Line, Part};
+use crate::base::geometry::Polygon;
 
 /// Crossings nearer to each other than this, as a share of the path, are one place: regions that share a side leave no
 /// gap between them.
@@ -26,11 +27,10 @@ pub struct Crossings {
     pub behind: Vec<f64>,
 }
 
-/// A side that a run of paths may cross, and the region it belongs to.
-pub struct Side {
+/// Sides that a run of paths may cross, and the region they belong to.
+pub struct Near {
     region: usize,
-    from: Point,
-    to: Point,
+    part: Part,
 }
 
 impl Regions {
@@ -45,10 +45,10 @@ impl Regions {
     }
 
     /// The sides that can meet paths within `bounds`; most runs of pixels have none.
-    pub fn sides_within(&self, bounds: Rect) -> Vec<Side> {
+    pub fn sides_within(&self, bounds: Rect) -> Vec<Near> {
         let bounds = bounds.inflate(1e-6, 1e-6);
-        let of_region = |(region, polygon): (usize, &'_ Polygon)| {
-            polygon.sides_near(bounds).map(|(from, to)| Side { region, from, to }).collect::<Vec<_>>()
+        let of_region = |(region, polygon): (usize, &Polygon)| {
+            polygon.parts_near(bounds).into_iter().map(move |part| Near { region, part })
         };
         self.polygons.iter().enumerate().flat_map(of_region).collect()
     }
@@ -70,18 +70,22 @@ impl Regions {
         q: Point,
         jump: Vec2,
         (low, high): (f64, f64),
-        sides: &[Side],
+        sides: &[Near],
         member: &[bool],
     ) -> Crossings {
         let inside = member.iter().any(|&m| m);
         if sides.is_empty() || jump == Vec2::ZERO {
             return Crossings { inside, ..Crossings::default() };
         }
-        let mut events: Vec<(f64, usize)> = sides
-            .iter()
-            .filter_map(|side| side_crossing(side.from, side.to, q, jump).map(|s| (s, side.region)))
-            .filter(|(s, _)| *s >= low - SAME && *s <= high + SAME)
-            .collect();
+        let mut events: Vec<(f64, usize)> = Vec::new();
+        let line = Line::new(q, jump);
+        for &Near { region, part } in sides {
+            self.polygons[region].crossings_in(part, &line, &mut |s| {
+                if s >= low - SAME && s <= high + SAME {
+                    events.push((s, region));
+                }
+            });
+        }
         if events.is_empty() {
             return Crossings { inside, ..Crossings::default() };
         }
@@ -102,7 +106,10 @@ impl Regions {
     /// Which regions hold the places just beside an init-position that lies on a side itself: by the parity of the
     /// crossings further on.
     fn member_beside(&self, q: Point, jump: Vec2, sign: f64) -> Vec<bool> {
-        let parity = |polygon: &Polygon| polygon.line_crossings(q, jump).filter(|s| s * sign > SAME).count() % 2 == 1;
+        let parity = |polygon: &Polygon| {
+            let crossings = polygon.line_crossings(q, jump);
+            crossings.iter().filter(|&s| s * sign > SAME).count() % 2 == 1
+        };
         self.polygons.iter().map(parity).collect()
     }
 }

@@ -134,7 +134,7 @@ impl Painter<'_> {
         let last = ((bounds.x1 + bounds.y1) / step).floor() as i64;
         for k in first..=last {
             let from = Point::new(k as f64 * step, 0.0);
-            let mut cuts: Vec<f64> = polygon.line_crossings(from, slant).collect();
+            let mut cuts = polygon.line_crossings(from, slant);
             cuts.sort_unstable_by(f64::total_cmp);
             for pair in cuts.chunks_exact(2) {
                 let ends = [from + slant * pair[0], from + slant * pair[1]];

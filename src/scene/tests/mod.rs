@@ -29,3 +29,18 @@ fn places(document: &Document) -> Vec<(String, Field)> {
     }
     found
 }
+
+#[test]
+fn a_limit_is_told_at_the_outline_that_exceeds_it() {
+    let region = |radius: f64| serde_json::json!({ "kind": "ellipse", "center": [9, 9], "radii": [radius, radius] });
+    let json = serde_json::json!({
+        "plica": 1, "images": { "cat": { "path": "cat.png" } },
+        "layers": [{ "kind": "picture", "name": "face", "image": "cat", "zones": [{
+            "name": "all", "outline": { "kind": "rectangle", "x": 0, "y": 0, "width": 9, "height": 9 },
+            "fold": { "rule": "cover", "regions": [region(8.0), region(9.0), region(8.0)] }
+        }] }]
+    });
+    let rules = check::Rules { points: 2000, ..check::Rules::default() };
+    let problems = check::read(&json, &rules).unwrap_err();
+    assert_eq!(problems[0].path, "/layers/0/zones/0/fold/regions/1", "{problems:?}");
+}

@@ -1,0 +1,190 @@
+//! The sides of a polygon in nested chains, so that most of a fine curve is passed over at a glance: eight sides make a
+//! chain, eight chains a longer one, up to the whole polygon. A chain knows its box, and a straight axis from which none of
+//! it is farther than its band. A line that keeps clear of that crosses none of its sides; only where a line meets or grazes
+//! a chain are its parts looked at, and at the end the sides themselves. So what is found is what a look at every side finds.
+
+use kurbo::{Point, Rect, Vec2};
+
+/// Sides in a shortest chain, and chains in one that is longer.
+const FAN: usize = 8;
+
+/// A share of the lengths at hand that is larger than any error of rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Lines shorter than this pass nothing over: their products could vanish.
+const SHORT: f64 = 1e-100;
+
+/// Every chain of a polygon, level by level: first those of sides; the last level is the whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chains {
+    levels: Vec<Vec<Chain>>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Chain {
+    bounds: Rect,
+    axis: (Point, Point),
+    band: f64,
+}
+
+/// One of a polygon's chains.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    level: usize,
+    index: usize,
+}
+
+impl Part {
+    fn parts(self, below: usize) -> impl Iterator<Item = Part> {
+        let (first, level) = (self.index * FAN, self.level - 1);
+        (first..(first + FAN).min(below)).map(move |index| Part { level, index })
+    }
+}
+
+/// The line q + s d.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Where s is 0.
+    pub q: Point,
+    /// From s = 0 to s = 1.
+    pub d: Vec2,
+    /// The length of `d`; infinite where it is too short to tell anything by.
+    length: f64,
+}
+
+impl Line {
+    /// The line through `q` along `d`.
+    pub fn new(q: Point, d: Vec2) -> Self {
+        let length = d.hypot2().sqrt();
+        Line { q, d, length: if length > SHORT { length } else { f64::INFINITY } }
+    }
+}
+
+impl Chain {
+    fn of(vertices: impl Iterator<Item = Point> + Clone, first: Point, last: Point) -> Self {
+        let corner = |r: Rect, p: Point| r.union_pt(p);
+        let bounds = vertices.clone().fold(Rect::from_points(first, first), corner);
+        let farthest = |a: Point, b: Point| {
+            let squares = vertices.clone().map(|p| distance2_to_segment(p, a, b));
+            squares.fold(0.0, |most, d: f64| if d > most { d } else { most }).sqrt()
+        };
+        let center = bounds.center();
+        let (chord, disc) = (farthest(first, last), farthest(center, center));
+        let (axis, band) = if chord <= disc { ((first, last), chord) } else { ((center, center), disc) };
+        Chain { bounds, axis, band }
+    }
+
+    /// Whether the whole of it lies clearly on one side of the line.
+    fn is_beside(&self, line: &Line) -> bool {
+        let (a, b) = (self.axis.0 - line.q, self.axis.1 - line.q);
+        let lengths = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs() + self.band;
+        let slack = line.length * (self.band + ROUNDING * lengths);
+        let (ca, cb) = (line.d.cross(a), line.d.cross(b));
+        (ca > slack && cb > slack) || (ca < -slack && cb < -slack)
+    }
+
+    /// Whether no point of it is as near to `q` as the root of `nearest2`.
+    fn is_beyond(&self, q: Point, nearest2: f64) -> bool {
+        let away = distance2_to_segment(q, self.axis.0, self.axis.1).sqrt() * (1.0 - ROUNDING) - self.band;
+        away > 0.0 && away * away * (1.0 - ROUNDING) > nearest2
+    }
+}
+
+impl Chains {
+    /// The chains of a closed polygon's sides.
+    pub fn new(vertices: &[Point]) -> Self {
+        let n = vertices.len();
+        let mut levels = Vec::new();
+        let mut size = FAN;
+        loop {
+            let chain = |start: usize| {
+                let end = (start + size).min(n);
+                let at = move |i: usize| vertices[i % n];
+                Chain::of((start..=end).map(at), at(start), at(end))
+            };
+            levels.push((0..n).step_by(size).map(chain).collect());
+            if size >= n {
+                return Chains { levels };
+            }
+            size *= FAN;
+        }
+    }
+
+    /// The whole polygon; `None` without vertices.
+    pub fn whole(&self) -> Option<Part> {
+        let level = self.levels.len().checked_sub(1)?;
+        (!self.levels[level].is_empty()).then_some(Part { level, index: 0 })
+    }
+
+    fn chain(&self, part: Part) -> &Chain {
+        &self.levels[part.level][part.index]
+    }
+
+    fn below(&self, part: Part) -> impl Iterator<Item = Part> {
+        part.parts(self.levels[part.level - 1].len())
+    }
+
+    /// Adds the chains, as long ones as there are, that together hold all sides of `part` that meet `area`.
+    pub fn near(&self, part: Part, area: Rect, found: &mut Vec<Part>) {
+        let Rect { x0, y0, x1, y1 } = self.chain(part).bounds;
+        if !meets(&self.chain(part).bounds, &area) {
+            return;
+        }
+        let within = area.x0 <= x0 && x1 <= area.x1 && area.y0 <= y0 && y1 <= area.y1;
+        if within || part.level == 0 {
+            found.push(part);
+        } else {
+            self.below(part).for_each(|part| self.near(part, area, found));
+        }
+    }
+
+    /// Hands over the sides of `part` in chains whose box meets `area`, by the numbers of their first vertices.
+    pub fn each_near(&self, part: Part, area: Rect, each: &mut impl FnMut(std::ops::Range<usize>)) {
+        if !meets(&self.chain(part).bounds, &area) {
+            return;
+        }
+        match part.level {
+            0 => each(part.index * FAN..(part.index + 1) * FAN),
+            _ => self.below(part).for_each(|part| self.each_near(part, area, each)),
+        }
+    }
+
+    /// Hands over the sides of `part` in chains that the line may cross, by the numbers of their first vertices.
+    pub fn each_met(&self, part: Part, line: &Line, each: &mut impl FnMut(std::ops::Range<usize>)) {
+        if self.chain(part).is_beside(line) {
+            return;
+        }
+        match part.level {
+            0 => each(part.index * FAN..(part.index + 1) * FAN),
+            _ => self.below(part).for_each(|part| self.each_met(part, line, each)),
+        }
+    }
+
+    /// The least of `nearest2` and the squared distances from `q` to the sides of `part`.
+    pub fn nearest2(&self, part: Part, q: Point, nearest2: f64, vertices: &[Point]) -> f64 {
+        if self.chain(part).is_beyond(q, nearest2) {
+            return nearest2;
+        }
+        match part.level {
+            0 => {
+                let n = vertices.len();
+                let sides = part.index * FAN..((part.index + 1) * FAN).min(n);
+                let squares = sides.map(|i| distance2_to_segment(q, vertices[i], vertices[(i + 1) % n]));
+                squares.fold(nearest2, f64::min)
+            }
+            _ => self.below(part).fold(nearest2, |nearest2, part| self.nearest2(part, q, nearest2, vertices)),
+        }
+    }
+}
+
+fn meets(r: &Rect, area: &Rect) -> bool {
+    r.x0 <= area.x1 && area.x0 <= r.x1 && r.y0 <= area.y1 && area.y0 <= r.y1
+}
+
+/// The squared distance from `q` to the straight line between `a` and `b`.
+pub fn distance2_to_segment(q: Point, a: Point, b: Point) -> f64 {
+    let side = b - a;
+    let length2 = side.hypot2();
+    let along = if length2 > 0.0 { ((q - a).dot(side) / length2).clamp(0.0, 1.0) } else { 0.0 };
+    (q - (a + side * along)).hypot2()
+}
