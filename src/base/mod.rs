@@ -13,5 +13,6 @@ pub mod oklab;
 pub mod picture;
 pub mod pixels;
 pub mod problem;
+pub mod quantise;
 pub mod system;
 pub mod text;

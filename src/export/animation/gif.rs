@@ -6,6 +6,7 @@
 use gif::{DisposalMethod, Encoder, Repeat};
 
 use super::delta::{Rect, around};
+use super::dither::Dither;
 use super::palette::{Palette, is_opaque};
 use super::{Out, Show, Sink};
 use crate::base::error::{Error, Result};
@@ -17,10 +18,10 @@ const MOST: usize = 65535;
 const UNITS: u64 = 100;
 /// Pixels that may wait for the palette.
 const WAITING: usize = 1 << 26;
-/// A frame whose colours err more than this many times what the palette was made for gets its own.
+/// A frame whose colors err more than this many times what the palette was made for gets its own.
 const FAILS: f64 = 4.0;
-/// The mean square error (Oklab) that nobody sees.
-const UNSEEN: f64 = 2e-5;
+/// The mean square error, in codes, that nobody sees.
+const UNSEEN: f64 = 6.0;
 
 /// Begins a GIF.
 pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
@@ -92,6 +93,7 @@ struct Writer {
     show: Show,
     encoder: Encoder<Out>,
     palette: Palette,
+    dither: Dither,
     /// The error that the palette was made for.
     error: f64,
     count: u64,
@@ -105,14 +107,39 @@ struct Pending {
     /// What of it must be written.
     rect: Rect,
     indices: Vec<u8>,
+    /// Whether all that is as in the frame before may be left transparent: nothing is cleared between the two.
+    same: Option<Vec<bool>>,
     /// Its own colours, where it has some.
     own: Option<Vec<[u8; 3]>>,
     transparent: u8,
 }
 
+impl Pending {
+    /// The frame with its pixels compressed; those that are the `same` as before are left transparent.
+    fn encode(&self, delay: u16, dispose: DisposalMethod, same: Option<&Vec<bool>>) -> gif::Frame<'static> {
+        let Pending { rect, indices, transparent, .. } = self;
+        let index = |i: usize| if same.is_some_and(|same| same[i]) { *transparent } else { indices[i] };
+        let row = |y: usize| (rect.x0..rect.x1).map(move |x| y * self.shown.width() + x);
+        let mut frame = gif::Frame {
+            delay,
+            dispose,
+            transparent: Some(*transparent),
+            left: rect.x0 as u16,
+            top: rect.y0 as u16,
+            width: rect.width() as u16,
+            height: rect.height() as u16,
+            palette: self.own.as_ref().map(|colors| table(colors)),
+            buffer: (rect.y0..rect.y1).flat_map(row).map(index).collect(),
+            ..Default::default()
+        };
+        frame.make_lzw_pre_encoded();
+        frame
+    }
+}
+
 impl Writer {
     fn new(out: Out, show: &Show, frames: &[Frame]) -> Result<Self> {
-        let palette = Palette::of(frames.iter());
+        let palette = Palette::of(frames);
         let error = frames.iter().map(|f| palette.error(f)).fold(UNSEEN, f64::max);
         let (width, height) = (show.width as u16, show.height as u16);
         let colors = table(palette.colors());
@@ -120,7 +147,8 @@ impl Writer {
         if !show.once && show.frames > 1 {
             encoder.set_repeat(Repeat::Infinite).map_err(|e| show.failed(e))?;
         }
-        Ok(Writer { show: show.clone(), encoder, palette, error, count: 0, pending: None })
+        let dither = Dither::default();
+        Ok(Writer { show: show.clone(), encoder, palette, dither, error, count: 0, pending: None })
     }
 
     fn frame(&mut self, frame: Frame) -> Result<()> {
@@ -141,6 +169,8 @@ impl Writer {
                 (Some(moved), None) => moved,
                 (None, _) => Rect { x0: 0, y0: 0, x1: 1, y1: 1 },
             };
+            let same = || before.shown.cells().iter().zip(next.shown.cells()).map(|(a, b)| a == b).collect();
+            next.same = cleared.is_none().then(same);
             self.write(&before, dispose)?;
         }
         self.pending = Some(next);
@@ -148,9 +178,12 @@ impl Writer {
     }
 
     fn quantise(&mut self, frame: &Frame) -> Pending {
-        let mut own = (self.palette.error(frame) > FAILS * self.error).then(|| Palette::of([frame].into_iter()));
-        let palette = own.as_mut().unwrap_or(&mut self.palette);
-        let indices = palette.indices(frame);
+        let own = (self.palette.error(frame) > FAILS * self.error).then(|| Palette::of(std::slice::from_ref(frame)));
+        if own.is_some() {
+            self.dither = Dither::default();
+        }
+        let palette = own.as_ref().unwrap_or(&self.palette);
+        let indices = self.dither.indices(frame, palette);
         let transparent = palette.transparent();
         let color = |&index: &u8| match palette.colors().get(usize::from(index)) {
             Some(&[r, g, b]) => [r, g, b, 255],
@@ -158,26 +191,20 @@ impl Writer {
         };
         let shown = Frame::from_cells(frame.width(), frame.height(), indices.iter().map(color).collect());
         let own = own.map(|palette| palette.colors().to_vec());
-        Pending { rect: Rect::whole(frame), shown, indices, own, transparent }
+        if own.is_some() {
+            self.dither = Dither::default();
+        }
+        Pending { rect: Rect::whole(frame), shown, indices, same: None, own, transparent }
     }
 
+    /// Writes a frame, with what is as before transparent or not, whichever is smaller.
     fn write(&mut self, pending: &Pending, dispose: DisposalMethod) -> Result<()> {
-        let Pending { rect, indices, own, transparent, .. } = pending;
-        let rows = (rect.y0..rect.y1).map(|y| &indices[y * self.show.width..][rect.x0..rect.x1]);
-        let frame = gif::Frame {
-            delay: self.show.rate.delay(self.count, UNITS).min(65535) as u16,
-            dispose,
-            transparent: Some(*transparent),
-            left: rect.x0 as u16,
-            top: rect.y0 as u16,
-            width: rect.width() as u16,
-            height: rect.height() as u16,
-            palette: own.as_ref().map(|colors| table(colors)),
-            buffer: rows.flatten().copied().collect(),
-            ..Default::default()
-        };
+        let delay = self.show.rate.delay(self.count, UNITS).min(65535) as u16;
+        let whole = pending.encode(delay, dispose, None);
+        let spared = pending.same.as_ref().map(|same| pending.encode(delay, dispose, Some(same)));
+        let smaller = spared.filter(|spared| spared.buffer.len() < whole.buffer.len()).unwrap_or(whole);
         self.count += 1;
-        self.encoder.write_frame(&frame).map_err(|e| self.show.failed(e))
+        self.encoder.write_lzw_pre_encoded_frame(&smaller).map_err(|e| self.show.failed(e))
     }
 
     fn finish(mut self) -> Result<()> {

@@ -10,6 +10,7 @@ use crate::files::draft::DraftFile;
 
 mod apng;
 mod delta;
+mod dither;
 mod gif;
 mod palette;
 pub mod range;
