@@ -122,6 +122,11 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     folding::starts::start(variant, field, bounds)
 }
 
+/// What a new item of a list has beyond what must be written: a field and its value.
+pub fn beyond(list: &str) -> Option<(&'static str, Value)> {
+    folding::starts::beyond(list)
+}
+
 /// Where in its items a list of a `variant` ascends (a JSON pointer), if it does.
 pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
     folding::starts::ascending(variant, list)

@@ -9,9 +9,10 @@ use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
+use crate::render;
 use crate::scene::check;
 
-/// Find every problem of a scene.
+/// Find every problem of a scene. A loop that snaps is told too, and no failure: it may be meant.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
@@ -28,7 +29,9 @@ pub struct Args {
 
 /// Prints the problems; fails when there are any (with `--lenient`, when one of them is an error).
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let problems = problems(&args, context)?;
+    let (mut problems, loops) = problems(&args, context)?;
+    let failing = problems.len();
+    problems.extend(loops);
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
     if args.json {
         let list = serde_json::to_value(&problems).map_err(|e| Error::at("the list of problems", e))?;
@@ -44,18 +47,19 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         (_, 0) => counted(errors, "error"),
         _ => format!("{}, {}", counted(errors, "error"), counted(warnings, "warning")),
     };
-    if errors > 0 || warnings > 0 && !args.lenient {
+    if errors > 0 || failing > 0 && !args.lenient {
         return Err(Error::at(args.scene.display(), what));
     }
     context.messages.say(&what);
     Ok(())
 }
 
-fn problems(args: &Args, context: &Context) -> Result<Vec<Problem>> {
+/// The problems, and the loops that snap.
+fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem>)> {
     let options = args.reading.options()?;
     let document = match context.document(&args.scene, &options) {
         Ok(document) => document,
-        Err(Error::Scene { problems, .. }) => return Ok(problems),
+        Err(Error::Scene { problems, .. }) => return Ok((problems, Vec::new())),
         Err(error) => return Err(error),
     };
     let scene = document.scene();
@@ -69,5 +73,8 @@ fn problems(args: &Args, context: &Context) -> Result<Vec<Problem>> {
     problems.extend(unreadable);
     problems.extend(check::check_images(scene, &sizes));
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
-    Ok(problems)
+    let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
+    let loops =
+        render::seams::warnings(scene, || if broken { None } else { render::synth(scene, &materials, None).ok() });
+    Ok((problems, loops))
 }

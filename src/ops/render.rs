@@ -7,7 +7,7 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
 use crate::export::animation::{Show, Target, range, rate::Rate, scale, table};
 use crate::layers::timeline::{Timeline, Wrap};
-use crate::render::{Synth, cpu};
+use crate::render::{Synth, cpu, seams};
 
 /// Render frames to numbered files, an animation or a stream.
 #[derive(clap::Args)]
@@ -47,6 +47,10 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     let (target, place) = target(&args, frames.len() as u64, context)?;
     let mut renderer = Renderer::new(&args, &opened)?;
+    if frames.len() > 1 {
+        let loops = seams::warnings(opened.document.scene(), || renderer.samples.first());
+        loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
+    }
     let show = show(place, renderer.size, &frames, timeline);
     let mut sink = target.begin(show)?;
     for (done, &number) in frames.iter().enumerate() {

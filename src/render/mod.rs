@@ -13,6 +13,7 @@ pub mod overlay;
 pub mod part;
 #[cfg(feature = "window")]
 pub mod reduce;
+pub mod seams;
 
 /// What a frame of a scene needs except the time.
 #[derive(Clone, Debug)]

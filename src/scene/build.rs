@@ -131,6 +131,9 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     if value.get("name").is_some() {
         value["name"] = unique(name.trim_end_matches('s'), items).into();
     }
+    if let Some((field, start)) = layers::beyond(&name) {
+        value[field] = start;
+    }
     Some((index, value))
 }
 

@@ -10,6 +10,7 @@ use super::edit::Edit;
 use super::{Scene, VERSION, check, json, migrate};
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
+use crate::layers;
 
 /// A scene as written and as meant. A clone shares both.
 #[derive(Clone, Debug)]
@@ -52,7 +53,10 @@ impl Document {
             .iter()
             .map(|(name, _, width, height)| {
                 let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": width, "height": height });
-                let zone = json!({ "name": "all", "outline": outline });
+                let mut zone = json!({ "name": "all", "outline": outline });
+                if let Some((field, start)) = layers::beyond("zones") {
+                    zone[field] = start;
+                }
                 json!({ "kind": "picture", "name": name, "image": name, "zones": [zone] })
             })
             .collect();

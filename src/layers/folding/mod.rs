@@ -15,6 +15,7 @@ pub mod position;
 pub mod probe;
 pub mod regions;
 pub mod reread;
+pub mod seam;
 pub mod starts;
 pub mod synth;
 pub mod texels;

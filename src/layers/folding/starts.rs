@@ -72,6 +72,11 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     })
 }
 
+/// What a new item of a list has beyond what must be written: a new zone comes back, so that its loop closes.
+pub fn beyond(list: &str) -> Option<(&'static str, Value)> {
+    (list == "zones").then(|| ("position", json!({ "function": "cosine" })))
+}
+
 /// Where in its items a list ascends: the numbers that must grow from one to the next.
 pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
     match (variant, list) {
