@@ -88,7 +88,11 @@ fn frames_are_chosen_scaled_and_numbered() {
 fn wrong_command_lines_are_told_and_leave_nothing() {
     let folder = folder();
     for (line, what) in [
-        ("render s.plica.json -o a.mov", "names no format"),
+        ("render s.plica.json -o a.avi", "names no format"),
+        ("render s.plica.json -o a.gif --start-number 1", "numbered files"),
+        ("render s.plica.json -o a.gif --skip-existing", "numbered files"),
+        ("render s.plica.json -o a.gif --matrix bt601", "y4m and video"),
+        ("render s.plica.json -o a.y4m --matrix bt2020", "bt709"),
         ("render s.plica.json -o a.png", "6 frames do not fit one PNG"),
         ("render s.plica.json -o %d.jpg", "end in .png"),
         ("render s.plica.json -o -", "--format"),
@@ -110,28 +114,216 @@ fn wrong_command_lines_are_told_and_leave_nothing() {
     assert!(made(folder.path()).is_empty(), "{:?}", made(folder.path()));
 }
 
+/// A scene so long that it is never done before it is ended.
+fn make_long(dir: &Path) {
+    fs::write(dir.join("s.plica.json"), SCENE.replace("\"duration\": 0.5", "\"duration\": 5000")).unwrap();
+}
+
+/// Runs a command until `begun` sees what it has made so far, then sends it a signal.
+fn ended_by(dir: &Path, signal: &str, line: &str, begun: impl Fn(&[String]) -> bool) -> Output {
+    let mut child = plica(dir, line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    while !begun(&made(dir)) {
+        assert!(child.try_wait().unwrap().is_none(), "{line}: ended by itself");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+    child.wait_with_output().unwrap()
+}
+
+fn is_hidden(name: &String) -> bool {
+    name.starts_with('.')
+}
+
 #[test]
 fn an_interrupt_leaves_what_was_there() {
     let folder = folder();
     let dir = folder.path();
-    // Long enough that it is never done before the signal.
-    let long = SCENE.replace("\"duration\": 0.5", "\"duration\": 5000");
-    fs::write(dir.join("s.plica.json"), long).unwrap();
-    fs::write(dir.join("a.webp"), "old").unwrap();
-    for output in ["a.webp", "%d.png", "b.gif"] {
-        let line = format!("render s.plica.json -o {output}");
-        let mut child = plica(dir, &line).stderr(Stdio::null()).spawn().unwrap();
+    good(dir, "render s.plica.json -o a.webp");
+    let old = fs::read(dir.join("a.webp")).unwrap();
+    make_long(dir);
+    for output in ["a.webp", "b.gif"] {
         // The hidden temporary tells that it is at work.
-        while !made(dir).iter().any(|name| name.starts_with('.')) {
-            assert!(child.try_wait().unwrap().is_none(), "{output}: ended by itself");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        assert!(kill.unwrap().success());
-        assert_eq!(child.wait().unwrap().code(), Some(130), "{output}");
+        let line = format!("render s.plica.json -o {output}");
+        let status = ended_by(dir, "-INT", &line, |made| made.iter().any(is_hidden)).status;
+        assert_eq!(status.code(), Some(130), "{output}");
         assert_eq!(made(dir), ["a.webp"], "{output}");
     }
-    assert_eq!(fs::read(dir.join("a.webp")).unwrap(), b"old");
+    assert!(fs::read(dir.join("a.webp")).unwrap() == old);
+}
+
+#[test]
+fn finished_frames_stay_and_the_rest_is_made_later() {
+    let folder = folder();
+    let dir = folder.path();
+    make_long(dir);
+    let line = "render s.plica.json -o %05d.png";
+    let Output { status, stderr, .. } = ended_by(dir, "-INT", line, |made| made.contains(&"00002.png".to_owned()));
+    let said = String::from_utf8(stderr).unwrap();
+    assert!(status.code() == Some(130) && said.contains("--skip-existing"), "{said}");
+    let frames = made(dir);
+    assert!(frames.len() >= 3 && !frames.iter().any(is_hidden), "{frames:?}");
+    frames.iter().for_each(|name| assert_eq!(pixels(&dir.join(name)).0, 33, "{name}"));
+
+    // The first is left as it is, a half one and a small one are made again, and the next is made.
+    let first = fs::read(dir.join(&frames[0])).unwrap();
+    let time = || dir.join("00000.png").metadata().unwrap().modified().unwrap();
+    let before = time();
+    fs::write(dir.join("00001.png"), &first[..first.len() - 4]).unwrap();
+    image::RgbaImage::new(3, 3).save(dir.join("00002.png")).unwrap();
+    let last = frames.len();
+    let said = run(dir, &format!("render s.plica.json -o %05d.png --frames 0-{last} --skip-existing")).stderr;
+    let said = String::from_utf8(said).unwrap();
+    assert!(said.contains("done: %05d.png, 3 frames") && said.contains("were there already"), "{said}");
+    assert!(time() == before);
+    (0..=last).for_each(|k| assert_eq!(pixels(&dir.join(format!("{k:05}.png"))).0, 33, "{k}"));
+    good(dir, &format!("render s.plica.json -o %05d.png --frames 0-{last} --skip-existing"));
+}
+
+#[test]
+fn what_a_killed_run_left_is_told_and_cleared() {
+    let folder = folder();
+    let dir = folder.path();
+    make_long(dir);
+    ended_by(dir, "-KILL", "render s.plica.json -o a.webp", |made| made.iter().any(is_hidden));
+    assert!(made(dir).iter().any(is_hidden));
+    let said = run(dir, "render s.plica.json -o one.png --frames 0").stderr;
+    let said = String::from_utf8(said).unwrap();
+    assert!(said.contains("cleared an unfinished output"), "{said}");
+    assert_eq!(made(dir), ["one.png"]);
+}
+
+#[test]
+fn files_are_numbered_as_asked_and_frames_may_descend() {
+    let folder = folder();
+    let dir = folder.path();
+    good(dir, "render s.plica.json -o f-%d.png");
+    good(dir, "render s.plica.json -o g-%04d.png --frames 5-1:2 --start-number 1001");
+    let frame = |name: String| pixels(&dir.join(name)).2;
+    for (k, of) in [5, 3, 1].into_iter().enumerate() {
+        assert!(frame(format!("g-{}.png", 1001 + k)) == frame(format!("f-{of}.png")), "{k}");
+    }
+    assert_eq!(made(dir).len(), 9);
+    let back = good(dir, "render s.plica.json -o - --format rgba --frames 5-0");
+    let frames: Vec<u8> = (0..6).rev().flat_map(|k| frame(format!("f-{k}.png"))).collect();
+    assert!(back == frames);
+}
+
+#[test]
+fn no_output_replaces_what_the_scene_reads() {
+    let folder = folder();
+    let dir = folder.path();
+    fs::create_dir(dir.join("sub")).unwrap();
+    std::os::unix::fs::symlink("cat.png", dir.join("link.png")).unwrap();
+    std::os::unix::fs::symlink("../cat.png", dir.join("sub/colour.png")).unwrap();
+    fs::hard_link(dir.join("cat.png"), dir.join("0003.png")).unwrap();
+    fs::hard_link(dir.join("s.plica.json"), dir.join("hard.csv")).unwrap();
+    let (picture, scene) = (fs::read(dir.join("cat.png")).unwrap(), fs::read(dir.join("s.plica.json")).unwrap());
+    for line in [
+        "render s.plica.json --frames 1 -o cat.png",
+        "render s.plica.json --frames 1 -o cat.png --force",
+        "render s.plica.json --frames 1 -o ./sub/../cat.png --force",
+        "render s.plica.json --frames 1 -o link.png --force",
+        "render s.plica.json -o %04d.png --force",
+        "render s.plica.json -o %04d.png --frames 0 --start-number 3 --force",
+        "render s.plica.json --frames 0-3 -o %04d.png --skip-existing --force",
+        "field s.plica.json -o cat.png --force",
+        "field s.plica.json -o link.png --force",
+        "field s.plica.json -o hard.csv --force",
+        "synth s.plica.json -o sub --force",
+        "synth s.plica.json -o cat.png --force",
+        "--log cat.png check s.plica.json",
+        "--log s.plica.json check s.plica.json",
+        "new cat.png -o cat.png",
+        "new cat.png -o sub/cat.png",
+    ] {
+        let Output { status, stderr, .. } = run(dir, line);
+        let said = String::from_utf8(stderr).unwrap();
+        assert!(status.code() == Some(1) && !said.contains("done"), "{line}: {status} {said}");
+        assert!(fs::read(dir.join("cat.png")).unwrap() == picture, "{line}");
+        assert!(fs::read(dir.join("s.plica.json")).unwrap() == scene, "{line}");
+        assert_eq!(made(dir), ["0003.png", "hard.csv", "link.png", "sub"], "{line}");
+    }
+}
+
+#[test]
+fn other_files_are_replaced_by_their_kind_or_by_force() {
+    let folder = folder();
+    let dir = folder.path();
+    for (output, more) in
+        [("a.gif", ""), ("a.webp", ""), ("a.apng", ""), ("a.png", " --frames 0"), ("a.y4m", ""), ("a.rgba", "")]
+    {
+        fs::write(dir.join(output), "my only words").unwrap();
+        let line = format!("render s.plica.json -o {output}{more}");
+        let Output { status, stderr, .. } = run(dir, &line);
+        let said = String::from_utf8(stderr).unwrap();
+        assert!(status.code() == Some(1) && said.contains("--force"), "{line}: {said}");
+        assert_eq!(fs::read(dir.join(output)).unwrap(), b"my only words");
+        good(dir, &format!("{line} --force"));
+        good(dir, &line); // over its own kind
+    }
+    for output in ["f.csv", "f.svg", "f.png"] {
+        fs::write(dir.join(output), "my only words").unwrap();
+        assert_eq!(run(dir, &format!("field s.plica.json -o {output}")).status.code(), Some(1));
+        good(dir, &format!("field s.plica.json -o {output} --force"));
+        good(dir, &format!("field s.plica.json -o {output}"));
+    }
+}
+
+#[test]
+fn textures_of_an_earlier_run_go_and_others_stay() {
+    let folder = folder();
+    let dir = folder.path();
+    good(dir, "synth s.plica.json -o out");
+    fs::write(dir.join("out/mine.txt"), "mine").unwrap();
+    fs::write(dir.join("s.plica.json"), SCENE.replace("left eye", "nose")).unwrap();
+    let done = String::from_utf8(run(dir, "synth s.plica.json -o out --depth 16").stderr).unwrap();
+    assert!(done.contains("done: out, 6 files, "), "{done}");
+    let names = |folder: &str| {
+        let names = fs::read_dir(dir.join(folder)).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    };
+    let wanted = [
+        "colour.png",
+        "function.png",
+        "manifest.json",
+        "mine.txt",
+        "nose-init.png",
+        "nose-jump.png",
+        "nose-thresholds.png",
+    ];
+    assert_eq!(names("out"), wanted);
+    // Somebody's own file of such a name.
+    fs::create_dir(dir.join("other")).unwrap();
+    for name in ["colour.png", "nose-init.exr", "nose-2-jump.exr", "manifest.json"] {
+        fs::write(dir.join("other").join(name), "mine").unwrap();
+        let Output { status, stderr, .. } = run(dir, "synth s.plica.json -o other");
+        let said = String::from_utf8(stderr).unwrap();
+        assert!(status.code() == Some(1) && said.contains(name) && said.contains("--force"), "{name}: {said}");
+        assert_eq!(names("other"), [name]);
+        fs::remove_file(dir.join("other").join(name)).unwrap();
+    }
+    fs::write(dir.join("other/colour.png"), "mine").unwrap();
+    good(dir, "synth s.plica.json -o other --force");
+    assert_eq!(names("other").len(), 6);
+}
+
+#[test]
+fn what_is_done_is_told_with_its_size_and_time() {
+    let folder = folder();
+    let dir = folder.path();
+    for (line, what) in [
+        ("render s.plica.json -o a.gif", "done: a.gif, "),
+        ("render s.plica.json -o - --format rgba", "done: standard output, 6 frames, 19.8 kB, "),
+        ("render s.plica.json -o %d.png", "done: %d.png, 6 frames, "),
+        ("synth s.plica.json -o out", "done: out, 6 files, "),
+        ("field s.plica.json -o f.csv", "done: f.csv, "),
+    ] {
+        let Output { status, stderr, .. } = run(dir, line);
+        let said = String::from_utf8(stderr).unwrap();
+        assert!(status.success() && said.starts_with(what) && said.ends_with(" s\n"), "{line}: {said}");
+    }
 }
 
 #[test]
@@ -146,7 +338,6 @@ fn textures_and_plots_are_written() {
     good(dir, "synth s.plica.json -o out16"); // again, over what is there
     good(dir, "field s.plica.json -o f.csv --step 4");
     good(dir, "field s.plica.json -o f.svg --no-picture");
-    fs::write(dir.join("f.png"), "old").unwrap();
     good(dir, "field s.plica.json -o f.png");
     assert!(pixels(&dir.join("f.png")).0 > 300);
     let csv = fs::read_to_string(dir.join("f.csv")).unwrap();

@@ -11,6 +11,22 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     text.chars().map(|c| if steers(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }
 
+/// So many bytes, in a unit that fits: `1.2 MB`.
+pub fn bytes(count: u64) -> String {
+    let units = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    // What would be rounded up to 1000 has the next unit.
+    let unit = units.iter().find(|(unit, _)| count as f64 >= unit * 0.99995);
+    unit.map_or_else(|| format!("{count} bytes"), |(unit, name)| format!("{:.1} {name}", count as f64 / unit))
+}
+
+/// How long something took: `3.4 s`.
+pub fn took(milliseconds: u64) -> String {
+    match milliseconds {
+        0..59_950 => format!("{:.1} s", milliseconds as f64 / 1e3),
+        _ => format!("{} min {} s", milliseconds / 60_000, milliseconds / 1000 % 60),
+    }
+}
+
 /// How long ago something was, in words: `3 min ago`.
 pub fn ago(milliseconds: u64) -> String {
     let seconds = milliseconds / 1000;
@@ -37,6 +53,26 @@ mod tests {
             [(0, "just now"), (59, "59 s ago"), (60, "1 min ago"), (7200, "2 h ago"), (172_800, "2 days ago")]
         {
             assert_eq!(ago(seconds * 1000), text);
+        }
+    }
+
+    #[test]
+    fn sizes_and_times_have_units_that_fit() {
+        for (count, text) in [
+            (0, "0 bytes"),
+            (999, "999 bytes"),
+            (1000, "1.0 kB"),
+            (999_949, "999.9 kB"),
+            (999_951, "1.0 MB"),
+            (12_340_000, "12.3 MB"),
+            (5_000_000_000, "5.0 GB"),
+        ] {
+            assert_eq!(bytes(count), text);
+        }
+        for (ms, text) in
+            [(0, "0.0 s"), (340, "0.3 s"), (59_900, "59.9 s"), (60_000, "1 min 0 s"), (754_000, "12 min 34 s")]
+        {
+            assert_eq!(took(ms), text);
         }
     }
 

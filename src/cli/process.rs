@@ -10,7 +10,7 @@ use std::time::Duration;
 use crate::base::error::{Error, Result};
 use crate::base::system::signals::{self, Answer, Registration, Signal};
 use crate::base::text::printable;
-use crate::files::write;
+use crate::files::temporary;
 
 /// How long work may take to see that it is cancelled.
 const GRACE: Duration = Duration::from_secs(5);
@@ -35,7 +35,7 @@ pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
 }
 
 fn end() -> ! {
-    write::remove_unfinished();
+    temporary::remove_unfinished();
     std::process::exit(Error::Interrupted.exit_status().into())
 }
 

@@ -2,5 +2,6 @@
 
 pub mod animation;
 pub mod field;
+mod icc;
 pub mod still;
 pub mod textures;

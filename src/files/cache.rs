@@ -10,7 +10,8 @@ use std::time::SystemTime;
 use sha2::{Digest, Sha256};
 
 use super::originals::{Contents, contents, hex};
-use super::write::{self, Atomic};
+use super::temporary;
+use super::write::Atomic;
 use crate::base::error::{Error, Result};
 use crate::base::system::folders;
 
@@ -42,7 +43,7 @@ impl Cache {
     pub fn at(folder: PathBuf, most: u64) -> Result<Cache> {
         fs::create_dir_all(&folder)
             .map_err(|error| Error::at(folder.display(), error).cure("set XDG_CACHE_HOME to a folder of yours"))?;
-        write::remove_stale(&folder.join("file"));
+        temporary::remove_stale(&folder);
         Ok(Cache { folder, most })
     }
 

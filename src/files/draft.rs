@@ -1,11 +1,14 @@
 //! Output that appears whole or not at all: it is written to a hidden temporary beside its place and renamed when it is
 //! complete. A draft that is dropped before (an error, an interrupt) leaves nothing.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::write::{Atomic, Temporary};
+use super::outputs::{FolderPlace, Place};
+use super::temporary::{self, Temporary};
+use super::write::Atomic;
 use crate::base::error::{Error, Result};
 
 /// A file being written, buffered. What already stands in its place stays until [`DraftFile::keep`].
@@ -18,8 +21,9 @@ pub enum DraftFile {
 }
 
 impl DraftFile {
-    /// Begins a file that shall stand at `path`. A link is followed; the folder must be there.
-    pub fn create(path: &Path) -> Result<Self> {
+    /// Begins a file that shall stand at `place`. A link is followed; the folder must be there.
+    pub fn create(place: &Place) -> Result<Self> {
+        let path = place.path();
         if !fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
             return Ok(DraftFile::Whole(BufWriter::with_capacity(1 << 16, Atomic::create(path)?), path.to_path_buf()));
         }
@@ -63,43 +67,69 @@ impl Seek for DraftFile {
     }
 }
 
-/// A set of files being written, to stand in one folder. Files that already stand there stay until [`DraftFolder::keep`],
-/// and those of other names stay for good.
+/// A file that another program writes: it is to write what is there over, and [`Atomic::commit`] puts it in its place.
+///
+/// # Errors
+/// As [`Atomic::create`].
+pub fn for_program(place: &Place) -> Result<Atomic> {
+    Atomic::create(place.path())
+}
+
+/// A set of files being written, to stand in one folder. Files that already stand there stay until [`DraftFolder::keep`];
+/// those of an earlier set that the new one has not go then, and those of other names stay for good.
 #[derive(Debug)]
 pub struct DraftFolder {
     target: PathBuf,
     temporary: Temporary,
+    earlier: BTreeSet<String>,
+    /// Tells others that the temporary folder is being written.
+    _held: Option<File>,
 }
 
 impl DraftFolder {
-    /// Begins a set of files for the folder at `path`, which need not be there; the folder around it must.
-    pub fn create(path: &Path) -> Result<Self> {
+    /// Begins a set of files for the folder at `place`, which need not be there; the folder around it must.
+    pub fn create(place: &FolderPlace) -> Result<Self> {
+        let path = place.path();
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if target.exists() && !target.is_dir() {
-            return Err(Error::at(path.display(), "is a file, not a folder"));
+            return Err(Error::at(path.display(), "is a file, not a folder").cure("name a folder"));
         }
         // Within a folder that is there, else beside it: renaming needs one file system.
         let temporary =
             if target.is_dir() { Temporary::beside(&target.join("file")) } else { Temporary::beside(&target) };
         fs::create_dir(temporary.path()).map_err(|e| at_folder_of(path, &e))?;
-        Ok(DraftFolder { target, temporary })
+        let held = File::open(temporary.path()).ok();
+        held.iter().for_each(temporary::hold);
+        Ok(DraftFolder { target, temporary, earlier: place.earlier.clone(), _held: held })
     }
 
     /// Writes one file of the set. May be called from many threads at once.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        fs::write(self.temporary.path().join(name), bytes).map_err(|e| Error::at(self.target.join(name).display(), e))
+        let written = File::create(self.temporary.path().join(name)).and_then(|mut file| {
+            file.write_all(bytes)?;
+            file.sync_all()
+        });
+        written.map_err(|e| Error::at(self.target.join(name).display(), e))
     }
 
-    /// Puts the files in their place, in the order of `names`.
+    /// Puts the files in their place, in the order of `names`: the last one should tell of the others. What is left of the
+    /// earlier set goes just before it.
     pub fn keep(self, names: &[String]) -> Result<()> {
         if !self.target.exists() {
             return self.temporary.put(&self.target).map_err(|e| Error::at(self.target.display(), e));
         }
-        for name in names {
-            let target = self.target.join(name);
-            fs::rename(self.temporary.path().join(name), &target).map_err(|e| Error::at(target.display(), e))?;
+        let (others, last) = names.split_at(names.len().saturating_sub(1));
+        others.iter().try_for_each(|name| self.put(name))?;
+        for name in self.earlier.iter().filter(|name| !names.contains(name)) {
+            // One that cannot be removed does no harm but to order.
+            let _ = fs::remove_file(self.target.join(name));
         }
-        Ok(())
+        last.iter().try_for_each(|name| self.put(name))
+    }
+
+    fn put(&self, name: &str) -> Result<()> {
+        let target = self.target.join(name);
+        fs::rename(self.temporary.path().join(name), &target).map_err(|e| Error::at(target.display(), e))
     }
 }
 
@@ -111,6 +141,11 @@ fn at_folder_of(path: &Path, error: &io::Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::outputs::{Guard, Kind};
+
+    fn begin(path: &Path) -> Result<DraftFile> {
+        DraftFile::create(&Guard::new(true).file(path, Kind::Gif)?)
+    }
 
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<_> =
@@ -124,11 +159,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.gif");
         fs::write(&path, "old").unwrap();
-        let mut draft = DraftFile::create(&path).unwrap();
+        let mut draft = begin(&path).unwrap();
         draft.write_all(b"half").unwrap();
         drop(draft);
         assert_eq!((names(folder.path()), fs::read(&path).unwrap()), (vec!["a.gif".into()], b"old".to_vec()));
-        let mut draft = DraftFile::create(&path).unwrap();
+        let mut draft = begin(&path).unwrap();
         draft.write_all(b"new").unwrap();
         draft.keep().unwrap();
         assert_eq!((names(folder.path()), fs::read(&path).unwrap()), (vec!["a.gif".into()], b"new".to_vec()));
@@ -137,7 +172,7 @@ mod tests {
     #[test]
     fn a_missing_folder_is_named_with_the_cure() {
         let folder = tempfile::tempdir().unwrap();
-        let error = DraftFile::create(&folder.path().join("none/a.gif")).unwrap_err().to_string();
+        let error = begin(&folder.path().join("none/a.gif")).unwrap_err().to_string();
         assert!(error.contains("none/a.gif") && error.contains("make the folder first"), "{error}");
     }
 
@@ -145,27 +180,33 @@ mod tests {
     fn a_folder_is_whole_or_untouched() {
         let folder = tempfile::tempdir().unwrap();
         let set = folder.path().join("set");
-        let draft = DraftFolder::create(&set).unwrap();
+        let begin = |earlier: &[&str]| {
+            let earlier = earlier.iter().map(|name| (*name).to_owned()).collect();
+            DraftFolder::create(&Guard::new(false).folder(&set, &|_| false, earlier).unwrap()).unwrap()
+        };
+        let draft = begin(&[]);
         draft.write("a", b"1").unwrap();
         drop(draft);
         assert!(names(folder.path()).is_empty());
-        for (content, others) in [("1", &["a"][..]), ("2", &["a", "mine"])] {
-            let draft = DraftFolder::create(&set).unwrap();
-            draft.write("a", content.as_bytes()).unwrap();
-            draft.keep(&["a".into()]).unwrap();
-            assert_eq!((names(&set), fs::read_to_string(set.join("a")).unwrap()), (others_of(others), content.into()));
+        // What the set is, what the one before was, what is there then.
+        for (content, earlier, there) in [
+            (&["a", "old", "m"][..], &[][..], &["a", "m", "old"][..]),
+            (&["a", "m"], &["a", "old", "m"], &["a", "m", "mine"]),
+        ] {
+            let draft = begin(earlier);
+            content.iter().for_each(|name| draft.write(name, content.len().to_string().as_bytes()).unwrap());
+            let all: Vec<_> = content.iter().map(|name| (*name).to_owned()).collect();
+            draft.keep(&all).unwrap();
+            assert_eq!(names(&set), there);
+            assert_eq!(fs::read_to_string(set.join("a")).unwrap(), content.len().to_string());
             fs::write(set.join("mine"), "mine").unwrap();
         }
         assert_eq!(names(folder.path()), ["set"]);
     }
 
-    fn others_of(names: &[&str]) -> Vec<String> {
-        names.iter().map(|n| n.to_string()).collect()
-    }
-
     #[test]
     fn a_device_is_written_as_it_is() {
-        let mut draft = DraftFile::create(Path::new("/dev/null")).unwrap();
+        let mut draft = begin(Path::new("/dev/null")).unwrap();
         draft.write_all(b"gone").unwrap();
         draft.keep().unwrap();
         assert!(!fs::metadata("/dev/null").unwrap().is_file());

@@ -2,7 +2,7 @@
 //! comes into being with its first line.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -26,6 +26,10 @@ pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
         },
     };
     let mut log = Log { path: path.clone(), makes_folder: file.is_none(), file: None };
+    if file.is_some_and(|file| !may_be_log(file)) {
+        let error = Error::at(path.display(), "is there already and is no log");
+        return Err(error.cure("name another file for the log"));
+    }
     if file.is_some() {
         log.open().map_err(|error| Error::at(path.display(), format!("cannot be written: {error}")))?;
     }
@@ -33,6 +37,19 @@ pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
     // Somebody else's subscriber, in a program that uses the library, stays.
     let _ = tracing::subscriber::set_global_default(subscriber);
     Ok(Some(path))
+}
+
+/// Whether a log may go on in this file: it is new, empty, or begins as every log does, with a time.
+fn may_be_log(path: &Path) -> bool {
+    let mut head = Vec::new();
+    match path.metadata() {
+        Ok(found) if found.is_file() && found.len() > 0 => {
+            let read = File::open(path).and_then(|file| file.take(20).read_to_end(&mut head));
+            let digits = |at: usize| head.get(at..at + 2).is_some_and(|two| two.iter().all(u8::is_ascii_digit));
+            read.is_ok() && [0, 2, 5, 8, 11, 14, 17].into_iter().all(digits) && head[10] == b'T'
+        }
+        _ => true,
+    }
 }
 
 struct Log {
@@ -67,5 +84,27 @@ impl Write for Log {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_log_is_written_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        assert!(may_be_log(&path));
+        for (text, is) in [
+            ("", true),
+            ("2026-11-28T23:40:56.123456Z  WARN plica: x", true),
+            ("2026-11-28 23:40", false),
+            ("\u{89}PNG", false),
+            ("{\"plica\": 1}", false),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(may_be_log(&path), is, "{text}");
+        }
     }
 }

@@ -12,12 +12,14 @@ pub mod lines;
 pub mod log;
 pub mod materials;
 pub mod originals;
+pub mod outputs;
 pub mod paths;
 pub mod picture;
 pub mod profiles;
 pub mod recovery;
 pub mod scene;
 pub mod session;
+pub mod temporary;
 pub mod watch;
 pub mod write;
 

@@ -69,6 +69,15 @@ fn explain(place: &str, error: io::Error) -> Error {
     }
 }
 
+/// A path as a person types it: a `~` at its beginning is the home folder, as in a shell.
+pub fn typed(path: &str) -> PathBuf {
+    let home = || std::env::var_os("HOME").filter(|home| !home.is_empty()).map(PathBuf::from);
+    match path.strip_prefix('~').filter(|rest| rest.is_empty() || rest.starts_with('/')) {
+        Some(rest) => home().map_or_else(|| path.into(), |home| home.join(rest.trim_start_matches('/'))),
+        None => path.into(),
+    }
+}
+
 /// The most files that a completion offers.
 const MOST_OFFERED: usize = 500;
 
@@ -76,7 +85,7 @@ const MOST_OFFERED: usize = 500;
 /// is typed. None where the folder cannot be read.
 pub fn complete(folder: &Path, typed: &str) -> Vec<String> {
     let (parent, begun) = typed.rfind('/').map_or(("", typed), |at| typed.split_at(at + 1));
-    let Ok(entries) = std::fs::read_dir(folder.join(parent)) else { return Vec::new() };
+    let Ok(entries) = std::fs::read_dir(folder.join(self::typed(parent))) else { return Vec::new() };
     let fits = |name: &String| name.starts_with(begun) && (begun.starts_with('.') || !name.starts_with('.'));
     let path = |entry: std::fs::DirEntry| {
         let name = entry.file_name().into_string().ok().filter(fits)?;
@@ -133,6 +142,21 @@ mod tests {
         let link = outer.path().join("link.plica.json");
         symlink(&scene, &link).unwrap();
         open(&link, "sub/cat.png", &Options::default()).unwrap();
+    }
+
+    #[test]
+    fn a_tilde_is_the_home_folder() {
+        let home = PathBuf::from(std::env::var_os("HOME").unwrap_or("~".into()));
+        for (path, expected) in [
+            ("~", home.clone()),
+            ("~/a.gif", home.join("a.gif")),
+            ("~//a.gif", home.join("a.gif")),
+            ("~ann/a.gif", "~ann/a.gif".into()),
+            ("a~/b", "a~/b".into()),
+            ("/a.gif", "/a.gif".into()),
+        ] {
+            assert_eq!(typed(path), expected, "{path}");
+        }
     }
 
     #[test]

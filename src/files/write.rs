@@ -5,15 +5,10 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::{MetadataExt, fchown};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::temporary::{self, Temporary};
 use super::{disk, paths};
 use crate::base::error::{Error, Result};
-use crate::base::system;
-
-const TEMPORARY_PREFIX: &str = ".plica-";
-const TEMPORARY_SUFFIX: &str = ".tmp";
 
 /// Writes `bytes` to `path` atomically. An existing file's mode is kept; a link is followed.
 ///
@@ -68,12 +63,18 @@ impl Atomic {
         }
         let temporary = Temporary::beside(&target);
         let file = disk::create_new(temporary.path(), false).map_err(|error| cannot_write(path, error))?;
+        temporary::hold(&file);
         if let Some(old) = old {
             // Giving a file to its old owner is for root alone; the mode matters to everybody.
             let _ = fchown(&file, Some(old.uid()), Some(old.gid()));
             file.set_permissions(old.permissions()).map_err(|error| cannot_write(path, error))?;
         }
         Ok(Atomic { file, temporary, target })
+    }
+
+    /// Where it is until then.
+    pub fn temporary(&self) -> &Path {
+        self.temporary.path()
     }
 
     /// Brings the file to the disk and puts it in its place.
@@ -104,77 +105,6 @@ impl Write for Atomic {
 impl Seek for Atomic {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
-    }
-}
-
-/// A name for a file or folder being made, beside its place. What stands there is removed when this is dropped.
-#[derive(Debug)]
-pub struct Temporary(PathBuf);
-
-/// What [`remove_unfinished`] removes.
-static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-impl Temporary {
-    /// A name of our own beside `path`, short so that it is never too long where `path` is not. Nothing is made.
-    pub fn beside(path: &Path) -> Self {
-        static MADE: AtomicU64 = AtomicU64::new(0);
-        let number = MADE.fetch_add(1, Ordering::Relaxed);
-        let name = format!("{TEMPORARY_PREFIX}{}-{number}{TEMPORARY_SUFFIX}", std::process::id());
-        let path = disk::folder_of(path).join(name);
-        unfinished().push(path.clone());
-        Temporary(path)
-    }
-
-    /// Where it is to be made.
-    pub fn path(&self) -> &Path {
-        &self.0
-    }
-
-    /// Puts what was made in its place, at once.
-    ///
-    /// # Errors
-    /// When it cannot be renamed; it is removed then.
-    pub fn put(self, target: &Path) -> io::Result<()> {
-        disk::rename(&self.0, target)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        unfinished().retain(|path| *path != self.0);
-        remove(&self.0);
-    }
-}
-
-fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Removes what this process has half made; for a process that is to end at once.
-pub fn remove_unfinished() {
-    unfinished().drain(..).for_each(|path| remove(&path));
-}
-
-/// Removes what killed processes left half made in the folder of `path`.
-pub fn remove_stale(path: &Path) {
-    let Ok(entries) = std::fs::read_dir(disk::folder_of(path)) else { return };
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let middle = name.to_str().and_then(|n| n.strip_prefix(TEMPORARY_PREFIX)?.strip_suffix(TEMPORARY_SUFFIX));
-        let Some((pid, _)) = middle.and_then(|middle| middle.split_once('-')) else { continue };
-        if pid.parse().is_ok_and(|pid| !system::process_lives(pid)) {
-            remove(&entry.path());
-        }
-    }
-}
-
-/// Removes a file or a folder. It may have got its place meanwhile, or somebody else was first; and what cannot be
-/// removed now is removed as stale another day.
-fn remove(path: &Path) {
-    match path.symlink_metadata() {
-        Ok(found) if found.is_dir() => drop(std::fs::remove_dir_all(path)),
-        Ok(_) => drop(disk::remove(path)),
-        Err(_) => {}
     }
 }
 
@@ -241,21 +171,5 @@ mod tests {
         }
         write_new(&folder.path().join("new"), b"x").unwrap();
         assert!(write_new(&folder.path().join("new"), b"y").unwrap_err().to_string().contains("there already"));
-    }
-
-    #[test]
-    fn only_what_the_dead_left_is_removed() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut dead = std::process::Command::new("true").spawn().unwrap();
-        dead.wait().unwrap();
-        let ours = Temporary::beside(&folder.path().join("x"));
-        let theirs = format!(".plica-{}-0.tmp", dead.id());
-        for name in [ours.path().file_name().unwrap().to_str().unwrap(), &theirs, ".plica-x.tmp", "cat.png"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        remove_stale(&folder.path().join("x"));
-        let left = names(folder.path());
-        assert_eq!(left.len(), 3, "{left:?}");
-        assert!(!left.contains(&theirs));
     }
 }

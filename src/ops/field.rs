@@ -2,11 +2,14 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use super::{Context, opened::Opened, scene_options::SceneOptions};
+use super::writing::Replacing;
+use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::export::field::{arrows, csv, plot, png, svg};
-use crate::files::write_atomic;
+use crate::files::draft::DraftFile;
+use crate::files::outputs::{self, Kind};
 use crate::layers::Layer;
 use crate::render;
 use crate::scene::Scene;
@@ -29,19 +32,21 @@ pub struct Args {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
+    replacing: Replacing,
+    #[command(flatten)]
     options: SceneOptions,
-}
-
-enum Kind {
-    Svg,
-    Png,
-    Csv,
 }
 
 /// Writes it.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    let begun = Instant::now();
     let kind = kind(&args.output)?;
-    let opened = Opened::new(&args.scene, &args.options, context)?;
+    let to_stream = args.output == Path::new("-");
+    let read = Unloaded::read(&args.scene, &args.options, context)?;
+    let mut guard = args.replacing.guard(&args.scene, read.document.scene(), context);
+    let place = if to_stream { None } else { Some(guard.file(&args.output, kind)?) };
+    context.say_all(&guard.notes());
+    let opened = read.load(context)?;
     let scene = match &args.zone {
         Some(name) => only_zone(opened.document.scene(), name)?,
         None => Scene::clone(opened.document.scene()),
@@ -51,15 +56,24 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let step = args.step.map(|step| step as usize);
     let plot = || plot(&scene, &synth, step, !args.no_picture);
     let bytes = match kind {
-        Kind::Csv => csv(&arrows(&synth, step.unwrap_or(1))).into_bytes(),
         Kind::Svg => svg(&plot())?.into_bytes(),
         Kind::Png => png(&plot())?,
+        _ => csv(&arrows(&synth, step.unwrap_or(1))).into_bytes(),
     };
     context.check_cancelled()?;
-    if args.output == Path::new("-") {
-        return context.out.write_all(&bytes).map_err(|e| Error::at("standard output", e));
+    match place {
+        None => {
+            context.out.write_all(&bytes).map_err(|e| Error::at("standard output", e))?;
+            context.done("standard output", bytes.len() as u64, begun);
+        }
+        Some(place) => {
+            let mut draft = DraftFile::create(&place)?;
+            draft.write_all(&bytes).map_err(|e| Error::at(args.output.display(), e))?;
+            draft.keep()?;
+            context.done(&args.output.display().to_string(), outputs::size([place.path()]), begun);
+        }
     }
-    write_atomic(&args.output, &bytes)
+    Ok(())
 }
 
 fn kind(path: &Path) -> Result<Kind> {

@@ -34,6 +34,7 @@ pub mod synth;
 pub mod tutor;
 #[cfg(feature = "window")]
 pub mod view;
+mod writing;
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]

@@ -52,6 +52,10 @@ pub fn create(path: &Path, images: &[PathBuf], options: &files::Options) -> Resu
         if pictures.iter().any(|(_, other, ..)| *other == file) {
             return Err(Error::at(image.display(), "has the same file name as another picture").cure("rename one"));
         }
+        if path.file_name().is_some_and(|name| name.eq_ignore_ascii_case(&file)) {
+            let error = Error::at(path.display(), "is the place of a picture");
+            return Err(error.cure("choose another name for the scene with -o"));
+        }
         if !same_folder(image, path) {
             copies.push((image, path.with_file_name(&file)));
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{Context, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
-use crate::files::materials;
+use crate::files::{self, materials};
 use crate::layers::Materials;
 use crate::render::{self, Synth};
 use crate::scene::Document;
@@ -20,22 +20,49 @@ pub struct Opened {
     pub materials: Materials,
 }
 
-impl Opened {
-    /// Opens the scene at `path` and loads what it names; warnings are said.
+/// A scene of which nothing is loaded yet, so that what is wrong with a command is told before that.
+pub struct Unloaded {
+    path: PathBuf,
+    options: files::Options,
+    /// The scene.
+    pub document: Document,
+}
+
+impl Unloaded {
+    /// Reads the scene at `path`; warnings are said.
     ///
     /// # Errors
-    /// What cannot be read; every problem of the scene.
-    pub fn new(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
+    /// It cannot be read; every problem of the scene.
+    pub fn read(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
         let options = options.options()?;
         let document = context.document(path, &options)?;
         for warning in document.warnings() {
             context.messages.say(&format!("{}: {warning}", path.display()));
         }
+        Ok(Unloaded { path: path.to_path_buf(), options, document })
+    }
+
+    /// Loads what it names.
+    ///
+    /// # Errors
+    /// What cannot be read.
+    pub fn load(self, context: &Context) -> Result<Opened> {
+        let Unloaded { path, options, document } = self;
         let mut cache = materials::Cache::until(context.cancel.clone());
-        let loaded = materials::load(path, document.scene(), &options, &mut cache);
+        let loaded = materials::load(&path, document.scene(), &options, &mut cache);
         context.check_cancelled()?;
         let materials = loaded.map_err(|problems| Error::Scene { file: path.display().to_string(), problems })?;
-        Ok(Opened { path: path.to_path_buf(), document, materials })
+        Ok(Opened { path, document, materials })
+    }
+}
+
+impl Opened {
+    /// Opens the scene at `path` and loads what it names; warnings are said.
+    ///
+    /// # Errors
+    /// As [`Unloaded::read`] and [`Unloaded::load`].
+    pub fn new(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
+        Unloaded::read(path, options, context)?.load(context)
     }
 
     /// The scene made ready for frames at any time.

@@ -1,26 +1,44 @@
 //! `plica render`: frames to numbered files, to one animation, or to another program.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
-use super::{Context, opened::Opened, scene_options::SceneOptions};
+use super::writing::{Counting, Replacing};
+use super::{
+    Context,
+    opened::{Opened, Unloaded},
+    scene_options::SceneOptions,
+};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
-use crate::export::animation::{Show, Target, range, rate::Rate, scale, table};
+use crate::export::animation::formats::{kept, table};
+use crate::export::animation::matrix::Matrix;
+use crate::export::animation::{Show, Target, range, rate::Rate, scale};
+use crate::files::outputs::{self, Place};
+use crate::layers::Layer;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::{Synth, cpu, seams};
 
-/// Render frames to numbered files, an animation or a stream.
+/// Render frames to numbered files, an animation, a video or a stream.
 #[derive(clap::Args)]
-#[command(after_help = format!("Outputs:\n{}\n  -         y4m or rgba for another program, by --format", table()))]
+#[command(after_help = outputs_help())]
 pub struct Args {
     /// The scene; - is standard input
     scene: PathBuf,
     /// Where to: the extension names the format, %04d numbers files, - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Which frames, as 0,5,10-20:2; all without it
+    /// Which frames, as 0,5,10-20:2 or 20-10; all without it
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     frames: Option<String>,
+    /// Number the files N, N+1, ... in the order of the frames, not as the scene numbers them
+    #[arg(long, value_name = "N")]
+    start_number: Option<u32>,
+    /// Leave out the numbered files that are there already, whole and of the right size
+    #[arg(long)]
+    skip_existing: bool,
     /// Scale finished frames; a 0 keeps the ratio
     #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     size: Option<String>,
@@ -33,55 +51,174 @@ pub struct Args {
     /// Format on standard output: y4m or rgba
     #[arg(long)]
     format: Option<String>,
+    /// Matrix of y4m and video [default: bt709 from 720 lines on, bt601 below, as players take it]
+    #[arg(long, value_name = "NAME", value_parser = Matrix::NAMES)]
+    matrix: Option<String>,
+    #[command(flatten)]
+    replacing: Replacing,
     #[command(flatten)]
     options: SceneOptions,
 }
 
+fn outputs_help() -> String {
+    format!(
+        "Outputs:\n{}\n  -         y4m or rgba for another program, by --format\n\nWhat they keep:\n{}\n\n\
+         Video by another line than ours, as:\n  plica render SCENE -o - --format y4m | ffmpeg -i - -pix_fmt yuv420p \\\n    \
+         -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv \\\n    \
+         -c:v libx264 -crf 16 out.mp4\n  (below 720 lines -colorspace smpte170m, or give --matrix bt709)",
+        table(),
+        kept()
+    )
+}
+
+/// A frame of the scene, and the number of its file.
+type Numbered = (u64, u64);
+
 /// Renders.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let opened = Opened::new(&args.scene, &args.options, context)?;
-    let timeline = &opened.document.scene().timeline;
+    let begun = Instant::now();
+    let read = Unloaded::read(&args.scene, &args.options, context)?;
+    let timeline = read.document.scene().timeline.clone();
     let frames = match &args.frames {
         Some(text) => range::parse(text, timeline.frames())?,
         None => (0..timeline.frames()).collect(),
     };
-    let (target, place) = target(&args, frames.len() as u64, context)?;
-    let mut renderer = Renderer::new(&args, &opened)?;
-    if frames.len() > 1 {
-        let loops = seams::warnings(opened.document.scene(), || renderer.samples.first());
-        loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
+    let numbered = numbered(&args, &frames);
+    let written = Arc::new(AtomicU64::new(0));
+    let (target, place) = target(&args, &read, &numbered, &written, context)?;
+    let opened = read.load(context)?;
+    let size = frame_size(&args, &opened)?;
+    let todo: Vec<Numbered> =
+        numbered.into_iter().filter(|(_, number)| !(args.skip_existing && target.has(*number, size))).collect();
+    let skipped = frames.len() - todo.len();
+    let show = show(&args, place, size, &frames, todo.len(), &timeline, context);
+    target.ready(&show)?;
+    let files = target.files();
+    let what = what(&show.place, &files, &todo, skipped);
+    if !todo.is_empty() {
+        let is_sequence = target.is_sequence();
+        let mut done = 0;
+        let outcome = write(&args, (target, show), &opened, &timeline, &todo, &mut done, context);
+        if matches!(outcome, Err(Error::Interrupted)) && is_sequence {
+            let all = todo.len();
+            context.messages.say(&format!("{done} of {all} frames are there; with --skip-existing the same goes on"));
+        }
+        outcome?;
     }
-    let show = show(place, renderer.size, &frames, timeline);
-    let mut sink = target.begin(show)?;
-    for (done, &number) in frames.iter().enumerate() {
-        context.check_cancelled()?;
-        context.messages.step("frame", done as u64, frames.len() as u64);
-        sink.frame(number, renderer.frame(timeline.time_of(number))?)?;
-    }
-    context.check_cancelled()?;
-    let notes = sink.finish()?;
-    context.messages.step("frame", frames.len() as u64, frames.len() as u64);
-    notes.iter().for_each(|note| context.messages.say(note));
+    let bytes = written.load(Ordering::Relaxed) + outputs::size(files.iter().map(Place::path));
+    context.done(&what, bytes, begun);
     Ok(())
 }
 
-fn target(args: &Args, frames: u64, context: &mut Context) -> Result<(Target, String)> {
+/// Makes the frames and hands them over; `done` counts them.
+fn write(
+    args: &Args,
+    (target, show): (Target, Show),
+    opened: &Opened,
+    timeline: &Timeline,
+    todo: &[Numbered],
+    done: &mut u64,
+    context: &mut Context,
+) -> Result<()> {
+    let mut renderer = Renderer::new(args, opened, (show.width, show.height))?;
+    if todo.len() > 1 {
+        let loops = seams::warnings(opened.document.scene(), || renderer.samples.first());
+        loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
+    }
+    let total = todo.len() as u64;
+    let mut sink = target.begin(show)?;
+    for &(frame, number) in todo {
+        context.check_cancelled()?;
+        context.messages.step("frame", *done, total);
+        sink.frame(number, renderer.frame(timeline.time_of(frame))?)?;
+        *done += 1;
+    }
+    context.check_cancelled()?;
+    let notes = sink.finish()?;
+    context.messages.step("frame", total, total);
+    context.say_all(&notes);
+    Ok(())
+}
+
+fn numbered(args: &Args, frames: &[u64]) -> Vec<Numbered> {
+    let number = |(at, &frame): (usize, &u64)| match args.start_number {
+        Some(first) => (frame, u64::from(first) + at as u64),
+        None => (frame, frame),
+    };
+    frames.iter().enumerate().map(number).collect()
+}
+
+fn target(
+    args: &Args,
+    read: &Unloaded,
+    numbered: &[Numbered],
+    written: &Arc<AtomicU64>,
+    context: &mut Context,
+) -> Result<(Target, String)> {
     let to_stream = args.output == Path::new("-");
-    match (&args.format, to_stream) {
-        (None, false) => Ok((Target::file(&args.output, frames)?, args.output.display().to_string())),
+    let (target, place) = match (&args.format, to_stream) {
+        (None, false) => {
+            let mut guard = args.replacing.guard(&args.scene, read.document.scene(), context);
+            let numbers: Vec<u64> = numbered.iter().map(|&(_, number)| number).collect();
+            let target = Target::file(&args.output, &numbers, &mut guard)?;
+            context.say_all(&guard.notes());
+            (target, args.output.display().to_string())
+        }
         (Some(format), true) => {
             let out = std::mem::replace(&mut context.out, Box::new(std::io::sink()));
-            Ok((Target::stream(format, out)?, "standard output".into()))
+            let out = Box::new(Counting { out, count: written.clone() });
+            (Target::stream(format, out)?, "standard output".into())
         }
-        (None, true) => Err(Error::Usage("-o -: say the format by --format y4m or --format rgba".into())),
-        (Some(_), false) => Err(Error::Usage("--format is for -o -; a file's extension names its format".into())),
+        (None, true) => return Err(Error::Usage("-o -: say the format by --format y4m or --format rgba".into())),
+        (Some(_), false) => {
+            return Err(Error::Usage("--format is for -o -; a file's extension names its format".into()));
+        }
+    };
+    for (given, fits, what) in [
+        (args.start_number.is_some(), target.is_sequence(), "--start-number is for numbered files, as %04d.png"),
+        (args.skip_existing, target.is_sequence(), "--skip-existing is for numbered files, as %04d.png"),
+        (args.matrix.is_some(), target.has_matrix(), "--matrix is for y4m and video"),
+    ] {
+        if given && !fits {
+            return Err(Error::Usage(what.into()));
+        }
+    }
+    Ok((target, place))
+}
+
+/// Width and height of the finished frames.
+fn frame_size(args: &Args, opened: &Opened) -> Result<(usize, usize)> {
+    let first = opened.document.scene().layers.first().map(|Layer::Picture(layer)| layer);
+    let picture = first.and_then(|layer| opened.materials.picture(&layer.image, "/image").ok());
+    // A scene without a picture has no frames: its synthesis says so.
+    let own = picture.map_or((0, 0), |picture| (picture.width(), picture.height()));
+    args.size.as_ref().map_or(Ok(own), |text| scale::parse(text, own))
+}
+
+/// What is done, in words.
+fn what(place: &str, files: &[Place], todo: &[Numbered], skipped: usize) -> String {
+    let skipped = if skipped > 0 { format!(" ({skipped} were there already)") } else { String::new() };
+    let frames = if todo.len() == 1 { "1 frame".to_owned() } else { format!("{} frames", todo.len()) };
+    match files {
+        [_] if skipped.is_empty() => place.to_owned(),
+        _ => format!("{place}, {frames}{skipped}"),
     }
 }
 
 /// Frames with an even step keep the speed of the scene; others follow one another at its rate.
-fn show(place: String, (width, height): (usize, usize), frames: &[u64], timeline: &Timeline) -> Show {
+fn show(
+    args: &Args,
+    place: String,
+    (width, height): (usize, usize),
+    frames: &[u64],
+    count: usize,
+    timeline: &Timeline,
+    context: &Context,
+) -> Show {
     let rate = Rate::from_fps(timeline.fps).every(range::step(frames).unwrap_or(1));
-    Show { place, width, height, frames: frames.len() as u64, rate, once: timeline.wrap == Wrap::Once }
+    let matrix = args.matrix.as_deref().and_then(Matrix::named);
+    let once = timeline.wrap == Wrap::Once;
+    Show { place, width, height, frames: count as u64, rate, once, matrix, cancel: context.cancel.clone() }
 }
 
 /// What turns a time into a finished frame.
@@ -95,10 +232,8 @@ struct Renderer {
 }
 
 impl Renderer {
-    fn new(args: &Args, opened: &Opened) -> Result<Self> {
+    fn new(args: &Args, opened: &Opened, size: (usize, usize)) -> Result<Self> {
         let samples = if args.samples == 1 { vec![opened.synth()?] } else { opened.samples(args.samples)? };
-        let own = samples.first().map_or((0, 0), |synth| synth.size);
-        let size = args.size.as_ref().map_or(Ok(own), |text| scale::parse(text, own))?;
         #[cfg(not(feature = "window"))]
         if args.gpu {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));

@@ -1,10 +1,13 @@
 //! `plica synth`: the textures of a scene for other engines.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
-use super::{Context, opened::Opened, scene_options::SceneOptions};
+use super::writing::Replacing;
+use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use crate::base::error::Result;
-use crate::export::textures::{self, Depth};
+use crate::export::textures::{self, Depth, Names};
+use crate::files::outputs;
 
 /// Write a scene's textures and their manifest for other engines.
 #[derive(clap::Args)]
@@ -18,21 +21,34 @@ pub struct Args {
     #[arg(long, value_name = "BITS", default_value = "32", value_parser = ["32", "16", "8"])]
     depth: String,
     #[command(flatten)]
+    replacing: Replacing,
+    #[command(flatten)]
     options: SceneOptions,
 }
 
 /// Writes them.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let opened = Opened::new(&args.scene, &args.options, context)?;
+    let begun = Instant::now();
     let depth = match args.depth.as_str() {
         "16" => Depth::Sixteen,
         "8" => Depth::Eight,
         _ => Depth::Float,
     };
+    let read = Unloaded::read(&args.scene, &args.options, context)?;
+    let scene = read.document.scene();
+    let names = Names::of(scene, depth);
+    let mut guard = args.replacing.guard(&args.scene, scene, context);
+    let place = guard.folder(&args.output, &|name| names.may_be(name), textures::earlier(&args.output))?;
+    context.say_all(&guard.notes());
+    let opened = read.load(context)?;
     let synth = opened.synth()?;
     let mut step = |done, total| {
         context.messages.step("zone", done, total);
         context.check_cancelled()
     };
-    textures::write(opened.document.scene(), &synth, depth, &args.output, &mut step)
+    let names = textures::write(opened.document.scene(), &synth, depth, &place, &mut step)?;
+    let files: Vec<_> = names.iter().map(|name| args.output.join(name)).collect();
+    let what = format!("{}, {} files", args.output.display(), files.len());
+    context.done(&what, outputs::size(files.iter().map(PathBuf::as_path)), begun);
+    Ok(())
 }

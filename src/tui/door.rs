@@ -9,6 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::base::text;
 use crate::files::holder::Holder;
+use crate::files::outputs::Guard;
 use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
 use crate::files::{self, picture, write};
 use crate::scene::history::Applied;
@@ -205,6 +206,9 @@ impl Door {
     /// It is not saved then.
     pub fn save(&mut self, to: Option<&Path>, overwrite: bool) -> Result<String> {
         if let Some(to) = to {
+            let mut guard = Guard::default();
+            guard.protect(self.path(), self.document().scene());
+            guard.spare(to)?;
             write::write_new(to, self.document().to_text().as_bytes())?;
             return Ok(format!("{} is written", to.display()));
         }

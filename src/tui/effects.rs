@@ -136,9 +136,10 @@ impl Editor {
             return self.state.complain("something runs already: Esc ends it");
         }
         let path = self.state.door.path().to_owned();
-        let mut with = words.to_vec();
+        let words: Vec<String> = words.iter().map(|word| at_home(word)).collect();
+        let mut with = words.clone();
         with.insert(1, path.to_string_lossy().into_owned());
-        let command = ops::parse(&with).or_else(|error| ops::parse(words).map_err(|_| error));
+        let command = ops::parse(&with).or_else(|error| ops::parse(&words).map_err(|_| error));
         match command {
             Ok(command) => {
                 let name = words[0].clone();
@@ -161,5 +162,14 @@ impl Editor {
             Ok(screen) => self.screen = Some(screen),
             Err(_) => self.leaving = true,
         }
+    }
+}
+
+/// A word of a command line as a shell would give it: a `~` that begins it, or the value of an option, is the home folder.
+fn at_home(word: &str) -> String {
+    let typed = |path: &str| paths::typed(path).to_string_lossy().into_owned();
+    match word.split_once('=') {
+        Some((option, path)) if option.starts_with("--") => format!("{option}={}", typed(path)),
+        _ => typed(word),
     }
 }

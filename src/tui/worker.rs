@@ -156,10 +156,11 @@ impl Job {
                 ops::Context { out: Box::new(out.clone()), messages: Box::new(messages), cancel: shared, open };
             let result = command.run(&mut context);
             let printed = format!("{}{}", out.text(), said.text());
+            let also = said.text().lines().map(|line| format!("; {line}")).collect::<String>();
             let result = match result {
                 Ok(()) if printed.trim().is_empty() => Ok(format!("{name}: done")),
                 Ok(()) => Ok(printed),
-                Err(Error::Interrupted) => Err(format!("{name}: interrupted, nothing half-written is left")),
+                Err(Error::Interrupted) => Err(format!("{name}: interrupted, nothing half-written is left{also}")),
                 Err(error) => Err(format!("{name}: {error}")),
             };
             // Nobody listens once the editor has left.

@@ -6,6 +6,7 @@ use std::os::fd::AsFd;
 
 pub mod beneath;
 pub mod folders;
+pub mod process;
 pub mod signals;
 
 /// For `OpenOptions::custom_flags`: opening fails where the last name of the path is a link.

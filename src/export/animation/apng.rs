@@ -7,6 +7,7 @@ use super::delta::{Rect, moved};
 use super::{Out, Show, Sink};
 use crate::base::error::Result;
 use crate::base::pixels::Frame;
+use crate::export::still;
 
 struct Apng {
     show: Show,
@@ -23,17 +24,15 @@ pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
 }
 
 fn header(out: Lent, show: &Show) -> std::result::Result<png::Writer<Lent>, png::EncodingError> {
-    let mut encoder = png::Encoder::new(out, show.width as u32, show.height as u32);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    if show.frames > 1 {
-        encoder.set_animated(show.frames as u32, u32::from(show.once))?;
-        encoder.set_frame_delay(show.rate.den as u16, show.rate.num as u16)?;
-        encoder.set_blend_op(png::BlendOp::Source)?;
-        encoder.set_dispose_op(png::DisposeOp::None)?;
-    }
-    encoder.write_header()
+    still::srgb(out, (show.width, show.height), |encoder| {
+        if show.frames > 1 {
+            encoder.set_animated(show.frames as u32, u32::from(show.once))?;
+            encoder.set_frame_delay(show.rate.den as u16, show.rate.num as u16)?;
+            encoder.set_blend_op(png::BlendOp::Source)?;
+            encoder.set_dispose_op(png::DisposeOp::None)?;
+        }
+        Ok(())
+    })
 }
 
 impl Apng {

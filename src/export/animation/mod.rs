@@ -1,17 +1,23 @@
-//! Animations: one table of formats, and one way to write any of them. Frames are handed over one after the other and
-//! none is kept longer than its format needs, so that length costs no memory.
+//! Animations: one way to write any of the [`formats`]. Frames are handed over one after the other and none is kept longer
+//! than its format needs, so that length costs no memory.
 
 use std::io::{self, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::files::draft::DraftFile;
+use crate::files::outputs::{Guard, Kind, Place};
 
 mod apng;
 mod delta;
 mod dither;
+mod ffmpeg;
+pub mod formats;
 mod gif;
+pub mod matrix;
 mod palette;
 pub mod range;
 pub mod rate;
@@ -20,10 +26,12 @@ pub mod scale;
 mod sequence;
 mod webp;
 
+use formats::{FORMATS, Format, Writer};
+use matrix::Matrix;
 use rate::Rate;
 
 /// What is told about an animation before its first frame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Show {
     /// What messages call the output.
     pub place: String,
@@ -37,6 +45,10 @@ pub struct Show {
     pub rate: Rate,
     /// Whether it plays once and then holds its last frame, or for ever.
     pub once: bool,
+    /// The matrix that a person asks for; `None` is the one that players expect.
+    pub matrix: Option<Matrix>,
+    /// The wish to stop, for what waits for another program.
+    pub cancel: Arc<AtomicBool>,
 }
 
 /// An animation being written. Dropped before [`Sink::finish`], it leaves nothing.
@@ -46,58 +58,6 @@ pub trait Sink {
     /// Puts the whole of it in its place. Returns what a person should know about it, a line each.
     fn finish(self: Box<Self>) -> Result<Vec<String>>;
 }
-
-/// One row of the table of formats.
-pub struct Format {
-    /// How `--format` calls it.
-    pub name: &'static str,
-    /// File name extensions that mean it, lower case.
-    pub extensions: &'static [&'static str],
-    /// What it is good for, one line.
-    pub help: &'static str,
-    /// Whether it can be written to standard output.
-    pub streams: bool,
-    begin: fn(Out, Show) -> Result<Box<dyn Sink>>,
-}
-
-/// Every format of one file. A sequence of files is told by its pattern, see [`Target::file`].
-pub const FORMATS: &[Format] = &[
-    Format {
-        name: "apng",
-        extensions: &["apng"],
-        help: "exact colours and alpha, exact times; browsers and most viewers play it",
-        streams: false,
-        begin: apng::begin,
-    },
-    Format {
-        name: "webp",
-        extensions: &["webp"],
-        help: "exact colours and alpha, smaller than APNG",
-        streams: false,
-        begin: webp::begin,
-    },
-    Format {
-        name: "gif",
-        extensions: &["gif"],
-        help: "plays everywhere, 256 colours, no partial alpha",
-        streams: false,
-        begin: gif::begin,
-    },
-    Format {
-        name: "y4m",
-        extensions: &["y4m"],
-        help: "uncompressed video for ffmpeg and other encoders, no alpha",
-        streams: true,
-        begin: raw::y4m,
-    },
-    Format {
-        name: "rgba",
-        extensions: &["rgba"],
-        help: "bare pixels, 8-bit sRGB with straight alpha, row after row, frame after frame",
-        streams: true,
-        begin: raw::rgba,
-    },
-];
 
 /// Where one file goes.
 pub enum Out {
@@ -142,37 +102,41 @@ impl Seek for Out {
 }
 
 /// Where an animation goes and in which format, checked before any frame is made.
-pub struct Target(Kind);
+pub struct Target(Goal);
 
-enum Kind {
-    Sequence(sequence::Pattern),
-    File(PathBuf, fn(Out, Show) -> Result<Box<dyn Sink>>),
-    Stream(Box<dyn Write + Send>, fn(Out, Show) -> Result<Box<dyn Sink>>),
+enum Goal {
+    Sequence(sequence::Places),
+    File(Place, Kind, Writer),
+    Stream(Box<dyn Write + Send>, Kind, fn(Out, Show) -> Result<Box<dyn Sink>>),
 }
 
 impl Target {
-    /// `frames` frames to `path`: a sequence of PNG files where the file name holds a pattern such as `%04d`, one PNG for
-    /// a single frame to `.png`, else the format that the extension names.
+    /// Frames of these numbers to `path`: a sequence of PNG files where the file name holds a pattern such as `%04d`, one
+    /// PNG for a single frame to `.png`, else the format that the extension names. `guard` looks at every file.
     ///
     /// # Errors
-    /// A wrong command line; an unknown extension lists the table.
-    pub fn file(path: &Path, frames: u64) -> Result<Self> {
+    /// A wrong command line, an unknown extension lists the table; a file that the guard does not give.
+    pub fn file(path: &Path, numbers: &[u64], guard: &mut Guard) -> Result<Self> {
         if let Some(pattern) = sequence::Pattern::parse(path)? {
-            return Ok(Target(Kind::Sequence(pattern)));
+            return Ok(Target(Goal::Sequence(sequence::Places::new(&pattern, numbers, guard)?)));
         }
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         let extension = extension.as_deref().unwrap_or_default();
-        if let Some(format) = FORMATS.iter().find(|f| f.extensions.contains(&extension)) {
-            return Ok(Target(Kind::File(path.to_path_buf(), format.begin)));
-        }
         let place = path.display();
-        match (extension, frames) {
-            ("png", 1) => Ok(Target(Kind::File(path.to_path_buf(), apng::begin))),
-            ("png", n) => Err(Error::Usage(format!(
-                "{place}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)"
-            ))),
-            _ => Err(Error::Usage(format!("{place}: the extension names no format; these do:\n{}", table()))),
-        }
+        let (kind, writer) = match (FORMATS.iter().find(|f| f.extensions.contains(&extension)), numbers.len()) {
+            (Some(Format { kind, writer, .. }), _) => (*kind, *writer),
+            (None, 1) if extension == "png" => (Kind::Png, Writer::Own(apng::begin)),
+            (None, n) if extension == "png" => {
+                return Err(Error::Usage(format!(
+                    "{place}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)"
+                )));
+            }
+            _ => {
+                let what = format!("{place}: the extension names no format; these do:\n{}", formats::table());
+                return Err(Error::Usage(what));
+            }
+        };
+        Ok(Target(Goal::File(guard.file(path, kind)?, kind, writer)))
     }
 
     /// To a stream, in the format called `name`.
@@ -181,11 +145,49 @@ impl Target {
     /// A wrong command line: the format needs a file.
     pub fn stream(name: &str, out: Box<dyn Write + Send>) -> Result<Self> {
         match FORMATS.iter().find(|f| f.name == name) {
-            Some(format) if format.streams => Ok(Target(Kind::Stream(out, format.begin))),
+            Some(Format { streams: true, kind, writer: Writer::Own(begin), .. }) => {
+                Ok(Target(Goal::Stream(out, *kind, *begin)))
+            }
             _ => {
                 let streams: Vec<_> = FORMATS.iter().filter(|f| f.streams).map(|f| f.name).collect();
                 Err(Error::Usage(format!("--format {name}: standard output takes {}", streams.join(" or "))))
             }
+        }
+    }
+
+    /// Whether it is a sequence of numbered files.
+    pub fn is_sequence(&self) -> bool {
+        matches!(self.0, Goal::Sequence(_))
+    }
+
+    /// Whether it is made of Y'CbCr, which has a matrix.
+    pub fn has_matrix(&self) -> bool {
+        let (Goal::File(_, kind, _) | Goal::Stream(_, kind, _)) = &self.0 else { return false };
+        matches!(kind, Kind::Y4m | Kind::Mp4 | Kind::WebM | Kind::Mov)
+    }
+
+    /// Whether the numbered file is there already, whole and of this size.
+    pub fn has(&self, number: u64, size: (usize, usize)) -> bool {
+        matches!(&self.0, Goal::Sequence(places) if places.has(number, size))
+    }
+
+    /// The files that it makes.
+    pub fn files(&self) -> Vec<Place> {
+        match &self.0 {
+            Goal::Sequence(places) => places.all(),
+            Goal::File(place, ..) => vec![place.clone()],
+            Goal::Stream(..) => Vec::new(),
+        }
+    }
+
+    /// Whether the show can be written at all, asked before its first frame is made.
+    ///
+    /// # Errors
+    /// A program is missing: what can be done instead.
+    pub fn ready(&self, show: &Show) -> Result<()> {
+        match &self.0 {
+            Goal::File(_, _, Writer::Ffmpeg(codec)) => ffmpeg::find(codec, show).map(drop),
+            _ => Ok(()),
         }
     }
 
@@ -195,23 +197,20 @@ impl Target {
     /// The place cannot be written, or the format cannot hold the show.
     pub fn begin(self, show: Show) -> Result<Box<dyn Sink>> {
         match self.0 {
-            Kind::Sequence(pattern) => sequence::begin(pattern, show),
-            Kind::File(path, begin) => begin(Out::File(DraftFile::create(&path)?), show),
-            Kind::Stream(out, begin) => begin(Out::Stream(out), show),
+            Goal::Sequence(places) => sequence::begin(places, show),
+            Goal::File(place, _, Writer::Own(begin)) => begin(Out::File(DraftFile::create(&place)?), show),
+            Goal::File(place, _, Writer::Ffmpeg(codec)) => ffmpeg::begin(codec, &place, show),
+            Goal::Stream(out, _, begin) => begin(Out::Stream(out), show),
         }
     }
 }
 
-/// The formats as lines for people.
-pub fn table() -> String {
-    let files = FORMATS.iter().map(|f| (format!(".{}", f.extensions.join(" .")), f.help));
-    let sequence = ("%04d.png".to_string(), "a PNG file a frame, numbered; exact colours and alpha");
-    let still = (".png".to_string(), "a single frame");
-    let rows = std::iter::once(sequence).chain(std::iter::once(still)).chain(files);
-    rows.map(|(what, help)| format!("  {what:<9} {help}")).collect::<Vec<_>>().join("\n")
-}
-
 impl Show {
+    /// The matrix of its Y'CbCr.
+    fn matrix(&self) -> Matrix {
+        self.matrix.unwrap_or(Matrix::expected(self.height))
+    }
+
     /// An encoder's error or a write error, at the output.
     fn failed(&self, error: impl std::fmt::Display) -> Error {
         Error::at(&self.place, error)

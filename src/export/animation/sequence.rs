@@ -1,15 +1,17 @@
-//! A PNG file a frame, numbered by a pattern such as `%04d.png`. As many frames as there are threads are compressed at
-//! once, so that memory stays bounded; the set appears in its folder when it is whole.
+//! A PNG file a frame, numbered by a pattern such as `%04d.png`. Each file is there, whole, as soon as it can be: whoever
+//! ends the work keeps what is done. As many frames as there are threads are compressed at once, so that memory stays bounded.
 
+use std::collections::{BTreeMap, VecDeque};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-
-use rayon::prelude::*;
+use std::thread::JoinHandle;
 
 use super::{Show, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::export::still;
-use crate::files::draft::DraftFolder;
+use crate::files::draft::DraftFile;
+use crate::files::outputs::{self, Guard, Kind, Place};
 
 /// A file name with one frame number in it.
 #[derive(Debug, PartialEq)]
@@ -65,47 +67,101 @@ impl Pattern {
     }
 }
 
-/// Begins a sequence.
-pub fn begin(pattern: Pattern, show: Show) -> Result<Box<dyn Sink>> {
-    if !pattern.folder.is_dir() {
-        let error = Error::at(pattern.folder.display(), "the folder is not there");
-        return Err(error.cure("make it first"));
+/// The files of a sequence, by their numbers.
+pub struct Places(BTreeMap<u64, Place>);
+
+impl Places {
+    /// The files for frames of these numbers.
+    ///
+    /// # Errors
+    /// The folder is not there, or the guard does not give a file.
+    pub fn new(pattern: &Pattern, numbers: &[u64], guard: &mut Guard) -> Result<Places> {
+        if !pattern.folder.is_dir() {
+            let error = Error::at(pattern.folder.display(), "the folder is not there");
+            return Err(error.cure("make it first"));
+        }
+        let names: Vec<String> = numbers.iter().map(|&number| pattern.name(number)).collect();
+        let places = guard.files(&pattern.folder, &names, Kind::Png)?;
+        Ok(Places(numbers.iter().copied().zip(places).collect()))
     }
-    let draft = DraftFolder::create(&pattern.folder)?;
-    Ok(Box::new(Sequence { pattern, draft, show, waiting: Vec::new(), names: Vec::new() }))
+
+    /// Every file, by number.
+    pub fn all(&self) -> Vec<Place> {
+        self.0.values().cloned().collect()
+    }
+
+    /// Whether the file of this number is a whole PNG of this size.
+    pub fn has(&self, number: u64, size: (usize, usize)) -> bool {
+        let ends = self.0.get(&number).and_then(|place| outputs::ends(place.path(), HEAD, END.len()).ok());
+        ends.is_some_and(|(head, end)| end == END && size_of(&head) == Some(size))
+    }
+}
+
+/// Signature and header of a PNG up to its height.
+const HEAD: usize = 24;
+/// How every whole PNG ends.
+const END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+
+fn size_of(head: &[u8]) -> Option<(usize, usize)> {
+    let number = |at: usize| Some(u32::from_be_bytes(head.get(at..at + 4)?.try_into().ok()?) as usize);
+    let is_png = head.get(12..16) == Some(b"IHDR");
+    is_png.then(|| Some((number(16)?, number(20)?)))?
+}
+
+/// Begins a sequence.
+pub fn begin(places: Places, show: Show) -> Result<Box<dyn Sink>> {
+    Ok(Box::new(Sequence { places, show, writing: VecDeque::new() }))
 }
 
 struct Sequence {
-    pattern: Pattern,
-    draft: DraftFolder,
+    places: Places,
     show: Show,
-    waiting: Vec<(String, Frame)>,
-    names: Vec<String>,
+    writing: VecDeque<JoinHandle<Result<()>>>,
 }
 
 impl Sequence {
-    fn write(&mut self) -> Result<()> {
-        let (draft, show) = (&self.draft, &self.show);
-        let write = |(name, frame): &(String, Frame)| {
-            let bytes = still::frame(frame).map_err(|e| show.failed(e))?;
-            draft.write(name, &bytes)
-        };
-        self.waiting.par_iter().map(write).collect::<Result<()>>()?;
-        self.names.extend(self.waiting.drain(..).map(|(name, _)| name));
-        Ok(())
+    /// Waits for the oldest file that is being written.
+    fn wait(&mut self) -> Result<()> {
+        let written = self.writing.pop_front().map_or(Ok(Ok(())), JoinHandle::join);
+        written.unwrap_or_else(|_| Err(self.show.failed("a frame could not be compressed")))
     }
+}
+
+fn write(place: &Place, frame: &Frame) -> Result<()> {
+    let failed = |error: &dyn std::fmt::Display| Error::at(place.path().display(), error);
+    let bytes = still::frame(frame).map_err(|e| failed(&e))?;
+    let mut draft = DraftFile::create(place)?;
+    draft.write_all(&bytes).map_err(|e| failed(&e))?;
+    draft.keep()
 }
 
 impl Sink for Sequence {
     fn frame(&mut self, number: u64, frame: Frame) -> Result<()> {
-        self.waiting.push((self.pattern.name(number), frame));
-        if self.waiting.len() >= rayon::current_num_threads() { self.write() } else { Ok(()) }
+        let Some(place) = self.places.0.get(&number).cloned() else {
+            return Err(self.show.failed(format!("frame {number} has no place")));
+        };
+        if self.writing.len() >= rayon::current_num_threads() {
+            self.wait()?;
+        }
+        self.writing.push_back(std::thread::spawn(move || write(&place, &frame)));
+        Ok(())
     }
 
     fn finish(mut self: Box<Self>) -> Result<Vec<String>> {
-        self.write()?;
-        self.draft.keep(&self.names)?;
+        while !self.writing.is_empty() {
+            self.wait()?;
+        }
         Ok(Vec::new())
+    }
+}
+
+/// What is finished stays, also what is just being written.
+impl Drop for Sequence {
+    fn drop(&mut self) {
+        while !self.writing.is_empty() {
+            // An error that ends the work has been told.
+            let _ = self.wait();
+        }
     }
 }
 

@@ -24,12 +24,22 @@ fn frames(width: usize, height: usize, count: u64) -> Vec<Frame> {
 }
 
 fn begin(path: &Path, show: Show) -> Result<Box<dyn Sink>> {
-    Target::file(path, show.frames)?.begin(show)
+    let numbers: Vec<u64> = (0..20).take(if show.frames == 1 { 1 } else { 20 }).collect();
+    Target::file(path, &numbers, &mut Guard::new(true))?.begin(show)
 }
 
 fn show(frames: &[Frame], fps: f64, once: bool) -> Show {
     let (width, height) = (frames[0].width(), frames[0].height());
-    Show { place: "test".into(), width, height, frames: frames.len() as u64, rate: Rate::from_fps(fps), once }
+    Show {
+        place: "test".into(),
+        width,
+        height,
+        frames: frames.len() as u64,
+        rate: Rate::from_fps(fps),
+        once,
+        matrix: None,
+        cancel: Arc::default(),
+    }
 }
 
 /// Writes the frames to a file of that name in a fresh folder and returns the file's bytes and the notes.
@@ -76,10 +86,16 @@ fn apng_is_exact() {
         let decoder = image::codecs::png::PngDecoder::new(Cursor::new(&bytes)).unwrap().apng().unwrap();
         same("apng", &wanted, &decoded(decoder).0);
         let reader = png::Decoder::new(Cursor::new(&bytes)).read_info().unwrap();
+        assert!(reader.info().srgb.is_some() && reader.info().coding_independent_code_points.is_some());
         let (frame, animation) = (reader.info().frame_control.unwrap(), reader.info().animation_control.unwrap());
         assert_eq!((frame.delay_num, frame.delay_den), (100, 2997));
         assert_eq!((animation.num_frames, animation.num_plays), (7, 0));
     }
+}
+
+fn webp_profile(bytes: &[u8]) -> Option<Vec<u8>> {
+    use image::ImageDecoder;
+    image::codecs::webp::WebPDecoder::new(Cursor::new(bytes)).unwrap().icc_profile().unwrap()
 }
 
 #[test]
@@ -91,6 +107,7 @@ fn webp_is_exact() {
         let (got, delays) = decoded(image::codecs::webp::WebPDecoder::new(Cursor::new(&bytes)).unwrap());
         same("webp by image", &wanted, &got);
         assert_eq!(delays.iter().sum::<f64>(), 233.0);
+        assert_eq!(webp_profile(&bytes), Some(crate::export::icc::srgb()));
         let frames = ::webp::AnimDecoder::new(&bytes).decode().unwrap();
         assert_eq!(frames.loop_count, 0);
         for (k, wanted) in wanted.iter().enumerate() {
@@ -169,6 +186,9 @@ fn one_frame_is_a_still() {
         let (bytes, _) = written(name, &frames, 30.0, false);
         let image = image::load_from_memory(&bytes).unwrap().to_rgba8();
         assert!(image.as_raw() == frames[0].cells().as_flattened(), "{name}");
+        if name == "a.webp" {
+            assert_eq!(webp_profile(&bytes), Some(crate::export::icc::srgb()));
+        }
     }
 }
 
@@ -178,12 +198,12 @@ fn a_sequence_is_numbered_by_the_scene() {
     let wanted = frames(31, 17, 9);
     let mut sink = begin(&folder.path().join("f-%03d.png"), show(&wanted, 30.0, false)).unwrap();
     for (k, frame) in wanted.iter().enumerate() {
-        sink.frame(10 + 2 * k as u64, frame.clone()).unwrap();
+        sink.frame(1 + 2 * k as u64, frame.clone()).unwrap();
     }
     sink.finish().unwrap();
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 9);
     for (k, wanted) in wanted.iter().enumerate() {
-        let image = image::open(folder.path().join(format!("f-{:03}.png", 10 + 2 * k))).unwrap();
+        let image = image::open(folder.path().join(format!("f-{:03}.png", 1 + 2 * k))).unwrap();
         assert!(image.to_rgba8().as_raw() == wanted.cells().as_flattened(), "{k}");
     }
 }
@@ -191,13 +211,32 @@ fn a_sequence_is_numbered_by_the_scene() {
 #[test]
 fn what_is_dropped_leaves_nothing() {
     let frames = frames(31, 17, 3);
-    for name in ["a.apng", "a.webp", "a.gif", "a.y4m", "a.rgba", "%d.png"] {
+    for name in ["a.apng", "a.webp", "a.gif", "a.y4m", "a.rgba"] {
         let folder = tempfile::tempdir().unwrap();
         let mut sink = begin(&folder.path().join(name), show(&frames, 30.0, false)).unwrap();
         sink.frame(0, frames[0].clone()).unwrap();
         drop(sink);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{name}");
     }
+}
+
+#[test]
+fn numbered_frames_stay_whatever_becomes_of_the_rest() {
+    let frames = frames(31, 17, 5);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("%d.png");
+    let mut sink = begin(&path, show(&frames, 30.0, false)).unwrap();
+    for (k, frame) in frames.iter().enumerate() {
+        sink.frame(k as u64, frame.clone()).unwrap();
+    }
+    drop(sink);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 5);
+    let target = Target::file(&path, &[0, 1, 2, 3, 4, 5], &mut Guard::new(false)).unwrap();
+    assert!((0..5).all(|k| target.has(k, (31, 17)) && !target.has(k, (31, 18))));
+    assert!(!target.has(5, (31, 17)) && !target.has(6, (31, 17)));
+    let half = fs::read(folder.path().join("3.png")).unwrap();
+    fs::write(folder.path().join("3.png"), &half[..half.len() - 1]).unwrap();
+    assert!(!target.has(3, (31, 17)));
 }
 
 /// A stream that a test can look at.
@@ -246,7 +285,7 @@ fn y4m_holds_every_frame_of_an_odd_size() {
 #[test]
 fn an_unknown_extension_lists_the_table() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["a.mov", "a", "a.png"] {
+    for name in ["a.avi", "a", "a.png"] {
         let error = begin(&folder.path().join(name), show(&frames(2, 2, 2), 30.0, false)).err().unwrap();
         let all = FORMATS.iter().all(|f| error.to_string().contains(f.help));
         assert!(error.exit_status() == 2 && (all || name == "a.png"), "{error}");

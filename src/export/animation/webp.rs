@@ -12,13 +12,15 @@ use super::delta::{Rect, moved};
 use super::{Out, Show, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::icc;
 
 /// The longest side of a WebP image.
 const MOST: usize = 16383;
 /// Times are counted in milliseconds.
 const UNITS: u64 = 1000;
-/// The flags of VP8X: animation, alpha.
-const ANIMATED_WITH_ALPHA: u8 = 0x12;
+/// The flags of VP8X: a color profile and alpha; an animation.
+const WITH_PROFILE_AND_ALPHA: u8 = 0x30;
+const ANIMATED: u8 = 0x02;
 /// The flags of ANMF: replace what is there, leave it there.
 const REPLACE: u8 = 0x02;
 
@@ -41,11 +43,13 @@ pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
     }
     let mut webp = WebP { out, show, count: 0, length: 0, before: None, waiting: Vec::new() };
     webp.write(b"RIFF\0\0\0\0WEBP")?; // the length is known at the end
-    if webp.show.frames > 1 {
-        let mut canvas = vec![ANIMATED_WITH_ALPHA, 0, 0, 0];
-        canvas.extend(u24(webp.show.width - 1));
-        canvas.extend(u24(webp.show.height - 1));
-        webp.chunk(b"VP8X", &canvas)?;
+    let is_animated = webp.show.frames > 1;
+    let mut canvas = vec![WITH_PROFILE_AND_ALPHA | if is_animated { ANIMATED } else { 0 }, 0, 0, 0];
+    canvas.extend(u24(webp.show.width - 1));
+    canvas.extend(u24(webp.show.height - 1));
+    webp.chunk(b"VP8X", &canvas)?;
+    webp.chunk(b"ICCP", &icc::srgb())?;
+    if is_animated {
         webp.chunk(b"ANIM", &[0, 0, 0, 0, u8::from(webp.show.once), 0])?;
     }
     Ok(Box::new(webp))

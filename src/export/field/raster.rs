@@ -9,6 +9,7 @@ use tiny_skia::{
 use super::{FAINT, Mark, Plot};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::still;
 
 /// The plot as a PNG file.
 ///
@@ -25,7 +26,8 @@ pub fn png(plot: &Plot) -> Result<Vec<u8>> {
     for mark in &plot.marks {
         draw(mark, &mut pixmap);
     }
-    pixmap.encode_png().map_err(|e| failed(&e.to_string()))
+    // White fills all of it, so that nothing is transparent and the pixels are the colors.
+    still::pixels((width as usize, height as usize), pixmap.data()).map_err(|e| failed(&e.to_string()))
 }
 
 fn draw_picture(frame: &Frame, place: Rect, pixmap: &mut Pixmap) -> Option<()> {

@@ -3,11 +3,12 @@
 use std::fmt::Write;
 
 use super::{Arrow, degrees};
+use crate::files::outputs::CSV_HEADER;
 
 /// Comma-separated values with a head: the centre of each pixel, its jump vector, that vector's length, and its direction
 /// in degrees from the x axis toward the y axis (clockwise on the screen); 0 where there is no jump.
 pub fn csv(arrows: &[Arrow]) -> String {
-    let mut text = String::from("x,y,dx,dy,length,degrees\n");
+    let mut text = format!("{CSV_HEADER}\n");
     for arrow in arrows {
         let Arrow { at, jump: [dx, dy] } = arrow;
         let length = arrow.vector().hypot2().sqrt();

@@ -2,12 +2,12 @@
 //! functions, thresholds where paths need them, and a manifest that says all the rest.
 
 use std::collections::HashSet;
-use std::path::Path;
 
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Beyond, Grid};
 use crate::export::still;
 use crate::files::draft::DraftFolder;
+use crate::files::outputs::FolderPlace;
 use crate::layers::Layer;
 use crate::layers::folding::atlas::{Area, Atlas, Need, Piece, reach};
 use crate::layers::folding::fold::Fold;
@@ -20,19 +20,24 @@ mod data;
 mod folds;
 mod function;
 mod manifest;
+mod names;
 #[cfg(test)]
 mod tests;
 
 pub use data::Depth;
+pub use names::{Names, earlier};
 
 use data::{Channel, Texture, TextureNote};
+use names::{COLOUR, MANIFEST};
+
 use manifest::{CONVENTIONS, Colour, Function, Manifest, PieceNote, Slots, ThresholdsNote, VERSION};
 
 /// How far beyond a crossing s must be to have passed it: a 32-bit float is that exact.
 const TOLERANCE: f64 = 1e-6;
 
-/// Writes the textures of `scene`, whose synthesis is `synth`, to the folder `dir`, all of them or none. `step` is told
-/// how many of how many zones are done and ends the work by an error.
+/// Writes the textures of `scene`, whose synthesis is `synth`, to the folder at `place`, all of them or none; the files of an
+/// earlier run that are none of these go. `step` is told how many of how many zones are done and ends the work by an error.
+/// Gives the names of the files.
 ///
 /// # Errors
 /// The folder cannot be written, a depth cannot hold the scene, or `step`'s.
@@ -40,12 +45,13 @@ pub fn write(
     scene: &Scene,
     synth: &Synth,
     depth: Depth,
-    dir: &Path,
+    place: &FolderPlace,
     step: &mut dyn FnMut(u64, u64) -> Result<()>,
-) -> Result<()> {
+) -> Result<Vec<String>> {
     let plan = Plan::new(scene, synth);
     plan.fits(depth)?;
-    let mut folder = Folder { draft: DraftFolder::create(dir)?, names: Vec::new(), depth };
+    let mut folder =
+        Folder { draft: DraftFolder::create(place)?, may: Names::of(scene, depth), names: Vec::new(), depth };
     let mut layers: Vec<manifest::Layer> = Vec::new();
     let all = plan.zones.len();
     for (row, zone) in plan.zones.iter().enumerate() {
@@ -67,9 +73,10 @@ pub fn write(
         layers,
     };
     let text = serde_json::to_string_pretty(&manifest).map_err(|e| Error::at("manifest.json", e))?;
-    folder.put("manifest.json".into(), text.as_bytes())?;
+    folder.put(MANIFEST.into(), text.as_bytes())?;
     step(all as u64, all as u64)?;
-    folder.draft.keep(&folder.names)
+    folder.draft.keep(&folder.names)?;
+    Ok(folder.names)
 }
 
 /// The atlas, and what each zone reads of it.
@@ -156,12 +163,16 @@ fn rule_name(zone: &Zone) -> &'static str {
 /// The folder being written.
 struct Folder {
     draft: DraftFolder,
+    may: Names,
     names: Vec<String>,
     depth: Depth,
 }
 
 impl Folder {
     fn put(&mut self, name: String, bytes: &[u8]) -> Result<()> {
+        if !self.may.may_be(&name) {
+            return Err(Error::at(name, "is a name that nobody has looked at before the work"));
+        }
         self.draft.write(&name, bytes)?;
         self.names.push(name);
         Ok(())
@@ -212,9 +223,8 @@ impl Folder {
 
     /// How the files of a zone begin: its name in plain letters, the layer's before it where there are several.
     fn stem(&self, plan: &Plan, zone: &Planned) -> String {
-        let layer =
-            if plan.layers.len() > 1 { format!("{}-", plain(plan.layers[zone.layer].1)) } else { String::new() };
-        let stem = format!("{layer}{}-", plain(&zone.model.name));
+        let layer = (plan.layers.len() > 1).then_some(plan.layers[zone.layer].1);
+        let stem = names::stem(layer, &zone.model.name);
         let taken: HashSet<&str> = self.names.iter().map(String::as_str).collect();
         let is_free = |stem: &String| !taken.contains(format!("{stem}init.{}", self.depth.extension()).as_str());
         let numbered = (2..).map(|n| format!("{stem}{n}-"));
@@ -222,7 +232,7 @@ impl Folder {
     }
 
     fn colour(&mut self, atlas: &Atlas) -> Result<Colour> {
-        let file = "colour.png".to_owned();
+        let file = COLOUR.to_owned();
         let bytes = still::frame(&crate::render::cpu::finish(&atlas.colors)).map_err(|e| Error::at(&file, e))?;
         self.put(file.clone(), &bytes)?;
         let note = |piece: &Piece| {
@@ -240,13 +250,6 @@ impl Folder {
         let texture = self.texture("function".into(), &function::texture(&rows))?;
         Ok(Function { texture, error_between: function::error_between(&rows) })
     }
-}
-
-/// Letters, digits, `-` and `_` of a name, others as `-`.
-fn plain(name: &str) -> String {
-    let plain: String = name.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
-    let plain = plain.trim_matches('-');
-    if plain.is_empty() { "zone".into() } else { plain.into() }
 }
 
 /// Where each sampler stands at s = 0 in the atlas, its temporal shift, and its zone's row; 0 outside the zone.

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::base::pixels::{Frame, Linear, decode, encode, over};
+use crate::files::outputs::Guard;
 use crate::layers::Materials;
 use crate::render;
 
@@ -288,10 +289,14 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     ]
 }
 
+fn place(dir: &Path) -> FolderPlace {
+    Guard::new(false).folder(dir, &|_| true, earlier(dir)).unwrap()
+}
+
 fn written(scene: &Scene, materials: &Materials, depth: Depth) -> (tempfile::TempDir, Synth) {
     let dir = tempfile::tempdir().unwrap();
     let synth = render::synth(scene, materials, None).unwrap();
-    write(scene, &synth, depth, &dir.path().join("out"), &mut |_, _| Ok(())).unwrap();
+    write(scene, &synth, depth, &place(&dir.path().join("out")), &mut |_, _| Ok(())).unwrap();
     (dir, synth)
 }
 
@@ -357,7 +362,7 @@ fn an_interrupt_leaves_nothing() {
     let scene = &scenes()[7].1;
     let synth = render::synth(scene, &materials(), None).unwrap();
     let mut step = |done, _| if done == 1 { Err(Error::Interrupted) } else { Ok(()) };
-    assert!(write(scene, &synth, Depth::Float, &dir.path().join("out"), &mut step).is_err());
+    assert!(write(scene, &synth, Depth::Float, &place(&dir.path().join("out")), &mut step).is_err());
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
 }
 

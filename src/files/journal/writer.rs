@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::files::disk;
-use crate::files::write::Temporary;
+use crate::files::temporary::Temporary;
 
 /// How long after a failure the next file is tried.
 const TRY_AGAIN: Duration = Duration::from_secs(1);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::holder::{Holder, Sign};
 use super::journal::{self, Found, Header, Journal, Kind, Record, Unopened};
 use super::recovery::{self, Replayed};
-use super::{Options, now_ms, scene, write};
+use super::{Options, disk, now_ms, scene, temporary};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::history::{Applied, Stamp};
@@ -134,7 +134,7 @@ impl Session {
         };
         match found {
             Some(Ok(found)) => {
-                write::remove_stale(&session.path);
+                temporary::remove_stale(disk::folder_of(&session.path));
                 session._sign = Sign::put_up(&session.path);
                 session.take_up(found, document);
             }

@@ -1,7 +1,5 @@
 //! Files, leaving, and what is outside the editor.
 
-use std::path::PathBuf;
-
 use super::{Call, Command, Done, command};
 use crate::files::paths;
 use crate::preview::keys as window;
@@ -46,7 +44,7 @@ fn refuse_unsaved(state: &State, instead: &str) -> Done {
 }
 
 fn save(state: &mut State, path: &str, overwrite: bool, leave: bool) -> Done {
-    let to = (!path.is_empty()).then(|| PathBuf::from(path));
+    let to = (!path.is_empty()).then(|| paths::typed(path));
     if state.door.read_only() && to.is_none() {
         return state.door.writable();
     }
@@ -62,7 +60,7 @@ fn quit(state: &mut State, _: &Call) -> Done {
 
 fn open(state: &mut State, call: &Call) -> Done {
     if !call.text.is_empty() {
-        state.ask(Effect::Open(PathBuf::from(call.text)));
+        state.ask(Effect::Open(paths::typed(call.text)));
     } else if let Some(change) = state.door.revert().map_err(|error| error.to_string())? {
         state.changed(change);
         state.say("the scene is as its file has it; u takes it back");

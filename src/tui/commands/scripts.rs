@@ -1,8 +1,7 @@
 //! Lines that were run, as one thing: the log of the session, and scripts.
 
-use std::path::PathBuf;
-
 use super::{Call, Command, Done, command};
+use crate::files::paths;
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::update::Effect;
 
@@ -15,7 +14,7 @@ fn log(state: &mut State, call: &Call) -> Done {
     let lines = state.recorder.log().to_vec();
     if !call.text.is_empty() {
         let text = lines.iter().map(|line| format!("{line}\n")).collect();
-        state.ask(Effect::Write(PathBuf::from(call.text), text));
+        state.ask(Effect::Write(paths::typed(call.text), text));
         return Ok(());
     }
     let place = match state.recorder.place() {
@@ -31,6 +30,6 @@ fn source(state: &mut State, call: &Call) -> Done {
     if call.text.is_empty() {
         return Err("source takes a FILE of lines".into());
     }
-    state.ask(Effect::Source(PathBuf::from(call.text)));
+    state.ask(Effect::Source(paths::typed(call.text)));
     Ok(())
 }

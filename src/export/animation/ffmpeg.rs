@@ -1,0 +1,234 @@
+//! Video by the person's own ffmpeg: frames go to its standard input as they are, and it writes a temporary file that takes
+//! its place when all of it is there. Codecs of video are a world of their own; whoever needs another line pipes y4m.
+//!
+//! The files say what their numbers mean: matrix and primaries, the transfer of sRGB, and limited range.
+
+use std::ffi::OsString;
+use std::io::{Read, Write};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::atomic::Ordering;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use super::raw::opaque;
+use super::{Show, Sink};
+use crate::base::error::{Error, Result};
+use crate::base::pixels::Frame;
+use crate::files::draft;
+use crate::files::outputs::Place;
+use crate::files::write::Atomic;
+
+/// How one container is written.
+pub struct Codec {
+    /// What ffmpeg calls the container.
+    container: &'static str,
+    /// The pixels in it.
+    pixels: &'static str,
+    /// The encoder and its settings.
+    encoder: &'static str,
+    /// Whether it keeps alpha.
+    alpha: bool,
+    /// Whether both sides must be even.
+    even: bool,
+}
+
+/// H.264.
+pub const MP4: Codec = Codec {
+    container: "mp4",
+    pixels: "yuv420p",
+    encoder: "-c:v libx264 -preset medium -crf 16 -movflags +faststart",
+    alpha: false,
+    even: true,
+};
+
+/// VP9 with alpha.
+pub const WEBM: Codec = Codec {
+    container: "webm",
+    pixels: "yuva420p",
+    encoder: "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1",
+    alpha: true,
+    even: false,
+};
+
+/// ProRes 4444.
+pub const MOV: Codec = Codec {
+    container: "mov",
+    pixels: "yuva444p10le",
+    encoder: "-c:v prores_ks -profile:v 4444 -alpha_bits 16 -vendor apl0",
+    alpha: true,
+    even: false,
+};
+
+/// The last bytes of what ffmpeg says.
+const MOST_SAID: usize = 4096;
+
+impl Codec {
+    /// Width and height of the video.
+    fn size(&self, show: &Show) -> (usize, usize) {
+        let side = |n: usize| if self.even { n.next_multiple_of(2) } else { n };
+        (side(show.width), side(show.height))
+    }
+
+    /// What ffmpeg is told between its name and the file.
+    fn arguments(&self, show: &Show) -> Vec<String> {
+        let (width, height) = self.size(show);
+        let matrix = show.matrix().ffmpeg();
+        let (num, den) = (show.rate.num, show.rate.den);
+        let convert = format!("scale=out_color_matrix={matrix}:out_range=tv:flags=accurate_rnd+full_chroma_int");
+        let tags = format!("setparams=colorspace={matrix}:color_primaries=bt709:color_trc=iec61966-2-1:range=tv");
+        let pixels = self.pixels;
+        let words = [
+            format!("-f rawvideo -pixel_format rgba -video_size {width}x{height} -framerate {num}/{den} -i pipe:0"),
+            format!("-vf {convert},format={pixels},{tags} -pix_fmt {pixels}"),
+            format!("-colorspace {matrix} -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv"),
+            format!("{} -f {}", self.encoder, self.container),
+        ];
+        words.iter().flat_map(|line| line.split(' ')).map(str::to_owned).collect()
+    }
+
+    /// The line that a person can run instead, where there is an ffmpeg.
+    fn line(&self, show: &Show) -> String {
+        format!("plica render SCENE -o - --format rgba | ffmpeg {} {}", self.arguments(show).join(" "), show.place)
+    }
+}
+
+/// Whether the person has an ffmpeg, asked before work begins.
+///
+/// # Errors
+/// There is none: what can be done instead.
+pub fn find(codec: &Codec, show: &Show) -> Result<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path).map(|folder| folder.join("ffmpeg")).find(|file| file.is_file());
+    found.ok_or_else(|| {
+        let what = format!("ffmpeg writes .{}, and there is none on the PATH", codec.container);
+        Error::at(&show.place, what).cure(format!("install ffmpeg; where there is one: {}", codec.line(show)))
+    })
+}
+
+struct Video {
+    codec: &'static Codec,
+    show: Show,
+    child: Child,
+    /// `None` once all frames are written.
+    frames: Option<ChildStdin>,
+    said: Option<JoinHandle<String>>,
+    file: Option<Atomic>,
+    transparent: bool,
+}
+
+/// Begins a video.
+pub fn begin(codec: &'static Codec, place: &Place, show: Show) -> Result<Box<dyn Sink>> {
+    let program = find(codec, &show)?;
+    let file = draft::for_program(place)?;
+    let mut command = Command::new(program);
+    command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
+    command.args(codec.arguments(&show)).arg(as_file(file.temporary()));
+    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    // Ctrl-C is ours: ffmpeg would end the file in good order.
+    let mut child = command.process_group(0).spawn().map_err(|e| show.failed(format!("ffmpeg: {e}")))?;
+    let (frames, said) = (child.stdin.take(), child.stderr.take());
+    let said = said.map(|mut said| std::thread::spawn(move || listen(&mut said)));
+    Ok(Box::new(Video { codec, show, child, frames, said, file: Some(file), transparent: false }))
+}
+
+/// A path that ffmpeg takes for nothing else.
+fn as_file(path: &Path) -> OsString {
+    let mut word = OsString::from("file:");
+    word.push(path);
+    word
+}
+
+/// The end of what the program says.
+fn listen(said: &mut impl Read) -> String {
+    let (mut all, mut piece) = (Vec::new(), [0; 1024]);
+    while let Ok(n @ 1..) = said.read(&mut piece) {
+        all.extend(&piece[..n]);
+        all.drain(..all.len().saturating_sub(MOST_SAID));
+    }
+    String::from_utf8_lossy(&all).into_owned()
+}
+
+impl Video {
+    /// The frame as the container takes it.
+    fn pixels(&mut self, frame: &Frame) -> Vec<u8> {
+        let (width, height) = self.codec.size(&self.show);
+        let mut bytes = Vec::with_capacity(4 * width * height);
+        for y in 0..height {
+            let row = frame.row(y.min(frame.height() - 1));
+            for x in 0..width {
+                let color = row[x.min(frame.width() - 1)];
+                self.transparent |= color[3] < 255;
+                let [r, g, b] = if self.codec.alpha { [color[0], color[1], color[2]] } else { opaque(color) };
+                bytes.extend([r, g, b, if self.codec.alpha { color[3] } else { 255 }]);
+            }
+        }
+        bytes
+    }
+
+    /// Waits until ffmpeg has ended; ends it where the work is cancelled.
+    fn wait(&mut self) -> Result<ExitStatus> {
+        loop {
+            if self.show.cancel.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted);
+            }
+            match self.child.try_wait() {
+                Ok(Some(status)) => return Ok(status),
+                Ok(None) => std::thread::sleep(Duration::from_millis(10)),
+                Err(error) => return Err(self.show.failed(format!("ffmpeg: {error}"))),
+            }
+        }
+    }
+
+    /// Why it ended too early, in its own words.
+    fn why(&mut self) -> Error {
+        self.frames = None;
+        if let Err(error) = self.wait() {
+            return error;
+        }
+        let said = self.said.take().and_then(|said| said.join().ok()).unwrap_or_default();
+        let first = said.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("it ended without a word");
+        let cure = format!("another encoder may do: {}", self.codec.line(&self.show));
+        Error::at(&self.show.place, format!("ffmpeg: {first}")).cure(cure)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let (Show { place, width, height, .. }, size) = (&self.show, self.codec.size(&self.show));
+        let container = self.codec.container;
+        let lost = format!("{place}: {container} has no alpha; transparent parts lie on black");
+        let padded = format!(
+            "{place}: {width} x {height} became {} x {}, as H.264 has even sides; the last pixels are repeated",
+            size.0, size.1
+        );
+        let lost = (self.transparent && !self.codec.alpha).then_some(lost);
+        lost.into_iter().chain((size != (*width, *height)).then_some(padded)).collect()
+    }
+}
+
+impl Sink for Video {
+    fn frame(&mut self, _: u64, frame: Frame) -> Result<()> {
+        let bytes = self.pixels(&frame);
+        let written = self.frames.as_mut().map(|frames| frames.write_all(&bytes));
+        if matches!(written, Some(Ok(()))) { Ok(()) } else { Err(self.why()) }
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<Vec<String>> {
+        self.frames = None;
+        if !self.wait()?.success() {
+            return Err(self.why());
+        }
+        self.file.take().map_or(Ok(()), Atomic::commit)?;
+        Ok(self.notes())
+    }
+}
+
+/// Whatever happened, no ffmpeg goes on.
+impl Drop for Video {
+    fn drop(&mut self) {
+        self.frames = None;
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

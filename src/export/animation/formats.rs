@@ -1,0 +1,190 @@
+//! The one table of formats: what each output is for, and what of a scene it keeps. `plica render --help`, the manual, the
+//! documentation (docs/outputs.md) and messages are made from it.
+
+use super::ffmpeg::{self, Codec};
+use super::{Out, Show, Sink, apng, gif, raw, webp};
+use crate::base::error::Result;
+use crate::files::outputs::Kind;
+
+/// What an output keeps of a scene, in a few words each.
+pub struct Keeps {
+    /// How transparent a pixel is.
+    pub alpha: &'static str,
+    /// Its color.
+    pub colors: &'static str,
+    /// How long a frame stands.
+    pub timing: &'static str,
+    /// What follows the end.
+    pub ending: &'static str,
+}
+
+/// How a format is written.
+#[derive(Clone, Copy)]
+pub enum Writer {
+    /// By an encoder of our own.
+    Own(fn(Out, Show) -> Result<Box<dyn Sink>>),
+    /// By the person's ffmpeg.
+    Ffmpeg(&'static Codec),
+}
+
+/// One row of the table of formats.
+pub struct Format {
+    /// How `--format` calls it.
+    pub name: &'static str,
+    /// File name extensions that mean it, lower case.
+    pub extensions: &'static [&'static str],
+    /// What it is good for, one line.
+    pub help: &'static str,
+    /// Whether it can be written to standard output.
+    pub streams: bool,
+    /// What it keeps.
+    pub keeps: Keeps,
+    /// What messages call it, and how a file of it is known.
+    pub kind: Kind,
+    pub(super) writer: Writer,
+}
+
+const NO_ENDING: &str = "none: the player decides";
+
+/// Every format of one file. A sequence of files is told by its pattern, see [`super::Target::file`].
+pub const FORMATS: &[Format] = &[
+    Format {
+        name: "apng",
+        extensions: &["apng"],
+        help: "exact; browsers and most viewers play it",
+        streams: false,
+        keeps: Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "exact", ending: "loop or once" },
+        kind: Kind::Png,
+        writer: Writer::Own(apng::begin),
+    },
+    Format {
+        name: "webp",
+        extensions: &["webp"],
+        help: "exact, smaller than APNG",
+        streams: false,
+        keeps: Keeps {
+            alpha: "kept",
+            colors: "exact, tagged sRGB",
+            timing: "whole ms, no drift",
+            ending: "loop or once",
+        },
+        kind: Kind::WebP,
+        writer: Writer::Own(webp::begin),
+    },
+    Format {
+        name: "gif",
+        extensions: &["gif"],
+        help: "plays everywhere",
+        streams: false,
+        keeps: Keeps {
+            alpha: "all or nothing",
+            colors: "256, no tag",
+            timing: "whole 1/100 s, no drift",
+            ending: "loop or once",
+        },
+        kind: Kind::Gif,
+        writer: Writer::Own(gif::begin),
+    },
+    Format {
+        name: "mp4",
+        extensions: &["mp4"],
+        help: "H.264 by your ffmpeg, for everything that plays video",
+        streams: false,
+        keeps: Keeps { alpha: "lost, on black", colors: "lossy 4:2:0, tagged", timing: "exact", ending: NO_ENDING },
+        kind: Kind::Mp4,
+        writer: Writer::Ffmpeg(&ffmpeg::MP4),
+    },
+    Format {
+        name: "webm",
+        extensions: &["webm"],
+        help: "VP9 by your ffmpeg, for web pages",
+        streams: false,
+        keeps: Keeps { alpha: "kept, lossy", colors: "lossy 4:2:0, tagged", timing: "whole ms", ending: NO_ENDING },
+        kind: Kind::WebM,
+        writer: Writer::Ffmpeg(&ffmpeg::WEBM),
+    },
+    Format {
+        name: "mov",
+        extensions: &["mov"],
+        help: "ProRes 4444 by your ffmpeg, for video editors",
+        streams: false,
+        keeps: Keeps { alpha: "kept", colors: "10 bits 4:4:4, tagged", timing: "exact", ending: NO_ENDING },
+        kind: Kind::Mov,
+        writer: Writer::Ffmpeg(&ffmpeg::MOV),
+    },
+    Format {
+        name: "y4m",
+        extensions: &["y4m"],
+        help: "uncompressed video for ffmpeg and other encoders",
+        streams: true,
+        keeps: Keeps { alpha: "lost, on black", colors: "8 bits Y'CbCr 4:4:4", timing: "exact", ending: NO_ENDING },
+        kind: Kind::Y4m,
+        writer: Writer::Own(raw::y4m),
+    },
+    Format {
+        name: "rgba",
+        extensions: &["rgba"],
+        help: "bare pixels, row after row, frame after frame",
+        streams: true,
+        keeps: Keeps { alpha: "kept, straight", colors: "exact, 8 bits sRGB", timing: "none", ending: "none" },
+        kind: Kind::Rgba,
+        writer: Writer::Own(raw::rgba),
+    },
+];
+
+/// Numbered files and a single picture, which have a row but are no format of their own.
+const STILLS: [(&str, &str, Keeps); 2] = [
+    (
+        "%04d.png",
+        "a file a frame, numbered; each is there as soon as it is done",
+        Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "none", ending: "none" },
+    ),
+    (".png", "a single frame", Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "none", ending: "none" }),
+];
+
+/// Every output: how it is named, what it is for, what it keeps.
+fn rows() -> impl Iterator<Item = (String, &'static str, &'static Keeps)> {
+    let stills = STILLS.iter().map(|(what, help, keeps)| ((*what).to_owned(), *help, keeps));
+    let dotted = |format: &Format| format.extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(" ");
+    stills.chain(FORMATS.iter().map(move |format| (dotted(format), format.help, &format.keeps)))
+}
+
+/// The outputs as lines for people: what each is for.
+pub fn table() -> String {
+    rows().map(|(what, help, _)| format!("  {what:<9} {help}")).collect::<Vec<_>>().join("\n")
+}
+
+const HEAD: [&str; 5] = ["output", "alpha", "colors", "timing", "end"];
+
+fn cells() -> Vec<[String; 5]> {
+    let row = |(what, _, keeps): (String, &str, &Keeps)| {
+        let Keeps { alpha, colors, timing, ending } = keeps;
+        [what, (*alpha).into(), (*colors).into(), (*timing).into(), (*ending).into()]
+    };
+    std::iter::once(HEAD.map(str::to_owned)).chain(rows().map(row)).collect()
+}
+
+/// What each output keeps of a scene, as lines for people.
+pub fn kept() -> String {
+    let cells = cells();
+    let width = |column: usize| cells.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths = [0, 1, 2, 3, 4].map(width);
+    let line = |row: &[String; 5]| {
+        let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}"));
+        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
+    };
+    cells.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The same table in Markdown, what each is for in it.
+#[cfg(test)]
+pub fn markdown() -> String {
+    let help = std::iter::once("for").chain(rows().map(|(_, help, _)| help));
+    let line = |([what, rest @ ..], help): ([String; 5], &str)| {
+        let what = if what == HEAD[0] { what } else { format!("`{what}`") };
+        format!("| {what} | {help} | {} |\n", rest.join(" | "))
+    };
+    let mut lines: Vec<String> = cells().into_iter().zip(help).map(line).collect();
+    lines.insert(1, format!("|{}\n", " --- |".repeat(6)));
+    lines.concat()
+}

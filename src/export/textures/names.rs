@@ -1,0 +1,126 @@
+//! How the files of a folder of textures are called, told before anything is made: which names a scene's textures may have,
+//! and which an earlier run wrote.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::Depth;
+use crate::files::lines;
+use crate::layers::Layer;
+use crate::scene::Scene;
+
+/// The file that names all others.
+pub const MANIFEST: &str = "manifest.json";
+/// The color atlas.
+pub const COLOUR: &str = "colour.png";
+
+/// The names that the textures of a scene may have.
+pub struct Names {
+    fixed: Vec<String>,
+    /// How the names of zones begin.
+    stems: Vec<String>,
+    extension: &'static str,
+}
+
+impl Names {
+    /// Those of `scene` at this depth.
+    pub fn of(scene: &Scene, depth: Depth) -> Names {
+        let several = scene.layers.len() > 1;
+        let stems = scene.layers.iter().flat_map(|layer| {
+            let Layer::Picture(picture) = layer;
+            picture.zones.iter().map(move |zone| stem(several.then_some(layer.name()), &zone.name))
+        });
+        let extension = depth.extension();
+        let fixed = vec![MANIFEST.to_owned(), COLOUR.to_owned(), format!("function.{extension}")];
+        Names { fixed, stems: stems.collect(), extension }
+    }
+
+    /// Whether a file of this name may come into being.
+    pub fn may_be(&self, name: &str) -> bool {
+        let texture = |stem: &String| {
+            let rest = name.strip_prefix(stem.as_str())?.strip_suffix(self.extension)?.strip_suffix('.')?;
+            // Zones of the same name are numbered.
+            let part = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+            let part = if part.len() < rest.len() { part.strip_prefix('-')? } else { part };
+            ["init", "jump", "thresholds"].contains(&part).then_some(())
+        };
+        self.fixed.iter().any(|fixed| fixed == name) || self.stems.iter().any(|stem| texture(stem).is_some())
+    }
+}
+
+/// How the files of a zone begin: its name in plain letters, the layer's before it where there are several.
+pub fn stem(layer: Option<&str>, zone: &str) -> String {
+    let layer = layer.map(|layer| format!("{}-", plain(layer))).unwrap_or_default();
+    format!("{layer}{}-", plain(zone))
+}
+
+/// Letters, digits, `-` and `_` of a name, others as `-`.
+fn plain(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
+    let plain = plain.trim_matches('-');
+    if plain.is_empty() { "zone".into() } else { plain.into() }
+}
+
+/// The files that an earlier run wrote to the folder `dir`, as its manifest tells; none where there is none.
+pub fn earlier(dir: &Path) -> BTreeSet<String> {
+    let text = lines::read(&dir.join(MANIFEST)).ok();
+    let manifest = text.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    let Some(manifest) = manifest.filter(|manifest| manifest.get("plica_textures").is_some()) else {
+        return BTreeSet::new();
+    };
+    let mut names = BTreeSet::from([MANIFEST.to_owned()]);
+    collect(&manifest, &mut names);
+    names
+}
+
+/// The names of files in a manifest; only such as a run writes.
+fn collect(value: &Value, names: &mut BTreeSet<String>) {
+    let is_ours = |name: &&String| {
+        let ours = [".png", ".exr"].iter().any(|end| name.ends_with(end));
+        ours && !name.contains('/') && !name.starts_with('.')
+    };
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(key, value)| match value {
+            Value::String(name) if key == "file" => names.extend(Some(name).filter(is_ours).cloned()),
+            _ => collect(value, names),
+        }),
+        Value::Array(items) => items.iter().for_each(|item| collect(item, names)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_plain() {
+        for (layer, zone, expected) in [
+            (None, "left eye", "left-eye-"),
+            (None, "../../etc/passwd", "etc-passwd-"),
+            (None, "眼", "眼-"),
+            (None, "...", "zone-"),
+            (Some("face"), "lid", "face-lid-"),
+        ] {
+            assert_eq!(stem(layer, zone), expected);
+        }
+    }
+
+    #[test]
+    fn a_manifest_names_what_a_run_wrote_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = |text: &str| {
+            std::fs::write(folder.path().join(MANIFEST), text).unwrap();
+            earlier(folder.path()).into_iter().collect::<Vec<_>>()
+        };
+        let text = r#"{"plica_textures": 1, "colour": {"file": "colour.png"}, "layers": [{"zones": [
+            {"init": {"file": "a-init.exr"}, "name": "x.png", "jump": {"file": "../b.png"}},
+            {"init": {"file": ".hidden.png"}, "jump": {"file": "photo.jpg"}}]}]}"#;
+        assert_eq!(names(text), ["a-init.exr", "colour.png", MANIFEST]);
+        assert!(names(r#"{"colour": {"file": "colour.png"}}"#).is_empty());
+        assert!(names("no JSON").is_empty());
+        assert!(earlier(&folder.path().join("none")).is_empty());
+    }
+}

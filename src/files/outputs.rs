@@ -1,0 +1,411 @@
+//! The one door for whatever a command writes: [`Guard`] gives the [`Place`]s that drafts are made for. Nothing that an open
+//! scene reads is ever replaced, through whichever link or spelling; another file only by the same kind of file, or where
+//! the person forces it. All of it is decided before work begins.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, Metadata};
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+use super::{disk, holder, journal, materials, paths, temporary};
+use crate::base::error::{Error, Result};
+use crate::scene::Scene;
+
+/// A kind of file, told by how its content begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// PNG, animated or not.
+    Png,
+    /// GIF.
+    Gif,
+    /// WebP, animated or not.
+    WebP,
+    /// YUV4MPEG2.
+    Y4m,
+    /// Bare pixels, which nothing tells: a file of that extension that begins like no other kind.
+    Rgba,
+    /// MPEG-4 video.
+    Mp4,
+    /// QuickTime video.
+    Mov,
+    /// WebM or Matroska video.
+    WebM,
+    /// A drawing.
+    Svg,
+    /// A table of jump vectors, as `plica field` writes it.
+    Csv,
+    /// OpenEXR.
+    Exr,
+}
+
+/// How much of a file tells its kind.
+const HEAD: usize = 512;
+
+/// The first line of a table of jump vectors.
+pub const CSV_HEADER: &str = "x,y,dx,dy,length,degrees";
+
+/// What messages call a kind, and how a file of it begins.
+type Row = (Kind, &'static str, fn(&[u8]) -> bool);
+
+const KINDS: &[Row] = &[
+    (Kind::Png, "PNG", |head| head.starts_with(b"\x89PNG\r\n\x1a\n")),
+    (Kind::Gif, "GIF", |head| head.starts_with(b"GIF87a") || head.starts_with(b"GIF89a")),
+    (Kind::WebP, "WebP", |head| head.starts_with(b"RIFF") && head.get(8..12) == Some(b"WEBP")),
+    (Kind::Y4m, "y4m video", |head| head.starts_with(b"YUV4MPEG2 ")),
+    (Kind::Mov, "QuickTime video", |head| head.get(4..12) == Some(b"ftypqt  ")),
+    (Kind::Mp4, "MP4 video", |head| head.get(4..8) == Some(b"ftyp") && head.get(8..12) != Some(b"qt  ")),
+    (Kind::WebM, "WebM video", |head| head.starts_with(b"\x1a\x45\xdf\xa3")),
+    (Kind::Svg, "SVG drawing", |head| head.starts_with(b"<") && head.windows(4).any(|four| four == b"<svg")),
+    (Kind::Csv, "table that plica field wrote", |head| head.starts_with(CSV_HEADER.as_bytes())),
+    (Kind::Exr, "OpenEXR picture", |head| head.starts_with(b"\x76\x2f\x31\x01")),
+];
+
+impl Kind {
+    fn of(head: &[u8]) -> Option<Kind> {
+        KINDS.iter().find(|(_, _, begins)| begins(head)).map(|(kind, ..)| *kind)
+    }
+
+    fn name(self) -> &'static str {
+        KINDS.iter().find(|(kind, ..)| *kind == self).map_or("file of bare pixels", |(_, name, _)| name)
+    }
+
+    /// Whether the file at `path` is of this kind.
+    fn is_of(self, path: &Path, length: u64) -> std::io::Result<bool> {
+        let mut head = Vec::new();
+        File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
+        let bare = || length % 4 == 0 && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("rgba"));
+        Ok(match Kind::of(&head) {
+            Some(kind) => kind == self,
+            None => self == Kind::Rgba && bare(),
+        })
+    }
+}
+
+/// A file that may be written: the guard has looked at it.
+#[derive(Clone, Debug)]
+pub struct Place(PathBuf);
+
+impl Place {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+/// A folder whose files may be written: those that are in the way are the person's own earlier output.
+#[derive(Clone, Debug)]
+pub struct FolderPlace {
+    path: PathBuf,
+    /// The files of the earlier output.
+    pub earlier: BTreeSet<String>,
+}
+
+impl FolderPlace {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// A file that must stay.
+#[derive(Debug)]
+struct Input {
+    /// Its folder without links, and its name in small letters: that is how one that is not there yet is known.
+    place: Option<(PathBuf, String)>,
+    /// Device and number of one that is there, whatever it is called.
+    file: Option<(u64, u64)>,
+    /// Why it must stay.
+    what: String,
+}
+
+/// Knows what must stay, and lets the rest pass.
+#[derive(Debug, Default)]
+pub struct Guard {
+    inputs: Vec<Input>,
+    force: bool,
+    notes: Vec<String>,
+}
+
+impl Guard {
+    /// A guard that lets files of another kind be replaced where the person forces it.
+    pub fn new(force: bool) -> Guard {
+        Guard { force, ..Guard::default() }
+    }
+
+    /// Keeps the scene at `path` (`-` is standard input), its journal, and every file that it names.
+    pub fn protect(&mut self, path: &Path, scene: &Scene) {
+        let called = if path == Path::new("-") { "the scene".to_owned() } else { path.display().to_string() };
+        if path != Path::new("-") {
+            let real = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+            self.keep(path, "is the scene itself".into());
+            let journals = [Some(journal::path_beside(&real)), journal::path_in_state(&real)];
+            for journal in journals.into_iter().flatten().chain([holder::path_beside(&real)]) {
+                self.keep(&journal, format!("belongs to the journal of {called}"));
+            }
+        }
+        for name in materials::paths(scene) {
+            // What stands behind a # says which part of the file is meant.
+            for name in [Some(name), name.rsplit_once('#').map(|(file, _)| file)].into_iter().flatten() {
+                self.keep(&paths::beside(path, name), format!("is read by {called}"));
+            }
+        }
+    }
+
+    fn keep(&mut self, path: &Path, what: String) {
+        let file = fs::metadata(path).ok().map(|found| identity(&found));
+        self.inputs.push(Input { place: place(path), file, what });
+    }
+
+    /// Why the file at `path` must stay; `None` where it need not.
+    fn kept(&self, path: &Path) -> Option<&str> {
+        let (found, place) = (fs::metadata(path).ok().map(|found| identity(&found)), place(path));
+        let is = |input: &&Input| match (input.file, found) {
+            (Some(input), Some(found)) => input == found,
+            _ => input.place.is_some() && input.place == place,
+        };
+        self.inputs.iter().find(is).map(|input| input.what.as_str())
+    }
+
+    /// Refuses a file that must stay.
+    ///
+    /// # Errors
+    /// Says what it is.
+    pub fn spare(&self, path: &Path) -> Result<()> {
+        match self.kept(path) {
+            None => Ok(()),
+            Some(what) => Err(Error::at(path.display(), format!("{what}: no output may replace it"))
+                .cure("name another file for the output")),
+        }
+    }
+
+    /// The place at `path`, for a file of this kind.
+    ///
+    /// # Errors
+    /// When the file must stay, or is of another kind and nobody forces it.
+    pub fn file(&mut self, path: &Path, kind: Kind) -> Result<Place> {
+        let place = self.one(path, kind)?;
+        self.clear(disk::folder_of(path));
+        Ok(place)
+    }
+
+    /// The same for many files in `folder`.
+    ///
+    /// # Errors
+    /// As [`Guard::file`].
+    pub fn files(&mut self, folder: &Path, names: &[String], kind: Kind) -> Result<Vec<Place>> {
+        let places = names.iter().map(|name| self.one(&folder.join(name), kind)).collect::<Result<_>>()?;
+        self.clear(folder);
+        Ok(places)
+    }
+
+    fn one(&self, path: &Path, kind: Kind) -> Result<Place> {
+        self.spare(path)?;
+        let place = Place(path.to_owned());
+        let Ok(found) = fs::metadata(path) else { return Ok(place) };
+        if self.force || !found.is_file() || found.len() == 0 {
+            return Ok(place);
+        }
+        match kind.is_of(path, found.len()) {
+            Ok(true) => Ok(place),
+            Ok(false) => Err(in_the_way(path, format!("is there already and is no {}", kind.name()))),
+            Err(error) => Err(in_the_way(path, format!("is there already and cannot be read: {error}"))),
+        }
+    }
+
+    /// The folder at `path`, for a set of files. `may_write` tells which names the set may have; `earlier` are the names of
+    /// an output of the same command that is there.
+    ///
+    /// # Errors
+    /// When a file of such a name must stay, or is not of an earlier output and nobody forces it.
+    pub fn folder(
+        &mut self,
+        path: &Path,
+        may_write: &dyn Fn(&str) -> bool,
+        earlier: BTreeSet<String>,
+    ) -> Result<FolderPlace> {
+        self.spare(path)?;
+        for entry in fs::read_dir(path).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if may_write(&name) || earlier.contains(&name) {
+                self.spare(&path.join(&name))?;
+            }
+            if may_write(&name) && !earlier.contains(&name) && !self.force {
+                let what = "is there already, and no earlier output names it";
+                return Err(in_the_way(&path.join(&name), what.into()));
+            }
+        }
+        self.clear(path);
+        self.clear(disk::folder_of(path));
+        Ok(FolderPlace { path: path.to_owned(), earlier })
+    }
+
+    fn clear(&mut self, folder: &Path) {
+        let folder = if folder == Path::new("") { Path::new(".") } else { folder };
+        let count = temporary::remove_stale(folder);
+        if count > 0 {
+            let what = if count == 1 { "an unfinished output" } else { "unfinished outputs" };
+            self.notes.push(format!("{}: cleared {what} of a run that was killed ({count})", folder.display()));
+        }
+    }
+
+    /// What a person should know about what was looked at, a line each; told once.
+    pub fn notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
+    }
+}
+
+fn in_the_way(path: &Path, what: String) -> Error {
+    Error::at(path.display(), what).cure("name another one, or give --force to replace it")
+}
+
+fn identity(found: &Metadata) -> (u64, u64) {
+    (found.dev(), found.ino())
+}
+
+fn place(path: &Path) -> Option<(PathBuf, String)> {
+    let folder = fs::canonicalize(disk::folder_of(path)).ok()?;
+    Some((folder, path.file_name()?.to_string_lossy().to_lowercase()))
+}
+
+/// The first and the last bytes of the file at `path`, so many or as many as there are.
+///
+/// # Errors
+/// It is no regular file, or cannot be read.
+pub fn ends(path: &Path, first: usize, last: usize) -> Result<(Vec<u8>, Vec<u8>)> {
+    let mut file = paths::open_named(path)?;
+    let (mut head, mut tail) = (Vec::new(), Vec::new());
+    let mut read = || {
+        let length = file.metadata()?.len();
+        (&mut file).take(first as u64).read_to_end(&mut head)?;
+        file.seek(SeekFrom::Start(length.saturating_sub(last as u64)))?;
+        (&mut file).take(last as u64).read_to_end(&mut tail)
+    };
+    read().map_err(|error| Error::at(path.display(), error))?;
+    Ok((head, tail))
+}
+
+/// How many bytes the files at `paths` hold.
+pub fn size<'a>(paths: impl IntoIterator<Item = &'a Path>) -> u64 {
+    paths.into_iter().filter_map(|path| fs::metadata(path).ok()).map(|found| found.len()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Document;
+    use std::os::unix::fs::symlink;
+
+    const PNG: &[u8] = b"\x89PNG\r\n\x1a\n and more";
+
+    /// A scene that reads `sub/cat.png`, `missing.flo` and `layers.exr#beauty`, in a folder with links to them.
+    fn folder() -> (tempfile::TempDir, Guard) {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        fs::create_dir(root.join("sub")).unwrap();
+        for name in ["sub/cat.png", "layers.exr", "other.png"] {
+            fs::write(root.join(name), PNG).unwrap();
+        }
+        let text = r#"{"plica": 1, "images": {"cat": {"path": "sub/cat.png"}, "exr": {"path": "layers.exr#beauty"}},
+            "layers": [{"kind": "picture", "name": "l", "image": "cat", "zones": [{"name": "z",
+            "outline": {"kind": "rectangle", "x": 0, "y": 0, "width": 2, "height": 2},
+            "motion": [{"tool": "field", "path": "missing.flo"}]}]}]}"#;
+        fs::write(root.join("s.plica.json"), text).unwrap();
+        symlink("sub/cat.png", root.join("link.png")).unwrap();
+        symlink("link.png", root.join("chain.png")).unwrap();
+        symlink("sub", root.join("folder")).unwrap();
+        symlink("s.plica.json", root.join("scene-link.png")).unwrap();
+        fs::hard_link(root.join("sub/cat.png"), root.join("hard.png")).unwrap();
+        let mut guard = Guard::new(true);
+        guard.protect(&root.join("s.plica.json"), Document::parse(text).unwrap().scene());
+        (folder, guard)
+    }
+
+    #[test]
+    fn what_a_scene_reads_stays_whatever_it_is_called() {
+        let (folder, mut guard) = folder();
+        for (name, what) in [
+            ("sub/cat.png", Some("is read by")),
+            ("folder/cat.png", Some("is read by")),
+            ("sub/../sub/cat.png", Some("is read by")),
+            ("link.png", Some("is read by")),
+            ("chain.png", Some("is read by")),
+            ("hard.png", Some("is read by")),
+            ("missing.flo", Some("is read by")),
+            ("sub/../Missing.FLO", Some("is read by")),
+            ("layers.exr", Some("is read by")),
+            ("s.plica.json", Some("the scene itself")),
+            ("scene-link.png", Some("the scene itself")),
+            (".s.journal", Some("journal")),
+            (".s.editor", Some("journal")),
+            ("other.png", None),
+            ("sub/missing.flo", None),
+            ("new.png", None),
+            ("sub/cat2.png", None),
+        ] {
+            let refused = guard.file(&folder.path().join(name), Kind::Png).err().map(|error| error.to_string());
+            match what {
+                None => assert_eq!(refused, None, "{name}"),
+                Some(what) => assert!(refused.as_ref().is_some_and(|said| said.contains(what)), "{name}: {refused:?}"),
+            }
+        }
+        let names = ["new.png".to_owned(), "link.png".into()];
+        assert!(guard.files(folder.path(), &names, Kind::Png).is_err());
+        assert!(guard.folder(folder.path(), &|name| name == "hard.png", BTreeSet::new()).is_err());
+        assert!(guard.folder(folder.path(), &|_| false, BTreeSet::from(["hard.png".to_owned()])).is_err());
+        guard.folder(folder.path(), &|name| name == "other.png", BTreeSet::new()).unwrap();
+    }
+
+    #[test]
+    fn other_files_are_replaced_by_their_own_kind_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let heads: [(&[u8], Option<Kind>); 13] = [
+            (PNG, Some(Kind::Png)),
+            (b"GIF89a..", Some(Kind::Gif)),
+            (b"RIFF\0\0\0\0WEBPVP8X", Some(Kind::WebP)),
+            (b"RIFF\0\0\0\0WAVEfmt ", None),
+            (b"YUV4MPEG2 W3 H2", Some(Kind::Y4m)),
+            (b"\0\0\0\x18ftypisom", Some(Kind::Mp4)),
+            (b"\0\0\0\x14ftypqt  ", Some(Kind::Mov)),
+            (b"\x1a\x45\xdf\xa3....webm", Some(Kind::WebM)),
+            (b"<?xml version=\"1.0\"?>\n<svg>", Some(Kind::Svg)),
+            (b"x,y,dx,dy,length,degrees\n", Some(Kind::Csv)),
+            (b"x,y\n1,2\n", None),
+            (b"\x76\x2f\x31\x01....", Some(Kind::Exr)),
+            (b"{\"plica\": 1}", None),
+        ];
+        for (head, kind) in heads {
+            let path = folder.path().join("there.rgba");
+            fs::write(&path, head).unwrap();
+            assert_eq!(Kind::of(head), kind);
+            for (own, name, _) in KINDS {
+                let gives = Guard::new(false).file(&path, *own);
+                assert_eq!(gives.is_ok(), kind == Some(*own), "{name} over {:?}", String::from_utf8_lossy(head));
+                assert!(Guard::new(true).file(&path, *own).is_ok());
+                if let Err(error) = gives {
+                    assert!(error.to_string().contains("--force"), "{error}");
+                }
+            }
+            let pixels = kind.is_none() && head.len() % 4 == 0;
+            assert_eq!(Guard::new(false).file(&path, Kind::Rgba).is_ok(), pixels, "{head:?}");
+        }
+        let empty = folder.path().join("empty.gif");
+        fs::write(&empty, "").unwrap();
+        Guard::new(false).file(&empty, Kind::Gif).unwrap();
+        Guard::new(false).file(Path::new("/dev/null"), Kind::Gif).unwrap();
+    }
+
+    #[test]
+    fn a_folder_gives_its_earlier_output_only() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["colour.png", "mine.png"] {
+            fs::write(folder.path().join(name), PNG).unwrap();
+        }
+        let earlier = || BTreeSet::from(["colour.png".to_owned()]);
+        let gives = |force: bool, name: &'static str| {
+            Guard::new(force).folder(folder.path(), &move |other| other == name, earlier()).is_ok()
+        };
+        assert!(gives(false, "colour.png") && gives(false, "new.png") && gives(true, "mine.png"));
+        assert!(!gives(false, "mine.png"));
+    }
+}
