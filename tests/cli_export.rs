@@ -130,8 +130,8 @@ fn ended_by(dir: &Path, signal: &str, line: &str, begun: impl Fn(&[String]) -> b
     child.wait_with_output().unwrap()
 }
 
-fn is_hidden(name: &String) -> bool {
-    name.starts_with('.')
+fn is_hidden(name: impl AsRef<str>) -> bool {
+    name.as_ref().starts_with('.')
 }
 
 #[test]

@@ -74,7 +74,7 @@ impl Kind {
     fn is_of(self, path: &Path, length: u64) -> std::io::Result<bool> {
         let mut head = Vec::new();
         File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
-        let bare = || length % 4 == 0 && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("rgba"));
+        let bare = || length.is_multiple_of(4) && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("rgba"));
         Ok(match Kind::of(&head) {
             Some(kind) => kind == self,
             None => self == Kind::Rgba && bare(),

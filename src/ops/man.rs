@@ -43,6 +43,12 @@ fn page() -> io::Result<String> {
     Ok(lines.map(|(_, line)| format!("{line}\n")).collect())
 }
 
+/// Tables and lines to copy: nothing in them is filled, and nothing is a command of roff.
+fn as_it_stands(text: &str) -> String {
+    let escape = |line: &str| format!("\\&{}\n", line.replace('\\', "\\e").replace('-', "\\-"));
+    format!(".SH OUTPUTS\n.nf\n{}.fi\n", text.lines().map(escape).collect::<String>())
+}
+
 /// The section of one subcommand; what would be sections of a page of its own are parts of it.
 fn section(command: &clap::Command) -> io::Result<String> {
     let mut parts = Vec::new();
@@ -50,6 +56,23 @@ fn section(command: &clap::Command) -> io::Result<String> {
     man.render_synopsis_section(&mut parts)?;
     man.render_description_section(&mut parts)?;
     man.render_options_section(&mut parts)?;
+    if let Some(more) = command.get_after_long_help().or(command.get_after_help()) {
+        parts.extend(as_it_stands(&more.to_string()).into_bytes());
+    }
     let parts = String::from_utf8_lossy(&parts).replace(".SH ", ".SS ");
     Ok(format!(".SH \"PLICA {}\"\n{parts}", command.get_name().to_uppercase()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_manual_has_the_table_of_outputs() {
+        let page = page().unwrap();
+        let render = page.split(".SH \"PLICA RENDER\"").nth(1).unwrap();
+        let table = render.split(".SS OUTPUTS\n.nf\n").nth(1).unwrap().split(".fi").next().unwrap();
+        let plain = table.replace("\\&", "").replace("\\-", "-").replace("\\e", "\\");
+        assert!(plain.contains(&crate::export::animation::formats::kept()), "{plain}");
+    }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use super::demo::quoted;
 use super::writing::{Counting, Replacing};
 use super::{
     Context,
@@ -62,14 +63,17 @@ pub struct Args {
 
 fn outputs_help() -> String {
     format!(
-        "Outputs:\n{}\n  -         y4m or rgba for another program, by --format\n\nWhat they keep:\n{}\n\n\
-         Video by another line than ours, as:\n  plica render SCENE -o - --format y4m | ffmpeg -i - -pix_fmt yuv420p \\\n    \
-         -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv \\\n    \
-         -c:v libx264 -crf 16 out.mp4\n  (below 720 lines -colorspace smpte170m, or give --matrix bt709)",
+        "Outputs:\n{}\n  -         y4m or rgba for another program, by --format\n\nWhat they keep:\n{}\n\n{LINE}",
         table(),
         kept()
     )
 }
+
+const LINE: &str = "Video by a line of your own (from 720 lines on; below them smpte170m in the place of bt709, twice):
+  plica render SCENE -o - --format y4m | ffmpeg -i pipe:0 \\
+    -vf format=yuv420p,setparams=colorspace=bt709:color_primaries=bt709:color_trc=iec61966-2-1:range=tv \\
+    -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv \\
+    -c:v libx264 -crf 16 out.mp4";
 
 /// A frame of the scene, and the number of its file.
 type Numbered = (u64, u64);
@@ -218,7 +222,18 @@ fn show(
     let rate = Rate::from_fps(timeline.fps).every(range::step(frames).unwrap_or(1));
     let matrix = args.matrix.as_deref().and_then(Matrix::named);
     let once = timeline.wrap == Wrap::Once;
-    Show { place, width, height, frames: count as u64, rate, once, matrix, cancel: context.cancel.clone() }
+    let (command, cancel) = (command(args), context.cancel.clone());
+    Show { place, width, height, frames: count as u64, rate, once, matrix, command, cancel }
+}
+
+/// The command line without its output.
+fn command(args: &Args) -> String {
+    let scene = quoted(&args.scene.display().to_string());
+    let options = [("frames", &args.frames), ("size", &args.size), ("matrix", &args.matrix)];
+    let options = options.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value.as_ref()?)));
+    let samples = (args.samples > 1).then(|| format!(" --samples {}", args.samples));
+    let words = ["plica render ".to_owned(), scene].into_iter().chain(options).chain(samples);
+    words.chain(args.gpu.then(|| " --gpu".to_owned())).collect()
 }
 
 /// What turns a time into a finished frame.

@@ -71,27 +71,47 @@ impl Codec {
         (side(show.width), side(show.height))
     }
 
-    /// What ffmpeg is told between its name and the file.
+    /// What ffmpeg is told between its name and the file, for our frames.
     fn arguments(&self, show: &Show) -> Vec<String> {
-        let (width, height) = self.size(show);
-        let matrix = show.matrix().ffmpeg();
-        let (num, den) = (show.rate.num, show.rate.den);
-        let convert = format!("scale=out_color_matrix={matrix}:out_range=tv:flags=accurate_rnd+full_chroma_int");
-        let tags = format!("setparams=colorspace={matrix}:color_primaries=bt709:color_trc=iec61966-2-1:range=tv");
-        let pixels = self.pixels;
-        let words = [
-            format!("-f rawvideo -pixel_format rgba -video_size {width}x{height} -framerate {num}/{den} -i pipe:0"),
-            format!("-vf {convert},format={pixels},{tags} -pix_fmt {pixels}"),
-            format!("-colorspace {matrix} -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv"),
-            format!("{} -f {}", self.encoder, self.container),
-        ];
-        words.iter().flat_map(|line| line.split(' ')).map(str::to_owned).collect()
+        let line = format!("{} {}", bare(show, self.size(show)), self.output(show, &convert(show)));
+        line.split(' ').map(str::to_owned).collect()
     }
 
-    /// The line that a person can run instead, where there is an ffmpeg.
-    fn line(&self, show: &Show) -> String {
-        format!("plica render SCENE -o - --format rgba | ffmpeg {} {}", self.arguments(show).join(" "), show.place)
+    /// What it makes of frames that went through a filter.
+    fn output(&self, show: &Show, filter: &str) -> String {
+        let (matrix, pixels) = (show.matrix().ffmpeg(), self.pixels);
+        let tags = format!("setparams=colorspace={matrix}:color_primaries=bt709:color_trc=iec61966-2-1:range=tv");
+        format!(
+            "-vf {filter}format={pixels},{tags} -pix_fmt {pixels} -colorspace {matrix} -color_primaries bt709 \
+             -color_trc iec61966-2-1 -color_range tv {} -f {}",
+            self.encoder, self.container
+        )
     }
+
+    /// The line that a person can run instead, where there is an ffmpeg. What has no alpha goes as y4m, which lies on black.
+    fn line(&self, show: &Show) -> String {
+        let (size, own) = (self.size(show), (show.width, show.height));
+        let pad = if size == own { String::new() } else { format!("pad={}:{},", size.0, size.1) };
+        let (format, input, filter) =
+            if self.alpha { ("rgba", bare(show, own), convert(show)) } else { ("y4m", "-i pipe:0".into(), pad) };
+        format!(
+            "{} -o - --format {format} | ffmpeg {input} {} {}",
+            show.command,
+            self.output(show, &filter),
+            show.place
+        )
+    }
+}
+
+/// Bare pixels as ffmpeg reads them.
+fn bare(show: &Show, (width, height): (usize, usize)) -> String {
+    let (num, den) = (show.rate.num, show.rate.den);
+    format!("-f rawvideo -pixel_format rgba -video_size {width}x{height} -framerate {num}/{den} -i pipe:0")
+}
+
+/// The filter that makes Y'CbCr of them.
+fn convert(show: &Show) -> String {
+    format!("scale=out_color_matrix={}:out_range=tv:flags=accurate_rnd+full_chroma_int,", show.matrix().ffmpeg())
 }
 
 /// Whether the person has an ffmpeg, asked before work begins.

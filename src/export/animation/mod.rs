@@ -47,6 +47,8 @@ pub struct Show {
     pub once: bool,
     /// The matrix that a person asks for; `None` is the one that players expect.
     pub matrix: Option<Matrix>,
+    /// The command that makes the same without its output, for messages that tell another way.
+    pub command: String,
     /// The wish to stop, for what waits for another program.
     pub cancel: Arc<AtomicBool>,
 }

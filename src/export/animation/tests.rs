@@ -38,6 +38,7 @@ fn show(frames: &[Frame], fps: f64, once: bool) -> Show {
         rate: Rate::from_fps(fps),
         once,
         matrix: None,
+        command: "plica render s".into(),
         cancel: Arc::default(),
     }
 }
@@ -300,4 +301,20 @@ fn the_table_is_complete() {
         assert!(!format.help.is_empty() && !format.extensions.is_empty());
         assert!(format.extensions.iter().all(|e| seen.insert(*e) && e.to_lowercase() == **e), "{}", format.name);
     }
+}
+
+#[test]
+fn the_documentation_has_the_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/outputs.md");
+    let text = fs::read_to_string(&path).unwrap();
+    let (before, rest) = text.split_once("<!-- table -->\n").unwrap();
+    let (_, after) = rest.split_once("<!-- end -->").unwrap();
+    let new = format!("{before}<!-- table -->\n{}<!-- end -->{after}", formats::markdown());
+    if std::env::var_os("PLICA_UPDATE").is_some() {
+        fs::write(&path, &new).unwrap();
+    }
+    assert!(
+        fs::read_to_string(&path).unwrap() == new,
+        "docs/outputs.md is old: run the tests once with PLICA_UPDATE=1"
+    );
 }
