@@ -1,7 +1,8 @@
 //! The arithmetic of number entries: `5` and `-18` are values, `+=3` and `*1.1` change the old value, everything else is
 //! computed over named variables. A parser of our own: it is small, its limits are ours, and it evaluates as it reads.
 //!
-//! Angles are degrees, as they are everywhere in a scene.
+//! Angles are degrees, as they are everywhere in a scene. A comma between digits is a decimal point (`4,5`), except in the
+//! list of a function's arguments, where it separates; a true minus sign (U+2212) is a minus.
 
 use super::maths;
 
@@ -85,7 +86,7 @@ pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
         Some((operator, skip)) => (Some(operator), skip),
         None => (None, usize::from(trimmed.starts_with('='))),
     };
-    let mut parser = Parser { text, at: start + skip, depth: 0, variables };
+    let mut parser = Parser { text, at: start + skip, depth: 0, lists: 0, variables };
     let right = parser.sum()?;
     parser.space();
     if let Some(found) = parser.peek() {
@@ -108,10 +109,11 @@ pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
 
 /// The operator of a relative entry and how many bytes it takes.
 fn relative(text: &str) -> Option<(char, usize)> {
-    let operator = text.chars().next().filter(|c| "+-*/".contains(*c))?;
-    match (operator, text[1..].starts_with('=')) {
-        (_, true) => Some((operator, 2)),
-        ('*' | '/', false) => Some((operator, 1)),
+    let found = text.chars().next().filter(|c| "+-−*/".contains(*c))?;
+    let (operator, after) = (if found == '−' { '-' } else { found }, found.len_utf8());
+    match (operator, text[after..].starts_with('=')) {
+        (_, true) => Some((operator, after + 1)),
+        ('*' | '/', false) => Some((operator, after)),
         _ => None,
     }
 }
@@ -120,6 +122,8 @@ struct Parser<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
+    /// How many lists of arguments it is in.
+    lists: usize,
     variables: &'a Variables<'a>,
 }
 
@@ -142,11 +146,9 @@ impl Parser<'_> {
 
     fn take(&mut self, wanted: char) -> bool {
         self.space();
-        let found = self.peek() == Some(wanted);
-        if found {
-            self.at += wanted.len_utf8();
-        }
-        found
+        let found = self.peek().filter(|&c| c == wanted || (c, wanted) == ('−', '-'));
+        self.at += found.map_or(0, char::len_utf8);
+        found.is_some()
     }
 
     /// Takes the longest run of characters that `wanted` accepts.
@@ -218,15 +220,24 @@ impl Parser<'_> {
 
     fn number(&mut self) -> Result<f64, Mistake> {
         let start = self.at;
+        // In a list of arguments a comma ends the number.
+        let comma = self.lists == 0;
         self.run(|c| c.is_ascii_digit() || c == '.');
-        let rest = self.rest().as_bytes();
-        let sign = usize::from(matches!(rest.get(1), Some(b'+' | b'-')));
-        if matches!(rest.first(), Some(b'e' | b'E')) && rest.get(1 + sign).is_some_and(u8::is_ascii_digit) {
-            self.at += 1 + sign;
+        while comma && self.rest().strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+        {
+            self.at += 1;
+            self.run(|c| c.is_ascii_digit() || c == '.');
+        }
+        let sign = |c: char| matches!(c, '+' | '-' | '−');
+        let exponent = self.rest().strip_prefix(['e', 'E']).map(|rest| rest.strip_prefix(sign).unwrap_or(rest));
+        if let Some(digits) = exponent.filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
+            self.at = self.text.len() - digits.len();
             self.run(|c| c.is_ascii_digit());
         }
         let text = &self.text[start..self.at];
-        let value = text.parse().map_err(|_| format!("`{text}` is not a number"));
+        let plain = text.replace('−', "-");
+        let plain = if plain.contains('.') { plain } else { plain.replacen(',', ".", 1) };
+        let value = plain.parse().map_err(|_| format!("`{text}` is not a number"));
         value.map_err(|what| Mistake { column: self.text[..start].chars().count() + 1, what })
     }
 
@@ -252,16 +263,21 @@ impl Parser<'_> {
         if !self.take('(') {
             return Err(self.mistake(format!("expected `(` after {}", function.name)));
         }
+        self.lists += 1;
         let mut arguments = vec![self.sum()?];
         while self.take(',') {
             arguments.push(self.sum()?);
         }
+        self.lists -= 1;
         if !self.take(')') {
             return Err(self.mistake("expected `,` or `)`"));
         }
         match function.arguments {
             Some(n) if n != arguments.len() => {
-                Err(self.mistake(format!("{} takes {n} numbers, found {}", function.name, arguments.len())))
+                let s = if n == 1 { "" } else { "s" };
+                let found = arguments.len();
+                let hint = if found > n { " (here a comma separates: write 4.5)" } else { "" };
+                Err(self.mistake(format!("{} takes {n} number{s}, found {found}{hint}", function.name)))
             }
             _ => Ok((function.apply)(&arguments)),
         }
@@ -302,6 +318,20 @@ mod tests {
             ("min(3, x-1, 9)", 2.0),
             ("round(sin(30)*100)", 50.0),
             ("2*pi", std::f64::consts::TAU),
+            ("4,5", 4.5),
+            ("-4,5", -4.5),
+            ("+=4,5", 14.5),
+            ("*1,1", 11.0),
+            ("1,5e2", 150.0),
+            ("2*(1,5+x)", 9.0),
+            ("min(4,5)", 4.0),
+            ("max((1+1), 2,5)", 5.0),
+            ("min(9, 4)+0,5", 4.5),
+            ("−18", -18.0),
+            ("5 − 3", 2.0),
+            ("−=3", 7.0),
+            ("2^−1", 0.5),
+            ("1e−3", 0.001),
         ] {
             assert_eq!(evaluate(text, &VARIABLES), Ok(value), "{text}");
         }
@@ -315,7 +345,13 @@ mod tests {
             ("2*q", 3, "`q` is not known"),
             ("(1", 3, "`)`"),
             ("1.2.3", 1, "not a number"),
-            ("sqrt(1,2)", 10, "takes 1"),
+            ("sqrt(1,2)", 10, "takes 1 number, found 2 (here a comma separates"),
+            ("4,", 2, "operator, found `,`"),
+            (",5", 1, "a number, found `,`"),
+            ("4, 5", 2, "operator, found `,`"),
+            ("1,234,567", 1, "not a number"),
+            ("1.234,5", 1, "not a number"),
+            ("−−", 3, "found the end"),
             ("sqrt", 5, "expected `(`"),
             ("1/0", 1, "finite"),
             ("sqrt(-1)", 1, "finite"),

@@ -35,6 +35,15 @@ pub struct Count<'a> {
     pub count: f64,
 }
 
+/// A thing of another kind made out of an old one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// What stands in its place; more than one thing only in a list, where they follow one another.
+    pub items: Vec<Value>,
+    /// What could not be kept, in words.
+    pub lost: Option<String>,
+}
+
 /// The problems of a layer, part by part, each relative to its part: what an edit leaves alone keeps them.
 #[derive(Clone, Debug, Default)]
 pub struct Checked(pub Vec<Arc<[Problem]>>);
@@ -106,6 +115,14 @@ impl Layer {
     pub fn files(&self) -> Vec<(String, &str)> {
         match self {
             Layer::Picture(picture) => folding::check::files(picture),
+        }
+    }
+
+    /// What the `old` thing at `path` (relative to the layer) becomes as one of the kind `to`; none where fields of the
+    /// same name are all that both kinds can have in common.
+    pub fn turned(&self, path: &str, old: &Value, to: &str) -> Option<Turned> {
+        match self {
+            Layer::Picture(picture) => folding::kinds::turned(picture, path, old, to),
         }
     }
 

@@ -11,7 +11,7 @@ pub struct Timeline {
     /// Length of one pass.
     #[schemars(range(min = 0.0, max = 86400.0), extend("unit" = "s"))]
     pub duration: f64,
-    /// Frames a second.
+    /// Frames per second.
     #[schemars(range(min = 0.001, max = 1000.0), extend("unit" = "fps"))]
     pub fps: f64,
     /// What follows the end.

@@ -113,10 +113,18 @@ pub fn parse(words: &[String]) -> Result<Command> {
     let table = Command::augment_subcommands(clap::Command::new("plica").no_binary_name(true));
     let usage = |error: clap::Error| {
         let text = error.to_string();
-        let first = text.lines().next().unwrap_or_default();
-        Error::Usage(first.trim_start_matches("error: ").to_owned())
+        let told = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        let told = told.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more information"));
+        Error::Usage(told.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned())
     };
     table.try_get_matches_from(words).and_then(|found| Command::from_arg_matches(&found)).map_err(usage)
+}
+
+/// What `--help` says of a subcommand; none where there is no such one.
+pub fn help(name: &str) -> Option<String> {
+    let mut table = Command::augment_subcommands(clap::Command::new("plica"));
+    table.build();
+    Some(table.find_subcommand_mut(name)?.render_long_help().to_string())
 }
 
 /// A scene that an editor has open: a subcommand that reads this file takes the scene as it is there, unsaved edits too.

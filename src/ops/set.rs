@@ -1,5 +1,6 @@
 //! `plica set`: scripted edits, by the same patches as the editor's.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -28,30 +29,85 @@ pub struct Args {
 
 /// Sets them: in the editor that has the scene open, else in the file.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let make = |document: &Document| edit(document, &args.settings, &args.scene);
+    let lost = RefCell::default();
+    let make = |document: &Document| {
+        let (edit, told) = edit(document, &args.settings, &args.scene)?;
+        lost.replace(told);
+        Ok(edit)
+    };
     if let Some(done) = script::edit(&args.scene, make) {
         done?;
+        lost.take().iter().for_each(|line| context.messages.say(line));
         context.messages.say("set in the editor that has the scene open; save it there");
         return Ok(());
     }
     let mut session = Session::open(&args.scene, &args.reading.options()?, Mode::Edit)?;
     let edit = make(session.document())?;
     session.apply(edit, false).map_err(|problems| refused(&args.scene, problems))?;
-    session.save(Overwrite::No)
+    session.save(Overwrite::No)?;
+    lost.take().iter().for_each(|line| context.messages.say(line));
+    Ok(())
 }
 
-/// The edit that puts all of `settings` (`PATH=VALUE`) in force, each seen after the ones before it.
-pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Edit> {
+/// The edit that puts all of `settings` (`PATH=VALUE`) in force, each seen after the ones before it; and what a change of
+/// kind could not keep, a line each.
+pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<(Edit, Vec<String>)> {
     let mut document = document.clone();
-    let mut edits = Vec::new();
+    let (mut edits, mut told) = (Vec::new(), Vec::new());
     for setting in settings {
         let (path, value) = parse(setting)?;
         let pointer = address::resolve(&document, path)?;
-        let edit = Edit::set(&document, &pointer, meant(&document, &pointer, value, setting, path));
-        document = document.apply(&edit).map_err(|problems| refused(scene, problems))?;
+        let (edit, lost) = Edit::set_told(&document, &pointer, meant(&document, &pointer, value, setting, path));
+        told.extend(lost.map(|lost| format!("{path}: {lost}")));
+        document = document.apply(&edit).map_err(|problems| {
+            refused(scene, problems.into_iter().map(|problem| as_asked(&document, problem, path, &pointer)).collect())
+        })?;
         edits.push(edit);
     }
-    Ok(Edit::all(edits))
+    Ok((Edit::all(edits), told))
+}
+
+/// The problem with its place in the form in which the path was asked for, which led to `pointer`.
+fn as_asked(document: &Document, problem: Problem, path: &str, pointer: &str) -> Problem {
+    if path.starts_with('/') {
+        return problem;
+    }
+    let own = problem.path == pointer;
+    Problem { path: if own { path.to_owned() } else { address::told(document, &problem.path) }, ..problem }
+}
+
+/// Takes a line of settings apart: a space ends one where `PATH=` of another follows. So a text with spaces needs no
+/// quotes, unless what follows looks like a path.
+pub fn settings(document: &Document, line: &str) -> Vec<String> {
+    let mut all = vec![String::new()];
+    let (mut quoted, mut depth) = (false, 0i32);
+    for (at, c) in line.char_indices() {
+        match c {
+            '"' if !line[..at].ends_with('\\') => quoted = !quoted,
+            '[' | '{' if !quoted => depth += 1,
+            ']' | '}' if !quoted => depth -= 1,
+            ' ' if !quoted && depth <= 0 && begins(document, line[at..].trim_start()) => {
+                all.push(String::new());
+                continue;
+            }
+            _ => {}
+        }
+        if let Some(last) = all.last_mut() {
+            last.push(c);
+        }
+    }
+    all.into_iter().map(|one| one.trim().to_owned()).filter(|one| !one.is_empty()).collect()
+}
+
+/// Whether a setting begins here: with a path of the scene, or what looks like one.
+fn begins(document: &Document, text: &str) -> bool {
+    let mut quoted = false;
+    let end = text.find(|c: char| {
+        quoted ^= c == '"';
+        !quoted && (c == '=' || c == ' ')
+    });
+    let path = end.filter(|&end| text[end..].starts_with('=')).map_or("", |end| &text[..end]);
+    path.contains(['.', '/']) || !path.is_empty() && address::resolve(document, path).is_ok()
 }
 
 /// What looks like another JSON value is text where only text fits (`title=2024`).
@@ -104,6 +160,22 @@ mod tests {
             ("a=1e999", None),
         ] {
             assert_eq!(parse(setting).ok(), expected, "{setting}");
+        }
+    }
+
+    #[test]
+    fn a_line_of_several_settings() {
+        let document = Document::new(&[("cat", "cat.png", 9, 9)]).unwrap();
+        for (line, expected) in [
+            ("title=two words", vec!["title=two words"]),
+            ("title=a = b", vec!["title=a = b"]),
+            ("title=a timeline.fps=5", vec!["title=a", "timeline.fps=5"]),
+            ("timeline.fps=5  title=a b", vec!["timeline.fps=5", "title=a b"]),
+            ("/timeline/fps=5 /title=x", vec!["/timeline/fps=5", "/title=x"]),
+            ("layers.\"a b\".x=[1, 2] title=a", vec!["layers.\"a b\".x=[1, 2]", "title=a"]),
+            ("title=\"x timeline.fps=5\"", vec!["title=\"x timeline.fps=5\""]),
+        ] {
+            assert_eq!(super::settings(&document, line), expected, "{line}");
         }
     }
 }

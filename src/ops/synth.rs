@@ -17,7 +17,7 @@ pub struct Args {
     /// The folder for colour, init, jump, function and thresholds textures and manifest.json; made where missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Bits a number: 32 is exact (EXR); 16 and 8 are PNG, their error in the manifest
+    /// Bits per number: 32 is exact (EXR); 16 and 8 are PNG, their error in the manifest
     #[arg(long, value_name = "BITS", default_value = "32", value_parser = ["32", "16", "8"])]
     depth: String,
     #[command(flatten)]

@@ -30,6 +30,19 @@ pub fn address(document: &Document, pointer: &str) -> String {
     address
 }
 
+/// The address of a JSON pointer, also where it leads on to what is not there: the rest then as it is spelled.
+pub fn told(document: &Document, pointer: &str) -> String {
+    let tokens: Vec<String> = pointer::tokens(pointer).collect();
+    let known = (0..=tokens.len())
+        .rev()
+        .map(|n| (n, tokens[..n].iter().fold(String::new(), |at, token| pointer::join(&at, token))));
+    let there =
+        known.map(|(n, at)| (n, address(document, &at))).find(|(n, address)| *n == 0 || !address.starts_with('/'));
+    let (n, address) = there.unwrap_or_default();
+    let rest = tokens[n..].iter().map(|token| spelled(token, false));
+    std::iter::once(address).filter(|address| !address.is_empty()).chain(rest).collect::<Vec<_>>().join(".")
+}
+
 /// The address of `below`, which is one token below the place of that shape and address.
 pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Place) -> String {
     let step = match body {

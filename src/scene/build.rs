@@ -7,26 +7,30 @@ use serde_json::{Map, Value, json};
 use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
 use super::{Document, field, pointer, shape};
-use crate::layers;
+use crate::layers::{self, Layer, Turned};
 
 impl Edit {
     /// Writes `value` at `path`. Missing parents are made from their defaults; `null` takes away what need not be written,
-    /// so that its default counts; a new tag (another kind of outline, another method) takes the new kind's defaults and keeps the fields that both have.
+    /// so that its default counts; a new tag (another kind of outline, another method) keeps what the new kind can hold.
     pub fn set(document: &Document, path: &str, value: Value) -> Edit {
+        Edit::set_told(document, path, value).0
+    }
+
+    /// [`Edit::set`], with what a new kind cannot keep, in words.
+    pub fn set_told(document: &Document, path: &str, value: Value) -> (Edit, Option<String>) {
         let json = document.json();
-        let Some(place) = Place::of(json, path) else { return Edit::add(path, value) };
+        let Some(place) = Place::of(json, path) else { return (Edit::add(path, value), None) };
         if value.is_null() && (place.shape.allows_null() || !place.required) {
-            return if place.set { Edit::remove(path) } else { Edit::default() };
+            return (if place.set { Edit::remove(path) } else { Edit::default() }, None);
         }
         if let (Some((parent, last)), Some(name)) = (pointer::split(path), value.as_str())
             && let Some(holder) = Place::of(json, parent)
             && matches!(holder.shape.body(), Body::Tagged(tag) if tag == last)
             && let Some(variant) = holder.shape.variant(name)
         {
-            let fresh = Fresh::at(document, parent);
-            return write(document, parent, fresh.converted(variant, name, holder.value));
+            return turn(document, parent, holder, (last.as_str(), name, variant));
         }
-        write(document, path, value)
+        (write(document, path, value), None)
     }
 
     /// Adds `item` to the list at `list`, before the one at `index` (or at the end).
@@ -72,6 +76,37 @@ impl Edit {
         });
         let images = |name| pointer::join("/images", name);
         Edit::all(std::iter::once(Edit::moved(&images(from), &images(to))).chain(named))
+    }
+}
+
+/// Makes what stands at `path` a thing of another kind.
+fn turn(document: &Document, path: &str, place: Place, to: (&str, &str, Shape)) -> (Edit, Option<String>) {
+    let (tag, name, variant) = to;
+    let old = place.value.filter(|old| old.is_object());
+    let layer = Fresh::layer(document, path);
+    let turned = old.zip(layer).and_then(|(old, (layer, rest))| layer.turned(&rest, old, name));
+    if let Some(Turned { items, lost }) = turned {
+        let mut items = items.into_iter();
+        let first = write(document, path, items.next().unwrap_or_default());
+        let more: Vec<Value> = items.collect();
+        let list = pointer::split(path).and_then(|(list, last)| Some((list, pointer::index(&last)?)));
+        let more = list.and_then(|(list, index)| Edit::insert_all(document, list, index + 1, more));
+        return (Edit::all(std::iter::once(first).chain(more.map(|(edit, _)| edit))), lost);
+    }
+    let new = Fresh::at(document, path).converted(variant, name, old);
+    let same = old.and_then(|old| old.get(tag)) == Some(&Value::from(name));
+    let lost = old.and_then(|old| lost(tag, old, &new)).filter(|_| !same);
+    (write(document, path, new), lost)
+}
+
+/// What was written in the `old` thing and is not in the new one, in words.
+fn lost(tag: &str, old: &Value, new: &Value) -> Option<String> {
+    let gone = |(name, value): &(&String, &Value)| *name != tag && new.get(name.as_str()) != Some(*value);
+    let names: Vec<&str> = old.as_object()?.iter().filter(gone).map(|(name, _)| name.as_str()).collect();
+    match names.as_slice() {
+        [] => None,
+        [one] => Some(format!("its {one} is not kept")),
+        [most @ .., last] => Some(format!("its {} and {last} are not kept", most.join(", "))),
     }
 }
 
@@ -165,12 +200,16 @@ struct Fresh<'a> {
 
 impl<'a> Fresh<'a> {
     fn at(document: &'a Document, path: &str) -> Self {
-        let scene = document.scene();
-        let mut tokens = path.splitn(4, '/').skip(1);
-        let layer = (tokens.next() == Some("layers")).then(|| scene.layers.get(tokens.next()?.parse::<usize>().ok()?));
-        let rest = tokens.next().map(|rest| format!("/{rest}")).unwrap_or_default();
-        let bounds = layer.flatten().map_or(Rect::new(0.0, 0.0, 100.0, 100.0), |layer| layer.bounds(&rest));
-        Fresh { bounds, image: scene.images.keys().next() }
+        let bounds = Fresh::layer(document, path).map(|(layer, rest)| layer.bounds(&rest));
+        let bounds = bounds.unwrap_or(Rect::new(0.0, 0.0, 100.0, 100.0));
+        Fresh { bounds, image: document.scene().images.keys().next() }
+    }
+
+    /// The layer that a place is in, and the place relative to it.
+    fn layer(document: &'a Document, path: &str) -> Option<(&'a Layer, String)> {
+        let (layer, rest) = path.strip_prefix("/layers/")?.split_once('/').unwrap_or((&path[8..], ""));
+        let layer = document.scene().layers.get(layer.parse::<usize>().ok()?)?;
+        Some((layer, if rest.is_empty() { String::new() } else { format!("/{rest}") }))
     }
 
     /// A new value of a shape: what must be written, and no more.

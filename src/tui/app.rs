@@ -23,7 +23,10 @@ use super::update::{Change, Effect};
 use super::view;
 use crate::base::problem::Problem;
 use crate::render::Synth;
-use crate::scene::{Document, Edit, field};
+use crate::scene::{Document, Edit, address, field};
+
+/// Messages that are kept.
+const MOST_SAID: usize = 200;
 
 /// Everything that the screen shows and the keys change.
 pub struct State {
@@ -65,6 +68,8 @@ pub struct State {
     pub speed: f64,
     /// One line for the person.
     pub message: Option<Message>,
+    /// What was said before, the newest last.
+    pub said: VecDeque<Message>,
     /// Commands that were run, the newest last.
     pub lines: Vec<String>,
     /// The keys in force.
@@ -180,6 +185,7 @@ impl State {
             playing: false,
             speed: 1.0,
             message: None,
+            said: VecDeque::new(),
             lines: Vec::new(),
             keymap: Keymap::default(),
             recorder: Recorder::default(),
@@ -212,12 +218,21 @@ impl State {
 
     /// Says something.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), bad: false });
+        self.tell(Message { text: text.into(), bad: false });
     }
 
     /// Says that something could not be done.
     pub fn complain(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), bad: true });
+        self.tell(Message { text: text.into(), bad: true });
+    }
+
+    /// Shows a message, and keeps it for `:messages`.
+    fn tell(&mut self, message: Message) {
+        if self.said.len() >= MOST_SAID {
+            self.said.pop_front();
+        }
+        self.said.push_back(message.clone());
+        self.message = Some(message);
     }
 
     /// Asks for something outside.
@@ -230,10 +245,16 @@ impl State {
         if edit.is_empty() {
             return Ok(());
         }
-        if let Some(change) = self.door.apply(edit, held).map_err(|problems| first(&problems))? {
+        if let Some(change) = self.door.apply(edit, held).map_err(|problems| self.refusal(problems))? {
             self.changed(change);
         }
         Ok(())
+    }
+
+    /// Why an edit is refused, its place as people write it.
+    fn refusal(&self, problems: Vec<Problem>) -> String {
+        let told = |problem: Problem| Problem { path: address::told(self.document(), &problem.path), ..problem };
+        first(&problems.into_iter().map(told).collect::<Vec<_>>())
     }
 
     /// Goes on from a document that has changed.
@@ -311,7 +332,7 @@ impl State {
 }
 
 /// The first problem, and how many more there are.
-fn first(problems: &[Problem]) -> String {
+pub fn first(problems: &[Problem]) -> String {
     let one = problems.first().map(Problem::to_string).unwrap_or_default();
     if problems.len() > 1 { format!("{one} (and {} more)", problems.len() - 1) } else { one }
 }

@@ -25,6 +25,8 @@ pub enum Then {
     Set(Vec<String>),
     /// The tagged object here becomes one of that kind.
     Become(String),
+    /// The place of that address is gone to.
+    Go,
     /// A question is answered.
     Answer(Question),
 }

@@ -5,6 +5,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
+use super::entry::Entry;
+
 /// The longest text that terminals are asked to keep, in bytes.
 pub const MOST_BYTES: usize = 100_000;
 
@@ -13,6 +15,8 @@ pub const MOST_BYTES: usize = 100_000;
 pub struct Kept {
     /// What was yanked last.
     pub yanked: Option<Yanked>,
+    /// What was being typed when the help was opened over it.
+    pub entry: Option<Entry>,
     /// The selection that ended last: its node, where it began, where the cursor was.
     pub selection: Option<(String, usize, usize)>,
 }

@@ -62,13 +62,19 @@ impl Editor {
                 let found = paths::complete(beside.as_deref().unwrap_or(Path::new(".")), &path);
                 self.take(Event::Completed(found.into_iter().map(|path| format!("{name} {path}")).collect()));
             }
-            Effect::Copy(text) => self.screen.iter().for_each(|_| terminal::copy(&text)),
+            Effect::Copy(text) if self.screen.is_some() => terminal::copy(&text),
+            // Without a screen there is no clipboard to hand it to.
+            Effect::Copy(text) => text.lines().for_each(terminal::print),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::EditImage(path) => match image_editor::open(&path) {
                 Ok(said) => self.state.say(said),
                 Err(why) => self.state.complain(why),
             },
-            Effect::View(None) => self.preview.open_window(),
+            Effect::View(None) => {
+                // Why there is none is told each time it is asked for.
+                self.window_told.clear();
+                self.preview.open_window();
+            }
             Effect::View(Some(command)) => self.preview.view(&command),
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),
             Effect::Suspend => self.suspend(),

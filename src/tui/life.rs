@@ -62,7 +62,7 @@ impl Life {
                 options.push(("edit", "Edit it all the same: nobody is there any more"));
             }
             options.push(("quit", "Leave"));
-            question(About::Holder, "somebody else is here".into(), text, &options)
+            question(About::Holder, "the scene is open elsewhere".into(), text, &options)
         });
         let offered = || {
             let offer = door.offered()?;

@@ -6,14 +6,14 @@ use std::io::{BufRead, IsTerminal, Read, Write, stdin, stdout};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use super::app::{Mode, State};
+use super::app::{Mode, Pane, State};
 use super::choice::{Choice, Then};
 use super::commands;
 use super::runner::Editor;
 use super::terminal;
 use super::update::Event;
 use crate::base::error::{Error, Result};
-use crate::ops;
+use crate::scene::address;
 
 /// A line may be this long, in bytes.
 const LONGEST: u64 = 1 << 20;
@@ -96,7 +96,13 @@ impl Editor {
                 if !line.starts_with("choose") && matches!(&self.state.mode, Mode::Choice(_)) {
                     self.state.mode = Mode::Normal;
                 }
+                let before = place(&self.state);
                 self.take(Event::Line(line.to_owned()));
+                // Without a screen nothing else shows where the cursor has gone.
+                let here = place(&self.state);
+                if session.interactive && self.state.message.is_none() && here != before {
+                    self.state.say(here);
+                }
             }
         }
         self.answer(session);
@@ -121,7 +127,10 @@ impl Editor {
         if bad {
             let text = self.state.message.take().map(|message| message.text).unwrap_or_default();
             session.failed += 1;
-            terminal::remark(&format!("line {}: {text}", session.number));
+            match session.interactive {
+                true => terminal::print(&text),
+                false => terminal::remark(&format!("line {}: {text}", session.number)),
+            }
         }
         self.said().iter().for_each(|line| terminal::print(line));
         session.tell(self.state.seen.work.as_deref());
@@ -170,6 +179,18 @@ impl Session {
     }
 }
 
+/// Where the cursor is, and what stands there.
+fn place(state: &State) -> String {
+    let row = (state.focus != Pane::Tree).then(|| state.sheet().row(state.row)).flatten();
+    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let Some((row, cell)) = row.as_ref().zip(cell) else {
+        let node = address::told(state.document(), &state.node);
+        return if node.is_empty() { "scene".into() } else { node };
+    };
+    let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };
+    format!("{}{name}: {}", address::told(state.document(), &row.pointer), cell.text)
+}
+
 /// A list of choices as lines.
 fn question(choice: &Choice) -> Vec<String> {
     let text: &[String] = if let Then::Answer(question) = &choice.then { &question.text } else { &[] };
@@ -183,7 +204,7 @@ fn question(choice: &Choice) -> Vec<String> {
 /// Every command, as plain text.
 fn help() -> Vec<String> {
     let commands = commands::all().map(|one| format!("{:<34} {}", format!("{} {}", one.name, one.args), one.help));
-    let ops = ops::names().map(|name| format!("{name:<34} As `plica {name}` on this scene"));
+    let ops = commands::subcommands().map(|name| format!("{name:<34} As `plica {name}` on this scene"));
     commands.chain(ops).collect()
 }
 

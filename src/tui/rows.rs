@@ -50,9 +50,11 @@ pub fn write(document: &Document, sheet: &Sheet, rows: RangeInclusive<usize>) ->
 }
 
 /// A line of a pasted table.
-struct Record {
-    line: u64,
-    fields: Vec<String>,
+pub struct Record {
+    /// Its number, from 1.
+    pub line: u64,
+    /// What stands in its columns.
+    pub fields: Vec<String>,
 }
 
 /// A column of a list's table.
@@ -148,7 +150,7 @@ impl<'a> Target<'a> {
             items.push(self.row(specimen, header, record)?);
         }
         if records.is_empty() {
-            return Err("there is a header and no row".into());
+            return Err("there is a header but no rows".into());
         }
         Ok(items)
     }
@@ -309,26 +311,41 @@ fn values(count: usize) -> String {
 }
 
 /// Whether the head of a pasted column means this column.
-fn same(pasted: &str, head: &str) -> bool {
+pub fn same(pasted: &str, head: &str) -> bool {
     let pasted = pasted.to_lowercase();
     let also = ALIASES.iter().find(|(own, _)| *own == head).map_or(&[] as &[_], |(_, also)| also);
     pasted == head.to_lowercase() || also.contains(&pasted.as_str())
 }
 
 /// A number as spreadsheets write it: a comma for the point, a true minus sign.
-fn number(text: &str) -> Option<f64> {
+pub fn number(text: &str) -> Option<f64> {
     let plain = text.replace('−', "-");
     let plain = if plain.contains('.') { plain } else { plain.replacen(',', ".", 1) };
     let looks = plain.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b));
     plain.parse::<f64>().ok().filter(|value| looks && value.is_finite())
 }
 
-/// The lines that have something in them, split where the first of them is: at tabs, semicolons, commas or spaces. Lines
-/// that begin with `#` and more than one column of it are comments.
-fn records(text: &str) -> Vec<Record> {
+/// What separates the fields of a table: of tabs, semicolons and commas the first that its first record has outside quotes
+/// (RFC 4180); none where spaces do.
+fn delimiter(text: &str) -> Option<char> {
+    let (mut quoted, mut found) = (false, [false; 3]);
+    for c in text.trim_start().chars() {
+        match c {
+            '"' => quoted = !quoted,
+            '\n' if !quoted => break,
+            _ if quoted => {}
+            c => ['\t', ';', ','].into_iter().zip(&mut found).for_each(|(known, found)| *found |= c == known),
+        }
+    }
+    let found = ['\t', ';', ','].into_iter().zip(found).find(|(_, found)| *found).map(|(c, _)| c);
+    found.or(text.contains('"').then_some(','))
+}
+
+/// The lines that have something in them, split where the first of them is: at tabs, semicolons, commas or spaces. A field
+/// in quotes may hold any of these, line ends, and doubled quotes.
+pub fn records(text: &str) -> Vec<Record> {
     let text = text.trim_start_matches('\u{feff}');
-    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-    let Some(delimiter) = ['\t', ';', ','].into_iter().find(|&c| first.contains(c)) else {
+    let Some(delimiter) = delimiter(text) else {
         let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let fields = |line: &str| line.split_whitespace().map(str::to_owned).collect();
         return lines.map(|(i, line)| Record { line: i as u64 + 1, fields: fields(line) }).collect();
@@ -365,6 +382,14 @@ mod tests {
             ("  1   2\n 3 4", vec![(1, "1|2"), (2, "3|4")]),
             ("\u{feff}x,\"d,x\"\n", vec![(1, "x|d,x")]),
             ("\n\n7", vec![(3, "7")]),
+            ("\"1\",\"2\"\n\"3\",\"4\"", vec![(1, "1|2"), (2, "3|4")]),
+            ("\"1,5\",\"2,5\"", vec![(1, "1,5|2,5")]),
+            ("\"a;b\",c", vec![(1, "a;b|c")]),
+            ("\"1,5\";\"2\"", vec![(1, "1,5|2")]),
+            ("\"1,5\"\t2", vec![(1, "1,5|2")]),
+            ("\"say \"\"a\"\"\",2", vec![(1, "say \"a\"|2")]),
+            ("\"a\nb\",2\n3,4", vec![(1, "a\nb|2"), (3, "3|4")]),
+            ("\"5\"\n\"6\"", vec![(1, "5"), (2, "6")]),
         ] {
             let found: Vec<(u64, String)> = records(text).iter().map(|r| (r.line, r.fields.join("|"))).collect();
             let expected: Vec<(u64, String)> =

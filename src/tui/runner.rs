@@ -109,7 +109,7 @@ pub fn run(options: Options) -> Result<()> {
     let result = Editor::new(options, door, Some(screen), sender).and_then(|editor| editor.run(&events));
     terminal::restore();
     if let Some(folder) = result? {
-        terminal::remark(&format!("what you made in the tutor lies in {}", folder.display()));
+        terminal::remark(&format!("your files from the tutor are in {}", folder.display()));
     }
     Ok(())
 }
@@ -164,6 +164,8 @@ pub struct Editor {
     pub(super) job: Option<Job>,
     /// The windows.
     pub(super) preview: Preview,
+    /// What was last told of the window.
+    pub(super) window_told: String,
     /// The files of the scene; none where they cannot be watched.
     pub(super) watch: Option<Watch>,
     /// The scripts that run.
@@ -211,6 +213,7 @@ impl Editor {
             worker,
             job: None,
             preview,
+            window_told: String::new(),
             watch,
             scripts: Scripts::default(),
             log,
@@ -319,11 +322,13 @@ impl Editor {
             Status::Off => String::new(),
             status => format!("window: {status}"),
         };
-        if seen != self.state.seen.window {
-            if let Status::OffBecause(_) = self.preview.status() {
+        if seen != self.window_told {
+            self.window_told.clone_from(&seen);
+            let off = matches!(self.preview.status(), Status::OffBecause(_));
+            if off {
                 self.state.complain(seen.clone());
             }
-            self.state.seen.window = seen;
+            self.state.seen.window = if off { "window: off".into() } else { seen };
         }
     }
 

@@ -6,6 +6,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use super::app::{Message, Mode};
+use super::choice::{Choice, Then};
 use super::runner::Editor;
 use super::terminal;
 use super::update::Event;
@@ -160,6 +161,9 @@ impl Editor {
     pub fn said(&mut self) -> Vec<String> {
         let pages = match std::mem::replace(&mut self.state.mode, Mode::Normal) {
             Mode::Pages(pages) => pages.lines,
+            Mode::Choice(Choice { options, then: Then::Go, .. }) => {
+                options.into_iter().map(|(place, text)| format!("{place}: {text}")).collect()
+            }
             mode => {
                 self.state.mode = mode;
                 Vec::new()

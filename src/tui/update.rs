@@ -336,7 +336,7 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         _ if state.is_small() => state.complain(TOO_SMALL),
-        Mode::Normal | Mode::Aim => state.complain(format!("{pressed} means nothing here (? shows the keys)")),
+        Mode::Normal | Mode::Aim => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
         _ => {}
     }
 }

@@ -47,7 +47,7 @@ fn the_tutor_leads_to_a_rendered_animation() {
     }
     assert_eq!(editor.end(), 0);
     editor.assert_restored();
-    editor.wait_for("what you made in the tutor lies in");
+    editor.wait_for("your files from the tutor are in");
     let made: Vec<_> = std::fs::read_dir(folder.path().join("tmp")).unwrap().flatten().collect();
     let gif = std::fs::read(made[0].path().join("first.gif")).unwrap();
     assert!(gif.starts_with(b"GIF89a"));

@@ -39,18 +39,23 @@ const ARC_ACCURACY_PX: f64 = 1e-6;
 pub fn anchors(zone: &Zone) -> Vec<Anchor> {
     let mut all = Vec::new();
     for (tool, each) in zone.motion.iter().enumerate() {
-        let given: Vec<(Point, Vec2)> = match each {
-            Tool::Point { at, jump } => vec![(point(*at), vector(*jump))],
-            Tool::Curve { frame, samples, distribution, nodes, jumps } => {
-                curve(nodes, *samples, |along| jump_at(jumps, *distribution, along), *frame)
-            }
-            Tool::Lasso { samples, vertices } => lasso(vertices, *samples),
-            Tool::StillBorder { spacing } => still_border(&zone.outline.polygon(), *spacing),
-            _ => Vec::new(),
-        };
-        all.extend(given.into_iter().map(|(at, jump)| Anchor { at, jump, tool }));
+        let given = given(each, zone).into_iter();
+        all.extend(given.map(|(at, jump)| Anchor { at, jump, tool }));
     }
     all
+}
+
+/// The anchors of one tool in a zone: their places and jump vectors.
+pub fn given(tool: &Tool, zone: &Zone) -> Vec<(Point, Vec2)> {
+    match tool {
+        Tool::Point { at, jump } => vec![(point(*at), vector(*jump))],
+        Tool::Curve { frame, samples, distribution, nodes, jumps } => {
+            curve(nodes, *samples, |along| jump_at(jumps, *distribution, along), *frame)
+        }
+        Tool::Lasso { samples, vertices } => lasso(vertices, *samples),
+        Tool::StillBorder { spacing } => still_border(&zone.outline.polygon(), *spacing),
+        _ => Vec::new(),
+    }
 }
 
 /// All dense fields of a zone, tools in list order. A `field` whose file is not among the materials gives none.
@@ -59,13 +64,21 @@ pub fn dense(zone: &Zone, materials: &Materials) -> Vec<Dense> {
 }
 
 fn dense_of(tool: &Tool, materials: &Materials) -> Option<Dense> {
+    match tool {
+        Tool::Field { path, scale } => Some(Dense::Sampled(materials.fields.get(path)?.clone(), *scale)),
+        other => transform(other).map(Dense::Transform),
+    }
+}
+
+/// The map T of a transform, of which J(q) = T(q) - q; none where the tool is another one.
+pub fn transform(tool: &Tool) -> Option<Affine> {
     let about = |center: &[f64; 2], linear: [f64; 4]| {
         let c = vector(*center);
         let [a, b, c_, d] = linear;
         Affine::translate(c) * Affine::new([a, b, c_, d, 0.0, 0.0]) * Affine::translate(-c)
     };
     // kurbo's coefficients go by columns: x' = c0 x + c2 y + c4, y' = c1 x + c3 y + c5.
-    Some(Dense::Transform(match tool {
+    Some(match tool {
         Tool::Translate { by } => Affine::translate(vector(*by)),
         Tool::Scale { center, factor: [x, y] } => about(center, [*x, 0.0, 0.0, *y]),
         Tool::Rotate { center, degrees } => {
@@ -74,9 +87,8 @@ fn dense_of(tool: &Tool, materials: &Materials) -> Option<Dense> {
         }
         Tool::Shear { center, factor: [a, b] } => about(center, [1.0, *b, *a, 1.0]),
         Tool::Affine { matrix: [[a, b, tx], [c, d, ty]] } => Affine::new([*a, *c, *b, *d, *tx, *ty]),
-        Tool::Field { path, scale } => return Some(Dense::Sampled(materials.fields.get(path)?.clone(), *scale)),
         _ => return None,
-    }))
+    })
 }
 
 /// Cosine and sine of an angle in degrees, exact at quarter turns.

@@ -8,6 +8,7 @@ use kurbo::{Point, Rect};
 use super::{anchors, counts, fold::Fold, interpolation::Interpolation, outline::Outline, position::Position};
 use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
+use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Problem, quoted};
 use crate::layers::{Checked, Count, Sizes, check as rules};
 
@@ -144,7 +145,8 @@ fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
         let what = if drawn { what } else { "has no area: it is too narrow" };
         return vec![Problem::error(path, format!("the outline {what}"))];
     }
-    let crossing = if drawn { self_crossing(&polygon) } else { None };
+    let slack = if matches!(outline, Outline::Path { .. }) { FLATNESS_PX } else { 0.0 };
+    let crossing = if drawn { self_crossing(&polygon, slack) } else { None };
     let message = |Point { x, y }| format!("the outline crosses itself near ({x:.1}, {y:.1})");
     let hint = "what it encloses twice is outside (even-odd)";
     crossing.map(|place| Problem::warning(path, message(place)).hint(hint)).into_iter().collect()

@@ -16,7 +16,7 @@ pub enum Fold {
         #[schemars(length(min = 1))]
         regions: Vec<Outline>,
     },
-    /// A sampler is still inside a region and active outside (equation 3.4).
+    /// A sampler is still inside a region and active outside.
     #[schemars(extend("formula" = "e(s) = s outside every region; still inside"))]
     Return {
         /// The regions, which count as their union.

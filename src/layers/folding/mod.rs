@@ -9,6 +9,7 @@ pub mod field;
 pub mod fold;
 pub mod frame;
 pub mod interpolation;
+pub mod kinds;
 pub mod model;
 pub mod outline;
 pub mod position;

@@ -18,7 +18,7 @@ pub enum Position {
     /// s = (e^(kτ) - 1) / (e^k - 1): slow, then fast.
     #[schemars(extend("formula" = "s = (e^(kτ) - 1) / (e^k - 1)"))]
     Exponential {
-        /// k, not 0; negative turns the curve over.
+        /// k, not 0; a negative k swaps slow and fast.
         #[serde(default = "three")]
         #[schemars(range(min = -1e6, max = 1e6))]
         rate: f64,
@@ -26,7 +26,7 @@ pub enum Position {
     /// s = (1 - e^(-kτ)) / (1 - e^(-k)): fast, then slow.
     #[schemars(extend("formula" = "s = (1 - e^(-kτ)) / (1 - e^(-k))"))]
     ExponentialInverse {
-        /// k, not 0; negative turns the curve over.
+        /// k, not 0; a negative k swaps slow and fast.
         #[serde(default = "three")]
         #[schemars(range(min = -1e6, max = 1e6))]
         rate: f64,

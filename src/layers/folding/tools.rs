@@ -38,7 +38,8 @@ pub enum Tool {
         #[schemars(length(min = 1))]
         jumps: Vec<JumpAlong>,
     },
-    /// A closed polygon dragged from one place to another: one anchor a vertex, and more along the sides.
+    /// A closed polygon dragged from one place to another: one anchor per vertex, and more along the sides. The samplers go
+    /// along; the picture is seen to move the opposite way.
     Lasso {
         /// Further anchors on every side, evenly.
         #[serde(default)]
@@ -48,51 +49,55 @@ pub enum Tool {
         #[schemars(length(min = 3))]
         vertices: Vec<LassoVertex>,
     },
-    /// Dense: the same vector everywhere.
+    /// Dense: the same jump vector everywhere. The picture is seen to move the opposite way.
     Translate {
-        /// Jump vector.
+        /// Jump vector: where the samplers go. The picture is seen to move the opposite way.
         #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
         by: Xy,
     },
-    /// Dense: scaled about a centre.
+    /// Dense: the samplers' places scaled about a centre. The picture is seen to change the opposite way: factors over 1
+    /// show it smaller.
     Scale {
         /// Centre, which stays.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
-        /// Factors along x and y; 1 changes nothing, 3 gives twice the distance to the centre.
+        /// Factors along x and y: where the samplers go, so that 2 shows the picture half as large. 1 changes nothing; the
+        /// jump vector of 3 is twice the distance to the centre.
         #[schemars(extend("columns" = ["x", "y"]))]
         factor: Xy,
     },
-    /// Dense: turned about a centre.
+    /// Dense: the samplers' places turned about a centre. The picture is seen to turn the opposite way.
     Rotate {
         /// Centre, which stays.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
-        /// Angle; positive turns x toward y, clockwise on the screen.
+        /// Angle: positive turns the samplers' places clockwise on the screen (x toward y), so the picture is seen to turn
+        /// counter-clockwise. The ° of a jump vector counts the other way.
         #[schemars(range(min = -36000.0, max = 36000.0), extend("unit" = "degrees"))]
         degrees: f64,
     },
-    /// Dense: sheared about a centre.
+    /// Dense: the samplers' places sheared about a centre. The picture is seen to shear the opposite way.
     Shear {
         /// Centre, which stays.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
-        /// [a, b]: a times y is added to x, and b times x to y.
+        /// [a, b]: a times y is added to a sampler's x, and b times x to its y. The picture is seen to move the opposite way.
         #[schemars(extend("columns" = ["a", "b"]))]
         factor: Xy,
     },
-    /// Dense: an affine map about the image's origin.
+    /// Dense: an affine map of the samplers' places about the image's origin. The picture is seen to move the opposite way.
     Affine {
-        /// [[a, b, tx], [c, d, ty]]: x' = a x + b y + tx, y' = c x + d y + ty.
+        /// [[a, b, tx], [c, d, ty]]: x' = a x + b y + tx, y' = c x + d y + ty is where a sampler goes. The picture is seen
+        /// to move the opposite way.
         matrix: [[f64; 3]; 2],
     },
     /// Still anchors along the zone's outline.
     StillBorder {
-        /// Distance between two of them, by arc length.
+        /// Distance from one to the next, measured along the outline.
         #[schemars(range(min = 0.01, max = 1000000.0), extend("unit" = "px"))]
         spacing: f64,
     },
-    /// Dense: a sampled vector field from a file (.flo, KITTI PNG, EXR), bilinear.
+    /// Dense: jump vectors from a file (.flo, KITTI PNG, EXR), read bilinearly. The picture is seen to move the opposite way.
     Field {
         /// The file, relative to the scene.
         #[schemars(length(min = 1))]
@@ -123,7 +128,7 @@ pub enum Distribution {
     Linear,
     /// By smoothstep.
     Smooth,
-    /// Not at all: the earlier vector until the next place, where the next begins.
+    /// Constant: the vector of the place before holds until the next place.
     Constant,
 }
 
@@ -134,7 +139,7 @@ pub struct JumpAlong {
     /// The place, as a fraction of the arc length.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub along: f64,
-    /// Jump vector, in the curve's `frame`.
+    /// Jump vector, in the curve's `frame`: where the sampler goes. The picture is seen to move the opposite way.
     #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
     pub jump: Xy,
 }
@@ -146,7 +151,7 @@ pub struct LassoVertex {
     /// Where the vertex is.
     #[schemars(extend("unit" = "px"))]
     pub from: Xy,
-    /// Where it is dragged to.
+    /// Where its sampler goes. The picture is seen to move the opposite way.
     #[schemars(extend("unit" = "px"))]
     pub to: Xy,
 }

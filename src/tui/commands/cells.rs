@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::items::add_here;
+use super::messages;
 use super::{Call, Command, Done, command, obey, quoted, unquoted};
 use crate::base::{maths, problem};
 use crate::scene::Edit;
@@ -113,6 +114,10 @@ fn choice(state: &mut State, call: &Call) -> Done {
                 state.recorder.remark(&format!("{}: {word}", choice.title));
                 return take(state, choice, &word);
             }
+            (Some(word), Then::Go) => {
+                state.mode = Mode::Normal;
+                return messages::go_to(state, &word);
+            }
             (Some(word), _) => return obey(state, &format!("choose {}", quoted(&word)), None),
             (None, _) => state.mode = Mode::Normal,
         },
@@ -142,19 +147,24 @@ fn word_of(choice: &Choice, word: &str) -> Result<String, String> {
 
 fn take(state: &mut State, choice: Choice, word: &str) -> Done {
     let document = state.document();
-    let edit = match &choice.then {
+    let (edit, lost) = match &choice.then {
         Then::Set(pointers) => {
             let bool = |pointer: &str| field::field(document, pointer).is_some_and(|field| field.kind == Kind::Bool);
             let value = |pointer: &str| if bool(pointer) { Value::from(word == "true") } else { Value::from(word) };
-            Edit::all(pointers.iter().map(|pointer| entry::set(document, pointer, value(pointer))))
+            (Edit::all(pointers.iter().map(|pointer| Edit::set(document, pointer, value(pointer)))), None)
         }
         Then::Become(pointer) => match field::field(document, pointer).map(|field| field.kind) {
-            Some(Kind::Tagged { tag, .. }) => entry::set(document, &format!("{pointer}/{tag}"), word.into()),
+            Some(Kind::Tagged { tag, .. }) => Edit::set_told(document, &format!("{pointer}/{tag}"), word.into()),
             _ => return Err(format!("{pointer} has no kinds")),
         },
+        Then::Go => return messages::go_to(state, word),
         Then::Answer(question) => return life::answer(state, question.about, word, choice),
     };
-    state.edit(edit, false)
+    state.edit(edit, false)?;
+    if let Some(lost) = lost {
+        state.say(lost);
+    }
+    Ok(())
 }
 
 /// Steps every selected cell from its own value: numbers by the step, choices by one.

@@ -3,8 +3,7 @@
 use super::{Call, Command, Done, command};
 use crate::files::paths;
 use crate::preview::keys as window;
-use crate::tui::app::{Mode, Pages, State};
-use crate::tui::terminal::plain;
+use crate::tui::app::State;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
@@ -23,7 +22,6 @@ pub const COMMANDS: &[Command] = &[
     command("e!", "[PATH]", "Open another scene, or take this one as its file has it", open),
     command("view", "[COMMAND]", "Open the preview window, or change what it shows", view),
     command("image", "edit [NAME]", "Open a picture of the scene in another program", image).inside(),
-    command("problems", "", "Say what is wrong in the scene", problems).inside(),
     command("redraw", "", "Draw the screen anew", |state, _| {
         state.ask(Effect::Redraw);
         Ok(())
@@ -96,16 +94,5 @@ fn image(state: &mut State, call: &Call) -> Done {
     paths::open(state.door.path(), path, state.door.options()).map_err(|error| error.to_string())?;
     let path = std::path::absolute(paths::beside(state.door.path(), path)).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(path));
-    Ok(())
-}
-
-fn problems(state: &mut State, _: &Call) -> Done {
-    let warnings = state.document().warnings().iter().map(|problem| plain(&problem.to_string()));
-    let lines: Vec<String> = state.seen.problem.iter().map(|problem| plain(problem)).chain(warnings).collect();
-    match lines.as_slice() {
-        [] => state.say("nothing is wrong in the scene"),
-        [one] => state.say(one.clone()),
-        _ => state.mode = Mode::Pages(Pages { title: "problems".into(), lines, scroll: 0 }),
-    }
     Ok(())
 }

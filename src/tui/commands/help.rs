@@ -20,9 +20,8 @@ pub const COMMANDS: &[Command] = &[
 const WIDTH: u16 = 70;
 
 fn help(state: &mut State, call: &Call) -> Done {
-    if let Some(command) = super::find(call.text) {
-        state.say(format!(":{} {}  {}", command.name, command.args, command.help));
-        return Ok(());
+    if !call.text.is_empty() {
+        return help_of(state, call.text);
     }
     let here = state.contexts();
     let mut contexts = here.clone();
@@ -38,15 +37,43 @@ fn help(state: &mut State, call: &Call) -> Done {
         lines.extend(rows.map(|row| format!("{:<10} {}", row.key, row.help)));
         lines.push(String::new());
     }
-    lines.push(format!("Your own keys stand in {OWN_FILE}; :keys shows them"));
+    lines.push(format!("Your own keys are in {OWN_FILE}; :keys shows them"));
     lines.push(String::new());
     lines.push("-- entries --".into());
     lines.extend(entries());
     lines.push(String::new());
     lines.push("-- commands, after : --".into());
     lines.extend(all().map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)));
-    lines.extend(crate::ops::names().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
+    lines.extend(super::subcommands().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
     state.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
+    Ok(())
+}
+
+/// One command: its line in the table; of what is typed into cells all that may be, of a subcommand what `--help` says.
+fn help_of(state: &mut State, name: &str) -> Done {
+    let name = name.trim_start_matches(':');
+    let lines: Vec<String> = match (super::find(name), super::subcommands().find(|known| known == name)) {
+        (Some(command), _) if command.name == "put" => {
+            let line = format!(":{} {}", command.name, command.args);
+            [line, command.help.to_owned(), String::new()].into_iter().chain(entries()).collect()
+        }
+        (Some(command), _) => {
+            state.say(format!(":{} {}  {}", command.name, command.args, command.help));
+            return Ok(());
+        }
+        (None, Some(known)) => {
+            let text = crate::ops::help(&known).unwrap_or_default();
+            text.lines()
+                .flat_map(|line| if line.len() > 100 { wrapped(line, WIDTH) } else { vec![line.to_owned()] })
+                .collect()
+        }
+        (None, None) => return Err(super::unknown(name)),
+    };
+    // What is being typed is there again once the help is closed.
+    if let Mode::Entry(entry) = &state.mode {
+        state.kept.entry = Some(entry.clone());
+    }
+    state.mode = Mode::Pages(Pages { title: format!("help: {name}"), lines, scroll: 0 });
     Ok(())
 }
 
@@ -111,17 +138,32 @@ fn formula(state: &State, at: &str) -> Option<(String, String, String)> {
     }
 }
 
-fn entries() -> Vec<String> {
+/// What may be typed into a cell.
+pub fn entries() -> Vec<String> {
     let functions: Vec<&str> = crate::base::expression::functions().collect();
-    vec![
-        "5  -18  +5           The value".into(),
-        "+=3  -=3  *=2  /=2   Changes the old value; so do *2 and /2".into(),
-        "w/2  sqrt(2)*r       Computed; v is the old value, x y dx dy the row's columns,".into(),
-        "                     r a length and degrees, w h the picture, i n the place in the selection".into(),
-        format!("functions            {} (angles in degrees)", functions.join(" ")),
-        "|J|  °               A jump without a length takes one along x; it has no direction to turn".into(),
-        "p, or a paste        JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list".into(),
-    ]
+    let rows: &[(&str, &str)] = &[
+        ("5  -18  4,5", "The value; a comma is a decimal point, except among a function's arguments"),
+        ("+=3  -=3  *=2  /=2", "Changes the old value; so do *2 and /2"),
+        ("w/2  sqrt(2)*r", "Computed, with + - * / % ^ ( ), also after ="),
+        ("v", "The old value, of each selected row its own"),
+        ("x y dx dy ...", "The other columns of the row, by their names"),
+        ("r  a", "Length and direction of the row's jump vector, degrees counter-clockwise"),
+        ("w  h", "Width and height of the picture"),
+        ("i  n", "The place in the selection, from 0, and how many rows are selected"),
+        ("pi", "3.14159..."),
+        ("|J|  °", "A jump without a length takes one along x; it has no direction to turn"),
+        (
+            "p, or a paste",
+            "JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list; over a selection as many rows as are selected, or one",
+        ),
+    ];
+    let named = rows.iter().map(|&(what, help)| (what, help.to_owned()));
+    let all = named.chain([("functions", format!("{} (angles in degrees)", functions.join(" ")))]);
+    all.flat_map(|(what, help)| {
+        let lines = wrapped(&help, WIDTH - 21).into_iter().enumerate();
+        lines.map(move |(i, line)| format!("{:<20} {line}", if i == 0 { what } else { "" }))
+    })
+    .collect()
 }
 
 fn scroll(state: &mut State, call: &Call) -> Done {

@@ -11,11 +11,14 @@ use crate::ops;
 mod cells;
 pub use cells::step_of;
 mod files;
+mod filling;
 mod finding;
 mod help;
+pub use help::entries;
 mod items;
 mod keymap;
 mod macros;
+mod messages;
 mod moving;
 mod naming;
 mod palette;
@@ -106,10 +109,12 @@ const TABLES: &[&[Command]] = &[
     values::COMMANDS,
     undoing::COMMANDS,
     yanking::COMMANDS,
+    filling::COMMANDS,
     moving::COMMANDS,
     finding::COMMANDS,
     palette::COMMANDS,
     help::COMMANDS,
+    messages::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
     seeing::COMMANDS,
@@ -158,9 +163,23 @@ pub fn leaves(line: &str) -> bool {
     find(Said::parse(line, None).name).is_some_and(|command| matches!(command.name, "q" | "q!" | "w" | "w!" | "wq"))
 }
 
+/// The subcommands of the command line that have a use in the editor.
+pub fn subcommands() -> impl Iterator<Item = String> {
+    const OUTSIDE: &[&str] = &["demo", "new", "edit", "tutor", "attach", "completions", "man"];
+    ops::names().filter(|name| !OUTSIDE.contains(&name.as_str()) && find(name).is_none())
+}
+
+/// That there is no such command, and what may have been meant.
+pub fn unknown(name: &str) -> String {
+    let names = names();
+    let near = problem::nearest(name, names.iter().map(String::as_str));
+    let near = near.filter(|near| near.starts_with("did you mean")).unwrap_or("? lists them".into());
+    format!("there is no command {} ({near})", problem::quoted(name))
+}
+
 /// The names of all commands, those of the command line included, in order.
 pub fn names() -> Vec<String> {
-    let mut names: Vec<String> = all().map(|command| command.name.to_string()).chain(ops::names()).collect();
+    let mut names: Vec<String> = all().map(|command| command.name.to_string()).chain(subcommands()).collect();
     names.sort();
     names.dedup();
     names
@@ -217,8 +236,7 @@ fn asks(state: &State) -> bool {
 fn subcommand(state: &mut State, said: &Said) -> Done {
     let name = said.name;
     if !ops::names().any(|known| known == name) {
-        let near = problem::nearest(name, names().iter().map(String::as_str)).map(|near| format!(": {near}"));
-        return Err(format!("there is no command {name}{}", near.unwrap_or_default()));
+        return Err(unknown(name));
     }
     let words = words(&format!("{name} {}", said.text))?;
     state.ask(Effect::Run(words));

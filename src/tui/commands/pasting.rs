@@ -4,10 +4,10 @@
 use serde_json::Value;
 
 use super::yanking::{here, item_of, upward};
-use super::{Done, cells, obey};
+use super::{Done, cells, filling, obey};
 use crate::scene::field::{self, Kind};
 use crate::tui::app::{Pane, State};
-use crate::tui::rows::Target;
+use crate::tui::rows::{self, Target};
 
 /// Takes a pasted text, as one step of undo; where something is wrong with it, nothing changes.
 pub fn pasted(state: &mut State, text: &str) -> Done {
@@ -19,12 +19,22 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     if trimmed.is_empty() {
         return Err("nothing was pasted".into());
     }
-    if trimmed.starts_with(['{', '[', '"']) {
+    // A table may begin with a field in quotes, JSON with a text.
+    let json = trimmed.starts_with(['{', '['])
+        || trimmed.starts_with('"') && serde_json::from_str::<Value>(trimmed).is_ok_and(|value| value.is_string());
+    if json {
         return obey(state, &format!("paste {}", trimmed.replace(['\n', '\r'], " ")), None);
     }
     let on_number = state.focus == Pane::Table && cells::current(state).is_some_and(|(_, cell)| cell.is_number());
-    if on_number && trimmed.parse().is_ok_and(f64::is_finite) {
-        return obey(state, &format!("put {trimmed}"), None);
+    let number = trimmed.replace('−', "-");
+    if on_number && number.parse().is_ok_and(f64::is_finite) {
+        return obey(state, &format!("put {number}"), None);
+    }
+    if state.selected_from.is_some() && state.focus == Pane::Table {
+        let rows: Vec<Vec<String>> = rows::records(text).into_iter().map(|record| record.fields).collect();
+        if filling::fits(state, &rows) {
+            return obey(state, &format!("fill {}", Value::from(rows)), None);
+        }
     }
     let most = limits.points;
     let items =

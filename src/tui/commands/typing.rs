@@ -33,7 +33,8 @@ pub const COMMANDS: &[Command] = &[
     )
     .inside(),
     command("cancel", "", "Leave what is being done as it was", |state, _| {
-        state.mode = Mode::Normal;
+        let under = state.kept.entry.take().filter(|_| matches!(state.mode, Mode::Pages(_)));
+        state.mode = under.map_or(Mode::Normal, Mode::Entry);
         search_left(state);
         Ok(())
     })

@@ -3,39 +3,35 @@
 use serde_json::Value;
 
 use super::{Call, Command, Done, command};
-use crate::scene::address;
-use crate::scene::field::{self, Kind};
-use crate::tui::app::State;
-use crate::tui::entry;
+use crate::base::error::Error;
+use crate::ops::set;
+use crate::scene::{address, field};
+use crate::tui::app::{State, first};
 
 pub const COMMANDS: &[Command] = &[
-    command("set", "PATH=VALUE", "Set a value by its path", set).change(),
+    command("set", "PATH=VALUE ...", "Set values by their paths", set).change(),
     command("get", "PATH", "Say the value at a path", get).inside(),
 ];
 
-/// VALUE is JSON, else text.
+/// As `plica set` does, with as many settings as the line has.
 fn set(state: &mut State, call: &Call) -> Done {
-    let (path, value) = split_path(call.text).ok_or("set takes PATH=VALUE")?;
-    let pointer = address::resolve(state.document(), path).map_err(|error| error.to_string())?;
-    let text = field::field(state.document(), &pointer).is_some_and(|field| field.kind == Kind::Text);
-    let value = match serde_json::from_str(value) {
-        Ok(value) if !text => value,
-        _ => Value::from(value),
-    };
-    let edit = entry::set(state.document(), &pointer, value);
-    state.edit(edit, false)?;
-    state.say(format!("{path} is set"));
-    Ok(())
-}
-
-/// The path and the value around the first `=` outside quotes.
-fn split_path(text: &str) -> Option<(&str, &str)> {
-    let mut quoted = false;
-    let equals = text.char_indices().find(|&(_, c)| {
-        quoted ^= c == '"';
-        c == '=' && !quoted
+    let settings = set::settings(state.document(), call.text);
+    if settings.is_empty() {
+        return Err("set takes PATH=VALUE".into());
+    }
+    let scene = state.door.path().to_owned();
+    let (edit, lost) = set::edit(state.document(), &settings, &scene).map_err(|error| match error {
+        // The scene is the one that is open: its name says nothing.
+        Error::Scene { problems, .. } => first(&problems),
+        other => other.to_string(),
     })?;
-    Some((text[..equals.0].trim(), text[equals.0 + 1..].trim()))
+    state.edit(edit, false)?;
+    let paths: Vec<&str> = settings.iter().filter_map(|one| set::parse(one).ok()).map(|(path, _)| path).collect();
+    state.say(match lost.as_slice() {
+        [] => format!("{} {} set", paths.join(", "), if paths.len() == 1 { "is" } else { "are" }),
+        lost => lost.join("; "),
+    });
+    Ok(())
 }
 
 fn get(state: &mut State, call: &Call) -> Done {

@@ -106,7 +106,7 @@ fn paste(state: &mut State, call: &Call) -> Done {
     let yanked = match call.text {
         "" => state.kept.yanked.clone().ok_or("nothing was yanked yet: y yanks")?,
         text => {
-            let value = json::parse(text).map_err(|problem| format!("what was pasted is no JSON: {problem}"))?;
+            let value = json::parse(text).map_err(|problem| format!("what was pasted is not JSON: {problem}"))?;
             Yanked { value, name: None }
         }
     };

@@ -1,10 +1,12 @@
-//! The last line: what is being typed after `:` or `/`, else what was said last.
+//! The last line: what is being typed after `:` or `/`, else what was said last. A message that is longer than the line
+//! takes as many rows as it needs, over the panes, until the next key.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
+use ratatui::widgets::{Clear, Widget};
 
-use super::{width, write};
+use super::{folded, width, write};
 use crate::tui::app::{Mode, State};
 use crate::tui::{colour, terminal};
 
@@ -23,7 +25,10 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     }
     let Some(message) = &state.message else {
         if let Some(problem) = &state.seen.problem {
-            write(buffer, area, 1, 0, &terminal::plain(problem), colour::faint());
+            let problem = terminal::plain(problem);
+            let more = if width(&problem) + 2 > area.width { " … (:problems) " } else { "" };
+            write(buffer, area, 1, 0, &problem, colour::faint());
+            write(buffer, area, i32::from(area.width) - i32::from(width(more)), 0, more, colour::faint());
         }
         return None;
     };
@@ -31,7 +36,19 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         true => state.depth.ink(Style::new().add_modifier(Modifier::BOLD), Color::Red),
         false => Style::new(),
     };
-    write(buffer, area, 1, 0, &terminal::plain(&message.text), style);
+    let lines = folded(&message.text, area.width.saturating_sub(2));
+    let rows = (lines.len() as u16).min(area.bottom() / 2).max(1);
+    let area = Rect { y: area.bottom().saturating_sub(rows), height: rows, ..area };
+    if rows > 1 {
+        Clear.render(area, buffer);
+    }
+    for (y, line) in lines.iter().take(usize::from(rows)).enumerate() {
+        write(buffer, area, 1, y as u16, line, style);
+    }
+    if lines.len() > usize::from(rows) {
+        let more = " … (:messages) ";
+        write(buffer, area, i32::from(area.width) - i32::from(width(more)), rows - 1, more, colour::faint());
+    }
     None
 }
 

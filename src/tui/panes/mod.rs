@@ -6,6 +6,7 @@ use ratatui::style::Style;
 use ratatui::text::Span;
 
 use super::numbers::polar;
+use super::terminal;
 
 mod braille;
 pub mod detail;
@@ -61,6 +62,30 @@ pub fn wrapped(text: &str, room: u16) -> Vec<String> {
     lines
 }
 
+/// A text of several lines in lines that fit: at words, and where one is longer than a line inside it. None is empty.
+pub fn folded(text: &str, room: u16) -> Vec<String> {
+    let room = room.max(1);
+    let mut lines = Vec::new();
+    for line in text.lines().filter(|line| !line.trim().is_empty()) {
+        let plain = terminal::plain(line);
+        if width(&plain) <= room {
+            lines.push(plain);
+            continue;
+        }
+        for line in wrapped(&plain, room) {
+            let mut rest = String::new();
+            for c in line.chars() {
+                if width(&rest) + width(c.encode_utf8(&mut [0; 4])) > room {
+                    lines.push(std::mem::take(&mut rest));
+                }
+                rest.push(c);
+            }
+            lines.push(rest);
+        }
+    }
+    lines
+}
+
 /// The first of `count` rows that is shown in `height` lines, so that row `at` stands in the middle where it can.
 pub fn first_row(at: usize, count: usize, height: u16) -> usize {
     let height = usize::from(height);
@@ -83,6 +108,8 @@ mod tests {
         assert_eq!(wrapped("one two  three", 8), ["one two", "three"]);
         assert_eq!(wrapped("", 8), [""]);
         assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
+        assert_eq!(folded("a-word-too-long x\n\nyes", 6), ["a-word", "-too-l", "ong", "x", "yes"]);
+        assert_eq!(folded("日本語", 4), ["日本", "語"]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 
-use super::{first_row, width, write};
+use super::{first_row, folded, width, write};
 use crate::tui::app::{Mode, Pages, State};
 use crate::tui::choice::{Choice, Then};
 use crate::tui::{colour, terminal, view};
@@ -31,8 +31,19 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = terminal::plain(&choice.title);
     let above = text.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
     let wide = (words + help + 6).max(above + 4).clamp(30, screen.width - 8);
-    let tall = (choice.options.len() as u16 + text.len() as u16 + 2).min(screen.height - 4);
+    // What is cut is told below the list, for the row under the cursor.
+    let room = wide.saturating_sub(words + 6);
+    let told = choice.options.iter().map(|(_, help)| width(help)).filter(|&help| help > room);
+    let longest = told.max().map_or(0, |help| help.div_ceil((wide - 4).max(1)) + 2);
+    let below_ = longest.min(screen.height / 3);
+    let tall = (choice.options.len() as u16 + text.len() as u16 + 2 + below_).min(screen.height - 4);
     let area = view::window(screen, wide, tall, &title, buffer);
+    let (area, foot) = (Rect { height: area.height - below_.min(area.height), ..area }, area);
+    if let Some((_, help)) = choice.options.get(choice.at).filter(|_| below_ > 0) {
+        for (y, line) in folded(help, foot.width.saturating_sub(2)).iter().take(usize::from(below_) - 1).enumerate() {
+            write(buffer, foot, 1, area.height + 1 + y as u16, line, Style::new());
+        }
+    }
     for (y, line) in text.iter().enumerate() {
         write(buffer, area, 1, y as u16, line, Style::new());
     }
@@ -43,9 +54,24 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     {
         let style = if i == choice.at { colour::focus() } else { Style::new() };
         write(buffer, area, 1, y as u16, &terminal::plain(word), style);
-        write(buffer, area, i32::from(words) + 3, y as u16, help, colour::faint());
+        write(buffer, area, i32::from(words) + 3, y as u16, &shortened(help, room), colour::faint());
     }
     Position::new(area.x + 1, area.y + (choice.at - first) as u16)
+}
+
+/// The beginning of a text that does not fit, with a mark.
+fn shortened(text: &str, room: u16) -> String {
+    if width(text) <= room {
+        return text.to_owned();
+    }
+    let mut short = String::new();
+    for c in text.chars() {
+        if width(&short) + 2 > room {
+            break;
+        }
+        short.push(c);
+    }
+    short + "…"
 }
 
 /// What is left of an area below its first rows.

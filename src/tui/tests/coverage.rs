@@ -21,6 +21,8 @@ const TABLES: &[fn()] = &[
     super::escape_ends_one_thing_after_the_other,
     super::macros::macros_play_what_was_asked_for,
     super::macros::the_last_change_is_repeated_here,
+    super::told::tables_are_pasted_over_a_selection,
+    super::told::what_was_said_and_what_is_wrong_can_be_read_again,
     super::images::a_picture_of_the_scene_is_opened_and_nothing_else,
     super::life::what_another_program_writes_is_taken_in_merged_or_asked_about,
     super::finding::what_is_found_is_edited,

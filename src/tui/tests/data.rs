@@ -184,8 +184,8 @@ fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
         ("x,y,°\n1,2,90", "line 2: ° needs |J|"),
         ("tool,x,y\npont,1,2", "line 2, column 1: there is no tool \"pont\": did you mean \"point\"?"),
         ("x,y\n1e12,2", "line 2, column 1: 1000000000000 is out of range"),
-        ("x,y", "a header and no row"),
-        ("{\"tool\":", "no JSON"),
+        ("x,y", "a header but no rows"),
+        ("{\"tool\":", "not JSON"),
         ("", "nothing was pasted"),
     ] {
         let mut state = state();

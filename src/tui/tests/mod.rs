@@ -16,6 +16,7 @@ mod macros;
 mod screens;
 mod seeing;
 pub mod support;
+mod told;
 mod tutor;
 pub mod windows;
 

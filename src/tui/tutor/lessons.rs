@@ -52,7 +52,7 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "the tree",
         text: &[
-            "A picture with one zone: the cat's eye. Left stands the scene as a tree.",
+            "A picture with one zone: the cat's eye. The scene is the tree on the left.",
             "Go down to \"motion\", the list of what moves in the zone, and into its table.",
         ],
         keys: &[Key(TREE, "move down"), Key(TREE, "move down"), Key(TREE, "pane table")],
@@ -79,8 +79,9 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "a jump",
         text: &[
-            "How far it goes stands in dx and dy, and once more as length |J| and angle.",
-            "y grows downwards, so -18 in dy lifts the lid.",
+            "dx and dy say how far, and |J| and ° say it again. y grows down, so with",
+            "-18 in dy the lid's pixels are read from 18 px above: the lid is seen to",
+            "come down.",
         ],
         keys: &[
             Key(TABLE, "move right"),
@@ -185,10 +186,15 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "playing",
         text: &[
-            "Play it, and watch the picture (a window shows it larger, if there is one).",
+            "Go to the picture, play it, and watch (a window shows it larger).",
             "Then pause, and go on frame by frame.",
         ],
-        keys: &[Key(EVERYWHERE, "play"), Key(EVERYWHERE, "play"), Key(EVERYWHERE, "frame next")],
+        keys: &[
+            Key(EVERYWHERE, "pane picture"),
+            Key(EVERYWHERE, "play"),
+            Key(EVERYWHERE, "play"),
+            Key(EVERYWHERE, "frame next"),
+        ],
         done: |state| !state.playing && state.time > 0.0,
     },
     Lesson {
@@ -220,7 +226,7 @@ pub const LESSONS: &[Lesson] = &[
         title: "saving",
         text: &[
             "Close the help. The * in the status line says that something is not saved;",
-            "it is not lost: each edit is in a journal. Space opens a menu: save with it.",
+            "it is not lost: each edit is in a journal. The Space menu has Save: use it.",
         ],
         keys: &[Key(HELP, "cancel"), Key(EVERYWHERE, "w")],
         done: |state| state.door.is_saved(),
@@ -237,7 +243,7 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "leaving",
         text: &[
-            "That is a first animation. :q leaves, and says where all of it lies.",
+            "That is a first animation. :q leaves, and tells you where your files are.",
             "More to look at: `plica demo --list`. More to read: ? and docs/keys.md.",
         ],
         keys: &[Key(EVERYWHERE, "line"), Text("q"), Key(LINE, "run")],

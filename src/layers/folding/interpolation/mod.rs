@@ -18,7 +18,7 @@ mod thin_plate;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "method", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Interpolation {
-    /// Every anchor counts, by a power of its inverse distance (equation 4.1).
+    /// Every anchor counts, by a power of its inverse distance.
     #[schemars(extend("formula" = "J = Σ w u / Σ w, w = d^-power, d the distance to the anchor of vector u"))]
     Shepard {
         /// The power; larger makes flat plateaus around the anchors.
@@ -26,14 +26,14 @@ pub enum Interpolation {
         #[schemars(range(min = 0.01, max = 100.0))]
         power: f64,
     },
-    /// Only anchors within a radius count (equation 4.2).
+    /// Only anchors within a radius count.
     #[schemars(extend("formula" = "J = Σ w u / Σ w, w = (max(0, R - d) / (R d))², R the radius, d the distance"))]
     ModifiedShepard {
         /// Anchors farther than this do not count.
         #[schemars(range(min = 0.001, max = 1000000.0), extend("unit" = "px"))]
         radius: f64,
     },
-    /// As modified-shepard, but in an outer ring each anchor counts or not at random, pixel by pixel (equation 4.3).
+    /// As modified-shepard, but in an outer ring each anchor counts or not at random, pixel by pixel.
     #[schemars(extend("formula" = "as modified-shepard; where R - ring < d < R an anchor counts or not by a hash of pixel, anchor, seed"))]
     ModifiedShepardRandom {
         /// Anchors farther than this do not count.
@@ -54,7 +54,7 @@ pub enum Interpolation {
         #[schemars(range(min = 0.0, max = 1e12))]
         smoothing: f64,
     },
-    /// Moving least squares by rigid motions (Schaefer et al. 2006): turns, and keeps sizes.
+    /// Moving least squares by rigid motions (Schaefer et al. 2006): it turns without changing sizes.
     #[schemars(extend("formula" = "J = the rigid motion that fits the anchors best by weights d^-2, less the pixel's own place"))]
     Rigid {},
 }

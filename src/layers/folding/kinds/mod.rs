@@ -1,0 +1,75 @@
+//! What becomes of a thing whose kind is changed: an outline, a tool, a position function. The shape stays as far as the
+//! new kind can hold it, and what it cannot hold is told. Fields of one name do not always mean the same (a scale's
+//! `factor` is no shear's), so nothing here goes by names.
+
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use super::model::PictureLayer;
+use crate::layers::Turned;
+
+mod outlines;
+mod positions;
+#[cfg(test)]
+mod tests;
+mod tools;
+
+impl Turned {
+    fn whole(item: Value) -> Turned {
+        Turned { items: vec![item], lost: None }
+    }
+
+    fn but(self, lost: impl Into<String>) -> Turned {
+        Turned { lost: Some(lost.into()), ..self }
+    }
+
+    fn but_if(self, lost: Option<String>) -> Turned {
+        Turned { lost, ..self }
+    }
+}
+
+/// What the `old` thing at `path` (relative to the layer) becomes as a `to`. None where fields of the same name are all
+/// that both kinds can have in common.
+pub fn turned(layer: &PictureLayer, path: &str, old: &Value, to: &str) -> Option<Turned> {
+    let tokens: Vec<&str> = path.split('/').skip(1).collect();
+    let ["zones", zone, rest @ ..] = tokens.as_slice() else { return None };
+    let zone = layer.zones.get(zone.parse::<usize>().ok()?)?;
+    match rest {
+        ["outline"] | ["fold", "regions", _] => outlines::turned(&read(old)?, to),
+        ["motion", _] => tools::turned(zone, &read(old)?, to),
+        ["position"] | ["position", .., "ease"] => positions::turned(&read(old)?, to),
+        _ => None,
+    }
+}
+
+fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
+    T::deserialize(value).ok()
+}
+
+/// A number without the noise of floating point: pixels to a millionth.
+fn px(x: f64) -> Value {
+    rounded(x, 1e6)
+}
+
+/// A factor, an angle, a share: to nine decimals.
+fn ratio(x: f64) -> Value {
+    rounded(x, 1e9)
+}
+
+fn rounded(x: f64, per: f64) -> Value {
+    let near = (x * per).round() / per;
+    // What is as large as this has no such decimals.
+    let x = if near.is_finite() && x.abs() < 1e6 { near } else { x };
+    if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) }
+}
+
+fn pair(p: impl Into<(f64, f64)>) -> Value {
+    let (x, y) = p.into();
+    json!([px(x), px(y)])
+}
+
+/// A number as it is told.
+fn told(x: f64) -> String {
+    let text = format!("{x:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,339 @@
+//! Tools of another kind. What gives anchors keeps them: each is a point, a vertex of a lasso or a place of a curve. What
+//! gives a dense field keeps its map, as far as the new kind can be that map; between the two kinds some vectors stay.
+
+use kurbo::{Affine, Point, Rect, Vec2};
+use serde_json::{Value, json};
+
+use super::{Turned, pair, px, ratio, told};
+use crate::base::maths;
+use crate::layers::folding::anchors::{given, transform};
+use crate::layers::folding::counts;
+use crate::layers::folding::model::Zone;
+use crate::layers::folding::outline::point;
+use crate::layers::folding::starts;
+use crate::layers::folding::tools::Tool;
+
+/// Points, vertices and places that a tool becomes at most; of more, some are left out evenly.
+const MOST: usize = 10_000;
+
+/// Vectors that differ by less than this are the same.
+const SAME_PX: f64 = 1e-6;
+
+/// A tool of `zone` as one of the kind `to`; none where it is of that kind, or there is no such kind.
+pub fn turned(zone: &Zone, old: &Tool, to: &str) -> Option<Turned> {
+    let kind = serde_json::to_value(old).ok()?.get("tool")?.as_str()?.to_owned();
+    let turning = Turning { zone, old, kind, bounds: zone.outline.polygon().bounds() };
+    match to {
+        to if to == turning.kind => None,
+        "point" => Some(turning.points()),
+        "lasso" => Some(turning.lasso()),
+        "curve" => Some(turning.curve()),
+        "translate" | "scale" | "rotate" | "shear" | "affine" => Some(turning.dense(to)),
+        "still-border" => Some(turning.fresh(to, &["spacing"])),
+        "field" => Some(turning.fresh(to, &["path"])),
+        _ => None,
+    }
+}
+
+struct Turning<'a> {
+    zone: &'a Zone,
+    old: &'a Tool,
+    kind: String,
+    /// The box of the zone.
+    bounds: Rect,
+}
+
+/// A place and its jump vector.
+type Given = (Point, Vec2);
+
+impl Turning<'_> {
+    /// What a new tool of that kind starts with.
+    fn start(&self, kind: &str, field: &str) -> Value {
+        starts::start(kind, field, self.bounds).unwrap_or_default()
+    }
+
+    /// One that has nothing to do with the old one.
+    fn fresh(&self, to: &str, fields: &[&str]) -> Turned {
+        let mut tool = json!({ "tool": to });
+        fields.iter().for_each(|field| tool[field] = self.start(to, field));
+        let lost = match self.old {
+            Tool::Point { jump, .. } | Tool::Translate { by: jump } if *jump == [0.0; 2] => None,
+            Tool::StillBorder { .. } => Some("its spacing is not kept".to_owned()),
+            Tool::Field { .. } => Some("its file is not kept".to_owned()),
+            _ => Some(format!("nothing of the {} is kept", self.kind)),
+        };
+        Turned::whole(tool).but_if(lost)
+    }
+
+    /// The anchors of the old tool, with how many were left out; none where it gives none.
+    fn anchors(&self) -> Option<(Vec<Given>, usize)> {
+        if counts::anchors(self.old, &self.zone.outline) == 0.0 {
+            return None;
+        }
+        // A curve of ten million samples is thinned before it is made.
+        let all = match self.old {
+            Tool::Curve { samples, frame, distribution, nodes, jumps } if *samples as usize > MOST => {
+                let samples = MOST as u32;
+                let (frame, distribution, nodes, jumps) = (*frame, *distribution, nodes.clone(), jumps.clone());
+                given(&Tool::Curve { samples, frame, distribution, nodes, jumps }, self.zone)
+            }
+            other => given(other, self.zone),
+        };
+        let total = if let Tool::Curve { samples, .. } = self.old { *samples as usize } else { all.len() };
+        let every = all.len().div_ceil(MOST).max(1);
+        let kept: Vec<_> = all.into_iter().step_by(every).collect();
+        let left_out = total - kept.len();
+        Some((kept, left_out))
+    }
+
+    /// The centre of a transform that has one.
+    fn own_center(&self) -> Option<Point> {
+        match self.old {
+            Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => {
+                Some(point(*center))
+            }
+            _ => None,
+        }
+    }
+
+    /// A point for each anchor.
+    fn points(&self) -> Turned {
+        let of = |(at, jump): Given| json!({ "tool": "point", "at": pair(at), "jump": pair(jump) });
+        if let Some((all, left_out)) = self.anchors() {
+            let lost = match (left_out, all.len()) {
+                (0, n) if n > 1 => format!("the {} is now {n} points, one for each anchor", self.kind),
+                (0, _) => return Turned { items: all.into_iter().map(of).collect(), lost: None },
+                (left_out, n) => format!("the {} is now {n} points, {left_out} anchors are left out", self.kind),
+            };
+            return Turned { items: all.into_iter().map(of).collect(), lost: Some(lost) };
+        }
+        let Some(map) = transform(self.old) else { return self.fresh("point", &["at"]) };
+        let at = self.own_center().unwrap_or(self.bounds.center());
+        let lost = (!is_translation(map)).then(|| format!("only the jump of the {} at the point is kept", self.kind));
+        Turned::whole(of((at, map * at - at))).but_if(lost)
+    }
+
+    /// A vertex for each anchor; where there are fewer than three, a new lasso that moves as they do.
+    fn lasso(&self) -> Turned {
+        let dragged = |all: &[Given]| {
+            let vertices = all.iter().map(|&(at, jump)| json!({ "from": pair(at), "to": pair(at + jump) }));
+            Turned::whole(json!({ "tool": "lasso", "vertices": vertices.collect::<Vec<_>>() }))
+        };
+        match self.anchors() {
+            Some((all, left_out)) if all.len() >= 3 => {
+                let more = if left_out > 0 { format!(", {left_out} anchors are left out") } else { String::new() };
+                let lost = match self.old {
+                    Tool::Curve { .. } => Some(format!("the curve's {} anchors are the vertices{more}", all.len())),
+                    _ if left_out > 0 => Some(format!("{} vertices{more}", all.len())),
+                    _ => None,
+                };
+                dragged(&all).but_if(lost)
+            }
+            Some((all, _)) => {
+                let (middle, jump, same) = mean(&all);
+                let corners = self.corners();
+                let by = middle - center_of(&corners);
+                let all: Vec<Given> = corners.into_iter().map(|at| (at + by, jump)).collect();
+                dragged(&all).but_if((!same).then(|| "only the mean of its jump vectors is kept".to_owned()))
+            }
+            None => match transform(self.old) {
+                Some(map) => {
+                    let all: Vec<Given> = self.corners().into_iter().map(|at| (at, map * at - at)).collect();
+                    let lost = format!("only the jumps of the {} at the vertices are kept", self.kind);
+                    dragged(&all).but_if((!is_translation(map)).then_some(lost))
+                }
+                None => self.fresh("lasso", &["vertices"]),
+            },
+        }
+    }
+
+    /// The corners of a new lasso.
+    fn corners(&self) -> Vec<Point> {
+        let vertices = self.start("lasso", "vertices");
+        let places = vertices.as_array().into_iter().flatten();
+        places.filter_map(|vertex| place(&vertex["from"])).collect()
+    }
+
+    /// Through the vertices of a lasso or the places of a border, straight and back to the first; else a new curve.
+    fn curve(&self) -> Turned {
+        if let Some((all, left_out)) = self.anchors().filter(|(all, _)| all.len() >= 3) {
+            return self.closed(all, left_out);
+        }
+        let nodes = self.start("curve", "nodes");
+        let ends: Vec<Point> = nodes.as_array().into_iter().flatten().filter_map(|node| place(&node["at"])).collect();
+        let (ends, jumps, lost) = match (self.anchors(), transform(self.old)) {
+            (Some((all, _)), _) => {
+                let (middle, jump, same) = mean(&all);
+                let by = middle - center_of(&ends);
+                let ends = ends.into_iter().map(|at| at + by).collect();
+                (ends, vec![jump], (!same).then(|| "only the mean of its jump vectors is kept".to_owned()))
+            }
+            (None, Some(map)) => {
+                let jumps: Vec<Vec2> = ends.iter().map(|&at| map * at - at).collect();
+                let lost = format!("only the jumps of the {} along the curve are kept", self.kind);
+                let moved = is_translation(map);
+                (ends, jumps[..if moved { 1 } else { jumps.len() }].to_vec(), (!moved).then_some(lost))
+            }
+            (None, None) => return self.fresh("curve", &["samples", "nodes", "jumps"]),
+        };
+        let nodes: Vec<Value> = ends.into_iter().map(|at| json!({ "at": pair(at) })).collect();
+        let last = (jumps.len() - 1).max(1) as f64;
+        let jumps = jumps.iter().enumerate().map(|(i, &jump)| along(i as f64 / last, jump)).collect();
+        spline(self.start("curve", "samples"), nodes, jumps).but_if(lost)
+    }
+
+    /// A curve through vertices and back to the first, as many anchors along it as there were.
+    fn closed(&self, anchors: Vec<Given>, left_out: usize) -> Turned {
+        let count = anchors.len();
+        let mut corners: Vec<Given> = match self.old {
+            Tool::Lasso { vertices, .. } if vertices.len() <= MOST => {
+                vertices.iter().map(|v| (point(v.from), point(v.to) - point(v.from))).collect()
+            }
+            _ => anchors,
+        };
+        corners.push(corners[0]);
+        corners.dedup_by(|next, before| next.0.distance(before.0) < SAME_PX);
+        let steps: Vec<f64> = corners.windows(2).map(|pair| pair[0].0.distance(pair[1].0)).collect();
+        let whole: f64 = steps.iter().sum();
+        if corners.len() < 3 {
+            return self.fresh("curve", &["samples", "nodes", "jumps"]);
+        }
+        let mut gone = 0.0;
+        let mut jumps = vec![along(0.0, corners[0].1)];
+        let last = corners.len() - 1;
+        for (i, step) in steps.iter().enumerate() {
+            gone += step;
+            // Places along a curve ascend, also as they are written.
+            if i + 1 == last || *step > 2e-9 * whole && whole - gone > 2e-9 * whole {
+                jumps.push(along(if i + 1 == last { 1.0 } else { gone / whole }, corners[i + 1].1));
+            }
+        }
+        if corners.iter().all(|corner| corner.1 == corners[0].1) {
+            jumps.truncate(1);
+        }
+        let nodes = corners.iter().map(|(at, _)| json!({ "at": pair(*at) })).collect();
+        let even = steps.iter().all(|step| (step - whole / last as f64).abs() < SAME_PX);
+        let lost = match (left_out, even) {
+            (0, true) => None,
+            (0, false) => Some(format!("the {} anchors stand evenly along the curve now", count + 1)),
+            _ => Some(format!("{left_out} anchors are left out")),
+        };
+        spline(json!(count + 1), nodes, jumps).but_if(lost)
+    }
+
+    /// A transform: of another one the nearest, of anchors their mean motion.
+    fn dense(&self, to: &str) -> Turned {
+        if let Some(map) = transform(self.old) {
+            let tool = nearest(map, to, self.own_center(), self.bounds.center());
+            return self.compared(map, tool);
+        }
+        let Some((all, _)) = self.anchors() else {
+            let field = match to {
+                "translate" => json!({ "tool": to, "by": [0, 0] }),
+                _ => nearest(Affine::IDENTITY, to, None, self.bounds.center()),
+            };
+            return Turned::whole(field).but("its file is not kept");
+        };
+        let (middle, jump, same) = mean(&all);
+        let moves = matches!(to, "translate" | "affine");
+        let tool = nearest(if moves { Affine::translate(jump) } else { Affine::IDENTITY }, to, Some(middle), middle);
+        let still = same && jump.hypot() < SAME_PX;
+        Turned::whole(tool).but_if(match (moves, same) {
+            _ if still => None,
+            (true, true) => None,
+            (true, false) => Some(format!("only the mean of its {} jump vectors is kept", all.len())),
+            (false, _) => Some("its jump vectors are not kept, only where they stand".to_owned()),
+        })
+    }
+
+    /// Says how far the new transform is from the old one.
+    fn compared(&self, old: Affine, tool: Value) -> Turned {
+        let new = super::read(&tool).and_then(|tool| transform(&tool)).unwrap_or_default();
+        let Rect { x0, y0, x1, y1 } = self.bounds;
+        let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from);
+        let most = corners.into_iter().map(|q| (old * q - new * q).hypot()).fold(0.0, f64::max);
+        let kind = tool["tool"].as_str().unwrap_or_default().to_owned();
+        let lost = format!("no {kind} is that {}: jump vectors differ by up to {} px", self.kind, told(most));
+        // Numbers are written to a few decimals.
+        let told = most > 0.01;
+        Turned::whole(tool).but_if(told.then_some(lost))
+    }
+}
+
+/// The tool of the kind `to` that comes nearest to a map, about its `own` centre where it has one, else about the place
+/// that the map leaves where it is, or about the `middle`.
+fn nearest(map: Affine, to: &str, own: Option<Point>, middle: Point) -> Value {
+    let [a, c, b, d, tx, ty] = map.as_coeffs();
+    let centre = |linear: [f64; 4]| own.unwrap_or_else(|| fixed(linear, Vec2::new(tx, ty), middle));
+    match to {
+        "translate" => json!({ "tool": to, "by": pair(map * middle - middle) }),
+        "affine" => json!({ "tool": to, "matrix": [[ratio(a), ratio(b), px(tx)], [ratio(c), ratio(d), px(ty)]] }),
+        "shear" => {
+            json!({ "tool": to, "center": pair(centre([1.0, b, c, 1.0])), "factor": [ratio(b), ratio(c)] })
+        }
+        "scale" => {
+            let [x, y] = stretch(a, b, c, d);
+            json!({ "tool": to, "center": pair(centre([x, 0.0, 0.0, y])), "factor": [ratio(x), ratio(y)] })
+        }
+        _ => {
+            let angle = maths::atan2(c - b, a + d);
+            let (cos, sin) = (maths::cos(angle), maths::sin(angle));
+            let center = pair(centre([cos, -sin, sin, cos]));
+            json!({ "tool": "rotate", "center": center, "degrees": ratio(angle.to_degrees()) })
+        }
+    }
+}
+
+/// The factors of a linear map along x and y, once what it turns is taken away.
+fn stretch(a: f64, b: f64, c: f64, d: f64) -> [f64; 2] {
+    if b == 0.0 && c == 0.0 {
+        return [a, d];
+    }
+    let angle = maths::atan2(c - b, a + d);
+    let (cos, sin) = (maths::cos(angle), maths::sin(angle));
+    [cos * a + sin * c, cos * d - sin * b]
+}
+
+/// The place that x -> L x + t leaves where it is; along what it does not move, that of `near`.
+fn fixed([a, b, c, d]: [f64; 4], t: Vec2, near: Point) -> Point {
+    let (p, q, r, s) = (1.0 - a, -b, -c, 1.0 - d);
+    let det = p * s - q * r;
+    let over = |x: f64, by: f64, other: f64| if by.abs() > 1e-12 { x / by } else { other };
+    if det.abs() > 1e-12 {
+        return Point::new((s * t.x - q * t.y) / det, (p * t.y - r * t.x) / det);
+    }
+    match q == 0.0 && r == 0.0 {
+        true => Point::new(over(t.x, p, near.x), over(t.y, s, near.y)),
+        false => Point::new(over(t.y, r, near.x), over(t.x, q, near.y)),
+    }
+}
+
+fn is_translation(map: Affine) -> bool {
+    let [a, c, b, d, ..] = map.as_coeffs();
+    [a, b, c, d] == [1.0, 0.0, 0.0, 1.0]
+}
+
+/// The mean place and jump vector, and whether all vectors are that one.
+fn mean(all: &[Given]) -> (Point, Vec2, bool) {
+    let n = all.len().max(1) as f64;
+    let place = all.iter().fold(Vec2::ZERO, |sum, (at, _)| sum + at.to_vec2()) / n;
+    let jump = all.iter().fold(Vec2::ZERO, |sum, (_, jump)| sum + *jump) / n;
+    (place.to_point(), jump, all.iter().all(|(_, own)| (*own - jump).hypot() < SAME_PX))
+}
+
+fn center_of(places: &[Point]) -> Point {
+    let sum = places.iter().fold(Vec2::ZERO, |sum, at| sum + at.to_vec2());
+    (sum / places.len().max(1) as f64).to_point()
+}
+
+fn place(value: &Value) -> Option<Point> {
+    Some(Point::new(value.get(0)?.as_f64()?, value.get(1)?.as_f64()?))
+}
+
+fn along(at: f64, jump: Vec2) -> Value {
+    json!({ "along": ratio(at), "jump": pair((jump.x, jump.y)) })
+}
+
+fn spline(samples: Value, nodes: Vec<Value>, jumps: Vec<Value>) -> Turned {
+    Turned::whole(json!({ "tool": "curve", "samples": samples, "nodes": nodes, "jumps": jumps }))
+}

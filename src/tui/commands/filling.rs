@@ -1,0 +1,104 @@
+//! A pasted table over the selected rows: the columns that it has, from the one under the cursor or by its header, take its
+//! values; the others stay.
+
+use std::collections::BTreeMap;
+
+use kurbo::Vec2;
+use serde_json::Value;
+
+use super::{Call, Command, Done, command};
+use crate::base::problem::quoted;
+use crate::scene::{Document, Edit, field};
+use crate::tui::app::State;
+use crate::tui::sheet::{Cell, Part, Row, tidy_json};
+use crate::tui::{entry, numbers, rows};
+
+pub const COMMANDS: &[Command] =
+    &[command("fill", "JSON", "Give the selected rows values: a list of rows, or one row; heads may come first", fill)
+        .change()];
+
+/// Whether a table is one for the selected rows: one row, or as many as are selected.
+pub fn fits(state: &State, table: &[Vec<String>]) -> bool {
+    let selected = entry::rows(state).count();
+    let rows = table.len() - usize::from(header(table).is_some());
+    rows == selected || rows == 1
+}
+
+/// The first row, where it has no number.
+fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
+    table.first().filter(|first| first.iter().all(|field| rows::number(field).is_none()))
+}
+
+fn fill(state: &mut State, call: &Call) -> Done {
+    let table: Vec<Vec<String>> = serde_json::from_str(call.text)
+        .map_err(|_| "fill takes a JSON list of rows, each a list of texts: [[\"dx\", \"dy\"], [\"1\", \"2\"]]")?;
+    let selected: Vec<usize> = entry::rows(state).collect();
+    let header = header(&table);
+    let values = &table[usize::from(header.is_some())..];
+    if !fits(state, &table) {
+        return Err(format!("{} rows do not fit over {} selected ones", values.len(), selected.len()));
+    }
+    let (document, sheet) = (state.document(), state.sheet());
+    let mut filled = Filled { document, values: BTreeMap::new() };
+    for (i, &at) in selected.iter().enumerate() {
+        let Some(row) = sheet.row(at) else { continue };
+        let texts = if values.len() == 1 { &values[0] } else { &values[i] };
+        for (k, text) in texts.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
+            let cell = cell(&row, header, state.column, k).map_err(|why| format!("row {i}: {why}"))?;
+            filled.put(cell, text).map_err(|why| format!("row {i}, column {}: {why}", k + 1))?;
+        }
+    }
+    let count = selected.len();
+    let edits = filled.values.into_iter().map(|(pointer, value)| Edit::set(document, &pointer, value));
+    let edit = Edit::all(edits.collect::<Vec<_>>());
+    state.edit(edit, false)?;
+    state.say(format!("{count} {} pasted over", if count == 1 { "row" } else { "rows" }));
+    Ok(())
+}
+
+/// The cell of a row that the `k`th column of the table is for.
+fn cell<'a>(row: &'a Row, header: Option<&Vec<String>>, column: usize, k: usize) -> Result<&'a Cell, String> {
+    match header {
+        Some(heads) => {
+            let head = heads.get(k).ok_or("it has more values than the header")?;
+            let found = row.cells.iter().find(|cell| rows::same(head, &cell.head));
+            found.ok_or_else(|| format!("it has no column {}", quoted(head)))
+        }
+        None => row.cells.get(column + k).ok_or_else(|| "there are more values than columns from here on".to_owned()),
+    }
+}
+
+/// The values of the places that change; several cells may be of one.
+struct Filled<'a> {
+    document: &'a Document,
+    values: BTreeMap<String, Value>,
+}
+
+impl Filled<'_> {
+    fn put(&mut self, cell: &Cell, text: &str) -> Result<(), String> {
+        let old = self.values.get(&cell.pointer).cloned().or_else(|| field::value(self.document, &cell.pointer));
+        if !cell.is_number() {
+            self.values.insert(cell.pointer.clone(), Value::from(text));
+            return Ok(());
+        }
+        let number = rows::number(text).ok_or_else(|| format!("{} is not a number", quoted(text)))?;
+        entry::in_range(&cell.field, cell.part, number)?;
+        let pair = |v: Vec2| Value::from(vec![tidy_json(v.x), tidy_json(v.y)]);
+        let vector = || {
+            let at = |i: usize| old.as_ref().and_then(|old| old.get(i)).and_then(Value::as_f64).unwrap_or(0.0);
+            Vec2::new(at(0), at(1))
+        };
+        let value = match cell.part {
+            Part::Whole => tidy_json(number),
+            Part::Number(i) => {
+                let mut all = old.as_ref().and_then(Value::as_array).cloned().unwrap_or_default();
+                *all.get_mut(i).ok_or("there is no number here")? = tidy_json(number);
+                all.into()
+            }
+            Part::Length => pair(numbers::with_length(vector(), number)),
+            Part::Degrees => pair(numbers::cartesian(numbers::polar(vector()).0, number)),
+        };
+        self.values.insert(cell.pointer.clone(), value);
+        Ok(())
+    }
+}

@@ -1,0 +1,94 @@
+//! What was said, to be read again, and what is wrong in the scene, to be gone to.
+
+use super::{Call, Command, Done, command, obey};
+use crate::base::problem::{Problem, Severity};
+use crate::scene::{address, pointer};
+use crate::tui::app::{Mode, Pages, State};
+use crate::tui::choice::{Choice, Then};
+use crate::tui::panes::folded;
+use crate::tui::terminal::plain;
+
+pub const COMMANDS: &[Command] = &[
+    command("messages", "", "Show what was said before, to its end", messages).inside(),
+    command("problems", "", "List what is wrong in the scene; Enter goes there", problems).inside(),
+    command("problem", "next|previous", "Go to the next place where something is wrong", problem),
+];
+
+/// Columns of the text on the page.
+const WIDTH: u16 = 70;
+
+fn messages(state: &mut State, _: &Call) -> Done {
+    let lines: Vec<String> = state.said.iter().flat_map(|message| folded(&message.text, WIDTH)).collect();
+    if lines.is_empty() {
+        return Err("nothing was said yet".into());
+    }
+    // The newest are looked for first.
+    let scroll = lines.len().saturating_sub(usize::from(state.size.1 / 2));
+    state.mode = Mode::Pages(Pages { title: "messages".into(), lines, scroll });
+    Ok(())
+}
+
+/// What is wrong, a place and a message each; the place empty where it is the whole scene.
+fn found(state: &State) -> Vec<(String, String)> {
+    let unseen = state.seen.problem.iter().map(|problem| (String::new(), plain(problem)));
+    let warnings = state.document().warnings().iter();
+    let told = |problem: &Problem| {
+        let kind = if problem.severity == Severity::Warning { "" } else { "error: " };
+        let hint = problem.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
+        plain(&format!("{kind}{}{hint}", problem.message))
+    };
+    unseen.chain(warnings.map(|problem| (problem.path.clone(), told(problem)))).collect()
+}
+
+fn problems(state: &mut State, _: &Call) -> Done {
+    let found = found(state);
+    if found.is_empty() {
+        state.say("no problems");
+        return Ok(());
+    }
+    let place = |path: &str| match address::told(state.document(), path) {
+        whole if whole.is_empty() => "scene".to_owned(),
+        place => place,
+    };
+    let options = found.into_iter().map(|(path, message)| (place(&path), message)).collect();
+    state.mode = Mode::Choice(Choice { title: "problems".into(), options, at: 0, then: Then::Go });
+    Ok(())
+}
+
+/// The places in order, as often as the count says; from the last to the first.
+fn problem(state: &mut State, call: &Call) -> Done {
+    let found: Vec<_> = found(state).into_iter().filter(|(path, _)| !path.is_empty()).collect();
+    let n = found.len() as i64;
+    if n == 0 {
+        return Err("no problems".into());
+    }
+    let here = [state.focused(), state.node.clone()];
+    let at = here.iter().find_map(|here| found.iter().rposition(|(path, _)| path == here));
+    let by = match call.text {
+        "" | "next" => call.times(),
+        "previous" => -call.times(),
+        _ => return Err("problem takes next or previous".into()),
+    };
+    let from = at.map_or(if by > 0 { -1 } else { 0 }, |at| at as i64);
+    let to = (from + by).rem_euclid(n) as usize;
+    let (path, message) = &found[to];
+    go(state, path)?;
+    state.say(format!("problem {} of {n}: {message}", to + 1));
+    Ok(())
+}
+
+/// Goes to a place, or to the nearest that holds it and is there.
+fn go(state: &mut State, path: &str) -> Done {
+    let mut path = path.to_owned();
+    while !path.is_empty() && !crate::scene::field::is_there(state.document(), &path) {
+        path = pointer::split(&path).map_or(String::new(), |(holder, _)| holder.to_owned());
+    }
+    obey(state, &format!("go {path}"), None)
+}
+
+/// Goes to the place of a row of the list.
+pub fn go_to(state: &mut State, place: &str) -> Done {
+    let path = if place == "scene" { String::new() } else { place.to_owned() };
+    let path = address::resolve(state.document(), &path).unwrap_or_default();
+    go(state, &path)
+}
