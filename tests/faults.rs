@@ -194,7 +194,7 @@ fn an_edit_goes_before_a_picture_on_a_slow_link() {
     let (link, count) = stage.window(Bad { rate: 20e3, ..GOOD });
     shows(&link, 0);
     stage.paint(600);
-    notice(&link, "fetching cat.png");
+    next(&link, |update| matches!(update, Update::Progress(line) if line.contains("fetching cat.png")).then_some(()));
     let mut document = stage.document.clone();
     for revision in 1..=5 {
         let before = count.load(Ordering::SeqCst);

@@ -11,7 +11,8 @@ const ORDER: [&str; 11] =
 /// Outside crates and where each may be named. Tests may use what they like.
 const DOORS: &[(&[&str], &[&str])] = &[
     (&["wgpu"], &["render/gpu", "preview/window"]),
-    (&["winit", "raw_window_handle"], &["preview/window"]),
+    (&["winit", "raw_window_handle", "x11rb", "x11_dl", "xkbcommon_dl"], &["preview/window"]),
+    (&["cosmic_text", "dejavu"], &["preview/window/text"]),
     (&["ratatui", "crossterm", "terminput", "tui_input", "nucleo_matcher"], &["tui/"]),
     (&["toml", "base64", "csv"], &["tui/"]),
     (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),

@@ -10,6 +10,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use plica::base::error::Error;
+use plica::base::problem::Problem;
 use plica::files::Options;
 use plica::preview::client::{self, Link};
 use plica::preview::editor::{Event, Preview, Status};
@@ -102,6 +103,12 @@ fn next_title(link: &Link) -> (String, u64) {
         Update::Scene { scene, revision } => Some((scene.title.clone(), *revision)),
         _ => None,
     })
+}
+
+/// Waits for a problem whose words hold `part`.
+fn problem(link: &Link, part: &str) {
+    let said = |problems: &[Problem]| problems.iter().any(|problem| problem.to_string().contains(part));
+    next(link, |update| matches!(update, Update::Problems(problems) if said(problems)).then_some(()));
 }
 
 fn notice(link: &Link, part: &str) {
@@ -367,11 +374,11 @@ fn without_an_editor_the_file_is_followed_and_the_last_good_scene_stays() {
     notice(&window, "following the file");
     let write = |text: &str| std::fs::write(&stage.scene, text).unwrap();
     write("{\"plica\": 1, ");
-    notice(&window, "line 1");
+    problem(&window, "line 1");
     write(&text("mended"));
-    assert_eq!(next_title(&window).0, "mended", "nothing but the notice came while the file was broken");
+    assert_eq!(next_title(&window).0, "mended", "nothing but the problem came while the file was broken");
     std::fs::remove_file(&stage.scene).unwrap();
-    notice(&window, "s.plica.json");
+    problem(&window, "");
     write(&text("back"));
     assert_eq!(next_title(&window).0, "back");
 }
@@ -381,7 +388,7 @@ fn a_window_may_wait_for_its_scene() {
     let stage = stage();
     std::fs::remove_file(&stage.scene).unwrap();
     let window = stage.window();
-    notice(&window, "s.plica.json");
+    problem(&window, "");
     let (editor, _events) = stage.editor();
     assert_eq!(next_title(&window).0, "0");
     drop(editor);

@@ -72,6 +72,73 @@ fn plays_and_pauses() {
 }
 
 #[test]
+fn keys_with_others_and_held_ones_switch_nothing() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let mut view = View::open(&display, &place);
+    view.keys(&["1"]);
+    view.shows("frame 0", &place.frame(0));
+    view.keys(&["ctrl+o", "alt+o", "super+o", "ctrl+bracketright", "ctrl+q"]);
+    view.keys(&["bracketright"]);
+    view.shows("frame 1 without outlines", &place.frame(1));
+    let bare = view.shot();
+    display.tool("xdotool", &["keydown", "o"]);
+    sleep(Duration::from_millis(1500));
+    let held = view.shot();
+    for _ in 0..6 {
+        assert!(view.shot() == held && held != bare, "held, the switch stays on");
+    }
+    display.tool("xdotool", &["keyup", "o", "keydown", "bracketright"]);
+    view.until("several frames on", |v| difference(&v.shot(), &place.frame(1)) > 2);
+    display.tool("xdotool", &["keyup", "bracketright"]);
+}
+
+#[test]
+fn the_mouse_plays_zooms_and_moves_the_border() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let mut view = View::open(&display, &place);
+    view.keys(&["1"]);
+    let frame = place.frame(0);
+    view.shows("frame 0", &frame);
+    let shot = view.shot();
+    let (left, top) = corner(&shot, &frame);
+    let at = |x: usize, y: usize| {
+        display.tool("xdotool", &["mousemove", "--window", &view.window, &x.to_string(), &y.to_string()]);
+    };
+    // A notch of a virtual wheel is one step: 100 % to 141 %, and one back is 100 % again.
+    at(left + 100, top + 60);
+    display.tool("xdotool", &["click", "4"]);
+    view.until("a larger picture", |v| difference(&v.shot(), &frame) > 2);
+    display.tool("xdotool", &["click", "5"]);
+    view.shows("the frame at 1:1", &frame);
+    view.keys(&["bracketright", "b"]);
+    let (width, second) = (frame.width(), place.frame(1));
+    let halves = |border: usize| {
+        let side = |x: usize| if x < border { &frame } else { &second };
+        let cells = (0..frame.height()).flat_map(|y| (0..width).map(move |x| *side(x).get(x, y)));
+        plica::base::pixels::Grid::from_cells(width, frame.height(), cells.collect())
+    };
+    let moved = |v: &View<'_>, border: usize| {
+        let (shot, wanted) = (v.shot(), halves(border));
+        let differ = |x: &usize| (0..wanted.height()).any(|y| shot.get(left + x, top + y) != wanted.get(*x, y));
+        // The border with its handle hides some columns.
+        (0..width).filter(differ).all(|x| x.abs_diff(border) < 14)
+    };
+    view.until("before and after", |v| moved(v, width / 2));
+    at(left + width / 2, top + 40);
+    display.tool("xdotool", &["mousedown", "1"]);
+    at(left + width / 4, top + 44);
+    display.tool("xdotool", &["mouseup", "1"]);
+    view.until("the border at a quarter", |v| moved(v, width / 4));
+    view.keys(&["b", "bracketleft"]);
+    view.shows("frame 0", &frame);
+    at(18, shot.height() - 10);
+    display.tool("xdotool", &["click", "1"]);
+    view.until("something that moves", |v| difference(&v.shot(), &frame) > 2);
+}
+
+#[test]
 fn a_killed_window_leaves_nothing_behind() {
     let Some(display) = Display::open() else { return };
     let place = Place::new();

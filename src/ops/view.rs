@@ -1,6 +1,7 @@
 //! `plica view`: the preview window alone. It joins the editor that has the scene open, else follows the file; on another
 //! machine through ssh.
 
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::PoisonError;
 
@@ -44,10 +45,10 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     context.check_cancelled()?;
     window::run(window::Setup {
-        title: format!("{name} - plica"),
+        // The editor tells what is wrong by itself.
+        manner: window::Manner { name, most, takes_keyboard: !args.joined, complains: !args.joined },
         updates: link.updates,
         replies: link.replies,
-        most,
         cancel: context.cancel.clone(),
         load,
     })
@@ -71,6 +72,10 @@ fn there(way: Way, context: &Context) -> Result<Source> {
     let name = format!("{} on {}", way.address.file_name(), way.address.host);
     let (copies, options) = (fetch::Shared::default(), way.options.clone());
     // Ctrl-C at a question of ssh's ends ssh first.
+    if std::io::stderr().is_terminal() {
+        // Nobody may read it.
+        drop(writeln!(std::io::stderr(), "connecting to {} (Ctrl-C gives up)", way.address.host));
+    }
     let connected = way.connect(drop).or_else(|error| context.check_cancelled().and(Err(error)))?;
     let link = far::follow(way, connected, kept, copies.clone())?;
     let mut cache = materials::Cache::default();

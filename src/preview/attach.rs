@@ -73,6 +73,10 @@ fn begin(scene: &Path, options: &Options) -> Result<Far> {
                 return Ok(Far { news, replies, latest, options: options.clone() });
             }
             Ok(News::Update(Update::Notice(line))) => (why, patience) = (line, AFTER_NOTICE),
+            Ok(News::Update(Update::Problems(problems))) if !problems.is_empty() => {
+                let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+                (why, patience) = (format!("{}: {}", scene.display(), lines.join("; ")), AFTER_NOTICE);
+            }
             Ok(_) => {}
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) if scene.exists() => {
                 return Err(Error::at("scene", why));
@@ -135,9 +139,13 @@ fn publish(shared: &Shared, news: News) {
             shared.change(|state| state.latest.notice = line);
             tell(shared, Topic::Notice);
         }
+        News::Update(Update::Problems(problems)) => {
+            shared.change(|state| state.latest.problems = problems);
+            tell(shared, Topic::Problems);
+        }
         News::Update(Update::View(name)) => shared.view(&name),
         // Never told here: a scene comes as a document, and who was not opened by the editor is not closed by it.
-        News::Update(Update::Scene { .. } | Update::Closed) => {}
+        News::Update(Update::Scene { .. } | Update::Progress(_) | Update::Closed) => {}
     }
 }
 

@@ -84,9 +84,10 @@ impl Client {
             Err(error) => Err(error),
         };
         if let Err(error) = joined {
-            self.talk.notice(error.to_string())?;
+            self.talk.failed(error)?;
             return Ok(false);
         }
+        self.talk.problems(Vec::new())?;
         self.show()?;
         self.talk.notice("joined the editor")?;
         Ok(true)
@@ -122,7 +123,7 @@ impl Client {
     fn lost(&mut self, error: Option<Error>) -> Outcome {
         self.talk.leave();
         let why = error.map(|error| format!(" ({error})")).unwrap_or_default();
-        self.talk.notice(format!("the editor is gone; this is its last state{why}"))
+        self.talk.warn(format!("the editor is gone; this is its last state{why}"))
     }
 
     /// A changed scene counts where the file is followed; a changed picture always.
@@ -140,10 +141,11 @@ impl Client {
             Ok(document) => {
                 let count = self.talk.shown.as_ref().map_or(0, |(_, count)| count + 1);
                 self.talk.shown = Some((document, count));
+                self.talk.problems(Vec::new())?;
                 self.show()?;
                 self.talk.notice("following the file")
             }
-            Err(error) => self.talk.notice(error.to_string()),
+            Err(error) => self.talk.failed(error),
         }
     }
 

@@ -107,13 +107,14 @@ impl Far {
             }
             Some(FromEditor::Piece { hash, offset, bytes }) => {
                 let taken = self.fetch.piece(&hash, offset, &bytes, Instant::now());
-                let whole = taken.or_else(|error| self.talk.notice(error.to_string()).map(|()| true))?;
+                let whole = taken.or_else(|error| self.talk.failed(error).map(|()| true))?;
                 self.fetched(whole)
             }
             Some(FromEditor::Notice(line)) => {
                 self.standing = format!("{}: {line}", self.way.address.host);
                 if self.fetch.is_settled() { self.talk.notice(self.standing.clone()) } else { Ok(()) }
             }
+            Some(FromEditor::Problems(problems)) => self.talk.problems(problems),
             Some(FromEditor::Bye(reason)) => {
                 self.leave();
                 self.wait(reason)
@@ -126,7 +127,7 @@ impl Far {
     fn fetched(&mut self, changed: bool) -> Outcome {
         let wants = match self.fetch.wants(Instant::now()) {
             Ok(wants) => wants,
-            Err(error) => return self.talk.notice(error.to_string()),
+            Err(error) => return self.talk.failed(error),
         };
         wants.iter().for_each(|want| self.talk.say(want));
         let settled = self.fetch.is_settled();
@@ -140,9 +141,12 @@ impl Far {
             Some(_) if self.told.elapsed() < PROGRESS => Ok(()),
             Some(line) => {
                 self.told = Instant::now();
-                self.talk.notice(line)
+                self.talk.progress(Some(line))
             }
-            None if settled => self.talk.notice(self.standing.clone()),
+            None if settled => {
+                self.talk.progress(None)?;
+                self.talk.notice(self.standing.clone())
+            }
             None => Ok(()),
         }
     }
@@ -164,7 +168,8 @@ impl Far {
         let wait = Duration::from_secs(WAITS_SECS[self.tries.min(WAITS_SECS.len() - 1)]);
         self.tries += 1;
         self.next = Some(Instant::now() + wait);
-        self.talk.notice(format!("reconnecting: {why}"))
+        self.talk.progress(None)?;
+        self.talk.warn(format!("reconnecting: {why}"))
     }
 
     /// Goes there again, beside this thread: ssh may have something to ask.
@@ -187,6 +192,7 @@ impl Far {
             return self.wait(error.to_string());
         }
         self.tries = 0;
+        self.talk.problems(Vec::new())?;
         self.talk.show(None)?;
         self.talk.notice(format!("{}: connected again", self.way.address.host))
     }

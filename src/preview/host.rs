@@ -12,7 +12,7 @@ use super::keeper::Life;
 use super::link::{self, Caller, HangUp, Listener, Wire};
 use super::message::{self, FromEditor, Role, ToEditor};
 use super::outbox::{Latest, Outbox, Outgoing, Topic};
-use super::{Reply, Transport};
+use super::{Reply, Transport, views};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::edit::Edit;
@@ -132,8 +132,17 @@ impl Shared {
     /// An overlay or zoom command for the windows.
     pub fn view(&self, command: &str) {
         self.change(|state| {
-            state.latest.views.take(command);
-            state.peers.values_mut().for_each(|peer| peer.outbox.view(command));
+            let told = state.latest.views.take(command);
+            state.peers.values_mut().for_each(|peer| peer.outbox.view(&told));
+        });
+    }
+
+    /// A switch was set in a window: the others follow.
+    fn switched(&self, id: u64, command: &str) {
+        self.change(|state| {
+            let told = state.latest.views.take(command);
+            let others = state.peers.iter_mut().filter(|(other, _)| **other != id);
+            others.for_each(|(_, peer)| peer.outbox.view(&told));
         });
     }
 
@@ -277,7 +286,12 @@ impl Shared {
                     (self.deliver)(Event::Reply(Reply::Transport(transport)));
                 }
                 ToEditor::Pointer { x, y } => (self.deliver)(Event::Reply(Reply::Pointer { x, y })),
-                ToEditor::Command(name) => (self.deliver)(Event::Reply(Reply::Command(line(&name)))),
+                ToEditor::Command(name) => {
+                    if views::sets_a_switch(&name) {
+                        self.switched(id, &name);
+                    }
+                    (self.deliver)(Event::Reply(Reply::Command(line(&name))));
+                }
                 ToEditor::Alive => {}
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));

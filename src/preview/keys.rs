@@ -41,9 +41,11 @@ pub const KEYS: &[KeyRow] = &[
     row(VIEW, ")", "wipe-right", "Their border to the right"),
     row(VIEW, "w", "view-seam", "The loop's seam: the last frame against the first"),
     row(VIEW, "t", "view-checkerboard", "A checkerboard under transparency"),
+    row(VIEW, "L", "view-legends", "Legends of the vector field"),
     row(VIEW, "+", "zoom-in", "Larger"),
     row(VIEW, "-", "zoom-out", "Smaller"),
     row(VIEW, "f", "zoom-fit", "Fits the window"),
+    row(VIEW, "W", "zoom-whole", "Fits the window by a whole factor: all pixels equally large"),
     row(VIEW, "1", "zoom-one", "One pixel a pixel"),
     row(VIEW, "F", "view-full-screen", "The whole screen"),
     row(VIEW, "<", "slower", "Plays slower"),
@@ -63,9 +65,15 @@ pub const KEYS: &[KeyRow] = &[
     ),
     row(WINDOW, "z", "view-menu", "The view menu"),
     row(WINDOW, "?", "help", "These keys"),
-    row(WINDOW, "Esc", "close-panel", "Closes the help"),
+    row(WINDOW, "Esc", "close-panel", "Closes the help, puts problems away, leaves the full screen"),
     row(WINDOW, "q", "quit", "Closes the window"),
 ];
+
+/// Whether a command goes on while its key is held: what steps and moves does, a switch would flicker.
+pub fn repeats(command: &str) -> bool {
+    let steps = ["frame-", "zoom-in", "zoom-out", "pan-", "wipe-", "field-"];
+    steps.iter().any(|step| command.starts_with(step))
+}
 
 #[cfg(test)]
 mod tests {
@@ -77,5 +85,11 @@ mod tests {
             assert!(!row.command.is_empty() && !row.help.is_empty() && !row.help.ends_with('.'), "{row:?}");
             assert!(KEYS[i + 1..].iter().all(|r| r.key != row.key), "{row:?}");
         }
+    }
+
+    #[test]
+    fn only_what_steps_and_moves_goes_on_while_a_key_is_held() {
+        let held: Vec<&str> = KEYS.iter().filter(|row| repeats(row.command)).map(|row| row.key).collect();
+        assert_eq!(held, ["[", "]", ",", ".", "(", ")", "+", "-", "Left", "Right", "Up", "Down"]);
     }
 }

@@ -14,7 +14,7 @@ use crate::files::originals::Original;
 use crate::scene::edit::Edit;
 
 /// Version of the protocol; both ends must have the same.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 const MAGIC: [u8; 4] = *b"PLCA";
 const HEADER: usize = 12;
@@ -79,6 +79,8 @@ pub enum FromEditor {
     },
     /// One line for the person at a window on another machine.
     Notice(String),
+    /// All that is wrong with what is followed there.
+    Problems(Vec<Problem>),
     /// Nothing happened, and the other end is still there.
     Alive,
     /// Answers a [`ToEditor::Edit`]: no problems means done.

@@ -25,6 +25,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::base::error::Error;
+use crate::base::problem::Problem;
 use crate::scene::Scene;
 
 /// How the animation runs: the same in the editor and all of its windows.
@@ -45,6 +47,19 @@ impl Default for Transport {
     }
 }
 
+/// What is wrong, one by one, with the scene that messages call `scene`.
+fn problems(error: Error, scene: &str) -> Vec<Problem> {
+    match error {
+        Error::Scene { problems, .. } => problems,
+        Error::Failed { place, what, cure } => {
+            let place = if place == scene { String::new() } else { place };
+            let problem = Problem::error(place, what);
+            vec![cure.into_iter().fold(problem, Problem::hint)]
+        }
+        other => vec![Problem::error("", other.to_string())],
+    }
+}
+
 /// What reaches a window, from the editor that has the scene open or from the file.
 #[derive(Clone, Debug)]
 pub enum Update {
@@ -61,8 +76,12 @@ pub enum Update {
     Transport(Transport),
     /// An overlay or zoom command, by its name in the key table.
     View(String),
-    /// One line for the person: the link was lost, the file cannot be read, ...
+    /// How the scene is followed: a line for the person.
     Notice(String),
+    /// How far something is that takes long: a line for the person. Empty: it is done.
+    Progress(String),
+    /// All that is wrong with what is followed: the scene cannot be read, the link was lost, ... Empty: all is well again.
+    Problems(Vec<Problem>),
     /// The editor wants the window gone.
     Closed,
 }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::Transport;
 use super::message::FromEditor;
 use super::views::Views;
+use crate::base::problem::Problem;
 use crate::files::originals::Originals;
 use crate::scene::Document;
 use crate::scene::edit::Edit;
@@ -34,13 +35,15 @@ pub(super) struct Latest {
     pub originals: Option<Arc<Originals>>,
     /// A line for the person at a window on another machine.
     pub notice: String,
+    /// What is wrong, for the same.
+    pub problems: Vec<Problem>,
 }
 
 impl Latest {
     /// A document that nothing was done with yet.
     pub fn new(document: Document, revision: u64) -> Latest {
         let (transport, views, notice) = (Transport::default(), Views::default(), String::new());
-        Latest { document, revision, selection: None, transport, views, originals: None, notice }
+        Latest { document, revision, selection: None, transport, views, originals: None, notice, problems: Vec::new() }
     }
 
     fn message(&self, topic: Topic) -> FromEditor {
@@ -49,6 +52,7 @@ impl Latest {
             Topic::Transport => FromEditor::Transport(self.transport),
             Topic::Views => FromEditor::Views(self.views.list().to_vec()),
             Topic::Notice => FromEditor::Notice(self.notice.clone()),
+            Topic::Problems => FromEditor::Problems(self.problems.clone()),
             Topic::Images => FromEditor::Images(self.originals.as_ref().map(|all| all.list()).unwrap_or_default()),
         }
     }
@@ -61,6 +65,7 @@ pub(super) enum Topic {
     Transport,
     Views,
     Notice,
+    Problems,
     Images,
 }
 
@@ -145,6 +150,7 @@ impl Outbox {
         let mut due = BTreeSet::from([Topic::Selection, Topic::Transport]);
         due.extend((!latest.views.list().is_empty()).then_some(Topic::Views));
         due.extend((!latest.notice.is_empty()).then_some(Topic::Notice));
+        due.extend((!latest.problems.is_empty()).then_some(Topic::Problems));
         due.extend(latest.originals.is_some().then_some(Topic::Images));
         let (views, wants) = (VecDeque::new(), VecDeque::new());
         Outbox { sent: latest.revision, owed: true, change: Change::None, due, views, wants }
@@ -352,6 +358,6 @@ mod tests {
         outbox.view("view-field");
         let all: Vec<_> = std::iter::from_fn(|| outbox.next(&latest)).map(Outgoing::into_message).collect();
         let views = all.iter().filter(|m| matches!(m, FromEditor::View(_) | FromEditor::Views(_))).collect::<Vec<_>>();
-        assert_eq!(views, [&FromEditor::Views(vec!["view-field".into()])], "told once");
+        assert_eq!(views, [&FromEditor::Views(vec!["view-field on".into()])], "told once");
     }
 }

@@ -11,6 +11,7 @@ use super::message::{self, FromEditor, ToEditor};
 use super::views::Views;
 use super::{Reply, Update};
 use crate::base::error::{Error, Result};
+use crate::base::problem::Problem;
 use crate::files::Options;
 use crate::scene::Document;
 use crate::scene::edit::Edit;
@@ -74,6 +75,7 @@ pub(super) struct Talk {
     /// The connection, while there is one.
     hang_up: Option<HangUp>,
     last_notice: String,
+    last_problems: Vec<Problem>,
 }
 
 impl Talk {
@@ -91,6 +93,7 @@ impl Talk {
             session: 0,
             hang_up: None,
             last_notice: String::new(),
+            last_problems: Vec::new(),
         };
         let outlet = talk.outlet.clone();
         std::thread::spawn(move || outlet.pass_on(&said, &sender));
@@ -125,6 +128,32 @@ impl Talk {
         }
         self.last_notice.clone_from(&line);
         self.update(Update::Notice(line))
+    }
+
+    /// How far something is; nothing once it is done.
+    pub fn progress(&mut self, line: Option<String>) -> Outcome {
+        self.update(Update::Progress(line.unwrap_or_default()))
+    }
+
+    /// All that is wrong now; the same is not said again.
+    pub fn problems(&mut self, problems: Vec<Problem>) -> Outcome {
+        if problems == self.last_problems {
+            return Ok(());
+        }
+        self.last_problems.clone_from(&problems);
+        self.update(Update::Problems(problems))
+    }
+
+    /// What went wrong is all that is wrong now.
+    pub fn failed(&mut self, error: Error) -> Outcome {
+        let problems = super::problems(error, &self.place);
+        self.problems(problems)
+    }
+
+    /// A line for the person that is a warning too: how the scene is followed, and that this is not how it should be.
+    pub fn warn(&mut self, line: String) -> Outcome {
+        self.problems(vec![Problem::warning("", line.clone())])?;
+        self.notice(line)
     }
 
     /// Says something to whoever serves it.
@@ -193,7 +222,7 @@ impl Talk {
                 self.shown = Some((document, revision));
                 self.show(None)
             }
-            Err(error) => self.notice(error.to_string()),
+            Err(error) => self.failed(error),
         }
     }
 
@@ -232,12 +261,10 @@ pub(super) fn window_sink(updates: Sender<Update>) -> Sink {
             }
             News::Files => shown.clone().is_none_or(|(scene, revision)| send(Update::Scene { scene, revision })),
             News::Views(list) => views.catch_up(&list).into_iter().all(|name| send(Update::View(name))),
-            News::Update(update) => {
-                if let Update::View(name) = &update {
-                    views.take(name);
-                }
-                send(update)
-            }
+            News::Update(update) => match update {
+                Update::View(name) => send(Update::View(views.take(&name))),
+                other => send(other),
+            },
         }
     })
 }

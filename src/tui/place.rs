@@ -97,14 +97,28 @@ pub fn move_here(state: &State) -> Result<Edit, String> {
     Ok(move_to(state.document(), &place, state.placing.cursor))
 }
 
+/// JSON pointer of the cell in focus.
+fn cell(state: &State) -> Option<String> {
+    let sheet = state.sheet();
+    sheet.row(state.row)?.cells.get(state.column).map(|cell| cell.pointer.clone())
+}
+
+/// The jump vector of the thing in focus whose cell that is, for the cursor to be its end.
+pub fn jump_in_focus(state: &State) -> Option<Vec2> {
+    let (pointer, _, at) = placed(state)?;
+    let cell = cell(state)?;
+    let children = field::children(state.document(), &pointer);
+    let is_jump = children.iter().any(|child| is_pair(&child.field, ["dx", "dy"]) && child.pointer == cell);
+    is_jump.then(|| state.placing.cursor - at)
+}
+
 /// Lets the jump vector (or the dragged place) of the thing in focus end at the cursor.
 pub fn aim_here(state: &State) -> Result<Edit, String> {
     let document = state.document();
     let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     let children = field::children(document, &pointer);
     let cursor = state.placing.cursor;
-    let row = state.sheet().row(state.row);
-    let cell = row.and_then(|row| row.cells.get(state.column).map(|cell| cell.pointer.clone()));
+    let cell = cell(state);
     let vectors = || children.iter().filter(|child| is_pair(&child.field, ["dx", "dy"]));
     let in_focus = vectors().find(|child| Some(&child.pointer) == cell.as_ref());
     let (target, value) = match in_focus.or_else(|| vectors().next()) {

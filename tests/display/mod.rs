@@ -129,8 +129,15 @@ impl<'a> View<'a> {
         View::of(display, &mut place.command())
     }
 
-    /// The window of any command line.
+    /// The window of any command line, with the keyboard.
     pub fn of(display: &'a Display, command: &mut Command) -> View<'a> {
+        let view = View::beside(display, command);
+        display.tool("xdotool", &["windowfocus", "--sync", &view.window]);
+        view
+    }
+
+    /// The window of any command line, as it opens.
+    pub fn beside(display: &'a Display, command: &mut Command) -> View<'a> {
         let process = command.env("DISPLAY", &display.name).spawn().unwrap();
         let mut view = View { display, process, window: String::new() };
         view.until("a window", |v| {
@@ -138,7 +145,6 @@ impl<'a> View<'a> {
             v.window = String::from_utf8(found).unwrap().lines().next().unwrap_or_default().to_owned();
             !v.window.is_empty()
         });
-        display.tool("xdotool", &["windowfocus", "--sync", &view.window]);
         view
     }
 

@@ -1,7 +1,7 @@
 //! The window's events: what happens becomes a change of the [`State`], and a change asks for one drawing. While nothing
 //! plays the loop sleeps.
 
-use std::sync::Arc;
+use std::io::Write;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
@@ -9,25 +9,30 @@ use kurbo::{Point, Size};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow};
-use winit::window::{Window, WindowId};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
+use winit::keyboard::ModifiersState;
+use winit::window::WindowId;
 
 use super::clock::Clock;
+use super::mouse::{Asked, Button, Mouse};
 use super::opened::{Opened, first_size};
-use super::screen::{Drawn, Screen};
+use super::screen::Drawn;
 use super::show::{Cached, Show, name};
 use super::state::{Outcome, State};
+use super::text::{Letters, of_system};
+use super::words::Words;
 use super::worker::{Event, Ready};
-use super::{PLACE, chrome, input};
+use super::{Manner, input};
 use crate::base::error::{Error, Result};
-use crate::preview::{Reply, Transport as Leading, Update};
+use crate::base::problem::Problem;
+use crate::preview::{Reply, Transport as Leading, Update, views};
 
 /// A scene is given so long before the window opens with a notice alone.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// A line of a mouse wheel is one step; a touchpad gives pixels.
+/// A line of a mouse wheel is one step; a touchpad may give pixels.
 const WHEEL_PX: f64 = 60.0;
-/// A click may move the pointer so far, in logical pixels.
-const CLICK_PX: f64 = 3.0;
+/// How often a hidden window looks whether it can be seen again.
+const HIDDEN: Duration = Duration::from_millis(250);
 
 /// Editor and window may be so far apart while both play, as a share of the timeline, before the window follows.
 const APART: f64 = 0.05;
@@ -36,19 +41,22 @@ const LOSE_DEVICE: &str = "lose-device";
 
 /// The window and all that it shows.
 pub struct App {
-    title: String,
+    manner: Manner,
     replies: Sender<Reply>,
-    /// The largest side of a picture that is given to the GPU, in pixels.
-    most: usize,
+    /// For what is looked for beside the event loop.
+    proxy: EventLoopProxy<Event>,
     instance: Option<wgpu::Instance>,
+    letters: Letters,
     state: State,
     shown: Option<Show>,
     opened: Option<Opened>,
     marks: Cached,
-    drag: Drag,
-    /// Where the mouse button went down.
-    pressed_at: Option<Point>,
+    mouse: Mouse,
+    /// Keys that are held with others.
+    held: ModifiersState,
     clock: Clock,
+    /// What the window is to grow to once its first picture is drawn.
+    grows_to: Option<PhysicalSize<u32>>,
     /// What is to be answered once it is on the screen.
     owed: Option<Reply>,
     /// What was said last about how the window is doing: frames a second and what is wrong.
@@ -58,28 +66,22 @@ pub struct App {
     failed: Option<Error>,
 }
 
-/// What the pressed mouse button moves.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Drag {
-    Nothing,
-    Picture,
-    Time,
-}
-
 impl App {
     /// A window that opens with the first scene or the first problem.
-    pub fn new(instance: wgpu::Instance, title: String, replies: Sender<Reply>, most: usize) -> App {
+    pub fn new(instance: wgpu::Instance, manner: Manner, replies: Sender<Reply>, proxy: EventLoopProxy<Event>) -> App {
         App {
-            title,
+            manner,
             replies,
-            most,
+            proxy,
             instance: Some(instance),
+            letters: Letters::default(),
             state: State::default(),
             shown: None,
             opened: None,
             marks: Cached::default(),
-            drag: Drag::Nothing,
-            pressed_at: None,
+            mouse: Mouse::default(),
+            held: ModifiersState::empty(),
+            grows_to: None,
             clock: Clock::default(),
             owed: None,
             reported: None,
@@ -105,20 +107,14 @@ impl App {
     /// Opens the window where it is not open yet.
     fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let Some(instance) = self.instance.take() else { return Ok(()) };
-        let size = self.first_size(event_loop);
-        let attributes = Window::default_attributes()
-            .with_title(self.title.clone())
-            .with_inner_size(PhysicalSize::new(size.0, size.1));
-        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
-        let (gpu, screen) = Screen::open(instance, window.clone())?;
-        self.opened = Some(Opened { window, gpu, screen, hidden: false });
+        self.opened = Some(Opened::open(event_loop, instance, &self.manner, self.first_size(event_loop))?);
         self.report();
         self.resized();
         Ok(())
     }
 
     /// The size that the window opens with.
-    fn first_size(&self, event_loop: &ActiveEventLoop) -> (u32, u32) {
+    fn first_size(&self, event_loop: &ActiveEventLoop) -> PhysicalSize<u32> {
         let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
         let (scale, room) = monitor.map_or((1.0, None), |m| (m.scale_factor(), Some(m.size())));
         first_size(self.state.picture, scale, room)
@@ -146,14 +142,13 @@ impl App {
         self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
         self.open(event_loop)?;
         let Some(opened) = &self.opened else { return Ok(()) };
-        if self.shown.is_none() {
-            let (width, height) = self.first_size(event_loop);
-            let _ = opened.window.request_inner_size(PhysicalSize::new(width, height)); // answered by Resized
-        }
-        let most = opened.gpu.device().max_side().min(self.most);
+        // Sending a large picture to the GPU takes a while: the window stays whole until then.
+        self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
+        let most = opened.gpu.device().max_side().min(self.manner.most);
         let (show, reduced) = Show::new(ready.scene, ready.synth, most);
         self.shown = Some(show);
-        self.state.problem = reduced;
+        self.state.words.reduced = reduced;
+        self.state.words.follow_scene(ready.problems);
         self.marks.revision += 1;
         self.owed = Some(Reply::Shown { revision: ready.revision, synth_ms: ready.synth_ms });
         self.select(self.state.selection.clone());
@@ -171,13 +166,30 @@ impl App {
                 self.opened.iter().for_each(|opened| opened.gpu.device().raw.destroy());
             }
             Update::View(command) => self.run(event_loop, &command),
-            Update::Notice(line) => {
-                self.state.notice = Some(line).filter(|line| !line.is_empty());
-                self.open_by.get_or_insert(Instant::now() + PATIENCE);
+            Update::Notice(line) => self.say(|words| words.notice = Some(line).filter(|line| !line.is_empty())),
+            Update::Progress(line) => self.say(|words| words.progress = Some(line).filter(|line| !line.is_empty())),
+            Update::Problems(problems) => {
+                self.complain(&problems);
+                self.say(|words| words.follow_link(problems));
             }
             Update::Closed => event_loop.exit(),
         }
         self.redraw();
+    }
+
+    /// Says something; a window that has nothing to show opens for that in a while.
+    fn say(&mut self, what: impl FnOnce(&mut Words)) {
+        what(&mut self.state.words);
+        self.open_by.get_or_insert(Instant::now() + PATIENCE);
+    }
+
+    /// Says what is wrong on standard error too, as long as there is no picture: the window may never open.
+    fn complain(&self, problems: &[Problem]) {
+        if self.shown.is_none() && self.manner.complains {
+            let lines: String = problems.iter().map(|p| format!("plica: {}: {p}\n", self.manner.name)).collect();
+            // Nobody may read it.
+            drop(std::io::stderr().write_all(lines.as_bytes()));
+        }
     }
 
     fn select(&mut self, pointer: Option<String>) {
@@ -193,7 +205,7 @@ impl App {
         let t = time / timeline.duration.max(f64::MIN_POSITIVE);
         let apart = (transport.scene_time(timeline) - t).abs();
         let together = playing && transport.playing && apart.min(1.0 - apart) < APART;
-        if self.drag != Drag::Time && !together {
+        if !self.mouse.drags_time() && !together {
             transport.playing = playing;
             transport.seek(t, timeline);
             self.clock.start();
@@ -203,8 +215,9 @@ impl App {
     }
 
     /// Takes what is wrong with a scene.
-    fn warn(&mut self, event_loop: &ActiveEventLoop, line: String) -> Result<()> {
-        self.state.problem = Some(line);
+    fn warn(&mut self, event_loop: &ActiveEventLoop, problems: Vec<Problem>) -> Result<()> {
+        self.complain(&problems);
+        self.state.words.follow_scene(problems);
         self.open(event_loop)?;
         self.report();
         self.redraw();
@@ -216,6 +229,7 @@ impl App {
         match self.state.run(command) {
             Outcome::Redraw => self.redraw(),
             Outcome::FullScreen => self.opened.iter().for_each(Opened::toggle_full_screen),
+            Outcome::Window => self.opened.iter().for_each(Opened::leave_full_screen),
             Outcome::Quit => event_loop.exit(),
             Outcome::Unknown => {}
         }
@@ -231,7 +245,9 @@ impl App {
         match command {
             "mark-point" => self.tell(command, self.state.marked),
             "select-point" => self.tell(command, self.state.pointed()),
-            _ => {}
+            switch => self.state.is_on(switch).into_iter().for_each(|on| {
+                self.reply(Reply::Command(views::set(switch, on)));
+            }),
         }
     }
 
@@ -266,68 +282,91 @@ impl App {
     }
 
     fn pointer(&mut self, at: Option<Point>) {
-        let before = std::mem::replace(&mut self.state.pointer, at);
-        match (self.drag, before, at) {
-            (Drag::Picture, Some(from), Some(to)) => self.state.camera.pan(from - to),
-            (Drag::Time, _, Some(to)) => self.scrub(to.x),
-            _ => {}
-        }
+        self.leading(|app| app.mouse.moved(&mut app.state, at));
         if let Some(Point { x, y }) = self.state.pointed() {
             self.reply(Reply::Pointer { x, y });
         }
+        self.pointed();
+    }
+
+    /// A button of the mouse goes down or up.
+    fn press(&mut self, event_loop: &ActiveEventLoop, button: Button, pressed: bool) {
+        let mut asked = Asked::Nothing;
+        self.leading(|app| {
+            asked = match pressed {
+                true => app.mouse.pressed(&mut app.state, button),
+                false => app.mouse.released(&app.state, Instant::now()),
+            };
+        });
+        match asked {
+            Asked::Nothing => {}
+            Asked::Play => self.key(event_loop, "play"),
+            Asked::Fit => self.run(event_loop, "zoom-fit"),
+            Asked::Select(at) => self.tell("select-point", Some(at)),
+        }
+        self.pointed();
+    }
+
+    /// The pointer shows what can be done where it is.
+    fn pointed(&mut self) {
+        let shape = self.mouse.shape(&self.state);
+        self.opened.iter_mut().for_each(|opened| opened.point(shape));
+        if self.mouse.drags_time() {
+            self.report();
+        }
         self.redraw();
     }
 
-    /// The left button goes down or up; where it comes up at the same place that was a click.
-    fn press(&mut self, pressed: bool) {
-        let clicked = (self.pressed_at, self.state.pointer);
-        if let (false, Drag::Picture, (Some(from), Some(to))) = (pressed, self.drag, clicked)
-            && from.distance(to) <= CLICK_PX * self.state.scale
-        {
-            self.tell("select-point", self.state.pointed());
-        }
-        self.pressed_at = self.state.pointer.filter(|_| pressed);
-        self.drag = match self.state.pointer {
-            Some(at) if pressed && at.y >= self.state.area().height => Drag::Time,
-            Some(_) if pressed => Drag::Picture,
-            _ => Drag::Nothing,
+    fn wheel(&mut self, delta: MouseScrollDelta) {
+        let steps = match delta {
+            MouseScrollDelta::PixelDelta(by) => by.y / WHEEL_PX,
+            MouseScrollDelta::LineDelta(_, 0.0) => return,
+            MouseScrollDelta::LineDelta(_, y) => {
+                let twice = self.opened.as_ref().is_some_and(Opened::wheel_is_a_button);
+                if !self.mouse.counts(twice) {
+                    return;
+                }
+                f64::from(y)
+            }
         };
-        if let (Drag::Time, Some(at)) = (self.drag, self.state.pointer) {
-            self.scrub(at.x);
-        }
-    }
-
-    fn scrub(&mut self, x: f64) {
-        let frame = chrome::frame_at(&self.state, x);
-        self.leading(|app| app.state.transport.go_to(frame, &app.state.timeline));
-        self.report();
+        self.mouse.turned(&mut self.state, steps);
         self.redraw();
     }
 
-    fn wheel(&mut self, steps: f64) {
-        let about = self.state.pointer.unwrap_or(Point::ZERO);
-        if steps != 0.0 {
-            let steps = if steps > 0.0 { steps.ceil() } else { steps.floor() };
-            self.state.camera.zoom_step(steps as i32, about, self.state.area());
-            self.redraw();
-        }
-    }
-
-    /// Draws the window. A lost device is replaced, and the drawing asked for again.
+    /// Draws the window, where it can be seen. A lost device is replaced, and the drawing asked for again.
     fn draw(&mut self) -> Result<()> {
         self.advance();
         let Some(opened) = &mut self.opened else { return Ok(()) };
-        match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks) {
-            _ if opened.gpu.device().is_lost() => self.reopen()?,
-            Ok(Drawn::Yes) => opened.hidden = false,
-            Ok(Drawn::Again) => opened.window.request_redraw(),
-            Ok(Drawn::Hidden) => opened.hidden = true,
-            Ok(Drawn::Lost) => self.reopen()?,
-            Err(error) => return Err(error),
+        if opened.is_seen() {
+            self.letters.begin();
+            match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, &self.letters) {
+                _ if opened.gpu.device().is_lost() => self.reopen()?,
+                Ok(Drawn::Yes) => self.drawn(),
+                Ok(Drawn::Again) => opened.window.request_redraw(),
+                Ok(Drawn::Hidden) => opened.hidden = true,
+                Ok(Drawn::Lost) => self.reopen()?,
+                Err(error) => return Err(error),
+            }
+            self.clock.drawn += 1;
+        } else {
+            self.report();
         }
-        self.clock.drawn += 1;
         self.owed.take().into_iter().for_each(|reply| self.reply(reply));
         Ok(())
+    }
+
+    /// A drawing is on the screen.
+    fn drawn(&mut self) {
+        let Some(opened) = &mut self.opened else { return };
+        opened.hidden = false;
+        if let Some(size) = self.grows_to.take() {
+            let _ = opened.window.request_inner_size(size); // answered by Resized
+        }
+        if self.letters.asks_for_fonts() {
+            let proxy = self.proxy.clone();
+            // Where nobody is there any more to take them, they are not needed.
+            std::thread::spawn(move || drop(proxy.send_event(Event::Fonts(Box::new(of_system())))));
+        }
     }
 
     /// The animation runs on, and stops by itself where it plays once.
@@ -349,11 +388,8 @@ impl App {
 
     /// Goes on after device or surface were lost, with new ones in the same window.
     fn reopen(&mut self) -> Result<()> {
-        if let Some(Opened { window, gpu, screen, .. }) = self.opened.take() {
-            let instance = gpu.instance().clone();
-            drop((gpu, screen)); // a window has one surface at a time
-            let (gpu, screen) = Screen::open(instance, window.clone())?;
-            self.opened = Some(Opened { window, gpu, screen, hidden: false });
+        if let Some(opened) = self.opened.take() {
+            self.opened = Some(opened.anew()?);
             self.redraw();
         }
         Ok(())
@@ -361,9 +397,9 @@ impl App {
 
     /// Tells the editor how the window is doing, where that has changed.
     fn report(&mut self) {
-        self.state.fps = self.state.fps.filter(|_| self.state.transport.playing);
+        self.state.fps = self.state.fps.filter(|_| self.plays_visibly());
         let Some(opened) = &self.opened else { return };
-        let (fps, notice) = (self.state.fps.unwrap_or(0.0).round(), self.state.problem.clone().unwrap_or_default());
+        let (fps, notice) = (self.state.fps.unwrap_or(0.0).round(), self.state.words.of_scene());
         let adapter = opened.gpu.device().name();
         let report = Some((fps, notice.clone()));
         if self.reported != report {
@@ -374,7 +410,7 @@ impl App {
     }
 
     fn plays_visibly(&self) -> bool {
-        self.state.transport.playing && self.opened.as_ref().is_some_and(|o| !o.hidden)
+        self.state.transport.playing && self.opened.as_ref().is_some_and(|o| !o.hidden && !o.covered)
     }
 }
 
@@ -387,7 +423,17 @@ impl ApplicationHandler<Event> for App {
     fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
         self.attempt(event_loop, |app| match event {
             Event::Ready(ready) => app.take(event_loop, ready),
-            Event::Problem(line) => app.warn(event_loop, line),
+            Event::Problems(problems) => app.warn(event_loop, problems),
+            Event::Work(work) => {
+                app.state.work = Some(work);
+                app.redraw();
+                Ok(())
+            }
+            Event::Fonts(fonts) => {
+                app.letters.take_fonts(*fonts);
+                app.redraw();
+                Ok(())
+            }
             Event::Interrupted => Err(Error::Interrupted),
             Event::Update(update) => {
                 app.follow(event_loop, update);
@@ -401,22 +447,25 @@ impl ApplicationHandler<Event> for App {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::RedrawRequested => self.attempt(event_loop, App::draw),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => self.resized(),
-            WindowEvent::Occluded(hidden) => {
-                self.opened.iter_mut().for_each(|o| o.hidden = hidden);
+            WindowEvent::Occluded(covered) => {
+                self.opened.iter_mut().for_each(|o| o.covered = covered);
                 self.redraw();
             }
+            WindowEvent::ModifiersChanged(held) => self.held = held.state(),
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {
-                if let Some(command) = input::command(&event.logical_key) {
+                if let Some(command) = input::command(&event.logical_key, self.held, event.repeat) {
                     self.key(event_loop, command);
                 }
             }
             WindowEvent::CursorMoved { position, .. } => self.pointer(Some(Point::new(position.x, position.y))),
             WindowEvent::CursorLeft { .. } => self.pointer(None),
             WindowEvent::MouseInput { state, button: MouseButton::Left, .. } => {
-                self.press(state == ElementState::Pressed);
+                self.press(event_loop, Button::Left, state == ElementState::Pressed);
             }
-            WindowEvent::MouseWheel { delta: MouseScrollDelta::LineDelta(_, y), .. } => self.wheel(f64::from(y)),
-            WindowEvent::MouseWheel { delta: MouseScrollDelta::PixelDelta(by), .. } => self.wheel(by.y / WHEEL_PX),
+            WindowEvent::MouseInput { state, button: MouseButton::Middle, .. } => {
+                self.press(event_loop, Button::Middle, state == ElementState::Pressed);
+            }
+            WindowEvent::MouseWheel { delta, .. } => self.wheel(delta),
             _ => {}
         }
     }
@@ -433,6 +482,9 @@ impl ApplicationHandler<Event> for App {
         let interval = self.opened.as_ref().map(Opened::interval);
         let flow = match interval {
             Some(interval) if self.plays_visibly() => ControlFlow::WaitUntil(self.clock.next(interval, rest)),
+            Some(_) if self.state.transport.playing && self.opened.as_ref().is_some_and(|o| o.hidden) => {
+                ControlFlow::WaitUntil(Instant::now() + HIDDEN)
+            }
             None => self.open_by.map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
             _ => ControlFlow::Wait,
         };

@@ -6,6 +6,10 @@ use crate::base::maths::{ln, pow};
 
 /// Smallest and largest zoom, in pixels of the screen a pixel of the picture.
 const ZOOMS: (f64, f64) = (1.0 / 64.0, 256.0);
+/// A fitted picture may stay behind the window by this share, for the sake of a whole factor.
+const ALMOST: f64 = 0.01;
+/// So much of the picture is always in sight, in pixels of the screen.
+const IN_SIGHT_PX: f64 = 64.0;
 
 /// Zoom and place.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,13 +18,22 @@ pub struct Camera {
     pub zoom: f64,
     /// The place in the picture that stands in the middle of the area.
     pub center: Point,
-    /// Whether the picture is kept fitted while the window changes its size.
-    fitted: bool,
+    /// How the picture is kept fitted while the window changes its size.
+    fitted: Option<Fit>,
+}
+
+/// How a picture is fitted into the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fit {
+    /// As large as the window lets it be.
+    Window,
+    /// The same, by a whole factor where that is 1 or more: every pixel is as large as the others.
+    Whole,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Camera { zoom: 1.0, center: Point::ZERO, fitted: true }
+        Camera { zoom: 1.0, center: Point::ZERO, fitted: Some(Fit::Window) }
     }
 }
 
@@ -41,43 +54,62 @@ impl Camera {
         ((at.to_vec2() - self.origin(area)) / self.zoom).to_point()
     }
 
-    /// Fits a picture into the area. Enlarged pictures keep whole pixels.
-    pub fn fit(&mut self, picture: Size, area: Size) {
+    /// Fits a picture into the area.
+    pub fn fit(&mut self, picture: Size, area: Size, fit: Fit) {
         let zoom = (area.width / picture.width.max(1.0)).min(area.height / picture.height.max(1.0));
-        self.zoom = if zoom >= 1.0 { zoom.floor() } else { zoom }.clamp(ZOOMS.0, ZOOMS.1);
+        // What is hardly more than a whole factor stays crisp at that factor.
+        let whole = zoom >= 1.0 && (fit == Fit::Whole || zoom < zoom.floor() * (1.0 + ALMOST));
+        self.zoom = if whole { zoom.floor() } else { zoom }.clamp(ZOOMS.0, ZOOMS.1);
         self.center = (picture.to_vec2() / 2.0).to_point();
-        self.fitted = true;
+        self.fitted = Some(fit);
     }
 
     /// One pixel a pixel, around the place in the middle; a picture that has room is shown whole.
     pub fn one(&mut self, picture: Size, area: Size) {
         if picture.width <= area.width && picture.height <= area.height {
-            self.fit(picture, area);
+            self.center = (picture.to_vec2() / 2.0).to_point();
         }
-        (self.zoom, self.fitted) = (1.0, false);
+        (self.zoom, self.fitted) = (1.0, None);
+        self.keep_in_sight(picture, area);
     }
 
     /// Follows a change of the area or the picture.
     pub fn resized(&mut self, picture: Size, area: Size) {
-        if self.fitted {
-            self.fit(picture, area);
+        match self.fitted {
+            Some(fit) => self.fit(picture, area, fit),
+            None => self.keep_in_sight(picture, area),
         }
     }
 
     /// Steps larger or smaller, keeping the place at `about` on the screen. Two steps double; 1:1 is one of them.
-    pub fn zoom_step(&mut self, steps: i32, about: Point, area: Size) {
+    pub fn zoom_step(&mut self, steps: i32, about: Point, picture: Size, area: Size) {
         let place = 2.0 * ln(self.zoom) / ln(2.0);
         let next = if steps > 0 { (place + 1e-6).floor() } else { (place - 1e-6).ceil() } + f64::from(steps);
         let kept = self.center + (about.to_vec2() - area.to_vec2() / 2.0) / self.zoom;
         self.zoom = pow(2.0, next / 2.0).clamp(ZOOMS.0, ZOOMS.1);
-        self.fitted = false;
+        self.fitted = None;
         self.center = kept + (area.to_vec2() / 2.0 - about.to_vec2()) / self.zoom;
+        self.keep_in_sight(picture, area);
     }
 
     /// Moves what is seen by a distance on the screen.
-    pub fn pan(&mut self, by: Vec2) {
+    pub fn pan(&mut self, by: Vec2, picture: Size, area: Size) {
         self.center += by / self.zoom;
-        self.fitted = false;
+        self.fitted = None;
+        self.keep_in_sight(picture, area);
+    }
+
+    /// The picture never leaves the area wholly.
+    fn keep_in_sight(&mut self, picture: Size, area: Size) {
+        let bounded = |center: f64, picture: f64, area: f64| {
+            let seen = IN_SIGHT_PX.min(picture * self.zoom).min(area);
+            let (least, most) = (seen - area / 2.0, area / 2.0 + picture * self.zoom - seen);
+            (center * self.zoom).clamp(least, most.max(least)) / self.zoom
+        };
+        self.center = Point::new(
+            bounded(self.center.x, picture.width, area.width),
+            bounded(self.center.y, picture.height, area.height),
+        );
     }
 }
 
@@ -89,29 +121,53 @@ mod tests {
     const PICTURE: Size = Size::new(300.0, 200.0);
 
     #[test]
-    fn fitting_shows_all_and_keeps_whole_pixels() {
+    fn fitting_fills_the_window_or_keeps_whole_pixels() {
         let mut camera = Camera::default();
-        camera.fit(PICTURE, AREA);
+        camera.fit(PICTURE, AREA, Fit::Whole);
         assert_eq!((camera.zoom, camera.origin(AREA)), (2.0, Vec2::new(20.0, 0.0)));
         camera.resized(PICTURE, Size::new(150.0, 400.0));
         assert_eq!(camera.zoom, 0.5);
+        for (area, zoom) in
+            [((960.0, 400.0), 2.0), ((480.0, 1000.0), 1.6), ((302.0, 400.0), 1.0), ((150.0, 90.0), 0.45)]
+        {
+            camera.fit(PICTURE, area.into(), Fit::Window);
+            assert_eq!(camera.zoom, zoom, "{area:?}");
+        }
+        camera.resized(PICTURE, Size::new(600.0, 600.0));
+        assert_eq!(camera.zoom, 2.0, "stays fitted");
+    }
+
+    #[test]
+    fn the_picture_is_never_lost() {
+        for zoom in [-12, 0, 12] {
+            for way in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 1.0)] {
+                let mut camera = Camera::default();
+                camera.fit(PICTURE, AREA, Fit::Window);
+                camera.zoom_step(zoom, Point::new(320.0, 200.0), PICTURE, AREA);
+                (0..90).for_each(|_| camera.pan(Vec2::from(way) * 500.0, PICTURE, AREA));
+                let corner = camera.origin(AREA).to_point();
+                let seen = kurbo::Rect::from_origin_size(corner, PICTURE * camera.zoom).intersect(AREA.to_rect());
+                let least = IN_SIGHT_PX.min(PICTURE.height * camera.zoom) - 1.0;
+                assert!(seen.width() >= least && seen.height() >= least, "{zoom} {way:?}: {seen:?}");
+            }
+        }
     }
 
     #[test]
     fn zooming_keeps_the_place_under_the_pointer_and_meets_one_to_one() {
         let mut camera = Camera::default();
-        camera.fit(PICTURE, AREA);
-        let about = Point::new(100.0, 50.0);
+        camera.fit(PICTURE, AREA, Fit::Window);
+        let about = Point::new(230.0, 150.0);
         camera.one(PICTURE, AREA);
         let kept = camera.image_from_screen(about, AREA);
         for _ in 0..12 {
-            camera.zoom_step(1, about, AREA);
+            camera.zoom_step(1, about, PICTURE, AREA);
             let off = (camera.screen_from_image(kept, AREA) - about).hypot();
             assert!(off <= camera.zoom * 0.75 + 0.75, "{off} at {}", camera.zoom);
         }
         let mut seen = Vec::new();
         for _ in 0..16 {
-            camera.zoom_step(-1, about, AREA);
+            camera.zoom_step(-1, about, PICTURE, AREA);
             seen.push(camera.zoom);
         }
         assert!(seen.contains(&1.0), "{seen:?}");
@@ -120,8 +176,8 @@ mod tests {
     #[test]
     fn places_round_trip() {
         let mut camera = Camera::default();
-        camera.fit(PICTURE, AREA);
-        camera.pan(Vec2::new(7.0, -3.0));
+        camera.fit(PICTURE, AREA, Fit::Window);
+        camera.pan(Vec2::new(7.0, -3.0), PICTURE, AREA);
         let at = Point::new(12.25, 80.5);
         let back = camera.image_from_screen(camera.screen_from_image(at, AREA), AREA);
         assert!((back - at).hypot() < 1e-9);

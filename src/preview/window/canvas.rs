@@ -1,9 +1,9 @@
-//! Strokes for the screen: lines, dots, boxes and text as instances that the shader draws with smooth edges. All in
+//! Strokes for the screen: lines, dots, boxes and glyphs as instances that the shader draws, with smooth edges. All in
 //! physical pixels; nothing here knows what it draws.
 
 use kurbo::{Point, Rect, Vec2};
 
-use super::glyphs;
+use super::text::Text;
 
 /// sRGB with straight alpha.
 pub type Color = [u8; 4];
@@ -22,6 +22,15 @@ pub struct Stroke {
     pub form: u32,
     /// Its colour.
     pub color: Color,
+    /// Where a glyph stands in the atlas.
+    pub texel: [u16; 2],
+}
+
+impl Stroke {
+    /// A glyph between two corners on whole pixels, from its place in the atlas.
+    pub fn glyph(a: [f32; 2], b: [f32; 2], texel: [u16; 2], color: Color) -> Stroke {
+        Stroke { a, b, radius: 0.0, form: GLYPH, color, texel }
+    }
 }
 
 /// A line with round ends; a disc where the ends meet.
@@ -30,6 +39,8 @@ pub const LINE: u32 = 0;
 pub const BOX: u32 = 1;
 /// A square on its corner, at `a`.
 pub const DIAMOND: u32 = 2;
+/// A part of the atlas of glyphs, between two corners.
+pub const GLYPH: u32 = 3;
 
 /// Darkens what lies beneath a mark, so that it can be told from any picture.
 const HALO: Color = [0, 0, 0, 120];
@@ -107,13 +118,9 @@ impl Canvas {
         self.line(b, b + back - side, width, color);
     }
 
-    /// Text whose capitals begin at `at` and are `height` high.
-    pub fn text(&mut self, text: &str, at: Point, height: f64, color: Color) {
-        let size = height / glyphs::BASE;
-        glyphs::strokes(text, at, size, |stroke| match stroke {
-            [dot] => self.disc(*dot, size * 0.65, color),
-            points => self.polyline(points, false, size * 0.9, None, color),
-        });
+    /// Text with the top left of its capitals at `at`.
+    pub fn text(&mut self, text: &Text, at: Point, color: Color) {
+        self.strokes.extend(text.strokes(at, color));
     }
 
     /// What `draw` draws, on a dark rim.
@@ -126,7 +133,7 @@ impl Canvas {
 
     fn push(&mut self, a: Point, b: Point, radius: f64, form: u32, color: Color) {
         let xy = |p: Point| [p.x as f32, p.y as f32];
-        self.strokes.push(Stroke { a: xy(a), b: xy(b), radius: radius as f32, form, color });
+        self.strokes.push(Stroke { a: xy(a), b: xy(b), radius: radius as f32, form, color, texel: [0; 2] });
     }
 }
 

@@ -4,26 +4,21 @@ use kurbo::{Point, Rect, Size, Vec2};
 
 use super::camera::Camera;
 use super::canvas::{Canvas, Color};
-use super::glyphs;
 use crate::base::geometry::Polygon;
 use crate::render::overlay::{Dot, FILL_ALPHA, Mark, SELECTED, SELECTED_GROWTH, Shape, Style};
 
 /// Distance of the lines that fill a region, in logical pixels.
 const HATCH_PX: f64 = 7.0;
-const LABEL_PX: f64 = 8.0;
 const HEAD_PX: f64 = 7.0;
 /// The pixel grid shows from this zoom on.
 const GRID_ZOOM: f64 = 8.0;
 const GRID: Color = [255, 255, 255, 28];
-/// What lies under a label, so that it can be read on anything.
-const LABEL_GROUND: Color = [16, 18, 22, 205];
 
-/// Draws marks.
+/// Draws marks; their labels are drawn apart, over all of them.
 pub fn draw(marks: &[Mark], camera: &Camera, area: Size, scale: f64) -> Canvas {
     let mut canvas = Canvas::default();
     let painter = Painter { camera, area, scale };
     marks.iter().for_each(|mark| painter.mark(&mut canvas, mark));
-    painter.labels(&mut canvas, marks);
     canvas
 }
 
@@ -95,24 +90,6 @@ impl Painter<'_> {
         }
     }
 
-    /// Labels lie on top of all else, those of what is selected first; one that would lie on another waits until there is
-    /// room.
-    fn labels(&self, canvas: &mut Canvas, marks: &[Mark]) {
-        let mut taken: Vec<Rect> = Vec::new();
-        let selected = marks.iter().filter(|mark| mark.selected);
-        for mark in selected.chain(marks.iter().filter(|mark| !mark.selected)) {
-            let Shape::Label(at, text) = &mark.shape else { continue };
-            let at = self.screen(*at) + Vec2::new(9.0, -14.0) * self.scale;
-            let size = Size::new(glyphs::width(text) / glyphs::BASE, 1.0) * (LABEL_PX * self.scale);
-            let place = Rect::from_origin_size(at, size).inflate(4.0 * self.scale, 3.5 * self.scale);
-            if self.seen(&[at]) && !taken.iter().any(|other| other.overlaps(place)) {
-                taken.push(place);
-                canvas.rect(place, 3.0 * self.scale, LABEL_GROUND);
-                canvas.text(text, at, LABEL_PX * self.scale, color_of(mark));
-            }
-        }
-    }
-
     fn dot(&self, canvas: &mut Canvas, at: Point, style: &Style, grown: f64, color: Color) {
         let r = f64::from(style.dot_px) * grown;
         if self.seen(&[at]) {
@@ -146,13 +123,14 @@ impl Painter<'_> {
     }
 }
 
-fn color_of(mark: &Mark) -> Color {
+pub fn color_of(mark: &Mark) -> Color {
     let [r, g, b, a] = if mark.selected { SELECTED } else { mark.kind.style().color };
     [r, g, b, (f32::from(a) * mark.strength).round() as u8]
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::camera::Fit;
     use super::*;
     use crate::render::overlay::Kind;
 
@@ -160,7 +138,7 @@ mod tests {
 
     fn camera() -> Camera {
         let mut camera = Camera::default();
-        camera.fit(AREA, AREA);
+        camera.fit(AREA, AREA, Fit::Window);
         camera
     }
 
@@ -177,14 +155,6 @@ mod tests {
         assert!(strokes(Shape::Dot(Point::new(50.0, 50.0)), false) > 0);
         assert_eq!(strokes(Shape::Dot(Point::new(500.0, 50.0)), false), 0);
         assert_eq!(strokes(Shape::Arrow(Point::new(-90.0, 0.0), Point::new(-50.0, 0.0)), false), 0);
-    }
-
-    #[test]
-    fn labels_do_not_lie_on_one_another() {
-        let label = |x: f64| mark(Shape::Label(Point::new(x, 50.0), "0".into()), false);
-        let count = |marks: &[Mark]| draw(marks, &camera(), AREA, 1.0).strokes.len();
-        assert_eq!(count(&[label(10.0), label(12.0)]), count(&[label(10.0)]));
-        assert_eq!(count(&[label(10.0), label(60.0)]), 2 * count(&[label(10.0)]));
     }
 
     #[test]
@@ -212,7 +182,7 @@ mod tests {
         grid(&mut canvas, Size::new(4.0, 4.0), &camera(), AREA);
         assert!(canvas.strokes.is_empty());
         let mut near = Camera::default();
-        near.fit(Size::new(4.0, 4.0), AREA);
+        near.fit(Size::new(4.0, 4.0), AREA, Fit::Window);
         grid(&mut canvas, Size::new(4.0, 4.0), &near, AREA);
         assert_eq!(canvas.strokes.len(), 10);
     }

@@ -6,43 +6,66 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
+
+use libraries::Missing;
 
 use super::{Reply, Update};
 use crate::base::error::{Error, Result};
 
 mod app;
+mod bar;
 mod camera;
 mod canvas;
 mod chrome;
 mod clock;
 mod glyphs;
 mod input;
+mod labels;
 mod legend;
+mod libraries;
 mod marks;
+mod mouse;
 mod opened;
+mod panel;
+mod problems;
 mod screen;
 mod show;
 mod state;
+mod text;
 mod transport;
+mod words;
 mod worker;
+#[cfg_attr(any(not(unix), target_os = "macos"), path = "x11_none.rs")]
+mod x11;
 
 pub use worker::Load;
 
 /// What a window is opened with.
 pub struct Setup {
-    /// What to call it.
-    pub title: String,
+    /// How it opens and behaves.
+    pub manner: Manner,
     /// What it shows.
     pub updates: Receiver<Update>,
     /// What it has to say.
     pub replies: Sender<Reply>,
     /// How the pictures of a scene are loaded.
     pub load: Load,
-    /// The largest side of a picture that is given to the GPU, in pixels.
-    pub most: usize,
     /// Set by a signal: the window ends, interrupted.
     pub cancel: Arc<AtomicBool>,
+}
+
+/// How a window opens and behaves.
+pub struct Manner {
+    /// What the scene is called.
+    pub name: String,
+    /// The largest side of a picture that is given to the GPU, in pixels.
+    pub most: usize,
+    /// Whether it takes the keyboard when it opens, as a window does that somebody asked for.
+    pub takes_keyboard: bool,
+    /// Whether what is wrong is said on standard error too, as long as there is no picture.
+    pub complains: bool,
 }
 
 const PLACE: &str = "window";
@@ -54,11 +77,14 @@ const PLACE: &str = "window";
 pub fn run(setup: Setup) -> Result<()> {
     let event_loop =
         quietly(|| EventLoop::with_user_event().build()).map_err(no_display)?.map_err(|e| no_display(e.to_string()))?;
-    let proxy = event_loop.create_proxy();
-    worker::start(setup.updates, setup.load, setup.cancel, move |event| proxy.send_event(event).is_ok());
+    let (proxy, sender) = (event_loop.create_proxy(), event_loop.create_proxy());
+    worker::start(setup.updates, setup.load, setup.cancel, move |event| sender.send_event(event).is_ok());
     let instance = crate::render::gpu::device::instance(Some(Box::new(event_loop.owned_display_handle())));
-    let mut app = app::App::new(instance, setup.title, setup.replies, setup.most);
-    quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|e| Error::at(PLACE, e))?;
+    let mut app = app::App::new(instance, setup.manner, setup.replies, proxy);
+    quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|error| match error {
+        EventLoopError::ExitFailure(_) => Error::at(PLACE, "the display is gone"),
+        other => Error::at(PLACE, other),
+    })?;
     app.ended()
 }
 
@@ -67,7 +93,15 @@ fn no_display(what: String) -> Error {
     // winit puts the line of its source before the reason.
     let what =
         line.strip_prefix("os error at ").and_then(|rest| rest.split_once(": ")).map_or(line, |(_, reason)| reason);
-    Error::at(PLACE, format!("no display can be opened: {what}")).cure("plica render and plica edit need none")
+    match libraries::missing(what) {
+        Some(Missing { library, package }) => {
+            Error::at(PLACE, format!("no display can be opened: {library} is missing or broken"))
+                .cure(format!("on Debian: apt-get install {package}; plica render and plica edit need none"))
+        }
+        None => {
+            Error::at(PLACE, format!("no display can be opened: {what}")).cure("plica render and plica edit need none")
+        }
+    }
 }
 
 /// Does `work`; a panic of the window system's libraries becomes its message instead of a trace on the terminal.

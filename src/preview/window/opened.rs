@@ -1,22 +1,30 @@
 //! What is open once there is something to show: the window with its GPU and surface, and one drawing of it.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use kurbo::Size;
-use winit::dpi::PhysicalSize;
-use winit::window::{Fullscreen, Window};
+use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::event_loop::ActiveEventLoop;
+use winit::window::{CursorIcon, Fullscreen, Window};
 
-use super::chrome;
-use super::screen::{Drawn, Pictures, Screen};
+use super::mouse::Shape;
+use super::screen::{Drawn, Pictures, Screen, Strokes};
 use super::show::{Cached, Show, jump_at};
 use super::state::{BAR_PX, State};
-use crate::base::error::Result;
+use super::text::Letters;
+use super::x11::Desk;
+use super::{Manner, PLACE, chrome};
+use crate::base::error::{Error, Result};
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
 
 /// Smallest and first size of a window, in logical pixels.
 const SMALLEST: (f64, f64) = (480.0, 320.0);
+/// A window is made no smaller than this, where the window manager listens.
+const LEAST: (f64, f64) = (360.0, 240.0);
+/// How often it is looked whether the window can be seen, while it can.
+const LOOK: Duration = Duration::from_millis(250);
 const FIRST: (f64, f64) = (960.0, 640.0);
 /// A window opens on at most this share of the monitor.
 const MOST_OF_MONITOR: f64 = 0.85;
@@ -28,15 +36,88 @@ pub struct Opened {
     pub window: Arc<Window>,
     pub gpu: Gpu,
     pub screen: Screen,
+    /// There is nothing of it to be seen: minimised, or on another desktop.
     pub hidden: bool,
+    /// Other windows lie over all of it.
+    pub covered: bool,
+    desk: Option<Desk>,
+    looked: Option<Instant>,
+    shape: Shape,
 }
 
 impl Opened {
+    /// Opens the window. One that nobody asked for at this moment leaves the keyboard where it is.
+    pub fn open(
+        event_loop: &ActiveEventLoop,
+        instance: wgpu::Instance,
+        manner: &Manner,
+        size: PhysicalSize<u32>,
+    ) -> Result<Opened> {
+        let attributes = Window::default_attributes()
+            .with_title(format!("{} - plica", manner.name))
+            .with_inner_size(size)
+            .with_min_inner_size(LogicalSize::<f64>::from(LEAST))
+            .with_active(manner.takes_keyboard)
+            .with_visible(manner.takes_keyboard);
+        let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
+        let desk = Desk::of(&window);
+        if !manner.takes_keyboard {
+            desk.iter().for_each(Desk::leave_the_keyboard);
+            window.set_visible(true);
+        }
+        let (gpu, screen) = Screen::open(instance, window.clone())?;
+        let shape = Shape::default();
+        Ok(Opened { window, gpu, screen, hidden: false, covered: false, desk, looked: None, shape })
+    }
+
+    /// The same window on a new device.
+    pub fn anew(self) -> Result<Opened> {
+        let Opened { window, gpu, screen, desk, covered, shape, .. } = self;
+        let instance = gpu.instance().clone();
+        drop((gpu, screen)); // a window has one surface at a time
+        let (gpu, screen) = Screen::open(instance, window.clone())?;
+        Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape })
+    }
+
+    /// Whether the window can be seen. It is looked for now and then while it can, and always while it cannot.
+    pub fn is_seen(&mut self) -> bool {
+        let due = self.hidden || self.looked.is_none_or(|looked| looked.elapsed() >= LOOK);
+        if let Some(desk) = self.desk.as_ref().filter(|_| due) {
+            self.looked = Some(Instant::now());
+            self.hidden = !desk.is_seen() || self.window.is_minimized() == Some(true);
+        }
+        self.desk.is_none() || !self.hidden
+    }
+
+    /// See [`Desk::wheel_is_a_button`].
+    pub fn wheel_is_a_button(&self) -> bool {
+        self.desk.as_ref().is_some_and(Desk::wheel_is_a_button)
+    }
+
+    /// Gives the pointer a shape.
+    pub fn point(&mut self, shape: Shape) {
+        if self.shape != shape {
+            self.shape = shape;
+            self.window.set_cursor(match shape {
+                Shape::Arrow => CursorIcon::Default,
+                Shape::Hand => CursorIcon::Pointer,
+                Shape::Across => CursorIcon::EwResize,
+                Shape::Held => CursorIcon::Grabbing,
+            });
+        }
+    }
+
     /// Draws all that the window shows.
-    pub fn paint(&mut self, state: &mut State, show: Option<&Show>, marks: &mut Cached) -> Result<Drawn> {
+    pub fn paint(
+        &mut self,
+        state: &mut State,
+        show: Option<&Show>,
+        marks: &mut Cached,
+        letters: &Letters,
+    ) -> Result<Drawn> {
         let pictures = match show {
             Some(show) => {
-                marks.follow(state, show);
+                marks.follow(state, show, letters);
                 (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
                 let asked = state.pointed().filter(|_| state.shows_jumps());
                 state.jump = asked.and_then(|at| jump_at(&show.synth, at));
@@ -47,9 +128,9 @@ impl Opened {
                 Pictures { frame, other: None, scale: 1.0 }
             }
         };
-        let chrome = chrome::draw(state);
-        let strokes = [&marks.fixed.strokes[..], &marks.moving.strokes[..], &chrome.strokes[..]];
-        let drawn = self.screen.draw(&self.gpu, state, &pictures, strokes);
+        let chrome = chrome::draw(state, letters);
+        let layers = [&marks.fixed, &marks.moving, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
+        let drawn = self.screen.draw(&self.gpu, state, &pictures, &Strokes { layers, letters });
         self.gpu.device().take_uncaught()?;
         drawn
     }
@@ -74,6 +155,13 @@ impl Opened {
         self.window.set_fullscreen(full);
     }
 
+    /// Goes back to a window.
+    pub fn leave_full_screen(&self) {
+        if self.window.fullscreen().is_some() {
+            self.window.set_fullscreen(None);
+        }
+    }
+
     /// How long a frame of the display lasts.
     pub fn interval(&self) -> Duration {
         let rate = self.window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
@@ -81,15 +169,18 @@ impl Opened {
     }
 }
 
-/// The size of a window around a picture, in physical pixels.
-pub fn first_size(picture: Size, scale: f64, room: Option<PhysicalSize<u32>>) -> (u32, u32) {
-    let first = if picture == Size::ZERO { Size::from(FIRST) * scale } else { picture };
+/// The size of a window around a picture, in physical pixels: as large as the picture is in logical ones.
+pub fn first_size(picture: Size, scale: f64, room: Option<PhysicalSize<u32>>) -> PhysicalSize<u32> {
+    let first = if picture == Size::ZERO { Size::from(FIRST) } else { picture } * scale;
     let side = |wanted: f64, least: f64, room: Option<u32>| {
         let most = room.map_or(f64::INFINITY, |r| f64::from(r) * MOST_OF_MONITOR);
         wanted.max(least * scale).min(most).round() as u32
     };
     let bar = (BAR_PX * scale).round();
-    (side(first.width, SMALLEST.0, room.map(|r| r.width)), side(first.height + bar, SMALLEST.1, room.map(|r| r.height)))
+    PhysicalSize::new(
+        side(first.width, SMALLEST.0, room.map(|r| r.width)),
+        side(first.height + bar, SMALLEST.1, room.map(|r| r.height)),
+    )
 }
 
 #[cfg(test)]
@@ -104,9 +195,10 @@ mod tests {
             (Size::new(600.0, 400.0), 1.0, (600, 434)),
             (Size::new(10.0, 10.0), 1.0, (480, 320)),
             (Size::new(5000.0, 10.0), 1.0, (850, 320)),
-            (Size::new(600.0, 400.0), 1.5, (720, 480)),
+            (Size::new(560.0, 400.0), 1.5, (840, 651)),
+            (Size::new(200.0, 100.0), 1.5, (720, 480)),
         ] {
-            assert_eq!(first_size(picture, scale, room), size, "{picture:?}");
+            assert_eq!(first_size(picture, scale, room), size.into(), "{picture:?}");
         }
     }
 }

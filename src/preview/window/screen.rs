@@ -1,4 +1,4 @@
-//! The window's surface and what is drawn to it: the frame, scaled, then strokes. An outdated surface is configured anew;
+//! The window's surface and what is drawn to it: the frame, scaled, then strokes with their glyphs. An outdated surface is configured anew;
 //! a window without size is not drawn.
 
 use std::sync::Arc;
@@ -8,7 +8,9 @@ use winit::window::Window;
 
 use super::canvas::{Color, Stroke};
 use super::chrome::GROUND;
+use super::glyphs::Glyphs;
 use super::state::State;
+use super::text::Letters;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::linear_from_srgb;
 use crate::render::gpu::Gpu;
@@ -40,6 +42,13 @@ pub struct Screen {
     format: wgpu::TextureFormat,
     configured: (u32, u32),
     pipelines: Pipelines,
+    glyphs: Glyphs,
+}
+
+/// What is drawn over the picture, from below to the top, and the letters that it was written with.
+pub struct Strokes<'a> {
+    pub layers: [&'a [Stroke]; 4],
+    pub letters: &'a Letters,
 }
 
 /// The picture to be shown, as textures.
@@ -82,11 +91,11 @@ impl Screen {
         let gpu = Gpu::open(instance, Some(&surface))?;
         let format = format(&surface, &gpu)?;
         let pipelines = Pipelines::new(&gpu, format)?;
-        Ok((gpu, Screen { window, surface, format, configured: (0, 0), pipelines }))
+        Ok((gpu, Screen { window, surface, format, configured: (0, 0), pipelines, glyphs: Glyphs::default() }))
     }
 
     /// Draws the picture with strokes over it.
-    pub fn draw(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, layers: [&[Stroke]; 3]) -> Result<Drawn> {
+    pub fn draw(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, strokes: &Strokes<'_>) -> Result<Drawn> {
         let size = self.window.inner_size();
         if size.width == 0 || size.height == 0 {
             return Ok(Drawn::Hidden);
@@ -104,7 +113,7 @@ impl Screen {
             }
             wgpu::CurrentSurfaceTexture::Lost => return Ok(Drawn::Lost),
         };
-        self.paint(gpu, &texture.texture, state, pictures, layers)?;
+        self.paint(gpu, &texture.texture, state, pictures, strokes)?;
         self.window.pre_present_notify();
         gpu.device().queue.present(texture);
         Ok(Drawn::Yes)
@@ -121,17 +130,18 @@ impl Screen {
     }
 
     fn paint(
-        &self,
+        &mut self,
         gpu: &Gpu,
         into: &wgpu::Texture,
         state: &State,
         pictures: &Pictures,
-        layers: [&[Stroke]; 3],
+        &Strokes { layers, letters }: &Strokes<'_>,
     ) -> Result<()> {
         let device = gpu.device();
         let uniform = uniform(state, pictures);
         device.checked(|| {
             device.queue.write_buffer(&self.pipelines.uniform, 0, bytemuck::bytes_of(&uniform));
+            let glyphs = self.glyphs.follow(device, letters);
             let strokes = layers.map(|strokes| instances(device, strokes));
             let mut encoder = device.raw.create_command_encoder(&Default::default());
             let view = into.create_view(&Default::default());
@@ -145,6 +155,11 @@ impl Screen {
                 ..Default::default()
             });
             self.pictures(&device.raw, &mut pass, state, pictures, uniform.zoom < 1.0);
+            pass.set_bind_group(
+                0,
+                &self.pipelines.group(&device.raw, [&pictures.frame, &pictures.frame, &glyphs]),
+                &[],
+            );
             pass.set_pipeline(&self.pipelines.strokes);
             for (buffer, strokes) in strokes.iter().zip(layers) {
                 if let Some(buffer) = buffer {
@@ -169,11 +184,11 @@ impl Screen {
         let frames = if reduces { &self.pipelines.reduced } else { &self.pipelines.enlarged };
         let differs = state.shown.seam && other.is_some();
         pass.set_pipeline(if differs { &self.pipelines.difference } else { frames });
-        pass.set_bind_group(0, &self.pipelines.group(device, frame, other.as_ref().unwrap_or(frame)), &[]);
+        pass.set_bind_group(0, &self.pipelines.group(device, [frame, other.as_ref().unwrap_or(frame), frame]), &[]);
         pass.draw(0..3, 0..1);
         if let (Some(other), Some(border)) = (other, state.wipe_at()) {
             let (width, height) = (state.window.width as u32, state.window.height as u32);
-            pass.set_bind_group(0, &self.pipelines.group(device, other, other), &[]);
+            pass.set_bind_group(0, &self.pipelines.group(device, [other; 3]), &[]);
             pass.set_scissor_rect(0, 0, border as u32, height);
             pass.draw(0..3, 0..1);
             pass.set_scissor_rect(0, 0, width, height);
@@ -208,8 +223,9 @@ impl Pipelines {
         })
     }
 
-    fn group(&self, device: &wgpu::Device, frame: &wgpu::Texture, other: &wgpu::Texture) -> wgpu::BindGroup {
-        let views = [frame, other].map(|texture| texture.create_view(&Default::default()));
+    /// The frame, what it is compared with, and the glyphs, as far as the pipeline reads them.
+    fn group(&self, device: &wgpu::Device, textures: [&wgpu::Texture; 3]) -> wgpu::BindGroup {
+        let views = textures.map(|texture| texture.create_view(&Default::default()));
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.bindings,
@@ -217,6 +233,7 @@ impl Pipelines {
                 wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&views[0]) },
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(&views[1]) },
+                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&views[2]) },
             ],
         })
     }
@@ -238,8 +255,9 @@ impl Maker<'_> {
     }
 
     fn strokes(&self) -> wgpu::RenderPipeline {
-        let attributes =
-            wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32, 3 => Uint32, 4 => Unorm8x4];
+        let attributes = wgpu::vertex_attr_array![
+            0 => Float32x2, 1 => Float32x2, 2 => Float32, 3 => Uint32, 4 => Unorm8x4, 5 => Uint16x2
+        ];
         let layout = wgpu::VertexBufferLayout {
             array_stride: size_of::<Stroke>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
@@ -307,7 +325,7 @@ fn bindings(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     };
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
-        entries: &[entry(0, uniform), entry(1, frame), entry(2, frame)],
+        entries: &[entry(0, uniform), entry(1, frame), entry(2, frame), entry(3, frame)],
     })
 }
 

@@ -18,6 +18,7 @@ struct Screen {
 @group(0) @binding(0) var<uniform> screen: Screen;
 @group(0) @binding(1) var frame: texture_2d<f32>;
 @group(0) @binding(2) var other: texture_2d<f32>; // the frame that it is compared with
+@group(0) @binding(3) var atlas: texture_2d<f32>; // glyphs, premultiplied
 
 const DIFFERENCE: f32 = 8.0; // how much stronger a difference is shown
 
@@ -106,6 +107,7 @@ fn show_frame(@builtin(position) at: vec4f) -> @location(0) vec4f {
 
 const LINE = 0u;
 const BOX = 1u;
+const GLYPH = 3u;
 
 struct Stroke {
     @builtin(position) position: vec4f,
@@ -114,6 +116,7 @@ struct Stroke {
     @location(2) @interpolate(flat) radius: f32,
     @location(3) @interpolate(flat) form: u32,
     @location(4) @interpolate(flat) color: vec4f,
+    @location(5) @interpolate(flat) texel: vec2u,
 }
 
 // A box around the stroke, along it where it is a line.
@@ -125,17 +128,18 @@ fn place_stroke(
     @location(2) radius: f32,
     @location(3) form: u32,
     @location(4) color: vec4f,
+    @location(5) texel: vec2u,
 ) -> Stroke {
     let way = b - a;
     let long = length(way);
     let along = select(vec2f(1.0, 0.0), way / max(long, 1e-6), form == LINE && long > 1e-6);
     let across = vec2f(-along.y, along.x);
-    let rim = select(radius + 1.0, 1.0, form == BOX);
+    let rim = select(radius + 1.0, 1.0, form == BOX || form == GLYPH);
     let half_size = vec2f(abs(dot(way, along)), abs(dot(way, across))) * 0.5 + rim;
     let corner = vec2f(f32(i & 1u), f32(i >> 1u)) * 2.0 - 1.0;
     let at = (a + b) * 0.5 + along * (corner.x * half_size.x) + across * (corner.y * half_size.y);
     let clip = vec2f(at.x / screen.size.x * 2.0 - 1.0, 1.0 - at.y / screen.size.y * 2.0);
-    return Stroke(vec4f(clip, 0.0, 1.0), at, vec4f(a, b), radius, form, color);
+    return Stroke(vec4f(clip, 0.0, 1.0), at, vec4f(a, b), radius, form, color, texel);
 }
 
 fn distance_to_line(at: vec2f, a: vec2f, b: vec2f) -> f32 {
@@ -154,6 +158,13 @@ fn distance_to_diamond(at: vec2f, a: vec2f, radius: f32) -> f32 {
     return (away.x + away.y - radius) * 0.70710678;
 }
 
+// A pixel of the atlas for each of the screen; none beyond the glyph.
+fn glyph(at: vec2f, a: vec2f, b: vec2f, texel: vec2u) -> vec4f {
+    let within = all(at >= a) && all(at < b);
+    let place = vec2i(texel) + vec2i(floor(clamp(at, a, b - 0.5) - a));
+    return select(vec4f(0.0), textureLoad(atlas, place, 0), within);
+}
+
 @fragment
 fn fill_stroke(stroke: Stroke) -> @location(0) vec4f {
     var d = distance_to_diamond(stroke.at, stroke.ends.xy, stroke.radius);
@@ -166,6 +177,9 @@ fn fill_stroke(stroke: Stroke) -> @location(0) vec4f {
     var color = stroke.color.rgb;
     if !encodes {
         color = linear_from_srgb(color);
+    }
+    if stroke.form == GLYPH {
+        return vec4f(color, 1.0) * (stroke.color.a * glyph(stroke.at, stroke.ends.xy, stroke.ends.zw, stroke.texel));
     }
     return vec4f(color * alpha, alpha);
 }

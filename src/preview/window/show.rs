@@ -7,8 +7,9 @@ use kurbo::{Point, Size, Vec2};
 
 use super::camera::Camera;
 use super::canvas::Canvas;
-use super::marks;
 use super::state::State;
+use super::text::Letters;
+use super::{labels, marks};
 use crate::layers::{Layer, folding};
 use crate::render::overlay::{Samplers, View, field_scale, longest, overlay, samplers};
 use crate::render::reduce::reduced;
@@ -85,6 +86,8 @@ pub struct Cached {
     /// Those of the samplers.
     pub moving: Canvas,
     moved_for: Option<(Option<Samplers>, Sight)>,
+    /// Names and numbers, above all else of the overlay.
+    pub labels: Canvas,
     /// See [`State::arrow_scale`].
     pub arrow_scale: f64,
     /// See [`State::longest`].
@@ -101,18 +104,20 @@ struct Sight {
     scale: f64,
     grid: bool,
     revision: u64,
+    /// See [`Letters::generation`].
+    letters: u64,
 }
 
 impl Cached {
     /// Makes the strokes again where anything that they show has changed.
-    pub fn follow(&mut self, state: &State, show: &Show) {
+    pub fn follow(&mut self, state: &State, show: &Show, letters: &Letters) {
         let camera = state.camera.clone();
         let (window, scale, grid) = (state.window, state.scale, state.shown.grid);
-        let sight = Sight { camera, window, scale, grid, revision: self.revision };
+        let sight = Sight { camera, window, scale, grid, revision: self.revision, letters: letters.generation() };
         let (fixed, moving) = (Some((state.overlay_view(), sight.clone())), Some((state.samplers(), sight)));
         if self.made_for != fixed {
             self.made_for = fixed;
-            self.make_fixed(state, show);
+            self.make_fixed(state, show, letters);
         }
         if self.moved_for != moving {
             self.moved_for = moving;
@@ -122,7 +127,7 @@ impl Cached {
         }
     }
 
-    fn make_fixed(&mut self, state: &State, show: &Show) {
+    fn make_fixed(&mut self, state: &State, show: &Show, letters: &Letters) {
         let view = state.overlay_view();
         let found = overlay(&show.scene, Some(&show.synth), &view);
         self.fixed = Canvas::default();
@@ -130,6 +135,7 @@ impl Cached {
             marks::grid(&mut self.fixed, state.picture, &state.camera, state.area());
         }
         self.fixed.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
+        self.labels = labels::draw(&found, &state.camera, state.area(), state.scale, letters);
         self.arrow_scale = view.field.map_or(1.0, |spacing| field_scale(&show.synth, spacing));
         self.longest = view.wheel.map_or(0.0, |_| longest(&show.synth));
     }

@@ -2,10 +2,12 @@
 
 use kurbo::{Point, Size, Vec2};
 
-use super::camera::Camera;
+use super::camera::{Camera, Fit};
 use super::transport::Transport;
+use super::words::Words;
 use crate::base::maths::pow;
 use crate::layers::timeline::{Timeline, Wrap};
+use crate::preview::views;
 use crate::render::overlay::{Samplers, View};
 
 /// An arrow of the vector field stands about every so many logical pixels of the screen, unless keys change it, by so many
@@ -44,10 +46,10 @@ pub struct State {
     pub selection: Option<String>,
     /// The pointer on the screen, while it is in the window.
     pub pointer: Option<Point>,
-    /// How the window is connected: a line for the person.
-    pub notice: Option<String>,
-    /// What is wrong with the scene: a line for the person, before the notice.
-    pub problem: Option<String>,
+    /// What is to be said.
+    pub words: Words,
+    /// What is being done to the scene beside the window, before it can be shown.
+    pub work: Option<&'static str>,
     /// What lies over the picture.
     pub panel: Panel,
     /// How often the spacing of the field is doubled.
@@ -103,6 +105,8 @@ pub struct Shown {
     pub seam: bool,
     /// A plain ground under transparency, not a checkerboard.
     pub plain: bool,
+    /// No legends of what is shown of the vector field.
+    pub no_legends: bool,
 }
 
 /// A list of keys over the picture.
@@ -124,6 +128,8 @@ pub enum Outcome {
     Redraw,
     /// The whole screen, or the window again.
     FullScreen,
+    /// The window again, where it fills the screen.
+    Window,
     /// The end.
     Quit,
     /// Nothing: the command is not one of the window's.
@@ -142,8 +148,8 @@ impl Default for State {
             shown: Shown::default(),
             selection: None,
             pointer: None,
-            notice: None,
-            problem: None,
+            words: Words::default(),
+            work: None,
             panel: Panel::None,
             field_step: 0,
             wipe: 0.5,
@@ -178,19 +184,32 @@ impl State {
     pub fn load(&mut self, picture: Size, timeline: &Timeline) {
         if self.picture != picture {
             self.picture = picture;
-            self.camera.fit(picture, self.area());
+            self.camera.fit(picture, self.area(), Fit::Window);
         }
         self.timeline = timeline.clone();
         self.transport.follow(timeline);
     }
 
-    /// Runs a command by its name in the key table.
+    /// What the first picture waits for; nothing where it would wait in vain.
+    pub fn waits_for(&self) -> Option<&'static str> {
+        match self.words.problems().next() {
+            Some(_) => Some("nothing to show yet"),
+            None => self.work.or(Some("opening")),
+        }
+    }
+
+    /// Runs a command by its name in the key table; behind the name of a switch may stand ` on` or ` off`.
     pub fn run(&mut self, command: &str) -> Outcome {
         if command != "view-menu" && self.panel == Panel::Menu {
             self.panel = Panel::None;
         }
-        if let Some(switch) = self.shown.switch(command) {
-            *switch = !*switch;
+        let (name, wanted) = views::wanted(command);
+        if name == "view-whole-frames" {
+            self.transport.whole_frames = wanted.unwrap_or(!self.transport.whole_frames);
+            return Outcome::Redraw;
+        }
+        if let Some((switch, inverted)) = self.shown.switch(name) {
+            *switch = wanted.map_or(!*switch, |on| on != inverted);
             return Outcome::Redraw;
         }
         let area = self.area();
@@ -204,29 +223,54 @@ impl State {
             "last-frame" => self.transport.go_to_end(&self.timeline),
             "slower" => self.transport.change_speed(-1),
             "faster" => self.transport.change_speed(1),
-            "view-whole-frames" => self.transport.whole_frames = !self.transport.whole_frames,
             "field-closer" => self.step_field(-1),
             "field-wider" => self.step_field(1),
             "wipe-left" => self.move_wipe(-WIPE_STEP),
             "wipe-right" => self.move_wipe(WIPE_STEP),
             "mark-point" => self.marked = self.pointed(),
-            "zoom-in" => self.camera.zoom_step(1, about, area),
-            "zoom-out" => self.camera.zoom_step(-1, about, area),
-            "zoom-fit" => self.camera.fit(self.picture, area),
+            "zoom-in" => self.zoom(1, about),
+            "zoom-out" => self.zoom(-1, about),
+            "zoom-fit" => self.camera.fit(self.picture, area, Fit::Window),
+            "zoom-whole" => self.camera.fit(self.picture, area, Fit::Whole),
             "zoom-one" => self.camera.one(self.picture, area),
-            "pan-left" => self.camera.pan(pan(-1.0, 0.0)),
-            "pan-right" => self.camera.pan(pan(1.0, 0.0)),
-            "pan-up" => self.camera.pan(pan(0.0, -1.0)),
-            "pan-down" => self.camera.pan(pan(0.0, 1.0)),
+            "pan-left" => self.pan(pan(-1.0, 0.0)),
+            "pan-right" => self.pan(pan(1.0, 0.0)),
+            "pan-up" => self.pan(pan(0.0, -1.0)),
+            "pan-down" => self.pan(pan(0.0, 1.0)),
             "view-menu" => self.panel = Panel::Menu,
             "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
-            "close-panel" => (self.panel, self.marked) = (Panel::None, None),
+            "close-panel" => return self.close(),
             "view-full-screen" => return Outcome::FullScreen,
             "select-point" => {} // the editor's answer is a selection
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }
         Outcome::Redraw
+    }
+
+    /// Zooms by steps about a place on the screen.
+    pub fn zoom(&mut self, steps: i32, about: Point) {
+        self.camera.zoom_step(steps, about, self.picture, self.area());
+    }
+
+    /// Moves what is seen by a distance on the screen.
+    pub fn pan(&mut self, by: Vec2) {
+        self.camera.pan(by, self.picture, self.area());
+    }
+
+    /// Closes what lies over the picture; where nothing does, the full screen.
+    fn close(&mut self) -> Outcome {
+        let panel = std::mem::take(&mut self.panel) != Panel::None;
+        let marked = self.marked.take().is_some();
+        if panel || marked || self.words.put_away() { Outcome::Redraw } else { Outcome::Window }
+    }
+
+    /// Whether a switch is on; none where the command is no switch that all windows are to show alike.
+    pub fn is_on(&mut self, command: &str) -> Option<bool> {
+        if command == "view-whole-frames" {
+            return Some(self.transport.whole_frames);
+        }
+        self.shown.switch(command).map(|(switch, inverted)| *switch != inverted)
     }
 
     /// The place in the picture under the pointer, where it is on the picture.
@@ -242,6 +286,12 @@ impl State {
     fn move_wipe(&mut self, by: f64) {
         self.shown.wipe = true;
         self.wipe = (self.wipe + by).clamp(0.0, 1.0);
+    }
+
+    /// Puts the border between still and moving at a place on the screen.
+    pub fn drag_wipe(&mut self, x: f64) {
+        let at = self.camera.image_from_screen(Point::new(x, 0.0), self.area()).x;
+        self.wipe = (at / self.picture.width.max(1.0)).clamp(0.0, 1.0);
     }
 
     /// The border between still and moving on the screen, where it is shown.
@@ -301,9 +351,9 @@ impl State {
 }
 
 impl Shown {
-    /// What a command switches.
-    fn switch(&mut self, command: &str) -> Option<&mut bool> {
-        Some(match command {
+    /// What a command switches, and whether that is on where it is not set.
+    fn switch(&mut self, command: &str) -> Option<(&mut bool, bool)> {
+        let switch = match command {
             "view-outlines" => &mut self.outlines,
             "view-regions" => &mut self.regions,
             "view-anchors" => &mut self.anchors,
@@ -320,8 +370,10 @@ impl Shown {
             "view-grid" => &mut self.grid,
             "view-still" => &mut self.still,
             "view-checkerboard" => &mut self.plain,
+            "view-legends" => &mut self.no_legends,
             _ => return None,
-        })
+        };
+        Some((switch, ["view-checkerboard", "view-legends"].contains(&command)))
     }
 }
 
@@ -343,6 +395,44 @@ mod tests {
             assert_ne!(state().run(row.command), Outcome::Unknown, "{row:?}");
         }
         assert_eq!(state().run("sing"), Outcome::Unknown);
+    }
+
+    #[test]
+    fn a_switch_is_turned_or_set() {
+        let mut state = state();
+        for (command, outlines) in [
+            ("view-outlines", true),
+            ("view-outlines on", true),
+            ("view-outlines off", false),
+            ("view-outlines off", false),
+        ] {
+            assert_eq!(state.run(command), Outcome::Redraw);
+            assert_eq!(state.shown.outlines, outlines, "{command}");
+        }
+        state.run("view-checkerboard off");
+        assert!(state.shown.plain);
+        state.run("view-legends");
+        assert!(state.shown.no_legends);
+        assert_eq!(state.run("zoom-in on"), Outcome::Unknown);
+    }
+
+    #[test]
+    fn esc_closes_one_thing_after_the_other() {
+        let mut state = State { panel: Panel::Help, marked: Some(Point::ZERO), ..state() };
+        state.words.follow_scene(vec![crate::base::problem::Problem::error("", "wrong")]);
+        assert_eq!((state.run("close-panel"), state.panel, state.marked), (Outcome::Redraw, Panel::None, None));
+        assert_eq!((state.run("close-panel"), state.words.listed().len()), (Outcome::Redraw, 0));
+        assert_eq!(state.run("close-panel"), Outcome::Window);
+    }
+
+    #[test]
+    fn the_border_is_where_the_pointer_drags_it() {
+        let mut state = state();
+        state.run("view-wipe");
+        for (x, at) in [(160.0, 160.0), (-50.0, 0.0), (700.0, 640.0)] {
+            state.drag_wipe(x);
+            assert_eq!(state.wipe_at(), Some(at), "{x}");
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
+use super::text::Fonts;
 use crate::base::problem::Problem;
 use crate::layers::Materials;
 use crate::preview::Update;
@@ -25,8 +26,12 @@ pub enum Event {
     Update(Update),
     /// A scene is ready to be shown.
     Ready(Ready),
-    /// A scene cannot be shown, or not wholly: a line for the person.
-    Problem(String),
+    /// What is being done to a scene.
+    Work(&'static str),
+    /// A scene cannot be shown: all that is wrong with it.
+    Problems(Vec<Problem>),
+    /// The fonts of the system.
+    Fonts(Box<Fonts>),
     /// A signal asks for the end.
     Interrupted,
 }
@@ -42,6 +47,8 @@ pub struct Ready {
     pub revision: u64,
     /// What the synthesis took, in milliseconds.
     pub synth_ms: f64,
+    /// What is wrong with it all the same.
+    pub problems: Vec<Problem>,
 }
 
 /// The event loop is gone.
@@ -87,16 +94,17 @@ fn synthesise(work: &Receiver<(Arc<Scene>, u64)>, mut load: Load, send: &impl Fn
     while let Ok(first) = work.recv() {
         let (scene, revision) = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
+        send(Event::Work("reading the pictures"))?;
         let (materials, problems) = load(&scene);
+        send(Event::Work("synthesising"))?;
         match render::synth(&scene, &materials, previous.as_ref()) {
             Ok(synth) => {
                 previous = Some(synth.clone());
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
-                send(Event::Ready(Ready { scene, synth, revision, synth_ms }))?;
-                problems.first().map_or(Ok(()), |problem| send(Event::Problem(problem.to_string())))?;
+                send(Event::Ready(Ready { scene, synth, revision, synth_ms, problems }))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
-            Err(problem) => send(Event::Problem(problems.first().unwrap_or(&problem).to_string()))?,
+            Err(problem) => send(Event::Problems(if problems.is_empty() { vec![problem] } else { problems }))?,
         }
     }
     Ok(())
@@ -130,6 +138,7 @@ mod tests {
         let all: Vec<Event> = seen.iter().collect();
         assert!(all.iter().any(|e| matches!(e, Event::Update(Update::Notice(n)) if n == "hello")));
         let last = all.iter().rfind(|e| !matches!(e, Event::Update(_)));
-        assert!(matches!(last, Some(Event::Problem(p)) if p.contains("/layers/0/image")), "{all:?}");
+        let Some(Event::Problems(problems)) = last else { panic!("{all:?}") };
+        assert!(problems[0].to_string().contains("/layers/0/image"), "{all:?}");
     }
 }

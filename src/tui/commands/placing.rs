@@ -71,8 +71,6 @@ fn placed(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and the row under
-/// the cursor where it has a place, unless the point is only marked.
 /// Goes to what stands at a place of the picture: an anchor near it, else the zone.
 fn select(state: &mut State, at: Point) -> Done {
     if !matches!(state.mode, Mode::Normal) {
@@ -86,6 +84,9 @@ fn select(state: &mut State, at: Point) -> Done {
     obey(state, &format!("go {pointer}{cell}"), None)
 }
 
+/// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and with it the row
+/// under the cursor where it has a place, or the end of its jump vector where the cell is one; unless the point is only
+/// marked.
 fn pointer(state: &mut State, call: &Call) -> Done {
     let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
     if call.text == "select" {
@@ -100,7 +101,14 @@ fn pointer(state: &mut State, call: &Call) -> Done {
             state.say(format!("marked {}, {}: in the picture (g i) a adds a point there", short(x), short(y)));
             Ok(())
         }
-        (_, Pane::Table) => obey(state, "place move", None),
+        (_, Pane::Table) => match place::jump_in_focus(state) {
+            Some(Vec2 { x: dx, y: dy }) => {
+                obey(state, "place jump", None)?;
+                state.say(format!("jump {}, {}: it ends at the window's pointer", short(dx), short(dy)));
+                Ok(())
+            }
+            None => obey(state, "place move", None),
+        },
         _ => Ok(()),
     }
 }

@@ -103,6 +103,8 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "z )", "view wipe-right", "Window: their border to the right"),
     row(EVERYWHERE, "z w", "view view-seam", "Window: the loop's seam, the last frame against the first"),
     row(EVERYWHERE, "z t", "view view-checkerboard", "Window: a checkerboard under transparency"),
+    row(EVERYWHERE, "z L", "view view-legends", "Window: legends of the vector field"),
+    row(EVERYWHERE, "z W", "view zoom-whole", "Window: fit by a whole factor, all pixels equally large"),
     row(EVERYWHERE, "z F", "view view-full-screen", "Window: the whole screen"),
     row(EVERYWHERE, "z R", "view view-whole-frames", "Window: the display's rate, or the scene's frames only"),
     row(EVERYWHERE, "z <", "speed slower", "Play slower"),

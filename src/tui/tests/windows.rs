@@ -100,6 +100,25 @@ fn the_pointer_goes_into_the_entry() {
 }
 
 #[test]
+fn the_pointer_goes_into_the_column_of_the_cursor() {
+    let at = |field: &str| zone(&format!("/motion/0/{field}"));
+    for (keys, moved, aimed) in [
+        ("M", json!([12.5, 13.25]), json!([0, -18])),
+        ("l M", json!([12.5, 13.25]), json!([0, -18])),
+        ("l l l M", json!([20, 20]), json!([-7.5, -6.75])),
+        ("l l l l M", json!([20, 20]), json!([-7.5, -6.75])),
+        ("l l l l l M", json!([20, 20]), json!([-7.5, -6.75])),
+        ("l l l l l l M", json!([20, 20]), json!([-7.5, -6.75])),
+    ] {
+        let mut state = state();
+        update(&mut state, Event::Pointer(12.5, 13.25));
+        press(&mut state, &motion(keys));
+        let read = |field: &str| state.document().json().pointer(&at(field)).cloned();
+        assert_eq!((read("at"), read("jump")), (Some(moved), Some(aimed)), "{keys}");
+    }
+}
+
+#[test]
 fn a_name_takes_a_capital_m() {
     let mut state = state();
     update(&mut state, Event::Pointer(12.5, 13.25));

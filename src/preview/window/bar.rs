@@ -1,0 +1,249 @@
+//! The bar at the bottom: time, what is said of the scene, and where the pointer is. What does not fit goes, the least
+//! important first.
+
+use kurbo::{Point, Rect};
+
+use super::canvas::{Canvas, Color};
+use super::chrome::{ACCENT, DIM, MARGIN_PX, RAIL, TEXT, TEXT_PX, WARNING};
+use super::state::{BAR_PX, State};
+use super::text::Letters;
+
+const GROUND: Color = [28, 31, 37, 255];
+/// Width of the sign that plays, with its room, in logical pixels.
+const SIGN_PX: f64 = 18.0;
+/// Between two parts of the bar, in logical pixels.
+const GAP_PX: f64 = 16.0;
+/// The times take at most this share of the bar, and what is said gets at least that share of the rest, if it needs it.
+const TIMES: f64 = 0.6;
+const SAID: f64 = 0.45;
+
+/// The rail along which time runs, in physical pixels.
+pub fn rail(state: &State) -> Rect {
+    let (area, scale) = (state.area(), state.scale);
+    let y = area.height + 6.0 * scale;
+    Rect::new(MARGIN_PX * scale, y, (area.width - MARGIN_PX * scale).max(MARGIN_PX * scale + 1.0), y + 3.0 * scale)
+}
+
+/// Whether a place on the screen is on the sign that plays.
+pub fn is_sign(state: &State, at: Point) -> bool {
+    let rail = rail(state);
+    at.y > rail.y1 + 3.0 * state.scale && at.x < rail.x0 + SIGN_PX * state.scale
+}
+
+/// Where the knob stands on the rail, 0 to 1.
+fn place(state: &State) -> f64 {
+    let last = (state.timeline.frames() as f64 - 1.0).max(1.0);
+    (state.transport.frame / last).min(1.0)
+}
+
+/// The frame that belongs to a place on the rail.
+pub fn frame_at(state: &State, x: f64) -> f64 {
+    let rail = rail(state);
+    let last = state.timeline.frames() as f64 - 1.0;
+    (((x - rail.x0) / rail.width()).clamp(0.0, 1.0) * last).round()
+}
+
+/// Draws it.
+pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters) {
+    let (area, scale) = (state.area(), state.scale);
+    canvas.rect(Rect::new(0.0, area.height, state.window.width, state.window.height), 0.0, GROUND);
+    let rail = rail(state);
+    let (corner, share) = (1.5 * scale, place(state));
+    let knob = Point::new(rail.x0 + rail.width() * share, rail.center().y);
+    canvas.rect(rail, corner, RAIL);
+    canvas.rect(Rect::new(rail.x0, rail.y0, knob.x, rail.y1), corner, ACCENT);
+    canvas.disc(knob, 4.0 * scale, ACCENT);
+    let (height, gap) = (TEXT_PX * scale, GAP_PX * scale);
+    let y = area.height + (BAR_PX - 7.0 - TEXT_PX) * scale;
+    sign(canvas, state.transport.playing, Point::new(rail.x0, y), height);
+    let from = rail.x0 + SIGN_PX * scale;
+    let width = |text: &str| letters.width(text, height);
+    let times = first_that_fits(times(state), TIMES * (rail.x1 - from), width);
+    canvas.text(&letters.line(&times, height), Point::new(from, y), TEXT);
+    let from = if times.is_empty() { from } else { from + width(&times) + gap };
+    let (said, color) = said(state);
+    let room = rail.x1 - from;
+    let right = right_text(state, room - gap - width(&said).min(SAID * room), width);
+    let right_at = rail.x1 - width(&right);
+    canvas.text(&letters.line(&right, height), Point::new(right_at, y), DIM);
+    let room = right_at - from - gap;
+    if room > 2.0 * height {
+        canvas.text(&letters.within(&said, height, room), Point::new(from, y), color);
+    }
+}
+
+fn first_that_fits(texts: Vec<String>, room: f64, width: impl Fn(&str) -> f64) -> String {
+    texts.into_iter().find(|text| width(text) <= room).unwrap_or_default()
+}
+
+/// What the middle of the bar says: what is wrong, else what is shown instead of the picture, else what is selected and how
+/// the window is connected.
+fn said(state: &State) -> (String, Color) {
+    let words = &state.words;
+    let explained = if !state.has_picture() {
+        words.progress.clone().or_else(|| state.waits_for().map(str::to_owned))
+    } else if state.shown.seam {
+        let last = state.timeline.frames() - 1;
+        Some(format!("seam: frame {last} against 0, differences x 8"))
+    } else if state.shown.wipe {
+        Some("still left, moving right".to_owned())
+    } else {
+        None
+    };
+    match (words.in_one_line().filter(|_| words.listed().is_empty()), explained) {
+        (Some(problem), _) => (problem, WARNING),
+        (None, Some(explained)) => (explained, TEXT),
+        (None, None) => {
+            let followed = words.progress.as_deref().or(words.notice.as_deref());
+            let parts = [state.selected.as_deref(), followed];
+            (parts.into_iter().flatten().collect::<Vec<_>>().join("   "), DIM)
+        }
+    }
+}
+
+/// What can be done: a triangle that plays, or two lines that pause.
+fn sign(canvas: &mut Canvas, playing: bool, at: Point, height: f64) {
+    let point = |x: f64, y: f64| Point::new(at.x + x * height, at.y + y * height);
+    let width = 0.16 * height;
+    if playing {
+        canvas.line(point(0.2, 0.05), point(0.2, 0.95), width, TEXT);
+        canvas.line(point(0.65, 0.05), point(0.65, 0.95), width, TEXT);
+    } else {
+        canvas.polyline(&[point(0.1, 0.0), point(0.9, 0.5), point(0.1, 1.0)], true, width, None, TEXT);
+    }
+}
+
+/// Time and frame, from the longest way of saying it to the shortest.
+fn times(state: &State) -> Vec<String> {
+    if !state.has_picture() {
+        return Vec::new();
+    }
+    let (timeline, transport) = (&state.timeline, &state.transport);
+    let still = if state.shown.still { "   still picture" } else { "" };
+    let speed = if transport.speed == 1.0 { String::new() } else { format!("   speed {}", transport.speed) };
+    let seconds = format!("{:.2} / {:.2} s", transport.secs(timeline), timeline.frames() as f64 / timeline.fps);
+    let frames = format!("{} / {}", transport.frame.floor(), timeline.frames());
+    vec![
+        format!("{seconds}   frame {frames}{speed}{still}"),
+        format!("{seconds}   frame {frames}"),
+        format!("frame {frames}"),
+        frames,
+    ]
+}
+
+/// What stands on the right, as much of it as fits: the least important goes first.
+fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
+    let percent = state.camera.zoom * 100.0;
+    let percent = if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 };
+    let mut parts: Vec<(u8, String)> = Vec::new();
+    parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));
+    parts.extend(state.jump.map(|jump| (2, format!("jump {:.2}, {:.2}", jump.x, jump.y))));
+    parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
+    parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
+    parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
+    parts.push((1, "? keys".to_owned()));
+    loop {
+        let text = parts.iter().map(|(_, part)| part.as_str()).collect::<Vec<_>>().join("   ");
+        let least = parts.iter().map(|(weight, _)| *weight).min();
+        if parts.is_empty() || width(&text) <= room {
+            return text;
+        }
+        parts.retain(|(weight, _)| Some(*weight) != least);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::problem::Problem;
+    use crate::layers::timeline::Timeline;
+    use kurbo::Size;
+
+    fn state() -> State {
+        let mut state = State::default();
+        state.resize(Size::new(640.0, 480.0), 1.0);
+        state.load(Size::new(320.0, 200.0), &Timeline::default());
+        state
+    }
+
+    #[test]
+    fn the_rail_runs_from_the_first_to_the_last_frame() {
+        let mut state = state();
+        let rail = rail(&state);
+        for (x, frame) in [(0.0, 0.0), (rail.x0, 0.0), (rail.x1, 59.0), (9999.0, 59.0)] {
+            assert_eq!(frame_at(&state, x), frame, "{x}");
+        }
+        state.transport.frame = 59.0;
+        assert_eq!(place(&state), 1.0);
+        let below = |x: f64| Point::new(x, rail.y1 + 8.0);
+        assert!(is_sign(&state, below(rail.x0 + 4.0)) && !is_sign(&state, below(60.0)));
+        assert!(!is_sign(&state, rail.origin()), "the rail itself");
+    }
+
+    #[test]
+    fn the_bar_tells_time_and_frame() {
+        let mut state = state();
+        state.transport.frame = 15.0;
+        assert_eq!(times(&state)[0], "0.50 / 2.00 s   frame 15 / 60");
+        state.transport.speed = 0.25;
+        assert!(times(&state)[0].ends_with("frame 15 / 60   speed 0.25"));
+        let letters = Letters::default();
+        let width = |text: &str| letters.width(text, TEXT_PX);
+        for text in times(&state) {
+            assert_eq!(first_that_fits(times(&state), width(&text), width), text);
+        }
+        assert_eq!(first_that_fits(times(&state), 1.0, width), "");
+        assert_eq!(right_text(&state, 999.0, width), "200 %   ? keys");
+        (state.fps, state.transport.whole_frames) = (Some(59.97), true);
+        assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   200 %   ? keys");
+        state.pointer = Some(Point::new(10.0, 43.0));
+        for text in ["x 5.0  y 10.0   60 fps   200 %   ? keys", "x 5.0  y 10.0   200 %", "200 %", ""] {
+            assert_eq!(right_text(&state, width(text), width), text);
+        }
+    }
+
+    #[test]
+    fn the_bar_says_the_most_important_thing() {
+        let mut state = State { selected: Some("face/eye".into()), ..state() };
+        state.words.notice = Some("joined".into());
+        assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
+        state.shown.seam = true;
+        assert!(said(&state).0.contains("frame 59 against 0"));
+        state.words.reduced = Some("shown reduced".into());
+        assert_eq!(said(&state), ("shown reduced".into(), WARNING));
+        state.words.follow_scene(vec![Problem::error("/images", "no picture")]);
+        assert_eq!(said(&state).1, TEXT, "problems stand in a list of their own");
+        state.words.put_away();
+        assert_eq!(said(&state), ("/images: no picture".into(), WARNING));
+    }
+
+    #[test]
+    fn before_the_first_picture_the_bar_says_what_is_waited_for() {
+        let mut state = State::default();
+        assert_eq!(said(&state).0, "opening");
+        state.work = Some("synthesising");
+        assert_eq!(said(&state).0, "synthesising");
+        state.words.progress = Some("fetching sea.jpg: 34 %".into());
+        assert_eq!(said(&state).0, "fetching sea.jpg: 34 %");
+        state.words.progress = None;
+        state.words.follow_link(vec![Problem::error("", "not a scene")]);
+        assert_eq!(said(&state).0, "nothing to show yet");
+    }
+
+    #[test]
+    fn nothing_lies_on_one_another_however_narrow_the_window_is() {
+        let letters = Letters::default();
+        for width in [80.0, 120.0, 200.0, 240.0, 320.0, 480.0, 960.0] {
+            let mut state = State { selected: Some("face/left eye/motion/3".into()), ..state() };
+            state.words.notice = Some("following the file".into());
+            state.resize(Size::new(width, 400.0), 1.0);
+            state.pointer = Some(Point::new(width / 2.0, 180.0));
+            let mut canvas = Canvas::default();
+            draw(&mut canvas, &state, &letters);
+            let mut glyphs: Vec<_> = canvas.strokes.iter().filter(|s| s.form == super::super::canvas::GLYPH).collect();
+            glyphs.sort_by(|a, b| a.a[0].total_cmp(&b.a[0]));
+            assert!(glyphs.windows(2).all(|pair| pair[0].b[0] <= pair[1].a[0] + 2.0), "at {width}");
+            assert!(glyphs.iter().all(|glyph| glyph.b[0] <= width as f32), "at {width}");
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! The mouse: what it drags, clicks and turns. A value beside the state; nothing here reads a clock or knows a window.
+
+use std::time::{Duration, Instant};
+
+use kurbo::Point;
+
+use super::bar;
+use super::state::State;
+
+/// A click may move the pointer so far, in logical pixels.
+const CLICK_PX: f64 = 3.0;
+/// The border of before and after is taken from so far, in logical pixels.
+const BORDER_PX: f64 = 7.0;
+/// Two clicks within this time, and about the same place, are a double click.
+const DOUBLE: Duration = Duration::from_millis(400);
+
+/// What the window is to do, beside what the state shows already.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Asked {
+    /// Nothing.
+    Nothing,
+    /// Play or pause.
+    Play,
+    /// Select what stands there in the picture.
+    Select(Point),
+    /// Fit the picture into the window.
+    Fit,
+}
+
+/// What the pointer looks like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shape {
+    #[default]
+    Arrow,
+    /// Something to be pressed.
+    Hand,
+    /// Something to be moved to the left and the right.
+    Across,
+    /// The picture, while it is moved.
+    Held,
+}
+
+/// What the pressed button moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Drag {
+    #[default]
+    Nothing,
+    Picture,
+    Time,
+    Border,
+}
+
+/// Which button.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Button {
+    Left,
+    Middle,
+}
+
+/// See the top of the file.
+#[derive(Debug, Default)]
+pub struct Mouse {
+    drag: Drag,
+    /// Where the left button went down on the picture, as long as that may become a click.
+    pressed_at: Option<Point>,
+    /// When and where the last click was.
+    clicked: Option<(Instant, Point)>,
+    /// Steps of the wheel that are no whole one yet.
+    turned: f64,
+    /// A notch that comes twice was heard once.
+    half_heard: bool,
+}
+
+impl Mouse {
+    /// Whether the time is dragged: then this window leads.
+    pub fn drags_time(&self) -> bool {
+        self.drag == Drag::Time
+    }
+
+    /// The pointer is at a place, or has left.
+    pub fn moved(&mut self, state: &mut State, at: Option<Point>) {
+        let before = std::mem::replace(&mut state.pointer, at);
+        match (self.drag, before, at) {
+            (Drag::Picture, Some(from), Some(to)) => match self.pressed_at {
+                // It may be a click.
+                Some(pressed) if pressed.distance(to) <= CLICK_PX * state.scale => {}
+                pressed => {
+                    self.pressed_at = None;
+                    state.pan(pressed.unwrap_or(from) - to);
+                }
+            },
+            (Drag::Time, _, Some(to)) => scrub(state, to.x),
+            (Drag::Border, _, Some(to)) => state.drag_wipe(to.x),
+            _ => {}
+        }
+    }
+
+    /// A button goes down.
+    pub fn pressed(&mut self, state: &mut State, button: Button) -> Asked {
+        let Some(at) = state.pointer else { return Asked::Nothing };
+        if at.y < state.area().height {
+            self.drag = if button == Button::Left && on_border(state, at) { Drag::Border } else { Drag::Picture };
+            self.pressed_at = (button == Button::Left && self.drag == Drag::Picture).then_some(at);
+        } else if button == Button::Left {
+            if bar::is_sign(state, at) {
+                return Asked::Play;
+            }
+            self.drag = Drag::Time;
+            scrub(state, at.x);
+        }
+        Asked::Nothing
+    }
+
+    /// A button comes up; where it does so at the place where it went down that was a click.
+    pub fn released(&mut self, state: &State, now: Instant) -> Asked {
+        self.drag = Drag::Nothing;
+        let (Some(_), Some(to)) = (self.pressed_at.take(), state.pointer) else { return Asked::Nothing };
+        let near = |place: Point| place.distance(to) <= 2.0 * CLICK_PX * state.scale;
+        let before = self.clicked.replace((now, to));
+        if before.is_some_and(|(then, place)| now.saturating_duration_since(then) <= DOUBLE && near(place)) {
+            self.clicked = None;
+            return Asked::Fit;
+        }
+        state.pointed().map_or(Asked::Nothing, Asked::Select)
+    }
+
+    /// The wheel or a touchpad turned by so many steps: whole ones zoom about the pointer, parts are kept until they make one.
+    pub fn turned(&mut self, state: &mut State, steps: f64) {
+        if steps * self.turned < 0.0 {
+            self.turned = 0.0;
+        }
+        self.turned += steps;
+        // A hair less than a step is one: parts of steps do not add up exactly.
+        let whole = (self.turned + 1e-6_f64.copysign(self.turned)).trunc();
+        self.turned -= whole;
+        if whole != 0.0 {
+            let middle = (state.area().to_vec2() / 2.0).to_point();
+            state.zoom(whole.clamp(-64.0, 64.0) as i32, state.pointer.unwrap_or(middle));
+        }
+    }
+
+    /// Whether a notch counts: of two that tell of one and the same, the first does.
+    pub fn counts(&mut self, comes_twice: bool) -> bool {
+        self.half_heard = comes_twice && !self.half_heard;
+        !comes_twice || self.half_heard
+    }
+
+    /// What the pointer is to look like.
+    pub fn shape(&self, state: &State) -> Shape {
+        match (self.drag, state.pointer) {
+            (Drag::Border, _) => Shape::Across,
+            (Drag::Picture, _) => Shape::Held,
+            (Drag::Nothing, Some(at)) if at.y >= state.area().height && bar::is_sign(state, at) => Shape::Hand,
+            (Drag::Nothing, Some(at)) if on_border(state, at) => Shape::Across,
+            _ => Shape::Arrow,
+        }
+    }
+}
+
+fn on_border(state: &State, at: Point) -> bool {
+    let reach = BORDER_PX * state.scale;
+    at.y < state.area().height && state.wipe_at().is_some_and(|x| (x - at.x).abs() <= reach)
+}
+
+fn scrub(state: &mut State, x: f64) {
+    let frame = bar::frame_at(state, x);
+    state.transport.go_to(frame, &state.timeline);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::timeline::Timeline;
+    use kurbo::Size;
+
+    fn state() -> State {
+        let mut state = State::default();
+        state.resize(Size::new(640.0, 434.0), 1.0);
+        state.load(Size::new(320.0, 200.0), &Timeline::default());
+        state
+    }
+
+    /// Presses at one place, moves through the others, lets go at the last.
+    fn drag(mouse: &mut Mouse, state: &mut State, button: Button, places: &[(f64, f64)], at: Instant) -> Asked {
+        mouse.moved(state, Some(places[0].into()));
+        let asked = mouse.pressed(state, button);
+        places.iter().for_each(|&place| mouse.moved(state, Some(place.into())));
+        match mouse.released(state, at) {
+            Asked::Nothing => asked,
+            asked => asked,
+        }
+    }
+
+    #[test]
+    fn what_is_pressed_is_what_is_moved() {
+        let now = Instant::now();
+        let (mut mouse, mut state) = (Mouse::default(), state());
+        let place = |state: &State| state.camera.origin(state.area());
+        let origin = place(&state);
+        let across = [(100.0, 100.0), (150.0, 110.0)];
+        assert_eq!(drag(&mut mouse, &mut state, Button::Left, &across, now), Asked::Nothing);
+        assert_eq!((place(&state) - origin).x, 50.0);
+        assert_eq!(drag(&mut mouse, &mut state, Button::Middle, &across, now), Asked::Nothing);
+        assert_eq!((place(&state) - origin).x, 100.0);
+        state.run("zoom-fit");
+        state.run("view-wipe");
+        assert_eq!(drag(&mut mouse, &mut state, Button::Left, &[(322.0, 90.0), (160.0, 95.0)], now), Asked::Nothing);
+        assert_eq!((state.wipe, place(&state)), (0.25, origin));
+        drag(&mut mouse, &mut state, Button::Left, &[(60.0, 408.0), (9999.0, 408.0)], now);
+        assert_eq!(state.transport.frame, 59.0);
+        assert_eq!(drag(&mut mouse, &mut state, Button::Left, &[(16.0, 424.0)], now), Asked::Play);
+        assert_eq!(state.transport.frame, 59.0, "the sign is no place on the rail");
+        assert_eq!(drag(&mut mouse, &mut state, Button::Middle, &[(60.0, 408.0)], now), Asked::Nothing);
+    }
+
+    #[test]
+    fn a_click_selects_and_two_fit() {
+        let now = Instant::now();
+        let (mut mouse, mut state) = (Mouse::default(), state());
+        let later = |ms| now + Duration::from_millis(ms);
+        let at = |mouse: &mut Mouse, state: &mut State, x: f64, ms| {
+            drag(mouse, state, Button::Left, &[(x, 100.0), (x + 2.0, 100.0)], later(ms))
+        };
+        let select = |x: f64| Asked::Select(Point::new(x, 50.0));
+        assert_eq!(at(&mut mouse, &mut state, 100.0, 0), select(51.0));
+        assert_eq!(at(&mut mouse, &mut state, 101.0, 200), Asked::Fit);
+        assert_eq!(at(&mut mouse, &mut state, 101.0, 300), select(51.5), "a third click is a first one");
+        assert_eq!(at(&mut mouse, &mut state, 201.0, 400), select(101.5), "elsewhere");
+        assert_eq!(at(&mut mouse, &mut state, 201.0, 1400), select(101.5), "too late");
+        assert_eq!(drag(&mut mouse, &mut state, Button::Middle, &[(201.0, 100.0)], later(1500)), Asked::Nothing);
+    }
+
+    #[test]
+    fn the_wheel_zooms_by_what_it_sends() {
+        let (mut mouse, mut state) = (Mouse::default(), state());
+        state.run("zoom-one");
+        for (turns, percent) in [
+            (&[1.0][..], 141),
+            (&[-1.0], 100),
+            (&[0.1; 9], 100),
+            (&[0.1], 141),
+            (&[0.5, -0.9], 141),
+            (&[-0.1], 100),
+            (&[0.05; 20], 141),
+            (&[-3.0], 50),
+        ] {
+            turns.iter().for_each(|&steps| mouse.turned(&mut state, steps));
+            assert_eq!((state.camera.zoom * 100.0).round() as i32, percent, "{turns:?}");
+        }
+    }
+
+    #[test]
+    fn a_notch_that_comes_twice_counts_once() {
+        let mut mouse = Mouse::default();
+        let heard: Vec<bool> = [true, true, true, true, false, false, true].map(|twice| mouse.counts(twice)).into();
+        assert_eq!(heard, [true, false, true, false, true, true, true]);
+    }
+
+    #[test]
+    fn the_pointer_shows_what_can_be_done() {
+        let (mut mouse, mut state) = (Mouse::default(), state());
+        state.run("view-wipe");
+        for (at, shape) in [
+            ((100.0, 100.0), Shape::Arrow),
+            ((325.0, 100.0), Shape::Across),
+            ((16.0, 424.0), Shape::Hand),
+            ((100.0, 424.0), Shape::Arrow),
+        ] {
+            mouse.moved(&mut state, Some(at.into()));
+            assert_eq!(mouse.shape(&state), shape, "{at:?}");
+        }
+    }
+}

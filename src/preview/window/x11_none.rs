@@ -1,0 +1,28 @@
+//! There is no X server on this system: what `x11.rs` does where there is one.
+
+use winit::window::Window;
+
+/// Never there.
+pub enum Desk {}
+
+impl Desk {
+    /// None.
+    pub fn of(_: &Window) -> Option<Desk> {
+        None
+    }
+
+    /// See `x11.rs`.
+    pub fn leave_the_keyboard(&self) {
+        match *self {}
+    }
+
+    /// See `x11.rs`.
+    pub fn is_seen(&self) -> bool {
+        match *self {}
+    }
+
+    /// See `x11.rs`.
+    pub fn wheel_is_a_button(&self) -> bool {
+        match *self {}
+    }
+}
