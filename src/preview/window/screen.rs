@@ -187,9 +187,10 @@ impl Screen {
         pass.set_bind_group(0, &self.pipelines.group(device, [frame, other.as_ref().unwrap_or(frame), frame]), &[]);
         pass.draw(0..3, 0..1);
         if let (Some(other), Some(border)) = (other, state.wipe_at()) {
-            let (width, height) = (state.window.width as u32, state.window.height as u32);
+            // What is drawn into may be of another size than the last that was heard of the window.
+            let (width, height) = self.configured;
             pass.set_bind_group(0, &self.pipelines.group(device, [other; 3]), &[]);
-            pass.set_scissor_rect(0, 0, border as u32, height);
+            pass.set_scissor_rect(0, 0, (border as u32).min(width), height);
             pass.draw(0..3, 0..1);
             pass.set_scissor_rect(0, 0, width, height);
         }
