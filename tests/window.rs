@@ -103,8 +103,9 @@ fn the_mouse_plays_zooms_and_moves_the_border() {
     view.shows("frame 0", &frame);
     let shot = view.shot();
     let (left, top) = corner(&shot, &frame);
+    let window = view.window.clone();
     let at = |x: usize, y: usize| {
-        display.tool("xdotool", &["mousemove", "--window", &view.window, &x.to_string(), &y.to_string()]);
+        display.tool("xdotool", &["mousemove", "--window", &window, &x.to_string(), &y.to_string()]);
     };
     // A notch of a virtual wheel is one step: 100 % to 141 %, and one back is 100 % again.
     at(left + 100, top + 60);
