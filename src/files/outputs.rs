@@ -268,6 +268,13 @@ fn place(path: &Path) -> Option<(PathBuf, String)> {
     Some((folder, path.file_name()?.to_string_lossy().to_lowercase()))
 }
 
+/// What a scene at `path` would name and not find there, as it is written.
+pub fn missing(path: &Path, scene: &Scene) -> Vec<String> {
+    let named = materials::paths(scene).into_iter();
+    let there = |name: &str| paths::beside(path, name.rsplit_once('#').map_or(name, |(file, _)| file)).exists();
+    named.filter(|name| !there(name) && !paths::beside(path, name).exists()).map(str::to_owned).collect()
+}
+
 /// The first and the last bytes of the file at `path`, so many or as many as there are.
 ///
 /// # Errors
@@ -349,6 +356,10 @@ mod tests {
                 Some(what) => assert!(refused.as_ref().is_some_and(|said| said.contains(what)), "{name}: {refused:?}"),
             }
         }
+        let text = fs::read_to_string(folder.path().join("s.plica.json")).unwrap();
+        let document = Document::parse(&text).unwrap();
+        assert_eq!(missing(&folder.path().join("copy.json"), document.scene()), ["missing.flo"]);
+        assert_eq!(missing(&folder.path().join("sub/copy.json"), document.scene()).len(), 3);
         let names = ["new.png".to_owned(), "link.png".into()];
         assert!(guard.files(folder.path(), &names, Kind::Png).is_err());
         assert!(guard.folder(folder.path(), &|name| name == "hard.png", BTreeSet::new()).is_err());

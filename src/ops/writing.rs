@@ -9,6 +9,7 @@ use std::time::Instant;
 use super::Context;
 use crate::base::text;
 use crate::files::outputs::Guard;
+use crate::files::{self, scene};
 use crate::scene::Scene;
 
 /// What an output may replace.
@@ -20,12 +21,15 @@ pub struct Replacing {
 }
 
 impl Replacing {
-    /// The guard of an output made of the scene at `path`: that scene is kept, and the one that the editor has open.
+    /// The guard of an output made of the scene at `path`: that scene is kept, and the one that the editor has open, as it is
+    /// there and as its file has it.
     pub fn guard(&self, path: &Path, scene: &Scene, context: &Context) -> Guard {
         let mut guard = Guard::new(self.force);
         guard.protect(path, scene);
         if let Some(open) = &context.open {
             guard.protect(&open.path, open.document.scene());
+            let saved = scene::open(&open.path, &files::Options::default()).ok();
+            saved.iter().for_each(|saved| guard.protect(&open.path, saved.scene()));
         }
         guard
     }

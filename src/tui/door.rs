@@ -9,7 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::base::text;
 use crate::files::holder::Holder;
-use crate::files::outputs::Guard;
+use crate::files::outputs::{self, Guard};
 use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
 use crate::files::{self, picture, write};
 use crate::scene::history::Applied;
@@ -210,7 +210,9 @@ impl Door {
             guard.protect(self.path(), self.document().scene());
             guard.spare(to)?;
             write::write_new(to, self.document().to_text().as_bytes())?;
-            return Ok(format!("{} is written", to.display()));
+            let missing = outputs::missing(to, self.document().scene()).join(", ");
+            let but = if missing.is_empty() { missing } else { format!(", but lacks what it reads there: {missing}") };
+            return Ok(format!("{} is written{but}", to.display()));
         }
         if !overwrite && let Err(why) = self.session.may_overwrite() {
             tracing::warn!("not saved: {why}");
