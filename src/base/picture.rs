@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use crate::base::pixels::{Beyond, Linear, Rgba, bilinear, linear_from_srgb};
+use crate::base::pixels::{Beyond, Linear, Rgba, bilinear, encode, linear_from_srgb};
 
 /// A picture that a scene names.
 #[derive(Clone, Debug)]
@@ -239,6 +239,22 @@ impl Picture {
     pub fn texel(&self, x: usize, y: usize) -> Rgba {
         assert!(x < self.width, "column {x} of {}", self.width);
         with_texels!(self, texels => texels.at(y * self.width + x))
+    }
+
+    /// Gives an encoded pixel that is clear the color that the picture has at `place`, where it has one: straight codes have,
+    /// whatever their alpha.
+    pub fn keep_clear_color(&self, place: Option<(usize, usize)>, code: &mut [u8; 4]) {
+        let Some((x, y)) = place.filter(|_| code[3] == 0) else { return };
+        let count = self.channels.count();
+        let first = (y * self.width + x) * count;
+        let channels = if count < 3 { [0; 3] } else { [0, 1, 2] };
+        let light = match &self.samples {
+            Samples::Bytes(all, light) => light.of(channels.map(|c| all[first + c].into())),
+            Samples::Words(all, light) => light.of(channels.map(|c| all[first + c].into())),
+            Samples::Halves(_) | Samples::Floats(_) => return,
+        };
+        let [r, g, b, _] = encode([light[0], light[1], light[2], 1.0]);
+        *code = [r, g, b, 0];
     }
 
     /// Writes the pixels of row `y` from column `x` on to `out`.

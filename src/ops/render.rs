@@ -264,6 +264,14 @@ impl Renderer {
     }
 
     fn frame(&mut self, time: f64) -> Result<Frame> {
+        let mut frame = self.drawn(time)?;
+        if let Some(synth) = self.samples.first().filter(|synth| synth.size == self.size) {
+            cpu::keep_clear_colors(synth, &mut frame);
+        }
+        Ok(frame)
+    }
+
+    fn drawn(&mut self, time: f64) -> Result<Frame> {
         #[cfg(feature = "window")]
         if let Some(gpu) = &mut self.gpu {
             let frames = self.samples.iter().map(|synth| gpu.frame(synth, time)).collect::<Result<Vec<_>>>()?;

@@ -67,6 +67,19 @@ pub fn finish(picture: &Linear) -> Frame {
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 
+/// Gives clear pixels of a finished frame the colors that their pictures have there: straight alpha keeps them.
+pub fn keep_clear_colors(synth: &Synth, frame: &mut Frame) {
+    let width = frame.width().max(1);
+    frame.cells_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, code) in row.iter_mut().enumerate().filter(|(_, code)| code[3] == 0) {
+            for LayerSynth::Picture(layer) in &synth.layers {
+                let within = x < layer.picture.width() && y < layer.picture.height();
+                layer.picture.keep_clear_color(within.then_some((x, y)), code);
+            }
+        }
+    });
+}
+
 /// Lays row `y` of a layer over what is there.
 fn lay(layer: &LayerSynth, scene_time: f64, y: usize, row: &mut [Rgba]) {
     let LayerSynth::Picture(synth) = layer;

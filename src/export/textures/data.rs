@@ -126,7 +126,10 @@ impl Texture {
         let failed = |e: &dyn std::fmt::Display| Error::at(&file, e);
         let (width, height) = (self.values.width(), self.values.height());
         let bytes = match depth.largest() {
-            None => exr(&self.values).map_err(|e| failed(&e))?,
+            None => {
+                let floats = self.values.cells().iter().map(|v| v.map(|v| v as f32)).collect();
+                exr(&Grid::from_cells(width, height, floats)).map_err(|e| failed(&e))?
+            }
             Some(_) => {
                 let flat: Vec<u16> = self.values.cells().iter().flat_map(|v| encode(v, &codes)).collect();
                 still::data(width, height, depth.bits(), &flat).map_err(|e| failed(&e))?
@@ -195,11 +198,11 @@ fn encode(values: &[f64; 4], codes: &[Code; 4]) -> [u16; 4] {
     std::array::from_fn(|i| codes[i].encode(values[i]))
 }
 
-fn exr(values: &Grid<[f64; 4]>) -> image::ImageResult<Vec<u8>> {
-    let floats: Vec<f32> = values.cells().as_flattened().iter().map(|&v| v as f32).collect();
+/// Floats in four channels as an OpenEXR file.
+pub fn exr(values: &Grid<[f32; 4]>) -> image::ImageResult<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let (width, height) = (values.width() as u32, values.height() as u32);
-    let raw: &[u8] = bytemuck::cast_slice(&floats);
+    let raw: &[u8] = bytemuck::cast_slice(values.cells());
     OpenExrEncoder::new(&mut bytes).write_image(raw, width, height, ExtendedColorType::Rgba32F)?;
     Ok(bytes.into_inner())
 }

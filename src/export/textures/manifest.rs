@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::data::TextureNote;
-use crate::layers::folding::position::Break;
+use super::function::Knot;
+use crate::layers::folding::breaks::Break;
 use crate::layers::timeline::{Timeline, Wrap};
 
 /// The version of this format; a player refuses a larger one.
@@ -53,12 +54,12 @@ pub struct Conventions {
 pub const CONVENTIONS: Conventions = Conventions {
     texels: "rows from the top; the centre of texel (i, j) is at (i + 0.5, j + 0.5)",
     coordinates: "u = x / width and v = y / height of the colour texture, v downward; flip v only where a target wants it",
-    colour: "sRGB with straight alpha; decode to linear light and premultiply before bilinear reads, encode at the end",
+    colour: "sRGB with straight alpha; decode to linear light and premultiply before bilinear reads, encode at the end; where there is a float file take that, linear and premultiplied as it is",
     data: "read init, jump, function and thresholds as they are: no colour space, no premultiplying, compression or mip maps; init, jump and thresholds nearest, texel for texel of the zone's box",
     codes: "whole numbers: value = (code - zero) / (one - zero) * scale, so that the code zero is exactly 0; 32 bits: the value itself",
     time: "frame k has t = k / frames, for once k / max(frames - 1, 1); a zone's x = speed (t + shift); tau = x - floor(x) for repeat, 1 - |1 - 2 (x - floor(x))| for ping-pong, clamp(x, 0, 1) for once",
-    function: "s of a zone stands in its row: texel i at tau = i / (columns - 1), linear between; in the interval that holds a break, the straight line through the two texels on tau's own side of it, or the only one there",
-    sampler: "init R, G is where the sampler stands at s = 0; it reads init + e * jump, clamped to the texel centres of the zone's piece, bilinear; init A is 0 outside the zone, else (row + 0.5) / rows",
+    function: "s of a zone stands in its row: texel i at tau = i / (columns - 1), and in its knots [tau, s before, s at, s after]; at a knot s is s at, else linear between the nearest points (texels and knots) on either side, s after of a knot on the left, s before of one on the right",
+    sampler: "init R, G is where the sampler stands at s = 0, the same as (origin + pixel of the box) / (width, height); it reads init + e * jump, clamped to the texel centres of the zone's piece, bilinear; init A is 0 outside the zone, else (row + 0.5) / rows",
     first_stretch: "without a thresholds texture: where the rule is none or mask every sampler is active with e = s; else it is active, with e = s, where s0 < s <= s1, at s = 0 where s0 = 0 < s1, below 0 as at 0, above 1 as at 1",
     thresholds: "slot 0 is 1 where the pixel itself lies in a fold region; then the crossings with s >= 0, ascending, then those with s <= 0, descending, on which side of 0 s is. Slot n is channel n mod 4 of block n div 4; blocks are as large as the box and stacked downward. Starting from slot 0, each crossing c that s has passed (|s| > |c| + tolerance) changes inside to outside and back",
     rules: "return is active outside, fly-over inside, with e = s; cover is active outside with e = s, and inside with e = the last crossing passed, or still if none was; a pixel that is not active shows what lies beneath",
@@ -68,14 +69,24 @@ pub const CONVENTIONS: Conventions = Conventions {
 /// The colour atlas in the manifest.
 #[derive(Debug, Serialize)]
 pub struct Colour {
-    /// The file.
+    /// The file: sRGB with straight alpha, 8 bits.
     pub file: String,
+    /// The same in floats, linear light premultiplied by alpha, where a picture holds light that 8 bits cannot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub float: Option<Light>,
     /// Columns.
     pub width: usize,
     /// Rows.
     pub height: usize,
     /// Its pieces.
     pub pieces: Vec<PieceNote>,
+}
+
+/// The color atlas in floats.
+#[derive(Debug, Serialize)]
+pub struct Light {
+    /// The file.
+    pub file: String,
 }
 
 /// A piece of the atlas.
@@ -142,6 +153,10 @@ pub struct Zone {
     pub range: [f64; 2],
     /// Where s jumps, ascending.
     pub breaks: Vec<Break>,
+    /// Points between the columns of the function texture, ascending: τ, and s just before it, at it and just after it.
+    pub knots: Vec<Knot>,
+    /// Where the sampler of the box's first pixel stands at s = 0, in atlas pixels: init R and G without their rounding.
+    pub origin: [f64; 2],
     /// The init texture.
     pub init: TextureNote,
     /// The jump texture.

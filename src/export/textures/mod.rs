@@ -28,16 +28,27 @@ pub use data::Depth;
 pub use names::{Names, earlier};
 
 use data::{Channel, Texture, TextureNote};
-use names::{COLOUR, MANIFEST};
+use function::{Row, Table};
+use manifest::{CONVENTIONS, Colour, Function, Light, Manifest, PieceNote, Slots, ThresholdsNote, VERSION};
+use names::{COLOUR, LIGHT, MANIFEST};
 
-use manifest::{CONVENTIONS, Colour, Function, Manifest, PieceNote, Slots, ThresholdsNote, VERSION};
+/// How far off a sampler may be for what is read between the points of a position function, in pixels: at the hardest edge
+/// that is half a code.
+const UNSEEN_PX: f64 = 5e-4;
 
 /// How far beyond a crossing s must be to have passed it: a 32-bit float is that exact.
 const TOLERANCE: f64 = 1e-6;
 
+/// What was written.
+pub struct Written {
+    /// The names of the files.
+    pub names: Vec<String>,
+    /// The largest error of a place or a jump vector, in pixels.
+    pub error_px: f64,
+}
+
 /// Writes the textures of `scene`, whose synthesis is `synth`, to the folder at `place`, all of them or none; the files of an
 /// earlier run that are none of these go. `step` is told how many of how many zones are done and ends the work by an error.
-/// Gives the names of the files.
 ///
 /// # Errors
 /// The folder cannot be written, a depth cannot hold the scene, or `step`'s.
@@ -47,17 +58,19 @@ pub fn write(
     depth: Depth,
     place: &FolderPlace,
     step: &mut dyn FnMut(u64, u64) -> Result<()>,
-) -> Result<Vec<String>> {
+) -> Result<Written> {
     let plan = Plan::new(scene, synth);
     plan.fits(depth)?;
-    let mut folder =
-        Folder { draft: DraftFolder::create(place)?, may: Names::of(scene, depth), names: Vec::new(), depth };
+    let rows = plan.rows();
+    let table = Table::new(&rows, depth.largest().is_none());
+    let draft = DraftFolder::create(place)?;
+    let mut folder = Folder { draft, may: Names::of(scene, depth), names: Vec::new(), depth, error_px: 0.0 };
     let mut layers: Vec<manifest::Layer> = Vec::new();
     let all = plan.zones.len();
     for (row, zone) in plan.zones.iter().enumerate() {
         step(row as u64, all as u64)?;
         plan.layers_up_to(zone.layer, &mut layers);
-        let note = folder.zone(&plan, zone, row)?;
+        let note = folder.zone(&plan, &table, zone, row)?;
         layers[zone.layer].zones.push(note);
     }
     plan.layers_up_to(scene.layers.len().saturating_sub(1), &mut layers);
@@ -69,14 +82,14 @@ pub fn write(
         frames: scene.timeline.frames(),
         conventions: CONVENTIONS,
         colour: folder.colour(&plan.atlas)?,
-        function: folder.function(&plan)?,
+        function: folder.function(&table)?,
         layers,
     };
     let text = serde_json::to_string_pretty(&manifest).map_err(|e| Error::at("manifest.json", e))?;
     folder.put(MANIFEST.into(), text.as_bytes())?;
     step(all as u64, all as u64)?;
     folder.draft.keep(&folder.names)?;
-    Ok(folder.names)
+    Ok(Written { names: folder.names, error_px: folder.error_px })
 }
 
 /// The atlas, and what each zone reads of it.
@@ -128,6 +141,16 @@ impl<'a> Plan<'a> {
         }
     }
 
+    /// The position functions, each as exact as the longest jump vector of its zone asks for.
+    fn rows(&self) -> Vec<Row<'_>> {
+        let row = |zone: &Planned<'a>| {
+            let square = |&[x, y]: &[f32; 2]| f64::from(x) * f64::from(x) + f64::from(y) * f64::from(y);
+            let longest = zone.synth.field.jumps.cells().iter().map(square).fold(0.0, f64::max).sqrt();
+            Row { position: &zone.model.position, tolerance: (UNSEEN_PX / longest).clamp(1e-9, 1e-4) }
+        };
+        self.zones.iter().map(row).collect()
+    }
+
     /// Whether `depth` can number the zones in init A, where 0 means outside.
     fn fits(&self, depth: Depth) -> Result<()> {
         match depth.largest() {
@@ -166,6 +189,8 @@ struct Folder {
     may: Names,
     names: Vec<String>,
     depth: Depth,
+    /// The largest error of a place or a jump vector so far.
+    error_px: f64,
 }
 
 impl Folder {
@@ -181,10 +206,11 @@ impl Folder {
     fn texture(&mut self, name: String, texture: &Texture) -> Result<TextureNote> {
         let (bytes, note) = texture.encode(format!("{name}.{}", self.depth.extension()), self.depth)?;
         self.put(note.file.clone(), &bytes)?;
+        self.error_px = note.channels.iter().filter_map(|channel| channel.error_px).fold(self.error_px, f64::max);
         Ok(note)
     }
 
-    fn zone(&mut self, plan: &Plan, zone: &Planned, row: usize) -> Result<manifest::Zone> {
+    fn zone(&mut self, plan: &Plan, table: &Table, zone: &Planned, row: usize) -> Result<manifest::Zone> {
         let field = &*zone.synth.field;
         let clock = &zone.synth.clock;
         let stem = self.stem(plan, zone);
@@ -203,6 +229,8 @@ impl Folder {
             }
         };
         let (width, height) = (field.inside.width(), field.inside.height());
+        let origin = piece.atlas_from_image() + zone.synth.source.offset;
+        let origin = [field.x0 as f64 + 0.5 + origin.x, field.y0 as f64 + 0.5 + origin.y];
         Ok(manifest::Zone {
             name: zone.model.name.clone(),
             row,
@@ -215,6 +243,8 @@ impl Folder {
             shift: clock.shift,
             range: range.into(),
             breaks: clock.position.breaks(),
+            knots: table.knots[row].clone(),
+            origin,
             init,
             jump,
             thresholds,
@@ -233,8 +263,11 @@ impl Folder {
 
     fn colour(&mut self, atlas: &Atlas) -> Result<Colour> {
         let file = COLOUR.to_owned();
-        let bytes = still::frame(&crate::render::cpu::finish(&atlas.colors)).map_err(|e| Error::at(&file, e))?;
+        let mut codes = crate::render::cpu::finish(&atlas.colors);
+        atlas.keep_clear_colors(&mut codes);
+        let bytes = still::frame(&codes).map_err(|e| Error::at(&file, e))?;
         self.put(file.clone(), &bytes)?;
+        let float = self.float_colour(atlas)?;
         let note = |piece: &Piece| {
             let area = piece.need.area;
             let (width, height) = (area.width() as usize, area.height() as usize);
@@ -242,13 +275,24 @@ impl Folder {
             PieceNote { image, x: piece.x, y: piece.y, width, height, from: [area.x0, area.y0] }
         };
         let pieces = atlas.pieces.iter().map(note).collect();
-        Ok(Colour { file, width: atlas.colors.width(), height: atlas.colors.height(), pieces })
+        Ok(Colour { file, float, width: atlas.colors.width(), height: atlas.colors.height(), pieces })
     }
 
-    fn function(&mut self, plan: &Plan) -> Result<Function> {
-        let rows: Vec<_> = plan.zones.iter().map(|zone| &zone.synth.clock.position).collect();
-        let texture = self.texture("function".into(), &function::texture(&rows))?;
-        Ok(Function { texture, error_between: function::error_between(&rows) })
+    /// The atlas in floats, where a picture holds light that 8 bits cannot: brighter than white, or negative.
+    fn float_colour(&mut self, atlas: &Atlas) -> Result<Option<Light>> {
+        let beyond = |&[r, g, b, a]: &[f32; 4]| [r, g, b].iter().any(|&c| c > a + 1e-6 || c < -1e-6);
+        if !atlas.colors.cells().iter().any(beyond) {
+            return Ok(None);
+        }
+        let file = LIGHT.to_owned();
+        let bytes = data::exr(&atlas.colors).map_err(|e| Error::at(&file, e))?;
+        self.put(file.clone(), &bytes)?;
+        Ok(Some(Light { file }))
+    }
+
+    fn function(&mut self, table: &Table) -> Result<Function> {
+        let texture = self.texture("function".into(), &table.texture())?;
+        Ok(Function { texture, error_between: table.error_between() })
     }
 }
 

@@ -15,6 +15,8 @@ use crate::scene::Scene;
 pub const MANIFEST: &str = "manifest.json";
 /// The color atlas.
 pub const COLOUR: &str = "colour.png";
+/// The same in floats.
+pub const LIGHT: &str = "colour.exr";
 
 /// The names that the textures of a scene may have.
 pub struct Names {
@@ -33,7 +35,7 @@ impl Names {
             picture.zones.iter().map(move |zone| stem(several.then_some(layer.name()), &zone.name))
         });
         let extension = depth.extension();
-        let fixed = vec![MANIFEST.to_owned(), COLOUR.to_owned(), format!("function.{extension}")];
+        let fixed = vec![MANIFEST.to_owned(), COLOUR.to_owned(), LIGHT.to_owned(), format!("function.{extension}")];
         Names { fixed, stems: stems.collect(), extension }
     }
 

@@ -7,7 +7,7 @@ use kurbo::{Point, Rect, Vec2};
 
 use super::synth::ZoneSynth;
 use crate::base::picture::Picture;
-use crate::base::pixels::{Beyond, Grid, Linear, Rgba};
+use crate::base::pixels::{Beyond, Frame, Grid, Linear, Rgba};
 
 /// A part of a picture: columns `x0..x1`, rows `y0..y1`. Where reads beyond the edge give nothing, it may hold one
 /// column or row beyond, which is transparent.
@@ -128,6 +128,22 @@ impl Atlas {
     }
 }
 
+impl Atlas {
+    /// Gives clear texels of the encoded atlas the colors that their pictures have there: engines that filter straight alpha
+    /// draw them into edges.
+    pub fn keep_clear_colors(&self, codes: &mut Frame) {
+        let (width, gutter) = (codes.width(), i64::from(self.pieces.len() > 1));
+        for piece in &self.pieces {
+            let picture = &piece.need.picture;
+            let within = |at: i64, n: usize| usize::try_from(at).ok().filter(|&at| at < n);
+            piece.each(gutter, |(x, y), (column, row)| {
+                let place = within(column, picture.width()).zip(within(row, picture.height()));
+                picture.keep_clear_color(place, &mut codes.cells_mut()[y * width + x]);
+            });
+        }
+    }
+}
+
 impl Piece {
     /// Adds the whole of the atlas position to turn a position in the piece's picture into one in the atlas.
     pub fn atlas_from_image(&self) -> Vec2 {
@@ -135,13 +151,17 @@ impl Piece {
     }
 
     fn draw(&self, gutter: i64, colors: &mut Linear) {
-        let Area { x0, y0, x1, y1 } = self.need.area;
         let atlas_width = colors.width();
+        self.each(gutter, |(x, y), (column, row)| colors.cells_mut()[y * atlas_width + x] = self.texel(column, row));
+    }
+
+    /// Calls `each` with every texel's place in the atlas and the column and row of the picture that it shows.
+    fn each(&self, gutter: i64, mut each: impl FnMut((usize, usize), (i64, i64))) {
+        let Area { x0, y0, x1, y1 } = self.need.area;
         for row in -gutter..y1 - y0 + gutter {
             for column in -gutter..x1 - x0 + gutter {
-                let color = self.texel((column + x0).clamp(x0, x1 - 1), (row + y0).clamp(y0, y1 - 1));
-                let (x, y) = ((self.x as i64 + column) as usize, (self.y as i64 + row) as usize);
-                colors.cells_mut()[y * atlas_width + x] = color;
+                let place = ((self.x as i64 + column) as usize, (self.y as i64 + row) as usize);
+                each(place, ((column + x0).clamp(x0, x1 - 1), (row + y0).clamp(y0, y1 - 1)));
             }
         }
     }

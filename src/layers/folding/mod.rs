@@ -3,6 +3,7 @@
 
 pub mod anchors;
 pub mod atlas;
+pub mod breaks;
 pub mod check;
 pub mod counts;
 pub mod field;

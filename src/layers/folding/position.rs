@@ -227,46 +227,15 @@ impl Position {
         }
     }
 
-    /// Where s jumps, ascending in τ.
-    pub fn breaks(&self) -> Vec<Break> {
-        match self {
-            Position::Keyframes { points, between: Between::Step } => {
-                let jumps = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
-                jumps.map(|pair| Break { tau: pair[1][0], holds: Side::After }).collect()
-            }
-            Position::Piecewise { segments } => piecewise_breaks(segments),
-            _ => Vec::new(),
-        }
-    }
-
     /// The range over both ends and the given inner places.
     fn over(&self, turning: Vec<f64>) -> (f64, f64) {
         hull(turning.into_iter().chain([0.0, 1.0]).map(|tau| self.eval(tau)))
     }
 }
 
-/// A jump in s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Break {
-    /// Local time τ of the jump.
-    pub tau: f64,
-    /// Which side's value holds at that τ itself.
-    pub holds: Side,
-}
-
-/// A side of a jump.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Side {
-    /// The one before.
-    Before,
-    /// The one after.
-    After,
-}
-
 impl Segment {
     /// s where the easing is at `eased`.
-    fn at(&self, eased: f64) -> f64 {
+    pub fn at(&self, eased: f64) -> f64 {
         self.from + (self.to - self.from) * eased
     }
 }
@@ -368,21 +337,6 @@ fn piecewise(segments: &[Segment], tau: f64) -> f64 {
     segment.at(segment.ease.eval(local))
 }
 
-fn piecewise_breaks(segments: &[Segment]) -> Vec<Break> {
-    let mut breaks = Vec::new();
-    let mut start = 0.0;
-    for (i, segment) in segments.iter().enumerate() {
-        let inner = segment.ease.breaks().into_iter();
-        breaks.extend(inner.map(|b| Break { tau: start + b.tau * (segment.until - start), ..b }));
-        start = segment.until;
-        let next = segments.get(i + 1);
-        if next.is_some_and(|next| next.at(next.ease.eval(0.0)) != segment.at(segment.ease.eval(1.0))) {
-            breaks.push(Break { tau: segment.until, holds: Side::Before });
-        }
-    }
-    breaks
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -477,20 +431,5 @@ mod tests {
     fn a_clock_wraps_before_it_evaluates() {
         let clock = Clock { position: Position::Linear, speed: -1.0, shift: 0.25, wrap: Wrap::Repeat };
         assert_eq!(clock.s(0.25), 0.5);
-    }
-
-    #[test]
-    fn breaks_are_where_s_jumps() {
-        let of = |json: &str| parse(json).breaks().into_iter().map(|b| (b.tau, b.holds)).collect::<Vec<_>>();
-        assert_eq!(of(r#"{"function":"sine"}"#), []);
-        let steps = r#"{"function":"keyframes","points":[[0,1],[0.5,3],[0.75,3],[1,4]],"between":"step"}"#;
-        assert_eq!(of(steps), [(0.5, Side::After), (1.0, Side::After)]);
-        let teleport = format!(
-            r#"{{"function":"piecewise","segments":[{{"until":0.25,"from":0,"to":1}},{{"until":0.5,"from":1,"to":2}},
-              {{"until":0.75,"from":0,"to":1}},{{"until":1,"from":1,"to":2,"ease":{steps}}}]}}"#
-        );
-        let inner = [(0.875, Side::After), (1.0, Side::After)];
-        // The eased segment begins at its `from` and once more its way: a jump of its own.
-        assert_eq!(of(&teleport), [[(0.5, Side::Before), (0.75, Side::Before)], inner].concat());
     }
 }
