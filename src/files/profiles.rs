@@ -42,7 +42,7 @@ pub const TABLE: &[Profile] = &[
     profile!("car", "a car flies past a sign", "car.plica.json", "road.png", "car.png", "light.png"),
 ];
 
-/// What the tutor begins with: a picture and a zone without motion.
+/// What the tutor begins with: a picture, the lid and the opening of an eye, and a curve that does not move yet.
 pub const TUTOR: Profile = profile!("tutor", "a first animation", "cat" / "tutor.plica.json", "cat" / "cat.png");
 
 /// The demo scene called `name`.

@@ -91,6 +91,6 @@ pub fn lessons_are_gone_through_by_command() {
     press(&mut state, ": \"tutor quit\" Enter");
     assert!(state.tutor.is_none());
     assert!(press(&mut state, "Space T").iter().any(|effect| matches!(effect, Effect::Tutor)));
-    press(&mut state, "g t d Space T");
+    press(&mut state, ": \"set title=x\" Enter Space T");
     assert!(state.message.clone().unwrap().bad, "not over unsaved edits");
 }

@@ -1,11 +1,10 @@
 //! The lessons as a table. Keys are named by what they run, so that a lesson never shows a key that does something else.
 
-use kurbo::Point;
 use serde_json::Value;
 
 use super::has_ended;
 use crate::tui::app::{Mode, Pane, State};
-use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, PICTURE, TABLE, TREE, TYPING};
+use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, TABLE, TREE, TYPING};
 
 /// A step of the tutor.
 #[derive(Debug)]
@@ -44,53 +43,43 @@ impl Press {
 
 use Press::{Key, Text};
 
-/// The zone that all of it is about.
-const ZONE: &str = "/layers/0/zones/0";
+/// The zone that all of it is about, by its name: one before it goes away on the way.
+const ZONE: &str = "lid";
 
 /// All of them, in order.
 pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "the tree",
         text: &[
-            "A picture with one zone: the cat's eye. The scene is the tree on the left.",
-            "Go down to \"motion\", the list of what moves in the zone, and into its table.",
+            "A cat's eye: its lid, and its opening. The scene is the tree on the left; a",
+            "search finds its way. A curve along the lower lid has jumps: go into them.",
         ],
-        keys: &[Key(TREE, "move down"), Key(TREE, "move down"), Key(TREE, "pane table")],
-        done: |state| state.focus == Pane::Table && state.node.ends_with("/motion"),
-    },
-    Lesson {
-        title: "an anchor",
-        text: &[
-            "An anchor says where one pixel of the zone goes; what lies between follows.",
-            "Add one. It stands in the middle of the zone until you say where.",
+        keys: &[
+            Key(TREE, "move down"),
+            Key(EVERYWHERE, "line /"),
+            Text("jumps"),
+            Key(LINE, "run"),
+            Key(TREE, "pane table"),
         ],
-        keys: &[Key(TABLE, "add")],
-        done: |state| !anchors(state).is_empty(),
-    },
-    Lesson {
-        title: "numbers",
-        text: &[
-            "Every number takes what you type. The cursor is on x: 170, then y: 176.",
-            "One key takes a value and goes on to the next cell, one takes it and stays.",
-        ],
-        keys: &[Key(TABLE, "enter"), Text("170"), Key(ENTRY, "commit next"), Text("176"), Key(ENTRY, "commit")],
-        done: |state| anchors(state).first().is_some_and(|(at, _)| *at == Point::new(170.0, 176.0)),
+        done: |state| state.focus == Pane::Table && state.node.ends_with("/motion/0/jumps"),
     },
     Lesson {
         title: "a jump",
         text: &[
-            "dx and dy say how far, and |J| and ° say it again. y grows down, so with",
-            "-18 in dy the lid's pixels are read from 18 px above: the lid is seen to",
-            "come down.",
+            "Along the curve, from 0 to 1, dx and dy say how far away each pixel is read",
+            "in the end. y grows down: with -19 in dy it is read from 19 px above, so the",
+            "lid is seen to come down. The middle has no jump yet: give it one.",
         ],
         keys: &[
+            Key(TABLE, "move down"),
+            Key(TABLE, "move down"),
             Key(TABLE, "move right"),
             Key(TABLE, "move right"),
             Key(TABLE, "enter"),
-            Text("-18"),
+            Text("-19"),
             Key(ENTRY, "commit"),
         ],
-        done: |state| lift(state) == [-18.0],
+        done: |state| rise(state).get(2) == Some(&-19.0),
     },
     Lesson {
         title: "arithmetic",
@@ -99,65 +88,45 @@ pub const LESSONS: &[Lesson] = &[
             "the width of the picture. Double the jump.",
         ],
         keys: &[Key(TABLE, "enter"), Text("*2"), Key(ENTRY, "commit")],
-        done: |state| lift(state) == [-36.0],
+        done: |state| rise(state).get(2) == Some(&-38.0),
     },
     Lesson {
         title: "steps",
         text: &[
-            "Numbers also step up and down, by what the status line calls the step;",
+            "Numbers also step up and down, by the step that the status line shows;",
             "< and > make it ten times smaller or larger. Step dy up once.",
         ],
         keys: &[Key(TABLE, "step 1")],
-        done: |state| lift(state) == [-35.0],
+        done: |state| rise(state).get(2) == Some(&-37.0),
     },
     Lesson {
         title: "undo",
         text: &["Everything can be undone, without end, also after saving and coming back.", "Take the step back."],
         keys: &[Key(EVERYWHERE, "undo")],
-        done: |state| lift(state) == [-36.0],
-    },
-    Lesson {
-        title: "another anchor",
-        text: &["Rows and nodes can be duplicated, deleted and moved.", "Duplicate the anchor."],
-        keys: &[Key(TABLE, "duplicate")],
-        done: |state| anchors(state).len() == 2,
+        done: |state| rise(state).get(2) == Some(&-38.0),
     },
     Lesson {
         title: "many rows at once",
         text: &[
-            "Select both anchors: an edit then applies to each, from its own value.",
-            "Halve both jumps, and end the selection.",
+            "Select all rows: an edit then applies to each, from its own value.",
+            "Double all jumps, so that the eye will close, and end the selection.",
         ],
         keys: &[
-            Key(TABLE, "select"),
-            Key(TABLE, "move up"),
+            Key(TABLE, "select all"),
             Key(TABLE, "enter"),
-            Text("/2"),
+            Text("*2"),
             Key(ENTRY, "commit"),
             Key(EVERYWHERE, "back"),
         ],
-        done: |state| lift(state) == [-18.0, -18.0] && state.selected_from.is_none(),
-    },
-    Lesson {
-        title: "placing by eye",
-        text: &[
-            "Go to the picture and select the next point. Small letters move the cursor",
-            "by one pixel, capitals by ten. Move it away, then let the point follow.",
-        ],
-        keys: &[
-            Key(EVERYWHERE, "pane picture"),
-            Key(PICTURE, "place next"),
-            Key(PICTURE, "cursor 10 0"),
-            Key(PICTURE, "cursor 10 0"),
-            Key(PICTURE, "cursor 10 0"),
-            Key(PICTURE, "place move"),
-        ],
-        done: |state| matches!(anchors(state)[..], [(a, _), (b, _)] if a.distance(b) >= 10.0),
+        done: |state| rise(state) == [-8.0, -56.0, -76.0, -64.0, -8.0] && state.selected_from.is_none(),
     },
     Lesson {
         title: "the probe",
-        text: &["Why does a pixel move as it does? Ask about the one under the cursor."],
-        keys: &[Key(EVERYWHERE, "probe")],
+        text: &[
+            "Why does a pixel move as it does? A command, typed after :, puts the cursor",
+            "of the picture into the eye: ask about the pixel under it.",
+        ],
+        keys: &[Key(EVERYWHERE, "line"), Text("cursor at 170.5 205.5"), Key(LINE, "run"), Key(EVERYWHERE, "probe")],
         done: |state| state.seeing.probing,
     },
     Lesson {
@@ -186,8 +155,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "playing",
         text: &[
-            "Go to the picture, play it, and watch (a window shows it larger).",
-            "Then pause, and go on frame by frame.",
+            "Go to the picture, play it, watch (a window shows it larger). The eyeball",
+            "comes down with the lid: that is mended next. Pause, and go on a frame.",
         ],
         keys: &[
             Key(EVERYWHERE, "pane picture"),
@@ -198,20 +167,75 @@ pub const LESSONS: &[Lesson] = &[
         done: |state| !state.playing && state.time > 0.0,
     },
     Lesson {
-        title: "a fold",
+        title: "one line, three uses",
         text: &[
-            "Where a jump path meets a fold region, one piece slides under another.",
-            "Go to the zone's fold, add it, and take the first rule.",
+            "The lower lid is the curve, the lower edge of the lid's outline, and that of",
+            "the eye's opening. The opening is needed once more: yank its outline.",
         ],
         keys: &[
             Key(EVERYWHERE, "pane tree"),
             Key(EVERYWHERE, "line /"),
+            Text("opening"),
+            Key(LINE, "run"),
+            Key(TREE, "move down"),
+            Key(TREE, "yank"),
+        ],
+        done: |state| state.kept.yanked.as_ref().is_some_and(|yanked| yanked.value["kind"] == "path"),
+    },
+    Lesson {
+        title: "a fold",
+        text: &[
+            "Under a fold a pixel keeps its own colour until its path meets the edge of a",
+            "region: so the lid slides over the eyeball. Go to the lid's fold, add it,",
+            "and take the first rule.",
+        ],
+        keys: &[
+            Key(EVERYWHERE, "line /"),
+            Text("lid"),
+            Key(LINE, "run"),
+            Key(EVERYWHERE, "line /"),
             Text("fold"),
             Key(LINE, "run"),
-            Key(TABLE, "add"),
+            Key(TREE, "add"),
             Key(LIST, "choice take"),
         ],
         done: |state| value(state, "/fold/rule").is_some(),
+    },
+    Lesson {
+        title: "its region",
+        text: &[
+            "It begins with a rectangle that nobody wants. Go into the regions, paste the",
+            "outline after it, and delete the rectangle.",
+        ],
+        keys: &[
+            Key(EVERYWHERE, "line /"),
+            Text("regions"),
+            Key(LINE, "run"),
+            Key(TREE, "pane table"),
+            Key(TABLE, "paste"),
+            Key(TABLE, "move up"),
+            Key(TABLE, "delete"),
+        ],
+        done: |state| {
+            let regions = value(state, "/fold/regions");
+            let regions = regions.as_ref().and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
+            matches!(regions, [one] if one["kind"] == "path")
+        },
+    },
+    Lesson {
+        title: "tidying",
+        text: &[
+            "The zone with the opening has done its work, and nothing moves in it.",
+            "Find it and delete it: undo would bring it back.",
+        ],
+        keys: &[
+            Key(EVERYWHERE, "pane tree"),
+            Key(EVERYWHERE, "line /"),
+            Text("opening"),
+            Key(LINE, "run"),
+            Key(TREE, "delete"),
+        ],
+        done: |state| zones(state).len() == 1,
     },
     Lesson {
         title: "finding and help",
@@ -251,24 +275,20 @@ pub const LESSONS: &[Lesson] = &[
     },
 ];
 
+/// The zones of the scene.
+fn zones(state: &State) -> &[Value] {
+    let zones = state.document().json().pointer("/layers/0/zones").and_then(Value::as_array);
+    zones.map_or(&[], Vec::as_slice)
+}
+
 /// What stands at `path` of the zone; none where nothing is written.
 fn value(state: &State, path: &str) -> Option<Value> {
-    state.document().json().pointer(&format!("{ZONE}{path}")).cloned()
+    zones(state).iter().find(|zone| zone["name"] == ZONE)?.pointer(path).cloned()
 }
 
-/// The point anchors of the zone: where they are, and where they jump.
-fn anchors(state: &State) -> Vec<(Point, Point)> {
-    let motion = value(state, "/motion");
-    let items = motion.as_ref().and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
-    let point = |item: &Value, key: &str| {
-        let part = |i: usize| item.get(key).and_then(|pair| pair.get(i)).and_then(Value::as_f64).unwrap_or(0.0);
-        Point::new(part(0), part(1))
-    };
-    let points = items.iter().filter(|item| item.get("tool").is_some_and(|tool| tool == "point"));
-    points.map(|item| (point(item, "at"), point(item, "jump"))).collect()
-}
-
-/// The dy of all anchors.
-fn lift(state: &State) -> Vec<f64> {
-    anchors(state).iter().map(|(_, jump)| jump.y).collect()
+/// The dy of the jumps along the lid line.
+fn rise(state: &State) -> Vec<f64> {
+    let jumps = value(state, "/motion/0/jumps");
+    let jumps = jumps.as_ref().and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
+    jumps.iter().map(|jump| jump["jump"][1].as_f64().unwrap_or(0.0)).collect()
 }
