@@ -152,7 +152,7 @@ fn the_gpu_shows_the_demo_scenes_as_the_cpu_does() {
     for path in scenes {
         let options = files::Options::default();
         let document = files::scene::open(&path, &options).unwrap();
-        let loaded = files::materials::load(&path, document.scene(), &options, &mut Default::default()).unwrap();
+        let (loaded, _) = files::materials::load(&path, document.scene(), &options, &mut Default::default()).unwrap();
         let synth = render::synth(document.scene(), &loaded, None).unwrap();
         check(&mut gpu, &path.display().to_string(), &synth);
         checked += 1;

@@ -22,6 +22,7 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["rustix", "signal_hook"], &["base/system"]),
     (&["naga"], &["render/wgsl"]),
     (&["image", "png", "gif", "webp"], &["files/", "export/"]),
+    (&["moxcms", "exr", "tiff", "zune_core", "zune_jpeg"], &["files/picture"]),
     (&["tiny_skia"], &["export/field"]),
 ];
 

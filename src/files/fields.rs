@@ -1,11 +1,9 @@
 //! Sampled vector fields from files, for the `field` tool: Middlebury `.flo`, KITTI optical flow (16-bit PNG) and OpenEXR
-//! (red and green are x and y, in pixels). A vector that the file calls unknown or invalid, or that is not finite, is
+//! (R and G, u and v, or those of a layer as forward.u and forward.v, are x and y, in pixels). A vector that the file calls unknown or invalid, or that is not finite, is
 //! zero: that place stays still.
 
 use std::fs::File;
 use std::io::{Read, Seek};
-
-use image::{DynamicImage, ImageDecoder};
 
 use super::{Limits, picture};
 use crate::base::budget::{Budget, Share};
@@ -32,7 +30,8 @@ pub fn decode(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> 
     file.rewind().map_err(|error| Error::at(place, error))?;
     match magic.as_slice() {
         FLO => flo(file, place, limits, budget),
-        PNG | EXR => from_image(file, place, limits, budget),
+        PNG => from_kitti(file, place, limits, budget),
+        EXR => from_exr(file, place, limits, budget),
         _ => {
             Err(Error::at(place, "is not a vector field").cure("give a .flo, a KITTI PNG with 16 bits, or an OpenEXR"))
         }
@@ -70,28 +69,32 @@ fn flo(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<
     Ok((Grid::from_cells(width as usize, height as usize, vectors), share))
 }
 
-fn from_image(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
-    let decoder = picture::decoder(file, place, limits)?;
-    let kept = u64::from(decoder.dimensions().0) * u64::from(decoder.dimensions().1) * 8;
+fn from_kitti(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
+    let mut share = Share::default();
     // The decoded picture and the vectors stand beside one another for a moment.
-    let mut share = budget.take(kept.saturating_add(decoder.total_bytes()), place)?;
-    let image = DynamicImage::from_decoder(decoder).map_err(|error| picture::explain(place, error))?;
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let vectors = match image {
-        DynamicImage::ImageRgb16(kitti) => kitti.pixels().map(|p| from_kitti(p.0)).collect(),
-        DynamicImage::ImageRgb32F(exr) => exr.pixels().map(|p| known([p.0[0], p.0[1]], f32::MAX)).collect(),
-        DynamicImage::ImageRgba32F(exr) => exr.pixels().map(|p| known([p.0[0], p.0[1]], f32::MAX)).collect(),
-        _ => {
-            return Err(Error::at(place, "is a picture, not a vector field")
-                .cure("a KITTI PNG has red, green and blue with 16 bits each"));
-        }
+    let allow = |bytes: u64| {
+        share = budget.take(bytes.saturating_mul(7) / 3, place)?;
+        Ok(())
     };
-    share.shrink(kept);
+    let ((width, height), words) = picture::words(file, place, limits, allow)?;
+    let vectors: Vec<[f32; 2]> = words.into_iter().map(vector_of_kitti).collect();
+    share.shrink(size_of_val(&vectors[..]) as u64);
+    Ok((Grid::from_cells(width, height, vectors), share))
+}
+
+fn from_exr(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
+    let mut share = Share::default();
+    let allow = |bytes: u64| {
+        share = budget.take(bytes, place)?;
+        Ok(())
+    };
+    let ((width, height), mut vectors) = picture::vectors(file, place, limits, allow)?;
+    vectors.iter_mut().for_each(|vector| *vector = known(*vector, f32::MAX));
     Ok((Grid::from_cells(width, height, vectors), share))
 }
 
 /// x = (red - 2^15) / 64, y likewise from green; blue says whether they are valid.
-fn from_kitti([r, g, valid]: [u16; 3]) -> [f32; 2] {
+fn vector_of_kitti([r, g, valid]: [u16; 3]) -> [f32; 2] {
     if valid == 0 { [0.0; 2] } else { [r, g].map(|code| (f32::from(code) - 32768.0) / 64.0) }
 }
 
@@ -106,7 +109,7 @@ fn cut_short(place: &str) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{ImageBuffer, Luma, Rgb};
+    use image::{DynamicImage, ImageBuffer, Luma, Rgb};
 
     fn read(name: &str, bytes: &[u8], limits: &Limits) -> std::result::Result<VectorField, String> {
         let folder = tempfile::tempdir().unwrap();

@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
-use std::io::Seek;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,16 +15,17 @@ use super::{Limits, Options, paths, picture};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
-use crate::base::pixels::Rgba;
-use crate::base::problem::Problem;
-use crate::layers::folding::tools::Tool;
+use crate::base::problem::{Problem, Severity};
+use crate::layers::folding::{mask, tools::Tool};
 use crate::layers::{Layer, Materials};
-use crate::scene::Scene;
+use crate::scene::{Scene, check};
 
 /// What was loaded before, by path; for as long as a scene names it.
 #[derive(Debug, Default)]
 pub struct Cache {
     pictures: Store<Picture>,
+    /// What was made of masks without alpha.
+    masks: Vec<Masked>,
     fields: Store<VectorField>,
     /// The memory that is left for them and what is made of them; as the limits said when it was first used.
     budget: Option<Budget>,
@@ -47,12 +47,24 @@ type Store<T> = HashMap<PathBuf, Loaded<T>>;
 struct Loaded<T> {
     stamp: Stamp,
     value: Arc<T>,
+    /// What of the file could not be followed.
+    notes: Arc<[String]>,
     share: Arc<Share>,
+}
+
+/// A mask without alpha, laid on the picture that it is for.
+#[derive(Clone, Debug)]
+struct Masked {
+    mask: Arc<Picture>,
+    own: Arc<Picture>,
+    made: Arc<Picture>,
+    /// Given back with the rest.
+    _share: Arc<Share>,
 }
 
 impl<T> Clone for Loaded<T> {
     fn clone(&self) -> Self {
-        Loaded { stamp: self.stamp, value: self.value.clone(), share: self.share.clone() }
+        Loaded { stamp: self.stamp, value: self.value.clone(), notes: self.notes.clone(), share: self.share.clone() }
     }
 }
 
@@ -74,21 +86,22 @@ impl Stamp {
     }
 }
 
-/// Loads all that `scene` names; what did not change since comes from `cache`.
+/// Loads all that `scene` names; what did not change since comes from `cache`. With it come warnings.
 ///
 /// # Errors
-/// Every file that cannot be loaded, as a problem at the path of the scene that names it.
+/// Every file that cannot be loaded or does not fit, as a problem at the path of the scene that names it.
 pub fn load(
     scene_path: &Path,
     scene: &Scene,
     options: &Options,
     cache: &mut Cache,
-) -> std::result::Result<Materials, Vec<Problem>> {
+) -> std::result::Result<(Materials, Vec<Problem>), Vec<Problem>> {
     let (materials, problems) = gather(scene_path, scene, options, cache);
-    if problems.is_empty() { Ok(materials) } else { Err(problems) }
+    let failed = problems.iter().any(|problem| problem.severity == Severity::Error);
+    if failed { Err(problems) } else { Ok((materials, problems)) }
 }
 
-/// As [`load`], for an editor that goes on: what can be loaded, and the problems. In the place of a file that cannot be
+/// As [`load`], for an editor that goes on: what can be loaded, and the problems, errors first. In the place of a file that cannot be
 /// read just now stands its last good version, where the cache has one.
 pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Materials, Vec<Problem>) {
     Sources { place: Place::Beside(scene_path), options }.gather(scene, cache)
@@ -190,13 +203,21 @@ impl Sources<'_> {
         let allowed = Allowed { limits: &self.options.limits, budget: &budget, stop: stop.as_deref() };
         let pictures = self.load(&named_pictures(scene), allowed, decode_picture, &mut cache.pictures, &mut problems);
         let fields = self.load(&named_fields(scene), allowed, decode_field, &mut cache.fields, &mut problems);
-        (Materials { pictures, fields, stop, budget }, problems)
+        let mut materials = Materials { pictures, fields, masks: BTreeMap::new(), stop, budget };
+        problems.extend(check::check_materials(scene, &materials));
+        lay_masks(scene, &mut materials, &mut cache.masks, &mut problems);
+        problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
+        (materials, problems)
     }
 
     /// What a file is kept under.
     fn key(&self, path: &str) -> PathBuf {
         match self.place {
-            Place::Beside(scene_path) => paths::beside(scene_path, path),
+            // Layers of one file are pictures of their own.
+            Place::Beside(scene_path) => match paths::layer_of(path) {
+                None => paths::beside(scene_path, path),
+                Some(layer) => paths::beside(scene_path, path).join(format!("#{layer}")),
+            },
             Place::Copies(_) => path.into(),
         }
     }
@@ -234,7 +255,11 @@ impl Sources<'_> {
         for named in named {
             let file = self.key(named.path);
             let entry = match &loaded[&file] {
-                Ok(entry) => Some(entry.clone()),
+                Ok(entry) => {
+                    let warning = |note: &String| Problem::warning(&named.at, format!("{}: {note}", named.path));
+                    problems.extend(entry.notes.iter().map(warning));
+                    Some(entry.clone())
+                }
                 Err(error) => {
                     problems.push(problem(named, error));
                     store.get(&file).cloned()
@@ -264,8 +289,8 @@ impl Sources<'_> {
         if let Some(old) = old.filter(|old| old.stamp == stamp) {
             return Ok(old.clone());
         }
-        let (value, share) = decode(file, path, allowed)?;
-        Ok(Loaded { stamp, value: Arc::new(value), share: Arc::new(share) })
+        let (value, notes, share) = decode(file, path, allowed)?;
+        Ok(Loaded { stamp, value: Arc::new(value), notes: notes.into(), share: Arc::new(share) })
     }
 }
 
@@ -277,22 +302,49 @@ struct Allowed<'a> {
     stop: Option<&'a AtomicBool>,
 }
 
-/// Reads an open file that messages call by its path, and tells what memory it takes.
-type Decode<T> = fn(File, &str, Allowed) -> Result<(T, Share)>;
+/// Reads an open file that messages call by its path, and tells what of it could not be followed and what memory it takes.
+type Decode<T> = fn(File, &str, Allowed) -> Result<(T, Vec<String>, Share)>;
 
-fn decode_picture(file: File, place: &str, allowed: Allowed) -> Result<(Picture, Share)> {
-    let same = file.try_clone().map_err(|error| Error::at(place, error))?;
-    let (width, height) = picture::header(same, place, allowed.limits)?;
-    let mut share = allowed.budget.take((width * height * size_of::<Rgba>()) as u64, place)?;
-    let mut file = file;
-    file.rewind().map_err(|error| Error::at(place, error))?;
-    let picture = picture::decode(file, place, allowed.limits)?;
-    share.shrink(picture.bytes());
-    Ok((picture, share))
+fn decode_picture(file: File, place: &str, allowed: Allowed) -> Result<(Picture, Vec<String>, Share)> {
+    let (found, share) = picture::decode(file, place, allowed.limits, allowed.budget)?;
+    Ok((found.picture, found.notes, share))
 }
 
-fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorField, Share)> {
-    fields::decode(file, place, allowed.limits, allowed.budget)
+fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorField, Vec<String>, Share)> {
+    let (field, share) = fields::decode(file, place, allowed.limits, allowed.budget)?;
+    Ok((field, Vec::new(), share))
+}
+
+/// Masks without alpha are laid on their pictures once, not whenever they are read.
+fn lay_masks(scene: &Scene, materials: &mut Materials, known: &mut Vec<Masked>, problems: &mut Vec<Problem>) {
+    let mut kept: Vec<Masked> = Vec::new();
+    for (l, layer) in scene.layers.iter().enumerate() {
+        for (at, name, own_name) in layer.masks() {
+            let (Some(mask), Some(own)) = (materials.pictures.get(name), materials.pictures.get(own_name)) else {
+                continue;
+            };
+            if mask.channels().have_alpha() || !mask::fits(own, mask) {
+                continue;
+            }
+            let same = |m: &&Masked| Arc::ptr_eq(&m.mask, mask) && Arc::ptr_eq(&m.own, own);
+            let masked = match known.iter().chain(&kept).find(same) {
+                Some(masked) => masked.clone(),
+                None => match materials.budget.try_take(mask::bytes(own, mask)) {
+                    Ok(share) => {
+                        let made = Arc::new(mask::by_brightness(own, mask));
+                        Masked { mask: mask.clone(), own: own.clone(), made, _share: Arc::new(share) }
+                    }
+                    Err(short) => {
+                        problems.push(short.problem(format!("/layers/{l}{at}")));
+                        continue;
+                    }
+                },
+            };
+            materials.masks.insert((name.to_owned(), own_name.to_owned()), masked.made.clone());
+            kept.push(masked);
+        }
+    }
+    *known = kept;
 }
 
 fn problem(named: &Named, error: impl std::borrow::Borrow<Error>) -> Problem {
@@ -336,10 +388,10 @@ mod tests {
         let scene = scene(&[("a", "a.png"), ("b", "b.png"), ("again", "a.png")], None);
         let mut cache = Cache::default();
         let options = Options::default();
-        let first = load(&path, &scene, &options, &mut cache).unwrap();
+        let (first, _) = load(&path, &scene, &options, &mut cache).unwrap();
         assert!(Arc::ptr_eq(&first.pictures["a"], &first.pictures["again"]));
         paint(folder.path(), "b.png", 4);
-        let second = load(&path, &scene, &options, &mut cache).unwrap();
+        let (second, _) = load(&path, &scene, &options, &mut cache).unwrap();
         assert!(Arc::ptr_eq(&first.pictures["a"], &second.pictures["a"]));
         assert_eq!(second.pictures["b"].width(), 4);
         std::fs::write(folder.path().join("b.png"), "half a pict").unwrap();

@@ -11,7 +11,22 @@ use crate::base::system::beneath;
 
 /// Where a path written in a scene points: relative to the scene's folder.
 pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
-    folder_of_scene(scene_path).join(path)
+    folder_of_scene(scene_path).join(file_of(path))
+}
+
+/// The file of a path written in a scene, without the layer of it that is meant (`a.exr#beauty`).
+pub fn file_of(path: &str) -> &str {
+    parts(path).map_or(path, |(file, _)| file)
+}
+
+/// The layer that a path names; only an OpenEXR has some.
+pub fn layer_of(path: &str) -> Option<&str> {
+    parts(path).map(|(_, layer)| layer)
+}
+
+fn parts(path: &str) -> Option<(&str, &str)> {
+    let named = |(file, layer): &(&str, &str)| file.to_ascii_lowercase().ends_with(".exr") && !layer.is_empty();
+    path.rsplit_once('#').filter(named)
 }
 
 /// The folder that the scene really lies in: one opened through a link shows the same pictures.
@@ -30,7 +45,7 @@ pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
     let opened = if options.allow_outside {
         beneath::open_anywhere(&beside(scene_path, path))
     } else {
-        beneath::open(&folder_of_scene(scene_path), Path::new(path))
+        beneath::open(&folder_of_scene(scene_path), Path::new(file_of(path)))
     };
     let file = File::from(opened.map_err(|error| explain(path, error))?);
     regular(file, path)

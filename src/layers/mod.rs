@@ -22,9 +22,6 @@ pub mod timeline;
 /// A position or vector in image pixels, [x, y], x right and y down.
 pub type Xy = [f64; 2];
 
-/// Width and height of pictures in pixels, by their names in the scene's images.
-pub type Sizes = BTreeMap<String, (usize, usize)>;
-
 /// How many things a place of the document asks for.
 pub struct Count<'a> {
     /// What is counted: "anchors", "points" (of outlines).
@@ -97,10 +94,17 @@ impl Layer {
         }
     }
 
-    /// What the sizes of the scene's pictures say about the layer; paths are relative to it.
-    pub fn check_images(&self, sizes: &Sizes) -> Vec<Problem> {
+    /// What the pictures and fields that it names say about the layer; paths are relative to it.
+    pub fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
         match self {
-            Layer::Picture(picture) => folding::check::check_images(picture, sizes),
+            Layer::Picture(picture) => folding::check::check_materials(picture, materials),
+        }
+    }
+
+    /// The masks that the layer names: each with its pointer relative to the layer, and the picture that it is for.
+    pub fn masks(&self) -> Vec<(String, &str, &str)> {
+        match self {
+            Layer::Picture(picture) => folding::check::masks(picture),
         }
     }
 
@@ -159,6 +163,8 @@ pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<
 pub struct Materials {
     /// Pictures by their name in the scene's images.
     pub pictures: BTreeMap<String, Arc<Picture>>,
+    /// Masks without alpha laid on the pictures that they are for, by the names of both.
+    pub masks: BTreeMap<(String, String), Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
     /// Set once nobody wants any more what is made of them: a synthesis under way then ends with an error.
@@ -171,6 +177,17 @@ impl Materials {
     /// Whether nobody wants any more what is made of them.
     pub fn stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
+    /// What samplers read through the mask `name` of the picture `own`.
+    ///
+    /// # Errors
+    /// It is not there; `path` tells where it is named.
+    pub fn mask(&self, name: &str, own: &str, path: &str) -> Result<Arc<Picture>, Problem> {
+        match self.masks.get(&(name.to_owned(), own.to_owned())) {
+            Some(laid) => Ok(laid.clone()),
+            None => self.picture(name, path),
+        }
     }
 
     /// The picture of that name.

@@ -1,16 +1,13 @@
 //! `plica check`: every problem of a scene, with its path.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
-use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
 use crate::render;
-use crate::scene::check;
 
 /// Find every problem of a scene. A loop that snaps is told too, and no failure: it may be meant.
 #[derive(clap::Args)]
@@ -65,13 +62,10 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     let scene = document.scene();
     // All of each file is read, not only its header: a picture that is cut short is a problem too.
     let mut cache = Cache::until(context.cancel.clone());
-    let (materials, unreadable) = files::materials::gather(&args.scene, scene, &options, &mut cache);
+    let (materials, found) = files::materials::gather(&args.scene, scene, &options, &mut cache);
     context.check_cancelled()?;
-    let size = |(name, picture): (&String, &Arc<Picture>)| (name.clone(), (picture.width(), picture.height()));
-    let sizes = materials.pictures.iter().map(size).collect();
     let mut problems = document.warnings().to_vec();
-    problems.extend(unreadable);
-    problems.extend(check::check_images(scene, &sizes));
+    problems.extend(found);
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
     let loops =

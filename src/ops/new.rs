@@ -25,7 +25,8 @@ pub struct Args {
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let first = args.images.first().ok_or_else(|| Error::Usage("name a picture".into()))?;
     let path = args.output.clone().unwrap_or_else(|| beside(first));
-    create(&path, &args.images, &args.reading.options()?)?;
+    let (_, notes) = create(&path, &args.images, &args.reading.options()?)?;
+    notes.iter().for_each(|note| context.messages.say(note));
     context.print(path.display())
 }
 
@@ -35,19 +36,22 @@ pub fn beside(picture: &Path) -> PathBuf {
     picture.with_file_name(format!("{stem}.plica.json"))
 }
 
-/// Writes a scene of `images` at `path`, which must not be there yet.
+/// Writes a scene of `images` at `path`, which must not be there yet. The pictures are read as a whole: one that is broken
+/// is no start. With the scene comes what of them could not be followed.
 ///
 /// # Errors
 /// When the scene, or another file with a picture's name, is there; when a picture cannot be read or copied.
-pub fn create(path: &Path, images: &[PathBuf], options: &files::Options) -> Result<Document> {
+pub fn create(path: &Path, images: &[PathBuf], options: &files::Options) -> Result<(Document, Vec<String>)> {
     if path.symlink_metadata().is_ok() {
         let cure = format!("edit it (plica edit {}), or choose another name with -o", path.display());
         return Err(Error::at(path.display(), "is there already").cure(cure));
     }
     let mut pictures: Vec<(String, String, usize, usize)> = Vec::new();
-    let mut copies = Vec::new();
+    let (mut copies, mut notes) = (Vec::new(), Vec::new());
     for image in images {
-        let (width, height) = picture::size(image, &options.limits)?;
+        let found = picture::read(image, &options.limits)?;
+        let (width, height) = (found.picture.width(), found.picture.height());
+        notes.extend(found.notes.iter().map(|note| format!("{}: {note}", image.display())));
         let file = file_name(image)?;
         if pictures.iter().any(|(_, other, ..)| *other == file) {
             return Err(Error::at(image.display(), "has the same file name as another picture").cure("rename one"));
@@ -68,7 +72,7 @@ pub fn create(path: &Path, images: &[PathBuf], options: &files::Options) -> Resu
     let document = Document::new(&borrowed).map_err(refused)?;
     copies.iter().try_for_each(|(from, to)| write::copy_new(from, to))?;
     write::write_new(path, document.to_text().as_bytes())?;
-    Ok(document)
+    Ok((document, notes))
 }
 
 fn file_name(image: &Path) -> Result<String> {

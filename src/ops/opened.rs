@@ -7,7 +7,7 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::{self, materials};
 use crate::layers::Materials;
-use crate::render::{self, Synth};
+use crate::render::{self, Synth, bands::Bands};
 use crate::scene::Document;
 
 /// A scene and what it names.
@@ -46,12 +46,16 @@ impl Unloaded {
     ///
     /// # Errors
     /// What cannot be read.
-    pub fn load(self, context: &Context) -> Result<Opened> {
+    pub fn load(self, context: &mut Context) -> Result<Opened> {
         let Unloaded { path, options, document } = self;
         let mut cache = materials::Cache::until(context.cancel.clone());
         let loaded = materials::load(&path, document.scene(), &options, &mut cache);
         context.check_cancelled()?;
-        let materials = loaded.map_err(|problems| Error::Scene { file: path.display().to_string(), problems })?;
+        let (materials, warnings) =
+            loaded.map_err(|problems| Error::Scene { file: path.display().to_string(), problems })?;
+        for warning in warnings {
+            context.messages.say(&format!("{}: {warning}", path.display()));
+        }
         Ok(Opened { path, document, materials })
     }
 }
@@ -71,6 +75,14 @@ impl Opened {
     /// As [`render::synth`].
     pub fn synth(&self) -> Result<Synth> {
         render::synth(self.document.scene(), &self.materials, None).map_err(|problem| self.failed(problem))
+    }
+
+    /// The same band by band, for n x n samples a pixel.
+    ///
+    /// # Errors
+    /// As [`Bands::new`].
+    pub fn bands(&self, n: u32) -> Result<Bands<'_>> {
+        Bands::new(self.document.scene(), &self.materials, n).map_err(|problem| self.failed(problem))
     }
 
     /// The same for n x n samples a pixel.

@@ -10,7 +10,6 @@ use crate::base::maths;
 use crate::layers::Layer;
 use crate::layers::folding::model::PictureLayer;
 use crate::layers::folding::probe::{Probe, probe};
-use crate::render::cpu;
 use crate::scene::Scene;
 
 /// Tell what a pixel does at a time.
@@ -39,17 +38,16 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let opened = Opened::new(&args.scene, &args.options, context)?;
     let scene = opened.document.scene();
     let layer = find_layer(scene, args.layer.as_deref())?;
-    let synth = opened.synth()?;
+    // A pixel costs what it takes, not what the frame would.
+    let shown = opened.bands(1)?;
     let picture = opened.materials.picture(&layer.image, "/image").map_err(|e| Error::at(args.scene.display(), e))?;
     let size = (picture.width(), picture.height());
     let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
-    let frame = cpu::frame(&synth, args.time);
     for pixel in pixels {
         let probe = probe(layer, scene.timeline.wrap, &opened.materials, pixel, args.time);
         let probe = probe.map_err(|problem| Error::at(args.scene.display(), problem))?;
         // A layer larger than the first reaches beyond the frame, which shows nothing there.
-        let shows = pixel.0 < frame.width() && pixel.1 < frame.height();
-        let color = if shows { *frame.get(pixel.0, pixel.1) } else { [0; 4] };
+        let color = shown.pixel(args.time, pixel).map_err(|problem| opened.failed(problem))?;
         let answer =
             if args.json { line(probe.as_ref(), color) } else { prose(probe.as_ref(), color, pixel, args.time) };
         context.print(answer)?;

@@ -20,6 +20,7 @@ use crate::export::animation::{Show, Target, range, rate::Rate, scale};
 use crate::files::outputs::{self, Place};
 use crate::layers::Layer;
 use crate::layers::timeline::{Timeline, Wrap};
+use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
 
 /// Render frames to numbered files, an animation, a video or a stream.
@@ -124,7 +125,7 @@ fn write(
     done: &mut u64,
     context: &mut Context,
 ) -> Result<()> {
-    let mut renderer = Renderer::new(args, opened, (show.width, show.height))?;
+    let mut renderer = Renderer::new(args, opened, (show.width, show.height), todo.len())?;
     if todo.len() > 1 {
         let loops = seams::warnings(opened.document.scene(), || renderer.samples.first());
         loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
@@ -237,18 +238,29 @@ fn command(args: &Args) -> String {
 }
 
 /// What turns a time into a finished frame.
-struct Renderer {
+struct Renderer<'a> {
+    opened: &'a Opened,
     /// One synthesis a sample of each pixel.
     samples: Vec<Synth>,
+    /// In their place, where a single frame is wanted as it is: nothing is kept for another.
+    bands: Option<Bands<'a>>,
     /// Width and height of the finished frame.
     size: (usize, usize),
     #[cfg(feature = "window")]
     gpu: Option<Box<crate::render::gpu::Gpu>>,
 }
 
-impl Renderer {
-    fn new(args: &Args, opened: &Opened, size: (usize, usize)) -> Result<Self> {
-        let samples = if args.samples == 1 { vec![opened.synth()?] } else { opened.samples(args.samples)? };
+impl<'a> Renderer<'a> {
+    fn new(args: &Args, opened: &'a Opened, size: (usize, usize), frames: usize) -> Result<Self> {
+        let bands = match frames == 1 && !args.gpu {
+            false => None,
+            true => Some(opened.bands(args.samples)?).filter(|bands| bands.size() == size),
+        };
+        let samples = match (&bands, args.samples) {
+            (Some(_), _) => Vec::new(),
+            (None, 1) => vec![opened.synth()?],
+            (None, n) => opened.samples(n)?,
+        };
         #[cfg(not(feature = "window"))]
         if args.gpu {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));
@@ -256,7 +268,9 @@ impl Renderer {
         #[cfg(feature = "window")]
         let gpu = if args.gpu { Some(Box::new(crate::render::gpu::Gpu::new()?)) } else { None };
         Ok(Renderer {
+            opened,
             samples,
+            bands,
             size,
             #[cfg(feature = "window")]
             gpu,
@@ -265,8 +279,10 @@ impl Renderer {
 
     fn frame(&mut self, time: f64) -> Result<Frame> {
         let mut frame = self.drawn(time)?;
-        if let Some(synth) = self.samples.first().filter(|synth| synth.size == self.size) {
-            cpu::keep_clear_colors(synth, &mut frame);
+        match (&self.bands, self.samples.first()) {
+            (Some(bands), _) => cpu::keep_clear_colors(&bands.pictures(), &mut frame),
+            (None, Some(synth)) if synth.size == self.size => cpu::keep_clear_colors(synth, &mut frame),
+            _ => {}
         }
         Ok(frame)
     }
@@ -279,6 +295,13 @@ impl Renderer {
                 [frame] if (frame.width(), frame.height()) == self.size => frame.clone(),
                 frames => self.finish(&cpu::mean_of(frames.iter().map(Frame::to_linear))),
             });
+        }
+        if let Some(bands) = &self.bands {
+            return bands.frame(time).map_err(|problem| self.opened.failed(problem));
+        }
+        let own = self.samples.first().map(|synth| synth.size);
+        if own == Some(self.size) {
+            return Ok(cpu::frames(&self.samples, time));
         }
         Ok(self.finish(&cpu::mean(&self.samples, time)))
     }

@@ -1,6 +1,8 @@
 //! Frames on the CPU: the reference that the GPU agrees with. Rows are made on all cores; a pixel's value does not depend
 //! on which.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{LayerSynth, Synth};
@@ -9,14 +11,39 @@ use crate::layers::folding;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
 pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
-    let (width, height) = synth.size;
-    let mut picture = Linear::filled(width, height, [0.0; 4]);
-    picture.cells_mut().par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+    rows(synth, scene_time, 0..synth.size.1)
+}
+
+/// These rows of it alone.
+fn rows(synth: &Synth, scene_time: f64, rows: Range<usize>) -> Linear {
+    let width = synth.size.0;
+    let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
+    picture.cells_mut().par_chunks_mut(width.max(1)).enumerate().for_each(|(i, row)| {
         for layer in &synth.layers {
-            lay(layer, scene_time, y, row);
+            lay(layer, scene_time, rows.start + i, row);
         }
     });
     picture
+}
+
+/// Pixels whose light stands beside their codes at a time: a frame in 32-bit light is four times its codes.
+const BAND: usize = 1 << 22;
+
+/// The finished frame of several samples of each pixel: sRGB, straight alpha, 8 bits a channel.
+pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {
+    let (width, height) = samples.first().map_or((0, 0), |synth| synth.size);
+    let mut cells = vec![[0; 4]; width * height];
+    let most = (BAND / width.max(1)).max(1);
+    for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
+        finish_rows(samples, scene_time, i * most..((i + 1) * most).min(height), out);
+    }
+    Grid::from_cells(width, height, cells)
+}
+
+/// Finishes these rows into `out`.
+pub fn finish_rows(samples: &[Synth], scene_time: f64, band: Range<usize>, out: &mut [[u8; 4]]) {
+    let linear = mean_of(samples.iter().map(|synth| rows(synth, scene_time, band.clone())));
+    out.par_iter_mut().zip(linear.cells().par_iter()).for_each(|(code, &light)| *code = encode(light));
 }
 
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame), and no others: what a
@@ -58,7 +85,7 @@ pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Linear>) -> Linear {
 
 /// The finished frame at `scene_time`: sRGB, straight alpha, 8 bits a channel.
 pub fn frame(synth: &Synth, scene_time: f64) -> Frame {
-    finish(&linear(synth, scene_time))
+    frames(std::slice::from_ref(synth), scene_time)
 }
 
 /// Encodes a linear frame.

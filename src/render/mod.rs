@@ -6,6 +6,7 @@ use crate::base::problem::Problem;
 use crate::layers::{Layer, Materials, folding};
 use crate::scene::Scene;
 
+pub mod bands;
 pub mod cpu;
 #[cfg(feature = "window")]
 pub mod gpu;
@@ -44,9 +45,17 @@ pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> 
 /// # Errors
 /// As [`synth`].
 pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth>, Problem> {
-    let place = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
-    let places = (0..n * n).map(|k| Vec2::new(place(k % n), place(k / n)));
-    places.map(|place| synth_at(scene, materials, place, None)).collect()
+    places(n).map(|place| synth_at(scene, materials, place, None)).collect()
+}
+
+/// Where the n x n samples of a pixel stand.
+fn places(n: u32) -> impl Iterator<Item = Vec2> {
+    let place = move |k: u32| (f64::from(k) + 0.5) / f64::from(n);
+    (0..n * n).map(move |k| Vec2::new(place(k % n), place(k / n)))
+}
+
+fn no_layers() -> Problem {
+    Problem::error("/layers", "a scene without layers has nothing to show").hint("add a picture layer")
 }
 
 fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<&Synth>) -> Result<Synth, Problem> {
@@ -60,7 +69,7 @@ fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<
     };
     let layers = scene.layers.iter().enumerate().map(synth_layer).collect::<Result<Vec<_>, _>>()?;
     let Some(LayerSynth::Picture(first)) = layers.first() else {
-        return Err(Problem::error("/layers", "a scene without layers has nothing to show").hint("add a picture layer"));
+        return Err(no_layers());
     };
     Ok(Synth { size: (first.picture.width(), first.picture.height()), layers })
 }

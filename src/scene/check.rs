@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{Scene, pointer, shape};
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity, nearest, quoted};
-use crate::layers::{Checked, Sizes, check as rules};
+use crate::layers::{Checked, Materials, check as rules};
 
 /// So many unknown references of a layer are listed.
 const MAX_REFERENCES: usize = 100;
@@ -123,10 +123,10 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems
 }
 
-/// What the sizes of the pictures say about a scene: outlines outside their picture, masks of another size. Pictures of
-/// unknown size are left out.
-pub fn check_images(scene: &Scene, sizes: &Sizes) -> Vec<Problem> {
-    below_layers(scene, |layer| layer.check_images(sizes))
+/// What pictures and fields say about a scene: outlines outside their picture, masks and fields of another size. What
+/// could not be loaded is left out.
+pub fn check_materials(scene: &Scene, materials: &Materials) -> Vec<Problem> {
+    below_layers(scene, |layer| layer.check_materials(materials))
 }
 
 fn below_layers(scene: &Scene, check: impl Fn(&crate::layers::Layer) -> Vec<Problem>) -> Vec<Problem> {

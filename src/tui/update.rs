@@ -76,6 +76,8 @@ pub struct Synthesis {
     pub ms: f64,
     /// The longest jump vector of every zone, by layer and zone.
     pub longest: Vec<(usize, usize, f64)>,
+    /// What of its pictures could not be followed, or is odd about them.
+    pub warning: Option<String>,
 }
 
 /// A change of the document, as the windows want it.
@@ -168,13 +170,13 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Tick(seconds) => state.pass(seconds),
         Event::Synthesising => state.seeing.synthesising = true,
         Event::Probed(probed) => state.seeing.probed = Some(probed),
-        Event::Synthesised(Ok(Synthesis { synth, ms, longest })) => {
+        Event::Synthesised(Ok(Synthesis { synth, ms, longest, warning })) => {
             state.seeing.synthesising = false;
             state.seeing.longest = longest;
             state.picture_size = Some(synth.size);
             state.seen.synth = Some(synth);
             state.seen.synth_ms = Some(ms);
-            state.seen.problem = None;
+            state.seen.problem = warning;
         }
         Event::Synthesised(Err(problem)) => {
             state.seeing.synthesising = false;

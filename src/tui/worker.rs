@@ -9,6 +9,7 @@ use super::graphics::Shown;
 use super::seeing::{self, Probed, Request};
 use super::update::{Event, Synthesis};
 use crate::base::error::Error;
+use crate::base::problem::Severity;
 use crate::files;
 use crate::layers::Materials;
 use crate::ops;
@@ -100,8 +101,11 @@ impl Studio {
                 return true;
             }
             let ms = begun.elapsed().as_secs_f64() * 1000.0;
-            let longest = result.as_ref().map_or(Vec::new(), |synth| seeing::longest(synth));
-            if events.send(Event::Synthesised(result.map(|synth| Synthesis { synth, ms, longest }))).is_err() {
+            let made = result.map(|(synth, warning)| {
+                let longest = seeing::longest(&synth);
+                Synthesis { synth, ms, longest, warning }
+            });
+            if events.send(Event::Synthesised(made)).is_err() {
                 return false;
             }
         }
@@ -120,7 +124,8 @@ impl Studio {
         *self.running.lock().unwrap_or_else(PoisonError::into_inner) = what;
     }
 
-    fn synthesise(&mut self, request: &Request, stop: Arc<AtomicBool>) -> Result<Arc<Synth>, String> {
+    /// The synthesis, with a warning if there is one.
+    fn synthesise(&mut self, request: &Request, stop: Arc<AtomicBool>) -> Result<(Arc<Synth>, Option<String>), String> {
         self.cache.stop = Some(stop);
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
@@ -132,7 +137,10 @@ impl Studio {
         let synth = Arc::new(synth);
         materials.stop = None;
         self.made = Some(Made { scene: request.scene.clone(), synth: synth.clone(), materials });
-        problems.first().map_or(Ok(synth), |problem| Err(problem.to_string()))
+        match problems.first() {
+            Some(error) if error.severity == Severity::Error => Err(error.to_string()),
+            warning => Ok((synth, warning.map(ToString::to_string))),
+        }
     }
 }
 

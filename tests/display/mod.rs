@@ -108,7 +108,7 @@ impl Place {
     pub fn synth(&self) -> Synth {
         let scene = self.scene();
         let loaded = materials::load(&self.scene, &scene, &Options::default(), &mut materials::Cache::default());
-        render::synth(&scene, &loaded.unwrap(), None).unwrap()
+        render::synth(&scene, &loaded.unwrap().0, None).unwrap()
     }
 
     /// The frame as the CPU makes it.

@@ -10,7 +10,7 @@ use plica::files;
 use plica::layers::folding::model::PictureLayer;
 use plica::layers::{Layer, Materials};
 use plica::render;
-use plica::scene::{Document, check};
+use plica::scene::Document;
 
 /// A scene ready to be shown.
 pub struct Show {
@@ -24,9 +24,8 @@ impl Show {
         let options = files::Options::default();
         let document = files::scene::open(scene, &options).unwrap();
         assert!(document.warnings().is_empty(), "{}: {:?}", scene.display(), document.warnings());
-        let materials = files::materials::load(scene, document.scene(), &options, &mut Default::default()).unwrap();
-        let sizes = materials.pictures.iter().map(|(name, p)| (name.clone(), (p.width(), p.height()))).collect();
-        let problems = check::check_images(document.scene(), &sizes);
+        let loaded = files::materials::load(scene, document.scene(), &options, &mut Default::default());
+        let (materials, problems) = loaded.unwrap();
         assert!(problems.is_empty(), "{}: {problems:?}", scene.display());
         let synth = render::synth(document.scene(), &materials, None).unwrap();
         Show { document, materials, synth }

@@ -10,7 +10,7 @@ use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Problem, quoted};
-use crate::layers::{Checked, Count, Sizes, check as rules};
+use crate::layers::{Checked, Count, Materials, check as rules};
 
 /// In zones with more anchors than this, coincident ones are not looked for.
 const MAX_COMPARED: f64 = 20_000.0;
@@ -90,23 +90,46 @@ pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     }
 }
 
-/// What the sizes of pictures say: an outline outside its picture, a mask of another size.
-pub fn check_images(layer: &PictureLayer, sizes: &Sizes) -> Vec<Problem> {
-    let Some(&(width, height)) = sizes.get(&layer.image) else { return Vec::new() };
+/// The masks that the layer names: each with its pointer, and the picture that it is for.
+pub fn masks(layer: &PictureLayer) -> Vec<(String, &str, &str)> {
+    let masks = layer.zones.iter().enumerate().filter_map(|(i, zone)| match &zone.fold {
+        Some(Fold::Mask { image }) => Some((format!("/zones/{i}/fold/image"), image.as_str(), layer.image.as_str())),
+        _ => None,
+    });
+    masks.collect()
+}
+
+/// What pictures and fields say: an outline outside its picture, a mask or a field of another size, a mask without alpha.
+pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Problem> {
+    let Some(own) = materials.pictures.get(&layer.image) else { return Vec::new() };
+    let (width, height) = (own.width(), own.height());
     let picture = Rect::new(0.0, 0.0, width as f64, height as f64);
     let mut problems = Vec::new();
     for (i, zone) in layer.zones.iter().enumerate() {
-        let bounds = zone.outline.polygon().bounds();
-        if !bounds.overlaps(picture) {
+        if !zone.outline.polygon().bounds().overlaps(picture) {
             let message =
                 format!("the outline lies outside the picture ({width} x {height} px), so the zone shows nothing");
             problems.push(Problem::warning(format!("/zones/{i}/outline"), message));
         }
-        let Some(Fold::Mask { image }) = &zone.fold else { continue };
-        if let Some((w, h)) = sizes.get(image).filter(|&&size| size != (width, height)) {
-            let message = format!("the mask {} is {w} x {h} px, the picture {width} x {height}", quoted(image));
-            let hint = "a mask is a copy of the picture, of its size";
-            problems.push(Problem::error(format!("/zones/{i}/fold/image"), message).hint(hint));
+        for (j, tool) in zone.motion.iter().enumerate() {
+            let Tool::Field { path, .. } = tool else { continue };
+            let size = materials.fields.get(path).map(|field| (field.width(), field.height()));
+            if let Some((w, h)) = size.filter(|&size| size != (width, height)) {
+                let message = format!("the field is {w} x {h} px, the picture {width} x {height}");
+                let hint = "a vector is for the pixel at its own place; beyond the field its edge goes on";
+                problems.push(Problem::warning(format!("/zones/{i}/motion/{j}/path"), message).hint(hint));
+            }
+        }
+    }
+    for (path, name, _) in masks(layer) {
+        let Some(mask) = materials.pictures.get(name) else { continue };
+        let (w, h) = (mask.width(), mask.height());
+        if (w, h) != (width, height) {
+            let message = format!("the mask {} is {w} x {h} px, the picture {width} x {height}", quoted(name));
+            problems.push(Problem::error(path, message).hint("a mask is a copy of the picture, of its size"));
+        } else if !mask.channels().have_alpha() {
+            let message = format!("the mask {} has no alpha: its brightness is taken for it", quoted(name));
+            problems.push(Problem::warning(path, message).hint("black is where pixels keep their own color"));
         }
     }
     problems

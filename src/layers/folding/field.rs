@@ -1,6 +1,7 @@
 //! The pixels of a zone: membership, jump vectors and thresholds, row by row on all cores. Each pixel's sums are made in
 //! one order, so that the bytes do not depend on the number of threads.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use kurbo::{Point, Rect, Vec2};
@@ -230,8 +231,16 @@ impl Prepared {
 impl Field {
     /// The field of `zone`; none where no pixel of the picture is in its bounding box, or where nobody wants it any more.
     pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Option<Arc<Field>> {
-        let prepared = Prepared::new(zone, inputs, materials);
-        let (x0, y0, width, height) = pixel_box(prepared.outline.bounds(), inputs.size)?;
+        let (width, height) = inputs.size;
+        Prepared::new(zone, inputs, materials).field((0..width, 0..height), materials)
+    }
+}
+
+impl Prepared {
+    /// The field in these columns and rows of the picture alone; none as with [`Field::new`].
+    pub fn field(&self, part: (Range<usize>, Range<usize>), materials: &Materials) -> Option<Arc<Field>> {
+        let prepared = self;
+        let (x0, y0, width, height) = pixel_box(prepared.outline.bounds(), part)?;
         let row = |y: usize| (!materials.stopped()).then(|| Row::of(&prepared.row(x0, y, width)));
         let rows: Vec<Row> = (y0..y0 + height).into_par_iter().map(row).collect::<Option<_>>()?;
         Some(Arc::new(Field {
@@ -274,14 +283,15 @@ fn joined<T: Copy>(rows: &[Row], of: impl Fn(&Row) -> &Vec<T>) -> Vec<T> {
     rows.iter().map(|row| of(row).as_slice()).collect::<Vec<_>>().concat()
 }
 
-/// The pixels that `bounds` touches in a picture: first column and row, width, height.
-fn pixel_box(bounds: Rect, (width, height): (usize, usize)) -> Option<(usize, usize, usize, usize)> {
-    let clip = |low: f64, high: f64, n: usize| {
-        let first = low.floor().clamp(0.0, n as f64) as usize;
-        let end = high.ceil().clamp(0.0, n as f64) as usize;
+/// The pixels that `bounds` touches in a part of a picture: first column and row, width, height.
+fn pixel_box(bounds: Rect, part: (Range<usize>, Range<usize>)) -> Option<(usize, usize, usize, usize)> {
+    let clip = |low: f64, high: f64, part: Range<usize>| {
+        let (from, to) = (part.start as f64, part.end as f64);
+        let first = low.floor().clamp(from, to) as usize;
+        let end = high.ceil().clamp(from, to) as usize;
         (end > first).then(|| (first, end - first))
     };
-    let (x0, w) = clip(bounds.x0, bounds.x1, width)?;
-    let (y0, h) = clip(bounds.y0, bounds.y1, height)?;
+    let (x0, w) = clip(bounds.x0, bounds.x1, part.0)?;
+    let (y0, h) = clip(bounds.y0, bounds.y1, part.1)?;
     Some((x0, y0, w, h))
 }

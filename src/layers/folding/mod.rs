@@ -11,6 +11,7 @@ pub mod fold;
 pub mod frame;
 pub mod interpolation;
 pub mod kinds;
+pub mod mask;
 pub mod model;
 pub mod outline;
 pub mod position;

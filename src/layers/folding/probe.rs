@@ -53,7 +53,7 @@ pub fn probe(
         let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
         let pixel = Prepared::new(zone, &inputs, materials).row(x, y, 1).pop().unwrap_or_default();
         if pixel.inside {
-            let source = source(zone, index, &own, materials)?;
+            let source = source(layer, index, &own, materials)?;
             let clock = Clock::of(zone, wrap);
             return Ok(Some(at(zone, &pixel, &clock, centre + source.offset, time)));
         }

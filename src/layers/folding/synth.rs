@@ -1,10 +1,11 @@
 //! Synthesis: a picture layer and its materials to everything a frame needs except the time. A pure function.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use kurbo::Vec2;
 
-use super::field::{Field, Inputs};
+use super::field::{Field, Inputs, Prepared};
 use super::fold::Fold;
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
@@ -72,7 +73,7 @@ pub fn synth(
     let size = (picture.width(), picture.height());
     let mut zones = Vec::with_capacity(layer.zones.len());
     for (index, zone) in layer.zones.iter().enumerate() {
-        let source = source(zone, index, &picture, materials)?;
+        let source = source(layer, index, &picture, materials)?;
         let inputs = Inputs::new(zone, size, place);
         let known =
             previous.into_iter().flat_map(|p| &p.zones).find(|known| known.inputs == inputs && !reads_file(zone));
@@ -95,6 +96,63 @@ pub fn synth(
     Ok(Synth { picture, zones })
 }
 
+/// A layer of which parts can be made ready, each without the rest: what one pixel costs, or a band of a large picture.
+pub struct Ready {
+    picture: Arc<Picture>,
+    zones: Vec<(ZoneParts, Prepared)>,
+}
+
+/// A zone but for its field.
+struct ZoneParts {
+    name: String,
+    index: usize,
+    source: Source,
+    clock: Clock,
+    inputs: Inputs,
+}
+
+impl Ready {
+    /// Makes everything that all parts share.
+    ///
+    /// # Errors
+    /// As [`synth`].
+    pub fn new(layer: &PictureLayer, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Self, Problem> {
+        let picture = materials.picture(&layer.image, "/image")?;
+        let size = (picture.width(), picture.height());
+        let ready = |(index, zone): (usize, &Zone)| {
+            let source = source(layer, index, &picture, materials)?;
+            let inputs = Inputs::new(zone, size, place);
+            let prepared = Prepared::new(zone, &inputs, materials);
+            Ok((ZoneParts { name: zone.name.clone(), index, source, clock: Clock::of(zone, wrap), inputs }, prepared))
+        };
+        let zones = layer.zones.iter().enumerate().map(ready).collect::<Result<_, _>>()?;
+        Ok(Ready { picture, zones })
+    }
+
+    /// Width and height of the layer's picture.
+    pub fn size(&self) -> (usize, usize) {
+        (self.picture.width(), self.picture.height())
+    }
+
+    /// These columns and rows of the layer, ready to be shown; beyond them zones show nothing.
+    pub fn part(&self, columns: Range<usize>, rows: Range<usize>, materials: &Materials) -> Synth {
+        let within = |range: &Range<usize>, most: usize| range.start.min(most)..range.end.min(most);
+        let (width, height) = self.size();
+        let zones = self.zones.iter().filter_map(|(zone, prepared)| {
+            let field = prepared.field((within(&columns, width), within(&rows, height)), materials)?;
+            Some(ZoneSynth {
+                name: zone.name.clone(),
+                index: zone.index,
+                field,
+                source: zone.source.clone(),
+                clock: zone.clock.clone(),
+                inputs: zone.inputs.clone(),
+            })
+        });
+        Synth { picture: self.picture.clone(), zones: zones.collect() }
+    }
+}
+
 /// Whether the zone's field depends on more than its inputs: the content of a file.
 fn reads_file(zone: &Zone) -> bool {
     zone.motion.iter().any(|tool| matches!(tool, super::tools::Tool::Field { .. }))
@@ -104,9 +162,15 @@ fn reads_file(zone: &Zone) -> bool {
 ///
 /// # Errors
 /// A picture that the zone names is not among the materials; the problem's path is relative to the layer.
-pub fn source(zone: &Zone, index: usize, own: &Arc<Picture>, materials: &Materials) -> Result<Source, Problem> {
+pub fn source(
+    layer: &PictureLayer,
+    index: usize,
+    own: &Arc<Picture>,
+    materials: &Materials,
+) -> Result<Source, Problem> {
+    let zone = &layer.zones[index];
     if let Some(Fold::Mask { image }) = &zone.fold {
-        let picture = materials.picture(image, &format!("/zones/{index}/fold/image"))?;
+        let picture = materials.mask(image, &layer.image, &format!("/zones/{index}/fold/image"))?;
         return Ok(Source { picture, offset: Vec2::ZERO, beyond: Beyond::Clamp, over: true });
     }
     Ok(match &zone.sampler {

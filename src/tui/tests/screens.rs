@@ -58,7 +58,7 @@ pub fn see(state: &mut State) {
     let request = seeing::request(state);
     let synth = Arc::new(crate::render::synth(&request.scene, &materials, None).unwrap());
     let longest = seeing::longest(&synth);
-    update(state, Event::Synthesised(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest })));
+    update(state, Event::Synthesised(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest, warning: None })));
     if let Some(asked) = request.probe {
         let probed = Probed::new(asked, &request.scene, &synth, &materials).unwrap();
         update(state, Event::Probed(Arc::new(probed)));

@@ -1,0 +1,428 @@
+//! The color that a file says its samples have, turned into linear sRGB light. What is matrix and curves becomes a table of
+//! light for every code, and the samples stay as they were; what needs a table of colors (inks, some scanners) becomes
+//! sRGB codes of 16 bits. An sRGB profile changes nothing, to the bit.
+
+use std::sync::{Arc, LazyLock};
+
+use rayon::prelude::*;
+
+use super::icc::{self, Profile};
+use super::{Color, Decoded, Found, Model, Raw};
+use crate::base::maths::{exp, pow};
+use crate::base::picture::{Channels, Light, Picture, SRGB_8, SRGB_16, Samples, table, value_of_half};
+use crate::base::pixels::linear_from_srgb;
+
+/// White of the space in which profiles meet.
+pub(super) const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
+
+/// x and y of white, red, green and blue.
+type Primaries = [[f64; 2]; 4];
+
+const D65: [f64; 2] = [0.3127, 0.329];
+const SRGB: Primaries = [D65, [0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
+
+/// Primaries and a curve, said without a profile.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Spoken {
+    pub transfer: Transfer,
+    /// Those of sRGB without them.
+    pub primaries: Option<Primaries>,
+    /// Whether black and white are at 16 and 235 of 255.
+    pub narrow: bool,
+}
+
+/// From codes to light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Transfer {
+    Srgb,
+    /// Codes to this power.
+    Power(f64),
+    Bt709,
+    Smpte240,
+    /// Logarithmic, over so many decades.
+    Log(f64),
+    /// The curves of HDR: 203 cd/m² is white.
+    Pq,
+    Hlg,
+    Smpte428,
+}
+
+/// A curve of a profile.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Curve {
+    Power(f64),
+    Points(Vec<u16>),
+    Parametric([f64; 7]),
+    Transfer(Transfer, bool),
+    /// L* of the curve within.
+    Lightness(Box<Curve>),
+}
+
+/// Curves, then a matrix to XYZ of D50; without one the primaries are those of sRGB.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shaper {
+    pub curves: [Curve; 3],
+    pub matrix: Option<[[f64; 3]; 3]>,
+}
+
+/// Codes of sRGB, 0 to 1, at the nodes of a grid over device values.
+pub(super) struct Table {
+    inputs: usize,
+    nodes: usize,
+    codes: Vec<[f32; 3]>,
+}
+
+impl Spoken {
+    /// What the numbers of a cICP chunk mean (ITU-T H.273), none where they are reserved or no RGB.
+    pub fn of_cicp(primaries: u8, transfer: u8, matrix: u8, full: bool) -> Option<Self> {
+        const BT601: [[f64; 2]; 3] = [[0.63, 0.34], [0.31, 0.595], [0.155, 0.07]];
+        let with = |white, [r, g, b]: [[f64; 2]; 3]| Some([white, r, g, b]);
+        let primaries = match primaries {
+            1 => None,
+            4 => with([0.31, 0.316], [[0.67, 0.33], [0.21, 0.71], [0.14, 0.08]]),
+            5 => with(D65, [[0.64, 0.33], [0.29, 0.6], [0.15, 0.06]]),
+            6 | 7 => with(D65, BT601),
+            8 => with([0.31, 0.316], [[0.681, 0.319], [0.243, 0.692], [0.145, 0.049]]),
+            9 => with(D65, [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046]]),
+            10 => with([1.0 / 3.0, 1.0 / 3.0], [[1.0, 1e-9], [0.0, 1.0], [0.0, 1e-9]]),
+            11 => with([0.314, 0.351], [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06]]),
+            12 => with(D65, [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06]]),
+            22 => with(D65, [[0.63, 0.34], [0.295, 0.605], [0.155, 0.077]]),
+            _ => return None,
+        };
+        let transfer = match transfer {
+            1 | 6 | 11 | 14 | 15 => Transfer::Bt709,
+            4 => Transfer::Power(2.2),
+            5 => Transfer::Power(2.8),
+            7 => Transfer::Smpte240,
+            8 => Transfer::Power(1.0),
+            9 => Transfer::Log(2.0),
+            10 => Transfer::Log(2.5),
+            13 => Transfer::Srgb,
+            16 => Transfer::Pq,
+            17 => Transfer::Smpte428,
+            18 => Transfer::Hlg,
+            _ => return None,
+        };
+        (matrix == 0).then_some(Spoken { transfer, primaries, narrow: !full })
+    }
+
+    fn shaper(&self) -> Option<Shaper> {
+        let curve = Curve::Transfer(self.transfer, self.narrow);
+        let matrix = match self.primaries {
+            None => None,
+            Some(primaries) => Some(to_xyz(primaries)?),
+        };
+        Some(Shaper { curves: [curve.clone(), curve.clone(), curve], matrix })
+    }
+}
+
+impl Transfer {
+    /// The gAMA chunk of PNG; its usual value stands for sRGB, as every writer of it means.
+    pub fn of_png_gamma(gamma: u32) -> Self {
+        if gamma.abs_diff(45455) <= 50 { Transfer::Srgb } else { Transfer::Power(100_000.0 / f64::from(gamma)) }
+    }
+
+    fn light(self, x: f64) -> f64 {
+        match self {
+            Transfer::Srgb => linear_from_srgb(x),
+            Transfer::Power(gamma) => pow(x, gamma),
+            Transfer::Bt709 if x < 0.081 => x / 4.5,
+            Transfer::Bt709 => pow((x + 0.099) / 1.099, 1.0 / 0.45),
+            Transfer::Smpte240 if x < 0.0913 => x / 4.0,
+            Transfer::Smpte240 => pow((x + 0.1115) / 1.1115, 1.0 / 0.45),
+            Transfer::Log(_) if x <= 0.0 => 0.0,
+            Transfer::Log(decades) => pow(10.0, (x - 1.0) * decades),
+            Transfer::Smpte428 => 52.37 / 48.0 * pow(x, 2.6),
+            Transfer::Pq => {
+                let p = pow(x, 32.0 / 2523.0);
+                let below = (p - 0.8359375).max(0.0);
+                pow(below / (18.8515625 - 18.6875 * p), 8192.0 / 1305.0) * 10_000.0 / 203.0
+            }
+            // Three quarters of the codes are white.
+            Transfer::Hlg if x <= 0.5 => x * x / 3.0 / 0.265,
+            Transfer::Hlg => (exp((x - 0.559_910_73) / 0.178_832_77) + 0.284_668_92) / 12.0 / 0.265,
+        }
+    }
+}
+
+impl Curve {
+    /// The light of a code, both 0 to 1.
+    pub fn at(&self, x: f64) -> f64 {
+        match self {
+            Curve::Power(gamma) => pow(x, *gamma),
+            Curve::Points(values) => icc::between(x, values.len(), |i| f64::from(values[i]) / 65535.0),
+            Curve::Parametric([g, a, b, c, d, e, f]) => {
+                let light = if x >= *d { pow((a * x + b).max(0.0), *g) + e } else { c * x + f };
+                if light.is_finite() { light.clamp(0.0, 1.0) } else { 0.0 }
+            }
+            Curve::Transfer(transfer, false) => transfer.light(x).min(1.0),
+            Curve::Transfer(transfer, true) => transfer.light(((x * 255.0 - 16.0) / 219.0).clamp(0.0, 1.0)).min(1.0),
+            Curve::Lightness(curve) => icc::from_lightness(curve.at(x) * 100.0),
+        }
+    }
+}
+
+impl Shaper {
+    /// From the light of its channels to that of sRGB; none where they are the same.
+    fn to_srgb(&self) -> Option<[[f64; 3]; 3]> {
+        let rows = times(&FROM_XYZ, &self.matrix?);
+        let same = (0..9).all(|i| (rows[i / 3][i % 3] - f64::from(u8::from(i / 3 == i % 3))).abs() < 1e-3);
+        (!same).then_some(rows)
+    }
+
+    /// Whether its codes are those of sRGB, to less than one of 255.
+    fn is_srgb(&self) -> bool {
+        let near = |curve: &Curve| {
+            (0..=255).all(|code| {
+                let x = f64::from(code) / 255.0;
+                (srgb_from_linear(curve.at(x)) - x).abs() * 255.0 <= 0.75
+            })
+        };
+        self.to_srgb().is_none() && self.curves.iter().all(near)
+    }
+
+    fn light<const CODES: usize>(&self) -> Light<CODES> {
+        let [red, green, blue] = &self.curves;
+        let first = table(|x| red.at(x));
+        let other = |curve: &Curve| if curve == red { first.clone() } else { table(|x| curve.at(x)) };
+        let matrix = self.to_srgb().map(|rows| rows.map(|row| row.map(|v| v as f32)));
+        Light { curves: [first.clone(), other(green), other(blue)], matrix }
+    }
+}
+
+impl Table {
+    /// A table of `nodes` a side whose colors are `xyz` of device values.
+    pub fn of(inputs: usize, nodes: usize, xyz: impl Fn(&[f64]) -> [f64; 3] + Sync) -> Self {
+        let code = |i: usize| {
+            let mut device = [0.0; 4];
+            let mut rest = i;
+            for c in (0..inputs).rev() {
+                device[c] = (rest % nodes) as f64 / (nodes - 1) as f64;
+                rest /= nodes;
+            }
+            multiply(&FROM_XYZ, xyz(&device[..inputs])).map(|light| srgb_from_linear(light.clamp(0.0, 1.0)) as f32)
+        };
+        let codes = (0..nodes.pow(inputs as u32)).into_par_iter().map(code).collect();
+        Table { inputs, nodes, codes }
+    }
+
+    fn code(&self, device: &[f64]) -> [u16; 3] {
+        let mut sum = [0.0; 3];
+        icc::mix(&device[..self.inputs], &[self.nodes; 4], |i, weight| {
+            (0..3).for_each(|c| sum[c] += weight * f64::from(self.codes[i][c]));
+        });
+        sum.map(|code| (code * 65535.0 + 0.5) as u16)
+    }
+}
+
+/// The picture, its color followed as far as it can be; none where its samples cannot be what they are said to be.
+pub(super) fn apply(decoded: Decoded) -> Option<Found> {
+    let Decoded { size: (width, height), model, samples, color, mut notes } = decoded;
+    let profile = profile(&color, model, &samples, &mut notes);
+    let (channels, samples) = match (profile, samples) {
+        (_, samples) if model == Model::Lab => (Channels::Rgb, of_lab(samples)),
+        (Some(Profile::Table(table)), samples) => of_table(&table, model, samples),
+        (_, samples) if model == Model::Cmyk => (Channels::Rgb, of_inks(samples)?),
+        (Some(Profile::Shaper(shaper)), Raw::Bytes(all)) => {
+            (Channels::of(model.count())?, Samples::Bytes(all, Arc::new(shaper.light())))
+        }
+        (Some(Profile::Shaper(shaper)), Raw::Words(all)) => {
+            (Channels::of(model.count())?, Samples::Words(all, Arc::new(shaper.light())))
+        }
+        (_, Raw::Bytes(all)) => (Channels::of(model.count())?, Samples::Bytes(all, SRGB_8.clone())),
+        (_, Raw::Words(all)) => (Channels::of(model.count())?, Samples::Words(all, SRGB_16.clone())),
+        (_, Raw::Halves(all)) => (Channels::of(model.count())?, Samples::Halves(finite_halves(all, model))),
+        (_, Raw::Floats(all)) => (Channels::of(model.count())?, Samples::Floats(finite(all, model))),
+    };
+    let fits = match &samples {
+        Samples::Bytes(all, _) => all.len(),
+        Samples::Words(all, _) | Samples::Halves(all) => all.len(),
+        Samples::Floats(all) => all.len(),
+    } == width * height * channels.count();
+    fits.then(|| Found { picture: Picture::new(width, height, channels, samples), notes })
+}
+
+/// What is to be applied: nothing for sRGB, and nothing that cannot be, of which there is a note.
+fn profile(color: &Color, model: Model, samples: &Raw, notes: &mut Vec<String>) -> Option<Profile> {
+    let profile = match color {
+        Color::Untagged => return None,
+        Color::Icc(_) if matches!(samples, Raw::Halves(_) | Raw::Floats(_)) => {
+            notes.push("it is floating point, which is linear light: its color profile was not applied".to_owned());
+            return None;
+        }
+        Color::Icc(bytes) => icc::understand(bytes, model).map_err(|why| notes.push(why)).ok()?,
+        Color::Spoken(spoken) => {
+            if matches!(spoken.transfer, Transfer::Pq | Transfer::Hlg) {
+                notes.push("it is HDR: what is brighter than white is clipped to it".to_owned());
+            }
+            Profile::Shaper(Box::new(spoken.shaper()?))
+        }
+    };
+    match profile {
+        Profile::Shaper(shaper) if shaper.is_srgb() => None,
+        other => Some(other),
+    }
+}
+
+fn of_table(table: &Table, model: Model, samples: Raw) -> (Channels, Samples) {
+    let count = model.count();
+    let alpha = model.alpha();
+    let channels = if alpha.is_some() { Channels::Rgba } else { Channels::Rgb };
+    let codes = match samples {
+        Raw::Bytes(all) => through(table, &all, count, alpha, |code| u16::from(code) * 257),
+        Raw::Words(all) | Raw::Halves(all) => through(table, &all, count, alpha, |code| code),
+        Raw::Floats(all) => through(table, &all, count, alpha, |value| (value.clamp(0.0, 1.0) * 65535.0) as u16),
+    };
+    (channels, Samples::Words(codes, SRGB_16.clone()))
+}
+
+fn through<T: Copy + PartialEq + Sync>(
+    table: &Table,
+    all: &[T],
+    count: usize,
+    alpha: Option<usize>,
+    word: impl Fn(T) -> u16 + Sync,
+) -> Vec<u16> {
+    let each = 3 + usize::from(alpha.is_some());
+    let mut out = vec![0; all.len() / count * each];
+    const RUN: usize = 4096;
+    out.par_chunks_mut(RUN * each).zip(all.par_chunks(RUN * count)).for_each(|(out, all)| {
+        let mut last: Option<(&[T], [u16; 3])> = None;
+        for (out, cell) in out.chunks_exact_mut(each).zip(all.chunks_exact(count)) {
+            let device = &cell[..table.inputs];
+            let code = match last {
+                Some((known, code)) if known == device => code,
+                _ => {
+                    let values: [f64; 4] =
+                        std::array::from_fn(|c| device.get(c).map_or(0.0, |&v| f64::from(word(v)) / 65535.0));
+                    table.code(&values)
+                }
+            };
+            last = Some((device, code));
+            out[..3].copy_from_slice(&code);
+            if let Some(alpha) = alpha {
+                out[3] = word(cell[alpha]);
+            }
+        }
+    });
+    out
+}
+
+/// Inks of nobody knows which press, as the image crate mixes them.
+fn of_inks(samples: Raw) -> Option<Samples> {
+    match samples {
+        Raw::Bytes(all) => {
+            let rgb = |&[c, m, y, k]: &[u8; 4]| {
+                let rest = 1.0 - f32::from(k) / 255.0;
+                [c, m, y].map(|ink| ((255.0 - f32::from(ink)) * rest) as u8)
+            };
+            let all: Vec<[u8; 3]> = all.as_chunks::<4>().0.iter().map(rgb).collect();
+            Some(Samples::Bytes(all.into_flattened(), SRGB_8.clone()))
+        }
+        Raw::Words(all) => {
+            let rgb = |&[c, m, y, k]: &[u16; 4]| {
+                let rest = 1.0 - f32::from(k) / 65535.0;
+                [c, m, y].map(|ink| ((65535.0 - f32::from(ink)) * rest) as u16)
+            };
+            let all: Vec<[u16; 3]> = all.as_chunks::<4>().0.iter().map(rgb).collect();
+            Some(Samples::Words(all.into_flattened(), SRGB_16.clone()))
+        }
+        Raw::Halves(_) | Raw::Floats(_) => None,
+    }
+}
+
+fn of_lab(samples: Raw) -> Samples {
+    let code = |l: f64, a: f64, b: f64| {
+        let light = multiply(&FROM_XYZ, icc::from_lab([l * 100.0, a, b]));
+        light.map(|light| (srgb_from_linear(light.clamp(0.0, 1.0)) * 65535.0 + 0.5) as u16)
+    };
+    let words: Vec<[u16; 3]> = match samples {
+        Raw::Bytes(all) => {
+            let lab = |&[l, a, b]: &[u8; 3]| code(f64::from(l) / 255.0, f64::from(a) - 128.0, f64::from(b) - 128.0);
+            all.as_chunks::<3>().0.par_iter().map(lab).collect()
+        }
+        Raw::Words(all) | Raw::Halves(all) => {
+            let ab = |v: u16| f64::from(v) / 256.0 - 128.0;
+            let lab = |&[l, a, b]: &[u16; 3]| code(f64::from(l) / 65535.0, ab(a), ab(b));
+            all.as_chunks::<3>().0.par_iter().map(lab).collect()
+        }
+        Raw::Floats(all) => {
+            let lab = |&[l, a, b]: &[f32; 3]| code(f64::from(l) / 100.0, a.into(), b.into());
+            all.as_chunks::<3>().0.par_iter().map(lab).collect()
+        }
+    };
+    Samples::Words(words.into_flattened(), SRGB_16.clone())
+}
+
+/// The largest half float.
+const LARGEST: f32 = 65504.0;
+
+/// Renderers leave NaN and infinite pixels behind: they become 0 and the largest half float, so that no bilinear read
+/// spreads them.
+fn finite(mut values: Vec<f32>, model: Model) -> Vec<f32> {
+    values.par_chunks_mut(model.count()).for_each(|cell| {
+        for (i, x) in cell.iter_mut().enumerate() {
+            let (low, high) = if Some(i) == model.alpha() { (0.0, 1.0) } else { (-LARGEST, LARGEST) };
+            *x = if x.is_nan() { 0.0 } else { x.clamp(low, high) };
+        }
+    });
+    values
+}
+
+fn finite_halves(mut values: Vec<u16>, model: Model) -> Vec<u16> {
+    const ONE: u16 = 0x3c00;
+    values.par_chunks_mut(model.count()).for_each(|cell| {
+        for (i, bits) in cell.iter_mut().enumerate() {
+            let value = value_of_half(*bits);
+            *bits = match Some(i) == model.alpha() {
+                _ if value.is_nan() => 0,
+                true if value < 0.0 => 0,
+                true if value > 1.0 => ONE,
+                false if value.is_infinite() => *bits & 0x8000 | 0x7bff,
+                _ => *bits,
+            };
+        }
+    });
+    values
+}
+
+/// sRGB code, 0 to 1, of linear light (IEC 61966-2-1).
+fn srgb_from_linear(light: f64) -> f64 {
+    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * pow(light, 1.0 / 2.4) - 0.055 }
+}
+
+/// From XYZ of D50 to linear sRGB.
+static FROM_XYZ: LazyLock<[[f64; 3]; 3]> =
+    LazyLock::new(|| to_xyz(SRGB).and_then(|matrix| inverse(&matrix)).unwrap_or_default());
+
+/// From primaries to XYZ, white brought to D50 as Bradford does; none where they enclose nothing.
+fn to_xyz([white, red, green, blue]: Primaries) -> Option<[[f64; 3]; 3]> {
+    const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    let xyz = |[x, y]: [f64; 2]| [x / y, 1.0, (1.0 - x - y) / y];
+    let columns = [red, green, blue].map(xyz);
+    let own: [[f64; 3]; 3] = std::array::from_fn(|row| std::array::from_fn(|c| columns[c][row]));
+    let scale = multiply(&inverse(&own)?, xyz(white));
+    let own = own.map(|row| std::array::from_fn(|c| row[c] * scale[c]));
+    let (from, to) = (multiply(&BRADFORD, xyz(white)), multiply(&BRADFORD, D50));
+    let cones = std::array::from_fn(|row| std::array::from_fn(|c| if row == c { to[c] / from[c] } else { 0.0 }));
+    let turned = times(&inverse(&BRADFORD)?, &times(&cones, &times(&BRADFORD, &own)));
+    turned.iter().flatten().all(|v| v.is_finite()).then_some(turned)
+}
+
+pub(super) fn multiply(rows: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    rows.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+}
+
+fn times(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    a.map(|row| std::array::from_fn(|c| row[0] * b[0][c] + row[1] * b[1][c] + row[2] * b[2][c]))
+}
+
+fn inverse(m: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+    let minor = |r: usize, c: usize| {
+        let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+    };
+    let all = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
+    (all.abs() > 1e-12).then(|| std::array::from_fn(|r| std::array::from_fn(|c| minor(c, r) / all)))
+}

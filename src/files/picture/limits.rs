@@ -1,0 +1,65 @@
+//! What a picture may take, asked of its header; and what decoders say when something is wrong, in our words.
+
+use image::ImageError;
+
+use super::kinds;
+use crate::base::error::{Error, Result};
+use crate::files::Limits;
+
+/// What a file may take besides its pixels: profiles are made small and then dropped.
+pub(super) const BESIDES_PIXELS: u64 = 32 << 20;
+
+/// Holds the size that a header tells against the limits.
+pub(super) fn check_size(place: &str, (width, height): (usize, usize), limits: &Limits) -> Result<()> {
+    if width == 0 || height == 0 {
+        return Err(Error::at(place, format!("has no pixels: it is {width} x {height}")));
+    }
+    let size = format!("is {width} x {height}:");
+    within(place, &size, "pixels wide or high", "side", width.max(height) as u64, limits.side)?;
+    within(place, &size, "pixels", "pixels", (width as u64).saturating_mul(height as u64), limits.pixels)
+}
+
+/// Refuses `found` above `most`, naming the limit.
+pub(in crate::files) fn within(place: &str, size: &str, unit: &str, limit: &str, found: u64, most: u64) -> Result<()> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(Error::at(place, format!("{size} {found} {unit}, at most {most} are allowed"))
+        .cure(format!("make it smaller, or give --limit {limit}={found}")))
+}
+
+/// What a decoder of the image crate may take.
+pub(super) fn for_decoder(bytes: u64) -> image::Limits {
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(bytes);
+    limits
+}
+
+/// Why a decoder of the image crate failed.
+pub(super) fn explain(place: &str, error: ImageError) -> Error {
+    match error {
+        ImageError::Unsupported(error) => kinds::other_kind(place, one_line(&error)),
+        ImageError::Limits(_) => Error::at(place, "takes more memory to decode than is allowed")
+            .cure("give --limit memory=BYTES, or save it in a simpler way"),
+        ImageError::IoError(error) => reading(place, &error),
+        error => broken(place, &error),
+    }
+}
+
+/// Why bytes could not be read.
+pub(super) fn reading(place: &str, error: &std::io::Error) -> Error {
+    if error.kind() == std::io::ErrorKind::UnexpectedEof { cut_short(place) } else { broken(place, error) }
+}
+
+pub(super) fn cut_short(place: &str) -> Error {
+    Error::at(place, "is cut short").cure("copy it again from where it came")
+}
+
+pub(super) fn broken(place: &str, error: &dyn std::fmt::Display) -> Error {
+    Error::at(place, format!("cannot be decoded: {}", one_line(error))).cure("save it again from another program")
+}
+
+/// Some decoders end their message with a line end, or write several lines.
+pub(super) fn one_line(text: &dyn std::fmt::Display) -> String {
+    text.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,200 @@
+//! Pictures from files, kept as they were read. The header is read first and held against the limits, so that a huge
+//! picture is refused before memory is taken for it.
+//!
+//! 8 and 16 bits a channel are sRGB with straight alpha unless the file says otherwise; floating point (OpenEXR, HDR,
+//! TIFF) is linear light, with premultiplied alpha. Color profiles are applied (`color.rs`); what cannot be applied is
+//! told. A photograph is turned upright as its EXIF orientation says, as every viewer shows it. Of an animation the
+//! first frame is taken.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::{Limits, paths};
+use crate::base::budget::{Budget, Share};
+use crate::base::error::{Error, Result};
+use crate::base::picture::Picture;
+
+mod color;
+mod exr;
+mod icc;
+mod ifd;
+mod jpeg;
+mod kinds;
+mod limits;
+mod plain;
+mod png;
+#[cfg(test)]
+mod tests;
+mod tiff;
+mod upright;
+
+pub(super) use exr::vectors;
+pub(super) use limits::within;
+pub(super) use plain::words;
+
+use kinds::Kind;
+
+/// A picture and what of its file could not be followed, in words.
+#[derive(Debug)]
+pub struct Found {
+    /// The picture, upright.
+    pub picture: Picture,
+    /// Each a sentence without its subject, as "its color profile is broken and was not applied".
+    pub notes: Vec<String>,
+}
+
+/// A file whose header is read and found within the limits.
+struct Opened {
+    /// Width and height as the file has them, not turned.
+    size: (usize, usize),
+    /// As EXIF numbers them, 1 to 8.
+    orientation: u8,
+    /// Bytes that decoding takes at its most.
+    bytes: u64,
+    decode: Box<dyn FnOnce() -> Result<Decoded>>,
+}
+
+impl Opened {
+    fn upright(&self) -> (usize, usize) {
+        upright::size(self.size, self.orientation)
+    }
+}
+
+/// Samples as a decoder gives them, and what the file says about their color.
+struct Decoded {
+    size: (usize, usize),
+    model: Model,
+    samples: Raw,
+    color: Color,
+    notes: Vec<String>,
+}
+
+impl Decoded {
+    /// Bytes that stand beside the samples while they are turned, or become others.
+    fn takes_beside(&self, orientation: u8) -> u64 {
+        let turned = if orientation > 1 { self.samples.bytes() } else { 0 };
+        let words = matches!(self.color, Color::Icc(_)) || matches!(self.model, Model::Cmyk | Model::Lab);
+        let pixels = self.size.0 as u64 * self.size.1 as u64;
+        turned.max(if words { pixels * 8 } else { 0 })
+    }
+}
+
+/// What the samples of a pixel are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Model {
+    Grey,
+    GreyAlpha,
+    Rgb,
+    Rgba,
+    /// Ink, 0 is none.
+    Cmyk,
+    /// CIE L*a*b*, a and b with the zero at half of the codes.
+    Lab,
+}
+
+impl Model {
+    fn count(self) -> usize {
+        match self {
+            Model::Grey => 1,
+            Model::GreyAlpha => 2,
+            Model::Rgb | Model::Lab => 3,
+            Model::Rgba | Model::Cmyk => 4,
+        }
+    }
+
+    /// The sample that is alpha.
+    fn alpha(self) -> Option<usize> {
+        matches!(self, Model::GreyAlpha | Model::Rgba).then(|| self.count() - 1)
+    }
+
+    fn of(count: usize) -> Option<Model> {
+        [Model::Grey, Model::GreyAlpha, Model::Rgb, Model::Rgba].into_iter().find(|model| model.count() == count)
+    }
+}
+
+/// Samples row by row. Integers have straight alpha, the others are linear and premultiplied.
+#[derive(Clone, Debug)]
+enum Raw {
+    Bytes(Vec<u8>),
+    Words(Vec<u16>),
+    /// Bits of half floats.
+    Halves(Vec<u16>),
+    Floats(Vec<f32>),
+}
+
+impl Raw {
+    fn bytes(&self) -> u64 {
+        match self {
+            Raw::Bytes(all) => all.len() as u64,
+            Raw::Words(all) | Raw::Halves(all) => all.len() as u64 * 2,
+            Raw::Floats(all) => all.len() as u64 * 4,
+        }
+    }
+}
+
+/// What a file says about the color of its integer samples.
+#[derive(Clone, Debug, PartialEq)]
+enum Color {
+    Untagged,
+    Icc(Vec<u8>),
+    Spoken(color::Spoken),
+}
+
+/// Reads the picture at `path`, within the limits.
+///
+/// # Errors
+/// One message when it cannot be opened, is no picture, is broken, or is larger than the limits allow.
+pub fn read(path: &Path, limits: &Limits) -> Result<Found> {
+    decode(paths::open_named(path)?, &path.display().to_string(), limits, &limits.budget()).map(|(found, _)| found)
+}
+
+/// Width and height of the picture at `path`, as [`read`] would give it; only the header is looked at.
+///
+/// # Errors
+/// As [`read`], as far as the header tells.
+pub fn size(path: &Path, limits: &Limits) -> Result<(usize, usize)> {
+    header(paths::open_named(path)?, &path.display().to_string(), limits)
+}
+
+/// The picture in an open file and the memory that it takes; `place` is what messages call it.
+///
+/// # Errors
+/// As [`read`].
+pub fn decode(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Found, Share)> {
+    let opened = open(file, place, limits)?;
+    let mut share = budget.take(opened.bytes, place)?;
+    let orientation = opened.orientation;
+    let mut decoded = (opened.decode)()?;
+    let _beside = budget.take(decoded.takes_beside(orientation), place)?;
+    decoded.size = upright::turn(&mut decoded.samples, decoded.model.count(), decoded.size, orientation);
+    let found = color::apply(decoded).ok_or_else(|| Error::at(place, "has a kind of pixels that is not known"))?;
+    share.shrink(found.picture.bytes());
+    Ok((found, share))
+}
+
+/// Width and height of the picture in an open file, upright.
+///
+/// # Errors
+/// As [`size`].
+pub fn header(file: File, place: &str, limits: &Limits) -> Result<(usize, usize)> {
+    let opened = open(file, place, limits)?;
+    let _none_is_kept = limits.budget().take(opened.bytes, place)?;
+    Ok(opened.upright())
+}
+
+fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opened> {
+    let failed = |error| Error::at(place, error);
+    let mut start = Vec::new();
+    (&mut file).take(kinds::LOOKED_AT).read_to_end(&mut start).map_err(failed)?;
+    let length = file.seek(SeekFrom::End(0)).map_err(failed)?;
+    let kind = kinds::kind(&start, &mut file, place)?;
+    file.rewind().map_err(failed)?;
+    match kind {
+        Kind::Png => png::open(file, place, limits),
+        Kind::Jpeg => jpeg::open(file, length, place, limits),
+        Kind::Tiff => tiff::open(file, place, limits),
+        Kind::Exr => exr::open(file, place, limits),
+        Kind::Plain(format) => plain::open(std::io::BufReader::new(file), format, place, limits),
+    }
+}

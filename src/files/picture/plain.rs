@@ -1,0 +1,86 @@
+//! The kinds that the image crate reads and nothing is to be added to; PNG goes through here too (`png.rs`).
+
+use std::io::{BufRead, Seek};
+
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
+
+use super::limits::{self, BESIDES_PIXELS};
+use super::{Color, Decoded, Model, Opened, Raw};
+use crate::base::error::{Error, Result};
+use crate::files::Limits;
+
+/// Reads the header.
+pub(super) fn open(
+    reader: impl BufRead + Seek + 'static,
+    format: ImageFormat,
+    place: &str,
+    limits: &Limits,
+) -> Result<Opened> {
+    let mut decoder = decoder(reader, format, place, limits)?;
+    let (width, height) = decoder.dimensions();
+    let size = (width as usize, height as usize);
+    // Upright unless the file says otherwise; what it says may well be broken.
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif();
+    let profile = decoder.icc_profile().ok().flatten();
+    let (bytes, place) = (decoder.total_bytes(), place.to_owned());
+    let decode = Box::new(move || {
+        let image = DynamicImage::from_decoder(decoder).map_err(|error| limits::explain(&place, error))?;
+        let (model, samples) =
+            kept(image).ok_or_else(|| Error::at(&place, "has a kind of pixels that is not known"))?;
+        let color = profile.map_or(Color::Untagged, Color::Icc);
+        Ok(Decoded { size, model, samples, color, notes: Vec::new() })
+    });
+    Ok(Opened { size, orientation, bytes, decode })
+}
+
+fn decoder(
+    reader: impl BufRead + Seek + 'static,
+    format: ImageFormat,
+    place: &str,
+    limits: &Limits,
+) -> Result<Box<dyn ImageDecoder>> {
+    let mut reader = ImageReader::with_format(reader, format);
+    reader.limits(limits::for_decoder(limits.memory.min(BESIDES_PIXELS)));
+    let mut decoder = reader.into_decoder().map_err(|error| limits::explain(place, error))?;
+    let (width, height) = decoder.dimensions();
+    limits::check_size(place, (width as usize, height as usize), limits)?;
+    decoder.set_limits(limits::for_decoder(limits.memory)).map_err(|error| limits::explain(place, error))?;
+    Ok(Box::new(decoder))
+}
+
+/// The samples as they were decoded.
+fn kept(image: DynamicImage) -> Option<(Model, Raw)> {
+    let model = Model::of(image.color().channel_count().into())?;
+    let samples = match image {
+        DynamicImage::ImageLuma8(b) => Raw::Bytes(b.into_raw()),
+        DynamicImage::ImageLumaA8(b) => Raw::Bytes(b.into_raw()),
+        DynamicImage::ImageRgb8(b) => Raw::Bytes(b.into_raw()),
+        DynamicImage::ImageRgba8(b) => Raw::Bytes(b.into_raw()),
+        DynamicImage::ImageLuma16(b) => Raw::Words(b.into_raw()),
+        DynamicImage::ImageLumaA16(b) => Raw::Words(b.into_raw()),
+        DynamicImage::ImageRgb16(b) => Raw::Words(b.into_raw()),
+        DynamicImage::ImageRgba16(b) => Raw::Words(b.into_raw()),
+        DynamicImage::ImageRgb32F(b) => Raw::Floats(b.into_raw()),
+        DynamicImage::ImageRgba32F(b) => Raw::Floats(b.into_raw()),
+        _ => return None,
+    };
+    Some((model, samples))
+}
+
+/// The samples of a PNG with red, green and blue of 16 bits each, as KITTI keeps vectors; how many bytes that takes is
+/// asked of `allow` first.
+pub(in crate::files) fn words(
+    file: std::fs::File,
+    place: &str,
+    limits: &Limits,
+    allow: impl FnOnce(u64) -> Result<()>,
+) -> Result<((usize, usize), Vec<[u16; 3]>)> {
+    let opened = super::png::open(file, place, limits)?;
+    allow(opened.bytes)?;
+    let decoded = (opened.decode)()?;
+    match (decoded.model, decoded.samples) {
+        (Model::Rgb, Raw::Words(words)) => Ok((decoded.size, words.as_chunks::<3>().0.to_vec())),
+        _ => Err(Error::at(place, "is a picture, not a vector field")
+            .cure("a KITTI PNG has red, green and blue with 16 bits each")),
+    }
+}

@@ -1,0 +1,131 @@
+//! A frame of a large picture, band by band: each is synthesised, shown and encoded before the next, so that a frame takes
+//! the picture, the codes of the frame and little else. Every band is what [`super::synth`] and [`super::cpu`] make of its
+//! rows, to the bit.
+
+use std::ops::Range;
+
+use kurbo::Vec2;
+
+use super::{LayerSynth, Synth, cpu};
+use crate::base::pixels::{Frame, Grid, encode};
+use crate::base::problem::Problem;
+use crate::layers::folding::synth::{CENTRE, Ready};
+use crate::layers::{Layer, Materials};
+use crate::scene::Scene;
+
+/// Pixels of a band: enough for all cores, and small beside the picture.
+const BAND: usize = 1 << 20;
+
+/// A scene of which parts can be shown, each without the rest.
+pub struct Bands<'a> {
+    materials: &'a Materials,
+    size: (usize, usize),
+    /// The layers, for every sample of a pixel.
+    samples: Vec<Vec<Ready>>,
+}
+
+impl<'a> Bands<'a> {
+    /// Makes everything that all parts share, for n x n samples a pixel.
+    ///
+    /// # Errors
+    /// As [`super::synth`].
+    pub fn new(scene: &Scene, materials: &'a Materials, n: u32) -> Result<Self, Problem> {
+        let places = if n == 1 { vec![CENTRE] } else { super::places(n).collect() };
+        let layers = |place: Vec2| {
+            let ready = |(i, Layer::Picture(layer)): (usize, &Layer)| {
+                let ready = Ready::new(layer, scene.timeline.wrap, materials, place);
+                ready.map_err(|problem| problem.under(&format!("/layers/{i}")))
+            };
+            scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()
+        };
+        let samples = places.into_iter().map(layers).collect::<Result<Vec<_>, _>>()?;
+        let size = samples.first().and_then(|layers| layers.first()).map(Ready::size).ok_or_else(super::no_layers)?;
+        Ok(Bands { materials, size, samples })
+    }
+
+    /// Width and height of a frame.
+    pub fn size(&self) -> (usize, usize) {
+        self.size
+    }
+
+    fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<Synth>, Problem> {
+        let layer = |ready: &Ready| LayerSynth::Picture(ready.part(columns.clone(), rows.clone(), self.materials));
+        let synth = |layers: &Vec<Ready>| Synth { size: self.size, layers: layers.iter().map(layer).collect() };
+        let made = self.samples.iter().map(synth).collect();
+        if self.materials.stopped() { Err(Problem::error("", "stopped")) } else { Ok(made) }
+    }
+
+    /// The finished frame at `time`.
+    ///
+    /// # Errors
+    /// Nobody wants it any more.
+    pub fn frame(&self, time: f64) -> Result<Frame, Problem> {
+        let (width, height) = self.size;
+        let mut cells = vec![[0; 4]; width * height];
+        let most = (BAND / width.max(1)).max(1);
+        for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
+            let rows = i * most..((i + 1) * most).min(height);
+            cpu::finish_rows(&self.part(0..width, rows.clone())?, time, rows, out);
+        }
+        Ok(Grid::from_cells(width, height, cells))
+    }
+
+    /// The layers' pictures alone, without zones.
+    pub fn pictures(&self) -> Synth {
+        let layers = self.samples.first().into_iter().flatten();
+        let layers = layers.map(|ready| LayerSynth::Picture(ready.part(0..0, 0..0, self.materials)));
+        Synth { size: self.size, layers: layers.collect() }
+    }
+
+    /// What the pixel in column `x`, row `y` shows at `time`; nothing beyond the frame.
+    ///
+    /// # Errors
+    /// Nobody wants it any more.
+    pub fn pixel(&self, time: f64, (x, y): (usize, usize)) -> Result<[u8; 4], Problem> {
+        if x >= self.size.0 || y >= self.size.1 {
+            return Ok([0; 4]);
+        }
+        let made = self.part(x..x + 1, y..y + 1)?;
+        let linear = cpu::mean_of(made.iter().map(|synth| cpu::lattice(synth, time, &[x], &[y])));
+        Ok(linear.cells().first().map_or([0; 4], |&color| encode(color)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::base::picture::Picture;
+
+    #[test]
+    fn bands_and_pixels_are_those_of_the_frame() {
+        // Several bands, as wide as a band has pixels in a few rows.
+        let (width, height) = (BAND / 3, 7);
+        let cell = |i: usize| [(i % 251) as f32 / 251.0, (i % 17) as f32 / 17.0, (i % 5) as f32 / 5.0, 1.0];
+        let picture = Arc::new(Picture::from_cells(width, height, (0..width * height).map(cell).collect()));
+        let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
+        let scene: Scene = serde_json::from_str(
+            r#"{"plica": 1, "layers": [{"kind": "picture", "name": "l", "image": "a", "zones": [{"name": "z",
+              "outline": {"kind": "rectangle", "x": 100, "y": 1, "width": 300, "height": 5},
+              "motion": [{"tool": "point", "at": [200, 3], "jump": [40, 2]}],
+              "fold": {"rule": "cover", "regions": [{"kind": "rectangle", "x": 260, "y": 2, "width": 30, "height": 3}]}}]}]}"#,
+        )
+        .unwrap();
+        for n in [1, 2] {
+            let bands = Bands::new(&scene, &materials, n).unwrap();
+            let samples = if n == 1 {
+                vec![crate::render::synth(&scene, &materials, None).unwrap()]
+            } else {
+                crate::render::samples(&scene, &materials, n).unwrap()
+            };
+            let whole = cpu::finish(&cpu::mean(&samples, 0.7));
+            assert!(bands.frame(0.7).unwrap() == whole, "{n} x {n}");
+            assert!(cpu::frames(&samples, 0.7) == whole);
+            for at in [(150, 2), (255, 4), (5, 6)] {
+                assert_eq!(bands.pixel(0.7, at).unwrap(), *whole.get(at.0, at.1), "{n} x {n} {at:?}");
+            }
+            assert_eq!(bands.pixel(0.7, (0, 7)).unwrap(), [0; 4]);
+        }
+    }
+}
