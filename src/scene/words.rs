@@ -70,7 +70,7 @@ fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
             let (old, new) = (pointer::split(from), pointer::split(path));
             match (old, new) {
                 (Some((a, _)), Some((b, last))) if a == b => match pointer::index(&last) {
-                    Some(index) => format!("{} moved to place {}", place(json, from, None), index + 1),
+                    Some(index) => format!("{} moved to place {}", place(json, from, None), index),
                     None => format!("{} renamed to {last}", place(json, from, None)),
                 },
                 _ => format!("{} moved to {}", place(json, from, None), place(json, path, None)),
@@ -136,7 +136,7 @@ fn place(json: &Value, path: &str, new: Option<&Value>) -> String {
                 steps.clear();
             }
             (Some(Body::List(..)), None) => {
-                let index = pointer::index(token).map_or_else(|| token.clone(), |index| (index + 1).to_string());
+                let index = pointer::index(token).map_or_else(|| token.clone(), |index| index.to_string());
                 steps.push((index, true));
             }
             (Some(Body::Numbers(_)), _) => {

@@ -48,6 +48,8 @@ pub struct State {
     pub column: usize,
     /// The row where the selection began.
     pub selected_from: Option<usize>,
+    /// The row where it ends; none where it ends at the cursor.
+    pub selected_to: Option<usize>,
     /// What is going on.
     pub mode: Mode,
     /// The count typed so far.
@@ -175,6 +177,7 @@ impl State {
             row: 0,
             column: 0,
             selected_from: None,
+            selected_to: None,
             mode: Mode::Normal,
             count: None,
             pressed: String::new(),
@@ -276,8 +279,8 @@ impl State {
 
     /// Ends the selection, which `gv` takes up again; false where there is none.
     pub fn unselect(&mut self) -> bool {
-        let from = self.selected_from.take();
-        self.kept.selection = from.map(|from| (self.node.clone(), from, self.row)).or(self.kept.selection.take());
+        let (from, to) = (self.selected_from.take(), self.selected_to.take().unwrap_or(self.row));
+        self.kept.selection = from.map(|from| (self.node.clone(), from, to)).or(self.kept.selection.take());
         from.is_some()
     }
 
@@ -292,6 +295,7 @@ impl State {
         self.row = self.row.min(last);
         self.column = self.column.min(sheet.row(self.row).map_or(0, |row| row.cells.len().saturating_sub(1)));
         self.selected_from = self.selected_from.map(|row| row.min(last));
+        self.selected_to = self.selected_to.map(|row| row.min(last)).filter(|_| self.selected_from.is_some());
     }
 
     /// Whether the terminal is too small to draw on, so that nobody sees what is edited.

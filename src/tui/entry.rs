@@ -34,7 +34,8 @@ impl Entry {
 /// The rows that an edit applies to: the selection, else the row under the cursor.
 pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
     let from = state.selected_from.unwrap_or(state.row);
-    from.min(state.row)..=from.max(state.row)
+    let to = state.selected_to.filter(|_| state.selected_from.is_some()).unwrap_or(state.row);
+    from.min(to)..=from.max(to)
 }
 
 /// The cells that an edit of the cell under the cursor applies to, with their rows: the like ones of every selected row.
@@ -53,11 +54,27 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
             && kind_of(document, &row.field, &pointer) == kind_of(document, &row.field, &row.pointer);
         let cell = match alike {
             true => Cell { pointer: pointer + inner, ..model.clone() },
-            false => sheet.row(i)?.cells.get(state.column).filter(like)?.clone(),
+            // Elsewhere the column may have another place; in a form all that has no name of its own is alike.
+            false if model.head.is_empty() => sheet.row(i)?.cells.get(state.column).filter(like)?.clone(),
+            false => sheet.row(i)?.cells.iter().find(like)?.clone(),
         };
         Some((i, cell))
     };
     rows(state).filter_map(of_row).collect()
+}
+
+fn sheet_head(state: &State) -> String {
+    let row = state.sheet().row(state.row);
+    let head = row.as_ref().and_then(|row| row.cells.get(state.column)).map(|cell| cell.head.clone());
+    head.filter(|head| !head.is_empty()).unwrap_or_else(|| "that".into())
+}
+
+/// How many of the selected rows have the column under the cursor, where some have not.
+pub fn skipped(state: &State) -> Option<String> {
+    let all = rows(state).count();
+    let some = cells(state, &state.sheet()).len();
+    let head = sheet_head(state);
+    (some < all).then(|| format!("{some} of {all} rows have {head}"))
 }
 
 /// The word that says what kind of item stands at a place; none where there are no kinds.
@@ -109,8 +126,14 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
         in_range(&cell.field, cell.part, value).map(|()| numbers::exact(numbers::tidy(value)))
     });
     let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
-        let more = if n > SHOWN { format!(" … ({n} rows)") } else { String::new() };
-        format!("= {}{more}", values.join(", "))
+        let more = if n > SHOWN { " …" } else { "" };
+        let all = rows(state).count();
+        let counted = match n {
+            n if n < all => format!(" ({n} of {all} rows)"),
+            n if n > SHOWN => format!(" ({n} rows)"),
+            _ => String::new(),
+        };
+        format!("= {}{more}{counted}", values.join(", "))
     });
     Some(shown)
 }
@@ -142,12 +165,15 @@ fn variables(
     let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
     let others = if row.is_none_or(|row| row.item) { Vec::new() } else { sheet.fields() };
     for row in row.into_iter().chain(&others) {
-        for cell in row.cells.iter().filter(|cell| cell.is_number()) {
+        // Of several vectors the one that is edited gives its dx, dy, r and a.
+        let (own, others): (Vec<&Cell>, Vec<&Cell>) = row.cells.iter().partition(|one| one.pointer == cell.pointer);
+        for cell in own.into_iter().chain(others).filter(|cell| cell.is_number()) {
             let name = match cell.part {
                 Part::Length => "r",
                 Part::Degrees => "a",
                 _ if cell.head.is_empty() => &row.label,
-                _ => &cell.head,
+                Part::Number(_) => cell.head.rsplit(' ').next().unwrap_or(&cell.head),
+                Part::Whole => &cell.head,
             };
             if let (Some(value), false) = (cell.number(document), known.iter().any(|(known, _)| known == name)) {
                 known.push((name.to_string(), value));
@@ -165,7 +191,8 @@ fn variables(
 fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
     in_range(&cell.field, cell.part, value)?;
     if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
-        return Err("a vector without a length has no direction: set |J| first".into());
+        let length = if cell.field.name == "jump" { "|J|" } else { "r" };
+        return Err(format!("a vector without a length has no direction: set {length} first"));
     }
     let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
     Ok(set(document, &pointer, value))

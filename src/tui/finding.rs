@@ -30,7 +30,7 @@ pub struct Spot {
 pub struct Origin {
     spot: Spot,
     folded: BTreeSet<String>,
-    selected_from: Option<usize>,
+    selected: (Option<usize>, Option<usize>),
     /// The selection before, its node, first and last row.
     selection: Option<(String, usize, usize)>,
 }
@@ -134,14 +134,14 @@ impl State {
     /// Where the cursor is, to be gone back to as if nothing had been.
     pub fn origin(&self) -> Origin {
         let (folded, selection) = (self.folded.clone(), self.kept.selection.clone());
-        Origin { spot: self.spot(), folded, selected_from: self.selected_from, selection }
+        Origin { spot: self.spot(), folded, selected: (self.selected_from, self.selected_to), selection }
     }
 
     /// Goes back there.
     pub fn return_to_origin(&mut self, origin: &Origin) {
         self.return_to(&origin.spot);
         self.folded.clone_from(&origin.folded);
-        self.selected_from = origin.selected_from;
+        (self.selected_from, self.selected_to) = origin.selected;
         self.kept.selection.clone_from(&origin.selection);
     }
 

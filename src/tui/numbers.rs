@@ -15,6 +15,35 @@ pub fn short(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
+/// `value` as a table shows what stands in the file: whole where three decimals say all of it, else rounded, with a mark
+/// that says so.
+pub fn shown(value: f64) -> String {
+    const LONGEST: usize = 12;
+    let text = short(value);
+    let whole = |text: &str| text.parse() == Ok(value);
+    if whole(&text) && text.len() <= LONGEST {
+        return text;
+    }
+    // Far from 1 three decimals say nothing, or take too much room.
+    let far = value != 0.0 && !(0.0005..1e9).contains(&value.abs());
+    let text = if far { format!("{value:.3e}") } else { text };
+    let text = text.split_once('e').map_or(text.clone(), |(digits, power)| {
+        format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+    });
+    if whole(&text) { text } else { format!("~{text}") }
+}
+
+/// `text` of a number in at most so many characters: with fewer decimals and a mark, else as a power of ten.
+pub fn fitted(text: &str, room: usize) -> String {
+    if text.chars().count() <= room {
+        return text.to_owned();
+    }
+    let Ok(value) = text.trim_start_matches('~').parse::<f64>() else { return "…".into() };
+    let rounded = (0..DECIMALS).rev().map(|decimals| format!("~{value:.decimals$}"));
+    let rounded = rounded.chain([2, 0].map(|decimals| format!("~{value:.decimals$e}")));
+    rounded.into_iter().find(|text| text.len() <= room).unwrap_or_else(|| "…".into())
+}
+
 /// `value` with all its decimals, as it is written in the file.
 pub fn exact(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e15 { format!("{value:.0}") } else { value.to_string() }
@@ -79,6 +108,26 @@ mod tests {
         for (value, text) in [(150.0, "150"), (0.12345, "0.123"), (-0.0001, "0"), (-0.0, "0"), (2.5, "2.5")] {
             assert_eq!(short(value), text);
         }
+        for (value, text) in [
+            (150.0, "150"),
+            (-139.7, "-139.7"),
+            (0.125, "0.125"),
+            (0.12345, "~0.123"),
+            (0.99999, "~1"),
+            (-0.0001, "-1e-4"),
+            (0.000123456, "~1.235e-4"),
+            (123456.5, "123456.5"),
+            (1e9, "1000000000"),
+            (1.5e12, "1.5e12"),
+            (1.0 / 3.0 * 1e20, "~3.333e19"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(shown(value), text);
+        }
+        for (room, text) in [(8, "-139.736"), (7, "~-139.7"), (6, "~-140"), (5, "~-140"), (4, "…")] {
+            assert_eq!(fitted("-139.736", room), text, "{room}");
+        }
+        assert_eq!(fitted("123456789.125", 8), "~1.23e8");
         assert_eq!((exact(0.1 + 0.2).as_str(), exact(-18.0).as_str()), ("0.30000000000000004", "-18"));
     }
 }

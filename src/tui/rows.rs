@@ -16,8 +16,13 @@ use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, pointer};
 
 /// Other names of columns, in lower case.
-const ALIASES: &[(&str, &[&str])] =
-    &[("|J|", &["j", "r", "length"]), ("°", &["a", "angle", "deg", "degrees"]), ("τ", &["t", "tau"])];
+const ALIASES: &[(&str, &[&str])] = &[
+    ("in dx", &["dx"]),
+    ("in dy", &["dy"]),
+    ("|J|", &["j", "r", "length"]),
+    ("°", &["a", "angle", "deg", "degrees"]),
+    ("τ", &["t", "tau"]),
+];
 
 /// Columns that only count the rows.
 const COUNTERS: &[&str] = &["#", "", "i", "index", "no"];

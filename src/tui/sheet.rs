@@ -55,7 +55,7 @@ pub struct Cell {
     pub pointer: String,
     /// Which part of the value it is.
     pub part: Part,
-    /// Its name in the row (x, y, dx, |J|), empty where the row's own name says it.
+    /// Its name in the row (x, y, dx, |J|, in dx), empty where the row's own name says it.
     pub head: String,
     /// What the value is.
     pub field: Arc<Field>,
@@ -302,30 +302,46 @@ fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: boo
         return vec![cell(Part::Whole, head, summary(field, value))];
     };
     let number = |i: usize| value.get(i).and_then(Value::as_f64).unwrap_or(0.0);
-    let shown = |i: usize| numbers::short(number(i));
+    // Of the vectors of a row only the jump goes without its name; handles and the like say which one they are.
+    let jump = field.name == JUMP;
+    let head = |own: &str| if jump || !table || !is_vector(names) { own.to_owned() } else { format!("{name} {own}") };
+    let shown = |i: usize| numbers::shown(number(i));
     let mut all: Vec<Cell> =
-        names.iter().enumerate().map(|(i, name)| cell(Part::Number(i), name.clone(), shown(i))).collect();
+        names.iter().enumerate().map(|(i, name)| cell(Part::Number(i), head(name), shown(i))).collect();
     if is_vector(names) {
         let (length, degrees) = numbers::polar(Vec2::new(number(0), number(1)));
-        all.push(cell(Part::Length, "|J|".into(), numbers::short(length)));
-        all.push(cell(Part::Degrees, "°".into(), numbers::short(degrees)));
+        all.push(cell(Part::Length, head(if jump { "|J|" } else { "r" }), numbers::short(length)));
+        all.push(cell(Part::Degrees, head("°"), numbers::short(degrees)));
     }
     all
 }
+
+/// The field whose length is |J|.
+const JUMP: &str = "jump";
 
 /// Whether numbers of these names are a vector, which also has a length and a direction.
 fn is_vector(names: &[String]) -> bool {
     names == ["dx", "dy"]
 }
 
+/// The range of a field, where it is worth a word: some are as wide as they are only to keep sums finite.
+pub fn told_range(field: &Field) -> Option<String> {
+    const UNTOLD: f64 = 1e9;
+    field.range.filter(|(min, max)| *min > -UNTOLD || *max < UNTOLD)?;
+    field.range_text()
+}
+
 /// A value in a few characters.
 pub fn summary(field: &Field, value: &Value) -> String {
     match (&field.kind, value) {
         (_, Value::Null) => "none".into(),
-        (Kind::Number { .. }, value) => value.as_f64().map(numbers::short).unwrap_or_default(),
+        (Kind::Number { .. }, value) => value.as_f64().map(numbers::shown).unwrap_or_default(),
         (_, Value::String(text)) => super::terminal::plain(text),
         (_, Value::Bool(on)) => if *on { "yes" } else { "no" }.into(),
         (Kind::Tagged { tag, .. }, value) => value.get(tag).and_then(Value::as_str).unwrap_or("?").into(),
+        (Kind::Numbers(_), Value::Array(items)) => {
+            items.iter().filter_map(Value::as_f64).map(numbers::shown).collect::<Vec<_>>().join(", ")
+        }
         (_, Value::Array(items)) => format!("({})", items.len()),
         (_, Value::Object(fields)) if matches!(field.kind, Kind::Map(_)) => format!("({})", fields.len()),
         (_, Value::Object(fields)) => {

@@ -61,9 +61,11 @@ fn enter(state: &mut State, call: &Call) -> Done {
 fn put(state: &mut State, call: &Call) -> Done {
     let text = unquoted(call.text);
     let (row, cell) = current(state).ok_or("there is nothing to put it into: o adds an item")?;
+    let skipped = entry::skipped(state);
     if is_typed(&cell) {
         let edit = entry::edit(state, &text)?;
         state.edit(edit, false)?;
+        skipped.into_iter().for_each(|some| state.say(some));
     } else {
         let sheet = state.sheet();
         let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
@@ -161,6 +163,9 @@ fn take(state: &mut State, choice: Choice, word: &str) -> Done {
         Then::Answer(question) => return life::answer(state, question.about, word, choice),
     };
     state.edit(edit, false)?;
+    if let Then::Set(_) = &choice.then {
+        entry::skipped(state).into_iter().for_each(|some| state.say(some));
+    }
     if let Some(lost) = lost {
         state.say(lost);
     }
@@ -183,7 +188,9 @@ fn step(state: &mut State, call: &Call) -> Done {
     let edit = entry::each(state, |_, cell, _| {
         Ok(numbers::tidy(cell.number(state.document()).unwrap_or(0.0) + by as f64 * unit))
     })?;
-    state.edit(edit, true)
+    state.edit(edit, true)?;
+    entry::skipped(state).into_iter().for_each(|some| state.say(some));
+    Ok(())
 }
 
 /// The step of a power of ten.

@@ -85,8 +85,10 @@ fn under_cursor(state: &State) -> Vec<String> {
     let document = state.document();
     let Some(field) = field::field(document, &at) else { return Vec::new() };
     let name = if at.is_empty() { "scene".to_owned() } else { plain(&field.name) };
-    let part = cell.filter(|cell| cell.part != Part::Whole).map(|cell| format!(" {}", cell.head)).unwrap_or_default();
-    let mut lines = vec![format!("-- {name}{part} --")];
+    let part = cell.filter(|cell| cell.part != Part::Whole).map(|cell| cell.head.as_str()).unwrap_or_default();
+    // Some columns carry the name of their field already.
+    let part = part.strip_prefix(&*name).unwrap_or(part).trim_start();
+    let mut lines = vec![format!("-- {} --", format!("{name} {part}").trim_end())];
     lines.extend(wrapped(field.help, WIDTH));
     lines.push(String::new());
     let mut say = |name: &str, text: String| {
@@ -95,7 +97,7 @@ fn under_cursor(state: &State) -> Vec<String> {
         lines.extend(parts.map(|line| format!("{:<9} {line}", "")));
     };
     say("value", value(state, &at, &field, cell));
-    if let Some(range) = field.range_text() {
+    if let Some(range) = sheet::told_range(&field) {
         say("range", range);
     }
     if let Some(default) = &field.default {

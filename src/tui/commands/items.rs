@@ -158,7 +158,10 @@ fn block(state: &State) -> Result<(String, usize, usize), String> {
 fn follow(state: &mut State, list: &str, at: usize, by: i64) {
     let moved = |row: usize| usize::try_from(row as i64 + by).unwrap_or(0);
     match state.selected_from.filter(|_| state.focus != Pane::Tree) {
-        Some(from) => (state.selected_from, state.row) = (Some(moved(from)), moved(state.row)),
+        Some(from) => {
+            (state.selected_from, state.row) = (Some(moved(from)), moved(state.row));
+            state.selected_to = state.selected_to.map(moved);
+        }
         None => go_to(state, &pointer::join(list, at)),
     }
     state.settle();

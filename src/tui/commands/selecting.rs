@@ -9,7 +9,7 @@ pub const COMMANDS: &[Command] =
 fn select(state: &mut State, call: &Call) -> Done {
     match call.text {
         "" if state.unselect() => {}
-        "" => state.selected_from = Some(state.row),
+        "" => (state.selected_from, state.selected_to) = (Some(state.row), None),
         "all" => all(state)?,
         "again" => again(state)?,
         other => return Err(format!("select takes all or again, not {other}")),
@@ -28,15 +28,15 @@ fn all(state: &mut State) -> Done {
     };
     let first = (0..=state.row).rev().take_while(|&row| within(row)).last();
     let last = (state.row..sheet.len()).take_while(|&row| within(row)).last();
-    (state.selected_from, state.row) = (first, last.unwrap_or(state.row));
-    state.settle();
+    // The cursor stays: its row and column say what an edit is about.
+    (state.selected_from, state.selected_to) = (first, last);
     Ok(())
 }
 
 fn again(state: &mut State) -> Done {
     let (node, from, row) = state.kept.selection.clone().ok_or("nothing was selected yet: v begins")?;
     state.show(node);
-    (state.selected_from, state.row) = (Some(from), row);
+    (state.selected_from, state.selected_to, state.row) = (Some(from), None, row);
     state.settle();
     Ok(())
 }

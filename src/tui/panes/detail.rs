@@ -7,24 +7,20 @@ use ratatui::style::{Modifier, Style};
 use super::{wrapped, write};
 use crate::scene::field::Kind;
 use crate::tui::app::State;
-use crate::tui::sheet::{Cell, Part};
+use crate::tui::sheet::{self, Cell, Part};
 use crate::tui::{colour, entry, numbers, terminal};
-
-/// Ranges as wide as this only keep sums finite: they are not worth a word.
-const UNTOLD: f64 = 1e9;
 
 /// Draws it: name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
-    let sheet = state.sheet();
-    let Some(row) = sheet.row(state.row) else { return };
+    let Some(row) = state.sheet().row(state.row) else { return };
     let Some(cell) = row.cells.get(state.column) else { return };
     let number = cell.number(state.document()).filter(|_| cell.is_number());
     let value = number.map_or(cell.text.clone(), numbers::exact);
     let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };
     let polar = matches!(cell.part, Part::Length | Part::Degrees);
-    let told = cell.field.range.is_some_and(|(min, max)| !polar && (min > -UNTOLD || max < UNTOLD));
-    let range = cell.field.range_text().filter(|_| told).map(|range| format!("   {range}")).unwrap_or_default();
-    let unit = if cell.part == Part::Degrees { Some("degrees") } else { cell.field.unit };
+    let range =
+        sheet::told_range(&cell.field).filter(|_| !polar).map(|range| format!("   {range}")).unwrap_or_default();
+    let unit = if cell.part == Part::Degrees { Some("degrees counter-clockwise") } else { cell.field.unit };
     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
     let set = if row.set { "" } else { "   (default)" };
     let label = terminal::plain(&row.label);

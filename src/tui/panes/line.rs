@@ -6,22 +6,25 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::widgets::{Clear, Widget};
 
-use super::{folded, width, write};
+use super::{folded, typed, width, write};
 use crate::tui::app::{Mode, State};
 use crate::tui::{colour, terminal};
 
 /// Draws it; the cursor is in the line being typed.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if let Mode::Line(line) = &state.mode {
-        let x = write(buffer, area, 0, 0, &line.kind.to_string(), Style::new());
-        let column = x + line.text.column() as i32;
-        let hidden = (column + 1 - i32::from(area.width)).max(0);
-        let text = terminal::plain(line.text.value());
-        let end = write(buffer, area, x - hidden, 0, &text, Style::new());
+        write(buffer, area, 0, 0, &line.kind.to_string(), Style::new());
+        let cursor = typed(
+            buffer,
+            Rect { x: area.x + 1, width: area.width.saturating_sub(1), ..area },
+            &line.text,
+            Style::new(),
+        );
+        let end = 1 + i32::from(width(&terminal::plain(line.text.value())));
         if let Some((offered, at)) = line.offered() {
             draw_offered(offered, at, area, end + 2, buffer);
         }
-        return Some(Position::new(area.x + (column - hidden) as u16, area.y));
+        return Some(cursor);
     }
     let Some(message) = &state.message else {
         if let Some(problem) = &state.seen.problem {

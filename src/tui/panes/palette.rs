@@ -4,11 +4,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use super::{first_row, width, write};
+use super::{clipped, first_row, typed, width, write};
 use crate::scene::field;
 use crate::tui::app::State;
 use crate::tui::palette::{Palette, Row};
-use crate::tui::{colour, sheet, terminal, view};
+use crate::tui::{colour, sheet, view};
 
 /// Columns of what a row is.
 const SORT: i32 = 9;
@@ -17,12 +17,9 @@ const SORT: i32 = 9;
 pub fn draw(state: &State, palette: &Palette, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = format!("palette: {} found (Enter takes, Esc closes)", palette.len());
     let area = view::window(screen, (screen.width - 8).min(110), (screen.height - 4).min(30), &title, buffer);
-    let typed = terminal::plain(palette.text.value());
     write(buffer, area, 0, 0, ">", colour::strong());
-    let column = palette.text.column() as i32;
-    let hidden = (column + 3 - i32::from(area.width)).max(0);
     let line = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
-    write(buffer, line, -hidden, 0, &typed, Style::new());
+    let cursor = typed(buffer, line, &palette.text, Style::new());
     let body = Rect { y: area.y + 1, height: area.height.saturating_sub(3), ..area };
     let first = first_row(palette.at, palette.len(), body.height);
     for y in 0..body.height {
@@ -36,7 +33,7 @@ pub fn draw(state: &State, palette: &Palette, screen: Rect, buffer: &mut Buffer)
             place.map_or_else(|| format!(":{}", row.line.trim_start_matches("line :")), |field| field.help.into());
         write(buffer, area, 0, area.height.saturating_sub(1), &help, colour::faint());
     }
-    Position::new(line.x + (column - hidden).max(0) as u16, line.y)
+    cursor
 }
 
 fn draw_row(state: &State, palette: &Palette, row: &Row, here: bool, area: Rect, y: u16, buffer: &mut Buffer) {
@@ -62,5 +59,5 @@ fn draw_row(state: &State, palette: &Palette, row: &Row, here: bool, area: Rect,
 fn value(state: &State, pointer: &str) -> String {
     let place = field::field(state.document(), pointer).zip(field::value(state.document(), pointer));
     let text = place.map(|(field, value)| sheet::summary(&field, &value)).unwrap_or_default();
-    text.chars().take(24).collect()
+    clipped(&text, 24)
 }

@@ -71,10 +71,13 @@ fn curves(state: &State) -> Vec<Curve> {
 
 fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     let columns = usize::from(area.width) * 2;
-    let values =
-        |curve: &Curve| -> Vec<f64> { (0..columns).map(|x| curve.clock.s(x as f64 / (columns - 1) as f64)).collect() };
+    // Just before the end: at the end itself a function that is repeated begins anew.
+    let time_at = |x: f64| (x / (columns - 1) as f64).min(1.0 - 1e-9);
+    let values = |curve: &Curve| -> Vec<f64> { (0..columns).map(|x| curve.clock.s(time_at(x as f64))).collect() };
     let all: Vec<Vec<f64>> = curves.iter().map(values).collect();
-    let (mut low, mut high) = all.iter().flatten().fold((0.0f64, 0.0f64), |(low, high), &s| (low.min(s), high.max(s)));
+    let ends = curves.iter().zip(&all).flat_map(|(curve, values)| ends(&curve.clock, values, &time_at));
+    let ends = ends.chain(all.iter().flatten().copied());
+    let (mut low, mut high) = ends.fold((0.0f64, 0.0f64), |(low, high), s| (low.min(s), high.max(s)));
     if low == high {
         (low, high) = (low - 0.5, high + 0.5);
     }
@@ -93,9 +96,6 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         }
     }
     braille.draw(area, buffer);
-    let label = Style::reset().patch(colour::faint());
-    write(buffer, area, 0, 0, &short(high), label);
-    write(buffer, area, 0, area.height - 1, &short(low), label);
     let now = now(time, area);
     (0..area.height).for_each(|y| {
         write(buffer, area, now, y, "┊", colour::faint());
@@ -107,6 +107,26 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         let glyph = if curve.selected { "●" } else { "○" };
         write(buffer, area, now, (row(curve.clock.s(time)) / 4) as u16, glyph, curve.style);
     }
+    // Last, so that nothing lies over a digit.
+    let label = Style::reset().patch(colour::faint());
+    write(buffer, area, 0, 0, &short(high), label);
+    write(buffer, area, 0, area.height - 1, &short(low), label);
+}
+
+/// What a curve comes to on both sides of each place where it jumps: the columns miss its ends there.
+fn ends(clock: &Clock, values: &[f64], time_at: &impl Fn(f64) -> f64) -> Vec<f64> {
+    const JUMP: f64 = 0.25;
+    let jumps = values.windows(2).enumerate().filter(|(_, pair)| (pair[0] - pair[1]).abs() > JUMP);
+    let both = jumps.flat_map(|(x, pair)| {
+        let (mut from, mut to) = (x as f64, x as f64 + 1.0);
+        for _ in 0..40 {
+            let middle = (from + to) / 2.0;
+            let s = clock.s(time_at(middle));
+            if (s - pair[0]).abs() <= (s - pair[1]).abs() { from = middle } else { to = middle }
+        }
+        [clock.s(time_at(from)), clock.s(time_at(to))]
+    });
+    both.collect()
 }
 
 fn now(time: f64, area: Rect) -> i32 {

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::{width, write};
+use super::{clipped, width, write};
 use crate::layers::Layer;
 use crate::layers::folding::position::Clock;
 use crate::tui::app::{Mode, Pane, State};
@@ -16,12 +16,18 @@ use crate::tui::{terminal, tree};
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let bar = Style::new().add_modifier(Modifier::REVERSED);
     buffer.set_style(area, bar);
-    let left = format!(" {}  {}{}", mode(state), place(state), marks(state));
-    write(buffer, area, 0, 0, &left, bar);
-    let right = right(state);
-    let x = (i32::from(area.width) - i32::from(width(&right)) - 1).max(i32::from(width(&left)) + 2);
+    let (mode, marks, right) = (mode(state), marks(state), right(state));
+    // A long name gives way: what is not saved, the time and the step are seen first.
+    let others = width(&format!(" {mode}  {marks}  {right} "));
+    let room = area.width.saturating_sub(others).max(LEAST_NAME);
+    let left = format!(" {mode}  {}{marks}", clipped(&place(state), room.into()));
+    let x = write(buffer, area, 0, 0, &left, bar) + 2;
+    let x = (i32::from(area.width) - i32::from(width(&right)) - 1).max(x);
     write(buffer, area, x, 0, &right, bar);
 }
+
+/// Columns that a name has at least.
+const LEAST_NAME: u16 = 12;
 
 /// Three letters for what the keys do.
 fn mode(state: &State) -> &'static str {

@@ -7,30 +7,17 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use super::{first_row, width, write};
+use super::columns::{Columns, GAP, Placed, Sight};
+use super::{clipped, first_row, typed, width, write};
 use crate::scene::address;
-use crate::scene::field::Kind;
 use crate::tui::app::{Mode, Pane, State};
-use crate::tui::sheet::{Cell, Row};
-use crate::tui::{colour, entry, terminal};
-
-/// Columns between two cells.
-const GAP: i32 = 2;
+use crate::tui::sheet::Row;
+use crate::tui::{colour, entry, numbers, terminal};
 
 /// The node's address.
 pub fn title(state: &State) -> String {
     let address = address::address(state.document(), &state.node);
     terminal::plain(if address.is_empty() { "scene" } else { &address })
-}
-
-/// Where a cell stands in its row, right of the label.
-struct Placed<'a> {
-    cell: &'a Cell,
-    /// Where its own name begins, where it is shown.
-    head: Option<i32>,
-    /// Where its text begins, and how wide it is.
-    at: i32,
-    width: i32,
 }
 
 /// Draws it; the cursor is on the focused cell, or on the entry in it.
@@ -46,48 +33,83 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let rows = sheet.rows(near.clone());
     let labels = rows.iter().map(|row| label(row).1 + i32::from(width(&label(row).0))).max().unwrap_or(0);
     let labels = labels.min(i32::from(area.width) / 2) + GAP;
-    let columns = Columns::of(&rows, sheet.table);
+    let room = (i32::from(area.width) - labels).max(0);
+    let columns = Columns::of(&rows, sheet.table, room);
     let shown = &rows[first - near.start..rows.len().min(first - near.start + usize::from(height))];
     let laid: Vec<Vec<Placed>> = shown.iter().map(|row| columns.lay(row)).collect();
-    let room = i32::from(area.width) - labels;
-    let focused = laid.get(state.row - first).and_then(|row| row.get(state.column));
-    let shift = focused.map_or(0, |p| (p.at + p.width + 1 - room).max(0));
-    let cells = Rect { x: area.x + labels as u16, width: room.max(0) as u16, ..area };
+    let sights = sights(state, shown, &laid, state.row - first, room);
     let below = u16::from(!columns.heads.is_empty());
+    let cells = Rect { x: area.x + labels as u16, width: room as u16, ..area };
     if below > 0 {
-        draw_heads(&columns.heads, &laid, cells, shift, buffer);
+        draw_heads(&columns.heads, &laid, &sights, cells, buffer);
     }
     let body = Rect { y: area.y + below, height: area.height - below, ..area };
     let cells = Rect { y: body.y, height: body.height, ..cells };
     let mut cursor = None;
+    let selection = entry::rows(state);
     for (y, (row, placed)) in shown.iter().zip(&laid).enumerate() {
-        let (y, i) = (y as u16, first + y);
-        let selected = state.selected_from.is_some() && entry::rows(state).contains(&i);
-        let shift = if sheet.table || i == state.row { shift } else { 0 };
-        draw_label(row, selected, body, y, buffer);
-        for (c, placed) in placed.iter().enumerate() {
+        let i = first + y;
+        let selected = state.selected_from.is_some() && selection.contains(&i);
+        draw_label(row, selected, body, y as u16, buffer);
+        let end = draw_marks(placed, sights[y], cells, y as u16, buffer);
+        let limit = room - if sights[y].goes_on(placed) { GAP } else { 0 };
+        for (c, placed, shift) in sights[y].cells(placed) {
             let here = i == state.row && c == state.column && state.focus == Pane::Table;
             let style = style(row, here, selected && c == state.column);
             if let Some(head) = placed.head {
-                write(buffer, cells, head - shift, y, &placed.cell.head, colour::faint());
+                write(buffer, cells, head - shift, y as u16, &placed.cell.head, colour::faint());
             }
-            write(buffer, cells, placed.at - shift, y, &placed.cell.text, style);
+            let at = placed.at - shift;
+            write(buffer, cells, at, y as u16, &text(placed, limit - at), style);
             if here {
-                let column = (placed.at - shift).clamp(0, (room - 1).max(0));
-                cursor = Some(Position::new(cells.x + column as u16, cells.y + y));
+                let column = at.clamp(0, (room - 1).max(0));
+                cursor = Some((Position::new(cells.x + column as u16, cells.y + y as u16), end));
             }
         }
     }
     match (&state.mode, cursor) {
-        (Mode::Entry(typed), Some(at)) => {
-            let end =
-                laid.get(state.row - first).and_then(|row| row.last()).map_or(0, |last| last.at + last.width - shift);
+        (Mode::Entry(typed), Some((at, end))) => {
             let (cursor, typed) = draw_entry(&typed.text, at, cells, buffer);
             draw_hint(state, end.max(typed) + GAP, at.y - cells.y, cells, buffer);
             Some(cursor)
         }
-        _ => cursor,
+        _ => cursor.map(|(at, _)| at),
     }
+}
+
+/// Which cells of each row are in sight: like rows show the same ones, and the row under the cursor its cell.
+fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i32) -> Vec<Sight> {
+    let Some(own) = rows.get(at) else { return vec![Sight::default(); rows.len()] };
+    let here = Sight::of(&laid[at], own.item, state.column, room);
+    let like = |row: &Row| {
+        let heads = |row: &Row| row.cells.iter().map(|cell| cell.head.clone()).collect::<Vec<_>>();
+        row.item == own.item && heads(row) == heads(own)
+    };
+    let sight = |(i, row): (usize, &Row)| match row {
+        _ if i == at => here,
+        row if row.item && like(row) => here,
+        row if row.item => Sight::beside(&laid[i], true, here, room),
+        _ => Sight::of(&laid[i], false, 0, room),
+    };
+    rows.iter().enumerate().map(sight).collect()
+}
+
+/// What a cell shows in what is left of the row: all of it, else less with a mark that says so.
+fn text(placed: &Placed, room: i32) -> String {
+    let room = usize::try_from(room).unwrap_or(0);
+    if placed.cell.is_number() { numbers::fitted(&placed.text, room) } else { clipped(&placed.text, room) }
+}
+
+/// Marks where cells are left out; gives where the last one in sight ends.
+fn draw_marks(row: &[Placed], sight: Sight, cells: Rect, y: u16, buffer: &mut Buffer) -> i32 {
+    if let Some(x) = sight.before(row) {
+        write(buffer, cells, x, y, "<", colour::faint());
+    }
+    if sight.goes_on(row) {
+        write(buffer, cells, i32::from(cells.width) - 1, y, ">", colour::faint());
+        return i32::from(cells.width);
+    }
+    sight.cells(row).last().map_or(0, |(_, placed, shift)| placed.end - shift)
 }
 
 fn style(row: &Row, here: bool, selected: bool) -> Style {
@@ -113,18 +135,15 @@ fn draw_label(row: &Row, selected: bool, area: Rect, y: u16, buffer: &mut Buffer
     }
 }
 
-fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], cells: Rect, shift: i32, buffer: &mut Buffer) {
-    let Some(row) = laid.iter().find(|row| row.len() == heads.len() && row.iter().all(|p| p.head.is_none())) else {
-        return;
-    };
-    for (head, placed) in heads.iter().zip(row) {
+fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], sights: &[Sight], cells: Rect, buffer: &mut Buffer) {
+    let under = |row: &Vec<Placed>| row.len() == heads.len() && row.iter().all(|placed| placed.head.is_none());
+    let Some(at) = laid.iter().position(under) else { return };
+    draw_marks(&laid[at], sights[at], cells, 0, buffer);
+    for (c, placed, shift) in sights[at].cells(&laid[at]) {
         // Names stand over the ends of numbers and over the beginnings of words.
-        let edge = if placed.cell.is_number() {
-            placed.at + i32::from(width(&placed.cell.text)) - i32::from(width(head))
-        } else {
-            placed.at
-        };
-        write(buffer, cells, edge - shift, 0, head, colour::strong());
+        let number = placed.cell.is_number();
+        let edge = if number { placed.end - i32::from(width(heads[c])) } else { placed.at };
+        write(buffer, cells, edge - shift, 0, heads[c], colour::strong());
     }
 }
 
@@ -133,57 +152,6 @@ fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], cells: Rect, shift: i32, buf
 fn neighbours(first: usize, height: u16) -> Range<usize> {
     const ROUND: usize = 64;
     first / ROUND * ROUND..(first + usize::from(height)).next_multiple_of(ROUND)
-}
-
-/// How wide the columns are: of the rows with the same cells, together.
-struct Columns<'a> {
-    /// The names over the table: those of its longest row; none over a form.
-    heads: Vec<&'a str>,
-    table: bool,
-    groups: Vec<(Vec<&'a str>, Vec<i32>)>,
-}
-
-impl<'a> Columns<'a> {
-    fn of(rows: &'a [Row], table: bool) -> Self {
-        let heads = |row: &'a Row| row.cells.iter().map(|cell| cell.head.as_str());
-        let mut groups: Vec<(Vec<&str>, Vec<i32>)> = Vec::new();
-        for row in rows.iter().filter(|row| row.item) {
-            let known = groups.iter().position(|(group, _)| heads(row).eq(group.iter().copied()));
-            let known = known.unwrap_or_else(|| {
-                groups.push((heads(row).collect(), vec![0; row.cells.len()]));
-                groups.len() - 1
-            });
-            for (widest, cell) in groups[known].1.iter_mut().zip(&row.cells) {
-                *widest = i32::from(width(&cell.text)).max(*widest);
-            }
-        }
-        // The first of the longest, so that equal ones do not change places.
-        let longest = groups.iter().rev().max_by_key(|(group, _)| group.len()).filter(|_| table);
-        Columns { heads: longest.map(|(group, _)| group.clone()).unwrap_or_default(), table, groups }
-    }
-
-    /// Lays the cells of a row out: in the columns of all rows like it, each with its name where no heading says it.
-    fn lay(&self, row: &'a Row) -> Vec<Placed<'a>> {
-        let heads = || row.cells.iter().map(|cell| cell.head.as_str());
-        let group = self.groups.iter().filter(|_| row.item).find(|(group, _)| heads().eq(group.iter().copied()));
-        let under_heads = row.item && heads().eq(self.heads.iter().copied());
-        let mut x = 0;
-        let place = |(c, cell): (usize, &'a Cell)| {
-            // What an item is says itself.
-            let says_itself = c == 0 && matches!(cell.field.kind, Kind::Choice(_));
-            let own = i32::from(width(&cell.text));
-            let widest = group.map_or(own, |(_, widths)| widths[c]);
-            let named = !under_heads && !says_itself && !cell.head.is_empty() && (row.cells.len() > 1 || self.table);
-            let head = named.then_some(x);
-            let name = i32::from(width(&cell.head));
-            let wide = if under_heads { widest.max(name) } else { widest };
-            let start = x + if named { name + 1 } else { 0 };
-            let at = if cell.is_number() { start + wide - own } else { start };
-            x = start + wide + GAP;
-            Placed { cell, head, at, width: own }
-        };
-        row.cells.iter().enumerate().map(place).collect()
-    }
 }
 
 /// What the entry comes to stands beside it, where the row leaves room; under the table it stands in full.
@@ -200,15 +168,11 @@ fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
 
 /// The entry stands where its cell does, and moves left where it would not fit. Gives the cursor and the column after it.
 fn draw_entry(text: &crate::tui::text::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
-    let shown = terminal::plain(text.value());
-    let wide = width(&shown).max(8) + 1;
+    let wide = width(&terminal::plain(text.value())).max(8) + 1;
     let x = at.x.min((cells.x + cells.width).saturating_sub(wide)).max(cells.x);
     let style = if text.is_fresh() { colour::focus() } else { Style::new().add_modifier(Modifier::UNDERLINED) };
-    let room = cells.right().saturating_sub(x);
-    let hidden = (text.column() as u16 + 1).saturating_sub(room);
-    let line = Rect { x, y: at.y, width: room.min(wide), height: 1 };
-    write(buffer, line, 0, 0, &" ".repeat(usize::from(wide)), Style::new().add_modifier(Modifier::UNDERLINED));
-    write(buffer, line, -i32::from(hidden), 0, &shown, style);
-    let end = i32::from(x + room.min(wide)) - i32::from(cells.x);
-    (Position::new(x + (text.column() as u16).saturating_sub(hidden), at.y), end)
+    let line = Rect { x, y: at.y, width: cells.right().saturating_sub(x).min(wide), height: 1 };
+    write(buffer, line, 0, 0, &" ".repeat(usize::from(line.width)), Style::new().add_modifier(Modifier::UNDERLINED));
+    let cursor = typed(buffer, line, text, style);
+    (cursor, i32::from(line.right()) - i32::from(cells.x))
 }

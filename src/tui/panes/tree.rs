@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use super::{first_row, width, write};
+use super::{clipped, first_row, width, write};
 use crate::tui::app::{Pane, State};
 use crate::tui::{colour, tree};
 
@@ -24,7 +24,10 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         };
         let indent = (row.depth as i32 * 2).min(i32::from(area.width) / 2);
         let x = write(buffer, area, indent, y, mark, Style::new());
-        let end = write(buffer, area, x, y, &row.label, style);
+        // A count is seen whole; a name gives way to it, and words to a name.
+        let count = if row.note.starts_with('(') { i32::from(width(&row.note)) + 1 } else { 0 };
+        let label = clipped(&row.label, (i32::from(area.width) - x - count).max(0) as usize);
+        let end = write(buffer, area, x, y, &label, style);
         let room = i32::from(area.width) - i32::from(width(&row.note));
         write(buffer, area, (end + 1).max(room.min(end + 2)), y, &row.note, colour::faint());
         if i == at && state.focus == Pane::Tree {

@@ -16,6 +16,7 @@ mod macros;
 mod screens;
 mod seeing;
 pub mod support;
+mod table;
 mod told;
 mod tutor;
 pub mod windows;

@@ -1,0 +1,150 @@
+//! Where the cells of a form or a table stand. Like rows share their columns; where those do not all fit, whole ones are
+//! left out, the first of a table never: half a number reads as another one.
+
+use super::{clipped, width};
+use crate::scene::field::Kind;
+use crate::tui::numbers;
+use crate::tui::sheet::{Cell, Row};
+
+/// Columns between two cells; where some are left out a mark stands between them.
+pub const GAP: i32 = 2;
+
+/// Where a cell stands in its row, right of the label.
+pub struct Placed<'a> {
+    pub cell: &'a Cell,
+    /// Where its own name begins, where it is shown.
+    pub head: Option<i32>,
+    /// Where it begins, with its name.
+    start: i32,
+    /// Where its text begins, and the text.
+    pub at: i32,
+    pub text: String,
+    /// Where its column ends.
+    pub end: i32,
+}
+
+/// How wide the columns are: of the rows with the same cells, together.
+pub struct Columns<'a> {
+    /// The names over the table: those of its longest row; none over a form.
+    pub heads: Vec<&'a str>,
+    table: bool,
+    room: i32,
+    groups: Vec<(Vec<&'a str>, Vec<i32>)>,
+}
+
+impl<'a> Columns<'a> {
+    /// The columns of these rows in so much room.
+    pub fn of(rows: &'a [Row], table: bool, room: i32) -> Self {
+        let heads = |row: &'a Row| row.cells.iter().map(|cell| cell.head.as_str());
+        let mut groups: Vec<(Vec<&str>, Vec<i32>)> = Vec::new();
+        for row in rows.iter().filter(|row| row.item) {
+            let known = groups.iter().position(|(group, _)| heads(row).eq(group.iter().copied()));
+            let known = known.unwrap_or_else(|| {
+                groups.push((heads(row).collect(), vec![0; row.cells.len()]));
+                groups.len() - 1
+            });
+            for (widest, cell) in groups[known].1.iter_mut().zip(&row.cells) {
+                *widest = i32::from(width(&text(cell, row, room))).max(*widest);
+            }
+        }
+        // The first of the longest, so that equal ones do not change places.
+        let longest = groups.iter().rev().max_by_key(|(group, _)| group.len()).filter(|_| table);
+        Columns { heads: longest.map(|(group, _)| group.clone()).unwrap_or_default(), table, room, groups }
+    }
+
+    /// Lays the cells of a row out: in the columns of all rows like it, each with its name where no heading says it.
+    pub fn lay(&self, row: &'a Row) -> Vec<Placed<'a>> {
+        let heads = || row.cells.iter().map(|cell| cell.head.as_str());
+        let group = self.groups.iter().filter(|_| row.item).find(|(group, _)| heads().eq(group.iter().copied()));
+        let under_heads = row.item && heads().eq(self.heads.iter().copied());
+        let mut x = 0;
+        let place = |(c, cell): (usize, &'a Cell)| {
+            // What an item is says itself.
+            let says_itself = c == 0 && matches!(cell.field.kind, Kind::Choice(_));
+            let text = text(cell, row, self.room);
+            let own = i32::from(width(&text));
+            let widest = group.map_or(own, |(_, widths)| widths[c]);
+            let named = !under_heads && !says_itself && !cell.head.is_empty() && (row.cells.len() > 1 || self.table);
+            let name = i32::from(width(&cell.head));
+            let wide = if under_heads { widest.max(name) } else { widest };
+            let start = x;
+            let text_at = start + if named { name + 1 } else { 0 };
+            let at = if cell.is_number() { text_at + wide - own } else { text_at };
+            let end = text_at + wide;
+            x = end + GAP;
+            Placed { cell, head: named.then_some(start), start, at, text, end }
+        };
+        row.cells.iter().enumerate().map(place).collect()
+    }
+}
+
+/// What a cell shows in a row of so much room: where there are others beside it, a text takes no more than half of it.
+fn text(cell: &Cell, row: &Row, room: i32) -> String {
+    let room = usize::try_from(room).unwrap_or(0);
+    match cell.is_number() {
+        true => numbers::fitted(&cell.text, room.saturating_sub(2).max(4)),
+        false if row.cells.len() > 1 => clipped(&cell.text, (room / 2).max(8)),
+        false => clipped(&cell.text, room),
+    }
+}
+
+/// Which cells of a row are in sight, and how far they are moved to the left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sight {
+    /// Whether the first cell stays where it is.
+    frozen: bool,
+    /// The first of the others.
+    first: usize,
+    /// The cell after the last one.
+    end: usize,
+    shift: i32,
+}
+
+impl Sight {
+    /// What is in sight of a row whose cell `focus` is to be.
+    pub fn of(row: &[Placed], item: bool, focus: usize, room: i32) -> Sight {
+        let frozen = item && focus > 0 && row.len() > 1;
+        let least = usize::from(frozen);
+        let focus = focus.min(row.len().saturating_sub(1));
+        let from = (least..=focus).map(|first| Sight::from(row, frozen, first, room));
+        from.into_iter().find(|sight| sight.end > focus).unwrap_or_else(|| {
+            let sight = Sight::from(row, frozen, focus, room);
+            Sight { end: sight.end.max((focus + 1).min(row.len())), ..sight }
+        })
+    }
+
+    /// What is in sight of a row beside one with other columns, of which `first` is the first.
+    pub fn beside(row: &[Placed], item: bool, other: Sight, room: i32) -> Sight {
+        let frozen = other.frozen && item && row.len() > 1;
+        let first = if other.first <= usize::from(other.frozen) { usize::from(frozen) } else { other.first };
+        Sight::from(row, frozen, first.min(row.len().saturating_sub(1)), room)
+    }
+
+    fn from(row: &[Placed], frozen: bool, first: usize, room: i32) -> Sight {
+        // One more column for the mark.
+        let begin = if frozen { row[0].end + GAP + 1 } else { GAP };
+        let scrolled = first > usize::from(frozen);
+        let shift = if scrolled { row.get(first).map_or(0, |placed| placed.start - begin) } else { 0 };
+        let fits = |i: &usize| row[*i].end - shift <= room - if i + 1 < row.len() { GAP } else { 0 };
+        let end = (first..row.len()).take_while(fits).last().map_or(first, |last| last + 1);
+        Sight { frozen, first, end, shift }
+    }
+
+    /// The cells in sight with the places they have.
+    pub fn cells<'r, 'a>(self, row: &'r [Placed<'a>]) -> impl Iterator<Item = (usize, &'r Placed<'a>, i32)> {
+        let stays = row.iter().take(usize::from(self.frozen && self.first > 0)).map(|placed| (0, placed, 0));
+        let others = row.iter().enumerate().take(self.end).skip(self.first);
+        stays.chain(others.map(move |(i, placed)| (i, placed, self.shift)))
+    }
+
+    /// Where a mark says that cells are left out on the left.
+    pub fn before(self, row: &[Placed]) -> Option<i32> {
+        let scrolled = self.first > usize::from(self.frozen);
+        scrolled.then(|| if self.frozen { row[0].end + 1 } else { 0 })
+    }
+
+    /// Whether cells are left out on the right.
+    pub fn goes_on(self, row: &[Placed]) -> bool {
+        self.end < row.len()
+    }
+}
