@@ -1,12 +1,14 @@
-//! The sides of a polygon in nested chains, so that most of a fine curve is passed over at a glance: eight sides make a
-//! chain, eight chains a longer one, up to the whole polygon. A chain knows its box, and a straight axis from which none of
+//! The sides of a polygon in nested chains, so that most of a fine curve is passed over at a glance: four sides make a
+//! chain, four chains a longer one, up to the whole polygon. A chain knows its box, and a straight axis from which none of
 //! it is farther than its band. A line that keeps clear of that crosses none of its sides; only where a line meets or grazes
-//! a chain are its parts looked at, and at the end the sides themselves. So what is found is what a look at every side finds.
+//! a chain are its parts looked at, and at the end the sides themselves. A line that parts the ends of a chain which bends one
+//! way only, by less than half a turn, crosses one side of it, found by halving. So what is found is what a look at every side
+//! finds.
 
 use kurbo::{Point, Rect, Vec2};
 
 /// Sides in a shortest chain, and chains in one that is longer.
-const FAN: usize = 8;
+const FAN: usize = 4;
 
 /// A share of the lengths at hand that is larger than any error of rounding.
 const ROUNDING: f64 = 1e-12;
@@ -25,6 +27,8 @@ struct Chain {
     bounds: Rect,
     axis: (Point, Point),
     band: f64,
+    /// Whether it bends one way only, by less than half a turn.
+    is_arc: bool,
 }
 
 /// One of a polygon's chains.
@@ -58,6 +62,19 @@ impl Line {
         let length = d.hypot2().sqrt();
         Line { q, d, length: if length > SHORT { length } else { f64::INFINITY } }
     }
+
+    /// On which side of the line `p` lies, and how far, in lengths of `d`: above 0 on its left as axes are drawn in mathematics.
+    pub fn side(&self, p: Point) -> f64 {
+        self.d.cross(p - self.q)
+    }
+
+    /// Whether a point with this [`Line::side`] counts as left of the line. Ties are decided as if the line lay a hair lower and
+    /// to the right, which is the half-open rule: along a left or top edge it is in, and a vertex counts with one of its two
+    /// sides.
+    pub fn is_left(&self, side: f64) -> bool {
+        let rightward = if self.d.x != 0.0 { self.d.x > 0.0 } else { self.d.y < 0.0 };
+        if rightward { side > 0.0 } else { side >= 0.0 }
+    }
 }
 
 impl Chain {
@@ -71,7 +88,7 @@ impl Chain {
         let center = bounds.center();
         let (chord, disc) = (farthest(first, last), farthest(center, center));
         let (axis, band) = if chord <= disc { ((first, last), chord) } else { ((center, center), disc) };
-        Chain { bounds, axis, band }
+        Chain { bounds, axis, band, is_arc: is_arc(vertices) }
     }
 
     /// Whether the whole of it lies clearly on one side of the line.
@@ -124,14 +141,14 @@ impl Chains {
         part.parts(self.levels[part.level - 1].len())
     }
 
-    /// Adds the chains, as long ones as there are, that together hold all sides of `part` that meet `area`.
+    /// Adds the chains that together hold all sides of `part` that meet `area`, none of them much larger than it.
     pub fn near(&self, part: Part, area: Rect, found: &mut Vec<Part>) {
         let Rect { x0, y0, x1, y1 } = self.chain(part).bounds;
         if !meets(&self.chain(part).bounds, &area) {
             return;
         }
-        let within = area.x0 <= x0 && x1 <= area.x1 && area.y0 <= y0 && y1 <= area.y1;
-        if within || part.level == 0 {
+        let is_small = x1 - x0 <= area.width() && y1 - y0 <= area.height();
+        if is_small || part.level == 0 {
             found.push(part);
         } else {
             self.below(part).for_each(|part| self.near(part, area, found));
@@ -149,14 +166,29 @@ impl Chains {
         }
     }
 
-    /// Hands over the sides of `part` in chains that the line may cross, by the numbers of their first vertices.
-    pub fn each_met(&self, part: Part, line: &Line, each: &mut impl FnMut(std::ops::Range<usize>)) {
-        if self.chain(part).is_beside(line) {
+    /// Hands over the sides of `part` that the line may cross, by the numbers of their first vertices.
+    pub fn each_met(&self, part: Part, line: &Line, vertices: &[Point], each: &mut impl FnMut(std::ops::Range<usize>)) {
+        let chain = self.chain(part);
+        if chain.is_beside(line) {
             return;
         }
+        let n = vertices.len();
+        let size = FAN.pow(part.level as u32 + 1);
+        let (mut first, mut last) = (part.index * size, ((part.index + 1) * size).min(n));
+        if chain.is_arc {
+            let is_left = |i: usize| line.is_left(line.side(vertices[if i == n { 0 } else { i }]));
+            let begins = is_left(first);
+            if begins != is_left(last) {
+                while last - first > 1 {
+                    let middle = (first + last) / 2;
+                    if is_left(middle) == begins { first = middle } else { last = middle }
+                }
+                return each(first..last);
+            }
+        }
         match part.level {
-            0 => each(part.index * FAN..(part.index + 1) * FAN),
-            _ => self.below(part).for_each(|part| self.each_met(part, line, each)),
+            0 => each(first..last),
+            _ => self.below(part).for_each(|part| self.each_met(part, line, vertices, each)),
         }
     }
 
@@ -175,6 +207,17 @@ impl Chains {
             _ => self.below(part).fold(nearest2, |nearest2, part| self.nearest2(part, q, nearest2, vertices)),
         }
     }
+}
+
+/// Whether the sides through these points bend one way only, each by less than a right angle, all by less than half a turn.
+fn is_arc(points: impl Iterator<Item = Point> + Clone) -> bool {
+    let sides = points.clone().zip(points.skip(1)).map(|(a, b)| b - a);
+    let Some(start) = sides.clone().next() else { return false };
+    let mut pairs = sides.clone().zip(sides.skip(1));
+    let bends = |sign: f64| {
+        move |(a, b): (Vec2, Vec2)| a.dot(b) > 0.0 && a.cross(b) * sign >= 0.0 && start.cross(b) * sign >= 0.0
+    };
+    pairs.clone().all(bends(1.0)) || pairs.all(bends(-1.0))
 }
 
 fn meets(r: &Rect, area: &Rect) -> bool {

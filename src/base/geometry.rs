@@ -10,7 +10,7 @@ use kurbo::{BezPath, Point, Rect, Vec2};
 use super::chains::{Chains, Line, Part};
 
 /// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
-/// should. That many sides are looked at only where it matters ([`Chains`]): eight of them lie within 0.003 px of their
+/// should. That many sides are looked at only where it matters ([`Chains`]): four of them lie within 0.001 px of their
 /// chord, and a path that keeps farther from it is done with them.
 pub const FLATNESS_PX: f64 = 2e-5;
 
@@ -131,8 +131,8 @@ impl Polygon {
 
     /// Hands over the places s where a line crosses a side of `part`, in no order.
     pub fn crossings_in(&self, part: Part, line: &Line, each: &mut impl FnMut(f64)) {
-        self.chains.each_met(part, line, &mut |sides| {
-            self.some(sides).filter_map(|(a, b)| side_crossing(a, b, line.q, line.d)).for_each(&mut *each);
+        self.chains.each_met(part, line, &self.vertices, &mut |sides| {
+            self.some(sides).filter_map(|(a, b)| side_crossing(a, b, line)).for_each(&mut *each);
         });
     }
 
@@ -144,16 +144,12 @@ impl Polygon {
     }
 }
 
-/// The s where the line q + s d crosses the side from `a` to `b`. Ties are decided as if the line lay a hair lower and
-/// to the right, which is the half-open rule: along a left or top edge it is in, and a vertex counts with one of its
-/// two sides. `d` is not zero.
-fn side_crossing(a: Point, b: Point, q: Point, d: Vec2) -> Option<f64> {
-    let rightward = if d.x != 0.0 { d.x > 0.0 } else { d.y < 0.0 };
-    let left_of_line = |c: f64| if rightward { c > 0.0 } else { c >= 0.0 };
-    let (ca, cb) = (d.cross(a - q), d.cross(b - q));
-    (left_of_line(ca) != left_of_line(cb)).then(|| {
+/// The s where the line crosses the side from `a` to `b`, by the half-open rule ([`Line::is_left`]). `d` is not zero.
+fn side_crossing(a: Point, b: Point, line: &Line) -> Option<f64> {
+    let (ca, cb) = (line.side(a), line.side(b));
+    (line.is_left(ca) != line.is_left(cb)).then(|| {
         let p = a + (b - a) * (ca / (ca - cb));
-        (p - q).dot(d) / d.hypot2()
+        (p - line.q).dot(line.d) / line.d.hypot2()
     })
 }
 
@@ -213,7 +209,8 @@ mod tests {
                     if d == Vec2::ZERO {
                         continue;
                     }
-                    let all = polygon.sides().filter_map(|(a, b)| side_crossing(a, b, q, d)).collect();
+                    let line = Line::new(q, d);
+                    let all = polygon.sides().filter_map(|(a, b)| side_crossing(a, b, &line)).collect();
                     assert_eq!(sorted(polygon.line_crossings(q, d)), sorted(all), "{q:?} {d:?}");
                 }
                 let nearest = polygon.sides().map(|(a, b)| distance2_to_segment(q, a, b)).fold(f64::INFINITY, f64::min);

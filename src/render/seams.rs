@@ -123,7 +123,7 @@ mod tests {
             (
                 json!({ "speed": 1.5, "position": { "function": "cosine" } }),
                 "repeat",
-                &["from 1 to 0", "2 a timeline", "a duration of 4 s", "every speed times 2"],
+                &["from 1 to 0", "whole number, as 2", "a duration of 4 s", "every speed times 2"],
             ),
         ] {
             let text = text(zone, wrap);

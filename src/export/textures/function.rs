@@ -8,7 +8,7 @@ use crate::layers::folding::position::Position;
 /// Places in τ, the first number of them that will do.
 const COLUMNS: [usize; 4] = [1024, 4096, 16384, 65536];
 /// A row with no more knots than these will do.
-const FEW: usize = 256;
+const FEW: usize = 512;
 /// No row has more, however far off it is.
 const MOST: usize = 4096;
 /// Places between two points at which the error is measured.

@@ -55,7 +55,7 @@ fn closes(position: &Position, wrap: Wrap) -> bool {
 fn cure(zone: &Zone, wrap: Wrap) -> String {
     if closes(&zone.position, wrap) {
         let nearest = zone.speed.abs().round().max(1.0).copysign(zone.speed);
-        return format!("its passes close: {nearest} a timeline, a whole number, closes the loop");
+        return format!("set its speed to a whole number, as {nearest}");
     }
     match &zone.position {
         Position::Sine { .. } | Position::Cosine { .. } => "give it whole cycles".into(),
