@@ -54,7 +54,8 @@ fn lines_edit_answer_and_fail_by_their_numbers() {
     for (lines, out, error, succeeds, kept) in [
         (format!("set {speed}=2\nget {speed}\nw\n"), "\n2\n", "", true, true),
         (format!(":set {speed}=2\n# a remark\n\nwq\nget {speed}"), "is saved", "", true, true),
-        (format!("set {speed}=2\n"), "is set", "not saved", true, false),
+        (format!("set {speed}=2\n"), "is set", "standard input: the edits are not saved", false, false),
+        (format!("set {speed}=2\nq!\n"), "is set", "", true, false),
         (format!("set {speed}=2\nq\nq!\nget {speed}"), "is set", "line 2: there are unsaved edits", false, false),
         (format!("set {speed}=-x\nset {speed}=2\nw"), "is saved", "line 1: ", false, true),
         ("sett a=1\nmove\nq".into(), "", "line 1: there is no command sett", false, false),

@@ -64,6 +64,10 @@ pub fn truncate(file: &File, length: u64) -> io::Result<()> {
 /// Brings the file and its attributes to the disk. After a failure its pages may be lost for good: write a new file.
 pub fn sync(file: &File) -> io::Result<()> {
     operation(None)?;
+    #[cfg(test)]
+    if IS_FULL.get() {
+        return Err(io::ErrorKind::StorageFull.into());
+    }
     file.sync_all()
 }
 
@@ -97,6 +101,12 @@ pub fn folder_of(path: &Path) -> &Path {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     }
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Whether nothing that this thread writes reaches the disk.
+    pub static IS_FULL: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
 fn operation(written: Option<(&mut File, &[u8])>) -> io::Result<()> {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{disk, journal};
+use super::{beside, disk, journal};
 use crate::base::system;
 use crate::base::text::ago;
 
@@ -37,6 +37,7 @@ pub struct Holder {
 impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.user.as_str(), self.host.as_str()) {
+            ("", _) if self.pid == 0 => return write!(f, "another process"),
             ("", _) => return write!(f, "process {}", self.pid),
             (user, "") => write!(f, "{user}")?,
             (user, host) => write!(f, "{user} on {host}")?,
@@ -53,6 +54,11 @@ impl Holder {
         } else {
             format!("may be edited by {self}, whose lock cannot be seen from here")
         }
+    }
+
+    /// Whether it is known to have been there for so long, in milliseconds.
+    pub fn has_been_there(&self, ms: u64) -> bool {
+        self.since_ms > 0 && super::now_ms().saturating_sub(self.since_ms) > ms
     }
 
     fn of_this_process() -> Holder {
@@ -82,7 +88,7 @@ impl Holder {
 
 /// Where it lies.
 pub fn path_beside(scene: &Path) -> PathBuf {
-    journal::path_beside(scene).with_extension("editor")
+    beside::path(scene, "editor")
 }
 
 fn read(scene: &Path) -> Option<Holder> {

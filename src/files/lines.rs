@@ -15,6 +15,8 @@ use crate::base::system::folders;
 
 /// How many logs are kept.
 const KEPT: usize = 20;
+/// So much of a scene's name is in a log's, in characters: a name of four bytes each fits beside the rest.
+const LONGEST_STEM: usize = 50;
 /// How a log's name ends.
 const SUFFIX: &str = "plica";
 /// A script longer than this is none.
@@ -51,7 +53,7 @@ impl Log {
     fn begin_in(folder: &Path, scene: &Path, header: Vec<String>, failed: impl FnOnce(String) + Send + 'static) -> Log {
         let seconds = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
         let name = scene.file_name().unwrap_or_default().to_string_lossy();
-        let stem = name.split('.').next().unwrap_or_default();
+        let stem: String = name.split('.').next().unwrap_or_default().chars().take(LONGEST_STEM).collect();
         let path = folder.join(format!("{seconds}-{stem}-{}.{SUFFIX}", std::process::id()));
         let (sender, lines) = mpsc::channel();
         let to = path.clone();

@@ -1,6 +1,7 @@
 //! The only file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
 //! elsewhere.
 
+mod beside;
 pub mod cache;
 pub mod disk;
 pub mod draft;
@@ -20,6 +21,7 @@ pub mod recovery;
 pub mod scene;
 pub mod session;
 pub mod temporary;
+mod through;
 pub mod watch;
 pub mod write;
 

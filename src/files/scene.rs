@@ -5,9 +5,9 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::{Limits, Options, paths, write_atomic};
+use super::{Limits, Options, paths, through, write_atomic};
 use crate::base::error::{Error, Result};
-use crate::scene::Document;
+use crate::scene::{Document, json};
 
 /// Reads the scene at `path`; `-` is standard input.
 ///
@@ -34,7 +34,17 @@ pub fn read_text(path: &Path, limits: &Limits) -> Result<String> {
     if path == Path::new("-") {
         return text("standard input", std::io::stdin().lock(), limits);
     }
-    text(&path.display().to_string(), paths::open_named(path)?, limits)
+    let read = text(&path.display().to_string(), paths::open_named(path)?, limits);
+    // Where a save was cut short, its copy is the file's text.
+    match through::left_behind(path) {
+        Some(copy) if !read.as_ref().is_ok_and(|text| is_whole(text)) && is_whole(&copy) => Ok(copy),
+        _ => read,
+    }
+}
+
+/// Whether a text is JSON from its beginning to its end.
+pub(super) fn is_whole(text: &str) -> bool {
+    json::parse(text).is_ok()
 }
 
 fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
@@ -51,12 +61,16 @@ fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
     })
 }
 
-/// Writes a scene's text to `path`, atomically.
+/// Writes a scene's text to `path`: atomically, or in place where the file has other names, which it keeps.
 ///
 /// # Errors
 /// As [`write_atomic`]: the scene is not saved then.
 pub fn save(path: &Path, text: &str) -> Result<()> {
-    write_atomic(path, text.as_bytes())
+    if through::has_other_names(path) {
+        through::write_through(path, text.as_bytes())
+    } else {
+        write_atomic(path, text.as_bytes())
+    }
 }
 
 /// SHA-256 of a file's bytes, in hexadecimal: how a file that another program wrote is told from our own.

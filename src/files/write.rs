@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 use super::temporary::{self, Temporary};
 use super::{disk, paths};
 use crate::base::error::{Error, Result};
+use crate::base::system;
 
-/// Writes `bytes` to `path` atomically. An existing file's mode is kept; a link is followed.
+/// Writes `bytes` to `path` atomically. An existing file's mode and extended attributes are kept; a link is followed.
 ///
 /// # Errors
 /// When anything fails up to and including the sync of the folder: the data is not safe on the disk then, and the
@@ -68,6 +69,9 @@ impl Atomic {
             // Giving a file to its old owner is for root alone; the mode matters to everybody.
             let _ = fchown(&file, Some(old.uid()), Some(old.gid()));
             file.set_permissions(old.permissions()).map_err(|error| cannot_write(path, error))?;
+            if let Ok(old) = File::open(&target) {
+                system::copy_attributes(&old, &file);
+            }
         }
         Ok(Atomic { file, temporary, target })
     }
@@ -108,7 +112,7 @@ impl Seek for Atomic {
     }
 }
 
-fn cannot_write(path: &Path, error: io::Error) -> Error {
+pub(super) fn cannot_write(path: &Path, error: io::Error) -> Error {
     let cure = match error.kind() {
         io::ErrorKind::NotFound => "make the folder first",
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder that you may write to",

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use super::scene_options::SceneOptions;
+use super::scene_options::{RecoveryOptions, SceneOptions};
 
 /// Edit a scene, or a picture, in the terminal.
 #[derive(clap::Args)]
@@ -23,6 +23,9 @@ pub struct Args {
     /// How the picture is shown in the terminal: auto asks it
     #[arg(long, value_name = "PROTOCOL", default_value = "auto", value_parser = ["auto", "kitty", "iterm2", "sixel", "blocks"])]
     pub graphics: String,
+    /// Unsaved edits that a session left behind.
+    #[command(flatten)]
+    pub recovery: RecoveryOptions,
     /// How files are read.
     #[command(flatten)]
     pub scene: SceneOptions,

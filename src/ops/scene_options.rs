@@ -24,6 +24,21 @@ impl SceneOptions {
     }
 }
 
+/// What to do about unsaved edits that a session left behind, where nobody can be asked.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct RecoveryOptions {
+    /// Take unsaved edits that a session left behind (keep), or leave the file as it is; undo has them then (drop)
+    #[arg(long, value_name = "keep | drop", value_parser = ["keep", "drop"])]
+    pub after_recovery: Option<String>,
+}
+
+impl RecoveryOptions {
+    /// Whether they are taken; none where that was not said.
+    pub fn keep(&self) -> Option<bool> {
+        self.after_recovery.as_ref().map(|word| word == "keep")
+    }
+}
+
 fn limit_help() -> String {
     let rows = limits::TABLE.iter().map(|row| format!("\n  {:<18}{} [{}]", row.name, row.help, row.default));
     format!("Raise or lower a limit; may be given again. A value may end in K, M or G.{}", rows.collect::<String>())

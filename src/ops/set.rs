@@ -2,14 +2,15 @@
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use super::Context;
-use super::scene_options::SceneOptions;
+use super::scene_options::{RecoveryOptions, SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
-use crate::files::session::{Mode, Overwrite, Session};
+use crate::files::session::{Mode, Overwrite, Session, Taken};
 use crate::preview::script;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, address};
@@ -24,8 +25,17 @@ pub struct Args {
     #[arg(required = true, value_name = "PATH=VALUE")]
     settings: Vec<String>,
     #[command(flatten)]
+    recovery: RecoveryOptions,
+    #[command(flatten)]
     reading: SceneOptions,
 }
+
+/// How long somebody else who changes the scene is waited for, where that is no editor that can be asked to set it.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How often it is looked whether they are done.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+/// Who has had the scene for so long is no `plica set`.
+const BRIEF_MS: u64 = 5_000;
 
 /// Sets them: in the editor that has the scene open, else in the file.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
@@ -35,18 +45,60 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         lost.replace(told);
         Ok(edit)
     };
-    if let Some(done) = script::edit(&args.scene, make) {
-        done?;
-        lost.take().iter().for_each(|line| context.messages.say(line));
-        context.messages.say("set in the editor that has the scene open; save it there");
-        return Ok(());
-    }
-    let mut session = Session::open(&args.scene, &args.reading.options()?, Mode::Edit)?;
+    let options = args.reading.options()?;
+    let begun = Instant::now();
+    let mut session = loop {
+        if let Some(done) = script::edit(&args.scene, make) {
+            done?;
+            lost.take().iter().for_each(|line| context.messages.say(line));
+            context.messages.say("set in the editor that has the scene open; save it there");
+            return Ok(());
+        }
+        let session = Session::open(&args.scene, &options, Mode::EditOrLook)?;
+        match session.held_by() {
+            None => break session,
+            Some(other) if !other.certain || begun.elapsed() > PATIENCE || other.has_been_there(BRIEF_MS) => {
+                break Session::open(&args.scene, &options, Mode::Edit)?;
+            }
+            Some(_) => std::thread::sleep(LOOK_EVERY),
+        }
+    };
+    settle(&mut session, &args)?;
     let edit = make(session.document())?;
-    session.apply(edit, false).map_err(|problems| refused(&args.scene, problems))?;
-    session.save(Overwrite::No)?;
+    session.refuse_protected().map_err(|error| error.cure("allow to write it first: chmod u+w"))?;
+    let applied = session.apply(edit, false).map_err(|problems| refused(&args.scene, problems))?;
+    session.save(Overwrite::No).inspect_err(|_| {
+        // What could not be saved is not left behind either.
+        applied.and_then(|_| session.undo());
+    })?;
     lost.take().iter().for_each(|line| context.messages.say(line));
     Ok(())
+}
+
+/// Takes or leaves unsaved edits that a session left behind; nothing is done about them unasked.
+fn settle(session: &mut Session, args: &Args) -> Result<()> {
+    let Some(offer) = session.recovery() else { return Ok(()) };
+    let place = args.scene.display();
+    match args.recovery.keep() {
+        None => {
+            let error = Error::at(place, format!("{} left behind, and nothing is set", offer.in_words()));
+            Err(error.cure("--after-recovery keep takes them, drop leaves them; plica edit shows them"))
+        }
+        Some(false) => {
+            session.discard_recovery();
+            Ok(())
+        }
+        Some(true) => {
+            session.recover();
+            match session.take_in(None)? {
+                (Taken::Asked(places), _) => {
+                    let what = format!("another program changed what is unsaved too: {}", places.join("; "));
+                    Err(Error::at(place, what).cure("plica edit asks which counts"))
+                }
+                _ => Ok(()),
+            }
+        }
+    }
 }
 
 /// The edit that puts all of `settings` (`PATH=VALUE`) in force, each seen after the ones before it; and what a change of

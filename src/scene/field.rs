@@ -119,7 +119,7 @@ pub fn below<'a>(place: Place<'a>, pointer: &str) -> Vec<(Child, Place<'a>)> {
     steps(place).into_iter().map(|(token, below)| (described(pointer, &token, below), below)).collect()
 }
 
-/// The places directly below `place`, each with its token.
+/// The places directly below `place`, each with its token; without what nobody edits, the version of the format.
 pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
     let value = place.value.filter(|value| !value.is_null());
     match place.shape.body() {
@@ -135,7 +135,7 @@ pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
         Body::Object | Body::Tagged(_) if value.is_some() => {
             let branch = place.shape.branch(value);
             let required = |name: &str| branch.is_some_and(|branch| branch.required().any(|one| one == name));
-            let properties = place.shape.properties(value).into_iter();
+            let properties = place.shape.properties(value).into_iter().filter(|(_, shape)| !shape.is_fixed());
             let inner = properties.map(|(name, shape)| {
                 let written = value.and_then(|value| value.get(name));
                 let set = place.set && written.is_some();

@@ -3,6 +3,7 @@
 //! together on one line, so that diffs are small.
 
 use std::fmt;
+use std::iter::repeat_n;
 
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
@@ -15,6 +16,8 @@ pub const MAX_DEPTH: usize = 64;
 
 /// What stands on one line ends before this column.
 const MAX_COLUMN: usize = 110;
+/// So many spaces a level.
+pub(super) const INDENT: usize = 2;
 
 /// Parses `text`; the problem says the line and the column.
 pub fn parse(text: &str) -> Result<Value, Problem> {
@@ -129,6 +132,20 @@ pub fn to_text(value: &Value) -> String {
     out
 }
 
+/// The text of a value within a document, one level deep, on a line that already holds `column` characters.
+pub(super) fn below(value: &Value, column: usize) -> String {
+    let mut out = String::new();
+    write(value, 1, column, &mut out);
+    out
+}
+
+/// The text of a value on one line.
+pub(super) fn on_one_line(value: &Value) -> String {
+    let mut out = String::new();
+    inline(value, &mut out);
+    out
+}
+
 /// Writes `value` where the line already holds `column` characters.
 fn write(value: &Value, level: usize, column: usize, out: &mut String) {
     if (level > 0 || !value.is_object()) && is_flat(value) {
@@ -145,11 +162,11 @@ fn write(value: &Value, level: usize, column: usize, out: &mut String) {
                 let start = out.len();
                 scalar(&Value::from(key.as_str()), out);
                 out.push_str(": ");
-                write(value, level + 1, 2 * level + 2 + out.len() - start, out);
+                write(value, level + 1, INDENT * (level + 1) + out.len() - start, out);
             });
         }
         Value::Array(items) if !items.is_empty() => {
-            lines(items.iter(), '[', ']', level, out, |item, out| write(item, level + 1, 2 * level + 2, out));
+            lines(items.iter(), '[', ']', level, out, |item, out| write(item, level + 1, INDENT * (level + 1), out));
         }
         _ => inline(value, out),
     }
@@ -167,14 +184,14 @@ fn lines<T>(
     out.push(open);
     for (i, item) in items.enumerate() {
         out.push('\n');
-        out.extend(std::iter::repeat_n("  ", level + 1));
+        out.extend(repeat_n(" ", INDENT * (level + 1)));
         each(item, out);
         if i < last {
             out.push(',');
         }
     }
     out.push('\n');
-    out.extend(std::iter::repeat_n("  ", level));
+    out.extend(repeat_n(" ", INDENT * level));
     out.push(close);
 }
 

@@ -20,10 +20,10 @@ pub fn migrate(json: &mut Value) -> Result<(), Problem> {
             format!("the scene is of version {version}, and this program knows versions up to {VERSION} only");
         return Err(Problem::error("/plica", message).hint("open it with a newer plica"));
     }
-    for step in STEPS.iter().skip(version as usize - 1) {
-        step(json);
+    if version < u64::from(VERSION) {
+        STEPS.iter().skip(version as usize - 1).for_each(|step| step(json));
+        json["plica"] = VERSION.into();
     }
-    json["plica"] = VERSION.into();
     Ok(())
 }
 

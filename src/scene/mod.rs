@@ -17,6 +17,7 @@ mod follow;
 pub mod history;
 pub mod insert;
 pub mod json;
+pub mod layout;
 pub mod merge;
 pub mod migrate;
 pub mod pointer;
@@ -36,6 +37,7 @@ pub const VERSION: u32 = 1;
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the document format.
+    #[schemars(extend("readOnly" = true))]
     pub plica: u32,
     /// What the scene is called.
     #[serde(default, skip_serializing_if = "String::is_empty")]

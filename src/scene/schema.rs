@@ -114,6 +114,11 @@ impl Shape {
         }
     }
 
+    /// Whether it is not for editing.
+    pub fn is_fixed(self) -> bool {
+        self.site.get("readOnly") == Some(&Value::Bool(true))
+    }
+
     /// What it is.
     pub fn body(self) -> Body {
         if self.tag.is_some() {

@@ -12,7 +12,7 @@ use crate::files::holder::Holder;
 use crate::files::outputs::{self, Guard};
 use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
 use crate::files::{self, picture, write};
-use crate::scene::history::Applied;
+use crate::scene::history::{Applied, Way};
 use crate::scene::merge::Side;
 use crate::scene::{Document, Edit, History};
 
@@ -78,6 +78,23 @@ impl Door {
         safety.journaled || !self.journaled || safety.failing.is_some()
     }
 
+    /// Tries a journal again that could not be opened; to be called now and then.
+    pub fn tend(&mut self) {
+        self.session.tend();
+    }
+
+    /// Gives unsaved edits up: the next opening does not ask about them. Undo still has them.
+    pub fn give_up(&mut self) {
+        if !self.read_only {
+            self.session.give_up();
+        }
+    }
+
+    /// Where bytes of a damaged journal were kept aside.
+    pub fn kept_aside(&self) -> Option<&Path> {
+        self.session.kept_aside()
+    }
+
     /// Why edits do not reach the journal.
     pub fn failing(&self) -> Option<String> {
         self.session.safety().failing.filter(|_| !self.read_only)
@@ -85,7 +102,12 @@ impl Door {
 
     /// How long the screen may stay as it is: a mark that will go is looked after soon.
     pub fn patience(&self) -> Duration {
-        Duration::from_millis(if self.is_synced() { 60_000 } else { 15 })
+        let patience = match (self.failing().is_some(), self.is_synced()) {
+            (true, _) => 500,
+            (false, true) => 60_000,
+            (false, false) => 15,
+        };
+        Duration::from_millis(patience)
     }
 
     /// What is said when the scene has been opened.
@@ -112,12 +134,22 @@ impl Door {
         self.session.held_by()
     }
 
-    /// Refuses what would change the scene where it may only be looked at.
+    /// Refuses what would change the scene where it may only be looked at, or while unsaved edits of before wait for an
+    /// answer.
     ///
     /// # Errors
     /// Says so.
     pub fn writable(&self) -> std::result::Result<(), String> {
-        if self.read_only { Err(READ_ONLY.into()) } else { Ok(()) }
+        if self.read_only {
+            return Err(READ_ONLY.into());
+        }
+        match self.offered() {
+            None => Ok(()),
+            Some(offer) => Err(format!(
+                "{} left behind: :recovery keep takes them, :recovery drop leaves them (undo has them then)",
+                offer.in_words()
+            )),
+        }
     }
 
     /// Takes the unsaved edits that are offered, or leaves them; undo still gives them.
@@ -158,30 +190,31 @@ impl Door {
         Some(self.change(applied))
     }
 
-    /// Back to the scene as it was so long before now; before the present state where something is undone already. With
-    /// it, how many steps that is.
+    /// Back to the scene as it was so long before now; before the present state where that is not the newest one. With it,
+    /// how many steps that is.
     pub fn earlier(&mut self, time: Duration) -> (usize, Option<Change>) {
         let history = self.session.history();
-        let now = if history.undone().is_empty() { files::now_ms() } else { self.state_time() };
-        let all = self.session.earlier(now.saturating_sub(millis(time)));
+        let now = if history.state() == history.newest() { files::now_ms() } else { history.time_ms() };
+        let all = self.session.travel(|history| history.earlier(now.saturating_sub(millis(time))));
         self.travelled(all)
     }
 
-    /// On by so long a time from the present state, as far as it was undone. With it, how many steps that is.
+    /// On by so long a time from the present state. With it, how many steps that is.
     pub fn later(&mut self, time: Duration) -> (usize, Option<Change>) {
-        let all = self.session.later(self.state_time().saturating_add(millis(time)));
+        let time = self.session.history().time_ms().saturating_add(millis(time));
+        let all = self.session.travel(|history| history.later(time));
         self.travelled(all)
     }
 
-    /// When the present state came to be, in milliseconds since the epoch; where it is the first one, when it was left.
-    fn state_time(&self) -> u64 {
-        let history = self.session.history();
-        history.done().last().or(history.undone().last()).map_or(0, |step| step.time_ms)
+    /// Goes to a state of the history, in whatever branch it is.
+    pub fn go_to(&mut self, state: usize) -> Option<Change> {
+        let all = self.session.travel(|history| history.go_to(state));
+        self.travelled(all).1
     }
 
-    fn travelled(&self, all: Vec<Applied>) -> (usize, Option<Change>) {
+    fn travelled(&self, all: Vec<(Way, Applied)>) -> (usize, Option<Change>) {
         let count = all.len();
-        let edit = Edit::all(all.into_iter().map(|applied| applied.edit));
+        let edit = Edit::all(all.into_iter().map(|(_, applied)| applied.edit));
         (count, (count > 0).then(|| Change { document: self.document().clone(), revision: self.revision(), edit }))
     }
 
@@ -209,7 +242,7 @@ impl Door {
             let mut guard = Guard::default();
             guard.protect(self.path(), self.document().scene());
             guard.spare(to)?;
-            write::write_new(to, self.document().to_text().as_bytes())?;
+            write::write_new(to, self.session.text().as_bytes())?;
             let missing = outputs::missing(to, self.document().scene()).join(", ");
             let but = if missing.is_empty() { missing } else { format!(", but lacks what it reads there: {missing}") };
             return Ok(format!("{} is written{but}", to.display()));
@@ -217,6 +250,11 @@ impl Door {
         if !overwrite && let Err(why) = self.session.may_overwrite() {
             tracing::warn!("not saved: {why}");
             return Err(Error::Usage("another program changed the file: :merge takes it in, :w! overwrites it".into()));
+        }
+        if !overwrite && self.session.refuse_protected().is_err() {
+            return Err(Error::Usage(
+                "the file is read-only: :w! writes it all the same, :w PATH saves elsewhere".into(),
+            ));
         }
         self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
         Ok(format!("{} is saved", self.path().display()))
@@ -252,6 +290,14 @@ impl Door {
     pub fn flush(&self) {
         if let Err(reason) = self.session.flush() {
             tracing::warn!("leaving without a journal: {reason}");
+        }
+    }
+
+    /// What becomes of unsaved edits that are left now, in words.
+    pub fn left_unsaved(&self) -> String {
+        match self.session.flush() {
+            Ok(()) => "the edits are not saved; the next `plica edit` offers them".into(),
+            Err(reason) => format!("the edits are not saved, and lost: no journal has them ({reason})"),
         }
     }
 }

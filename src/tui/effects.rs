@@ -101,6 +101,8 @@ impl Editor {
     fn open(&mut self, path: &Path, mode: Mode) -> bool {
         match Door::open(path, mode, &self.options.files) {
             Ok(door) => {
+                // Whoever opens another scene with unsaved edits here was asked.
+                self.state.door.give_up();
                 let window = self.preview.has_window();
                 // First, for it may be the same scene, and a scene has one editor.
                 self.preview.close();

@@ -10,7 +10,6 @@ use super::door::Door;
 use super::terminal::plain;
 use super::update::Effect;
 use crate::base::error::Error;
-use crate::base::text::ago;
 use crate::files::session::Taken;
 use crate::scene::merge::Side;
 
@@ -49,8 +48,10 @@ pub struct Life {
 /// Where both changed the file and nothing was decided.
 const UNDECIDED: &str = "file differs";
 
-pub const COMMANDS: &[Command] =
-    &[command("merge", "[mine|theirs]", "Take in what another program wrote to the file", merge)];
+pub const COMMANDS: &[Command] = &[
+    command("merge", "[mine|theirs]", "Take in what another program wrote to the file", merge),
+    command("recovery", "[keep|drop]", "Answer about unsaved edits that were left behind, or ask again", recovery),
+];
 
 impl Life {
     /// What is to be asked when a scene has been opened.
@@ -64,38 +65,30 @@ impl Life {
             options.push(("quit", "Leave"));
             question(About::Holder, "the scene is open elsewhere".into(), text, &options)
         });
-        let offered = || {
-            let offer = door.offered()?;
-            let title = format!("{} left behind, {}", changes(offer.changes), ago_of(offer.time_ms));
-            let mut text = few(&offer.words);
-            if offer.file_changed {
-                text.push("Another program has changed the file since.".into());
-            }
-            let options = [
-                ("recover", "Take the changes"),
-                ("leave", "Leave the file as it is; u still gives the changes"),
-                ("difference", "Look at all of them"),
-            ];
-            Some(question(About::Recovery, title, text, &options))
-        };
-        Life { waiting: held.or_else(offered), file: None }
+        Life { waiting: held.or_else(|| about_recovery(door)), file: None }
     }
+}
+
+/// What is asked about unsaved edits that were left behind.
+fn about_recovery(door: &Door) -> Option<Choice> {
+    let offer = door.offered()?;
+    let title = format!("{} left behind, {}", offer.in_words(), door.ago(offer.time_ms));
+    let mut text = few(&offer.words);
+    if offer.file_changed {
+        text.push("Another program has changed the file since.".into());
+    }
+    let options = [
+        ("recover", "Take the changes"),
+        ("leave", "Leave the file as it is; u still gives the changes"),
+        ("difference", "Look at all of them"),
+    ];
+    Some(question(About::Recovery, title, text, &options))
 }
 
 /// A list with what is to be known above it.
 fn question(about: About, title: String, text: Vec<String>, options: &[(&str, &str)]) -> Choice {
     let options = options.iter().map(|(word, help)| (word.to_string(), help.to_string())).collect();
     Choice { title, options, at: 0, then: Then::Answer(Question { about, text }) }
-}
-
-/// `1 unsaved change was`, `3 unsaved changes were`.
-fn changes(count: usize) -> String {
-    if count == 1 { "1 unsaved change was".into() } else { format!("{count} unsaved changes were") }
-}
-
-fn ago_of(time_ms: u64) -> String {
-    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |now| now.as_millis());
-    ago(u64::try_from(now).unwrap_or(u64::MAX).saturating_sub(time_ms))
 }
 
 /// The first few lines, and how many more there are.
@@ -119,15 +112,8 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
     match (about, word) {
         (About::Holder, "quit") => state.ask(Effect::Quit),
         (About::Holder, "edit") => state.ask(Effect::TakeOver),
-        (About::Recovery, "recover") => {
-            let change = state.door.recover(true);
-            change.into_iter().for_each(|change| state.changed(change));
-            return take_in(state, None);
-        }
-        (About::Recovery, "leave") => {
-            let change = state.door.recover(false);
-            change.into_iter().for_each(|change| state.changed(change));
-        }
+        (About::Recovery, "recover") => return recover(state, true),
+        (About::Recovery, "leave") => return recover(state, false),
         (About::Recovery, _) if word == "difference" => {
             let lines = state.door.offered().map(|offer| offer.words.clone()).unwrap_or_default();
             look(state, lines, asked);
@@ -139,6 +125,24 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
             look(state, lines, asked);
         }
         _ => {}
+    }
+    Ok(())
+}
+
+/// Takes the unsaved edits that are offered, or leaves them.
+fn recover(state: &mut State, take: bool) -> Done {
+    let change = state.door.recover(take);
+    change.into_iter().for_each(|change| state.changed(change));
+    if take { take_in(state, None) } else { Ok(()) }
+}
+
+fn recovery(state: &mut State, call: &Call) -> Done {
+    let asked = about_recovery(&state.door).ok_or("no unsaved edits were left behind")?;
+    match call.text {
+        "" => state.life.waiting = Some(asked),
+        "keep" => return recover(state, true),
+        "drop" => return recover(state, false),
+        _ => return Err("recovery takes keep, drop or nothing".into()),
     }
     Ok(())
 }

@@ -28,6 +28,7 @@ pub fn is_interactive() -> bool {
 }
 
 /// What has come of the lines so far.
+#[derive(Default)]
 struct Session {
     interactive: bool,
     /// How many lines were read.
@@ -35,6 +36,10 @@ struct Session {
     failed: usize,
     /// Whether the end of the input was met once with unsaved edits.
     warned: bool,
+    /// What becomes of unsaved edits that the input ended with.
+    left: Option<String>,
+    /// Why edits reach no journal, as last told.
+    failing: Option<String>,
     /// What was told of the work that runs, and when.
     told: Option<(String, Instant)>,
 }
@@ -46,7 +51,11 @@ impl Editor {
     /// Lines that failed, where nobody was there to see it.
     pub fn run_lines(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         let interactive = is_interactive();
-        let mut session = Session { interactive, number: 0, failed: 0, warned: false, told: None };
+        let mut session = Session { interactive, ..Session::default() };
+        if let Some(aside) = self.state.door.kept_aside() {
+            let what = "the journal was damaged, what could not be read is in";
+            terminal::remark(&format!("{what} {}", terminal::plain(&aside.display().to_string())));
+        }
         if interactive {
             terminal::print(&format!("{}  (? lists the commands, q leaves)", self.state.door.path().display()));
         }
@@ -55,6 +64,8 @@ impl Editor {
         while !self.leaving {
             self.run_scripts();
             self.answer(&mut session);
+            self.state.door.tend();
+            session.see_journal(self.state.door.failing());
             let busy = self.state.seen.work.is_some() || !self.scripts.is_empty();
             if !busy && !reading {
                 session.prompt(&self.state);
@@ -115,9 +126,7 @@ impl Editor {
             session.warned = true;
             return terminal::remark("there are unsaved edits: w saves them, q! leaves them");
         }
-        if unsaved {
-            terminal::remark("the edits are not saved (w saves); the next `plica edit` offers them");
-        }
+        session.left = unsaved.then(|| self.state.door.left_unsaved());
         self.leaving = true;
     }
 
@@ -169,12 +178,36 @@ impl Session {
         }
     }
 
+    /// Says when edits reach no journal, and when they do again.
+    fn see_journal(&mut self, failing: Option<String>) {
+        if failing != self.failing {
+            match &failing {
+                Some(why) => {
+                    terminal::remark(&format!("no journal: {} (only what is saved is safe)", terminal::plain(why)))
+                }
+                None => terminal::remark("the journal is written again"),
+            }
+            self.failing = failing;
+        }
+    }
+
     fn result(&self) -> Result<()> {
-        match self.failed {
-            0 => Ok(()),
-            _ if self.interactive => Ok(()),
-            1 => Err(Error::at("standard input", "1 line failed")),
-            many => Err(Error::at("standard input", format!("{many} lines failed"))),
+        let failed = match self.failed {
+            0 => None,
+            1 => Some("1 line failed".to_owned()),
+            many => Some(format!("{many} lines failed")),
+        };
+        match (failed, &self.left) {
+            (None, None) => Ok(()),
+            (_, left) if self.interactive => {
+                left.iter().for_each(|left| terminal::remark(left));
+                Ok(())
+            }
+            (Some(failed), left) => {
+                left.iter().for_each(|left| terminal::remark(left));
+                Err(Error::at("standard input", failed))
+            }
+            (None, Some(left)) => Err(Error::at("standard input", left).cure("w saves them, q! gives them up")),
         }
     }
 }

@@ -34,6 +34,8 @@ pub struct Options {
     pub window: bool,
     /// Whether the scene may only be looked at.
     pub read_only: bool,
+    /// Whether unsaved edits that a session left behind are taken; none: that is asked.
+    pub keep_recovery: Option<bool>,
     /// The lines that are run at first.
     pub script: Option<PathBuf>,
     /// The folder of the tutor, where it is to begin.
@@ -47,8 +49,9 @@ pub struct Options {
 impl Options {
     /// As `plica edit` without options.
     pub fn new(path: PathBuf) -> Options {
-        let (script, graphics, tutor) = (None, None, None);
-        Options { path, window: true, read_only: false, script, graphics, tutor, files: files::Options::default() }
+        let files = files::Options::default();
+        let (keep_recovery, script, graphics, tutor) = (None, None, None, None);
+        Options { path, window: true, read_only: false, keep_recovery, script, graphics, tutor, files }
     }
 
     /// How a scene is opened: where somebody else edits it, the person is asked, if there is one.
@@ -83,7 +86,8 @@ impl Options {
         let files = args.scene.options()?;
         let (path, script) = (args.path.clone(), args.script.clone());
         let graphics = Protocol::named(&args.graphics);
-        Ok(Options { path, window: !args.no_view, read_only: args.read_only, script, graphics, tutor: None, files })
+        let (window, read_only, keep_recovery) = (!args.no_view, args.read_only, args.recovery.keep());
+        Ok(Options { path, window, read_only, keep_recovery, script, graphics, tutor: None, files })
     }
 }
 
@@ -227,6 +231,9 @@ impl Editor {
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();
         }
+        if let (Some(keep), true) = (editor.options.keep_recovery, editor.state.door.offered().is_some()) {
+            editor.take(Event::Line(format!("recovery {}", if keep { "keep" } else { "drop" })));
+        }
         if let Some(script) = editor.options.script.clone() {
             editor.source(&script)?;
         }
@@ -281,6 +288,7 @@ impl Editor {
 
     /// Brings everything to the disk.
     pub fn end(&mut self) {
+        self.state.door.tend();
         self.state.door.flush();
         self.job.take().into_iter().for_each(Job::end);
         self.log = None;
@@ -302,6 +310,7 @@ impl Editor {
             true => Duration::from_millis(33),
             false => self.eyes.patience(self.state.door.patience()),
         };
+        self.state.door.tend();
         let first = events.recv_timeout(patience).ok();
         for event in first.into_iter().chain(events.try_iter()) {
             self.take(event);

@@ -137,16 +137,33 @@ impl Editor {
     /// # Errors
     /// The first mistake.
     pub fn run_unseen(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
-        let result = self.run_all(events);
-        if !self.state.door.is_saved() && result.is_ok() && !self.leaving {
-            terminal::remark("the edits are not saved (w saves); the next `plica edit` offers them");
-        }
+        let result = self.refuse_undecided().and_then(|()| self.run_all(events));
+        let unsaved = !self.leaving && !self.state.door.is_saved();
+        let left = unsaved.then(|| self.state.door.left_unsaved());
         self.end();
-        result
+        match (result, left) {
+            (Ok(()), Some(left)) => {
+                Err(Error::at("the script", format!("ends, and {left}")).cure("w saves them, q! gives them up"))
+            }
+            (Err(error), Some(left)) => {
+                terminal::remark(&left);
+                Err(error)
+            }
+            (result, None) => result,
+        }
+    }
+
+    /// A script does not run on a scene of which nobody has said what it is.
+    fn refuse_undecided(&self) -> Result<()> {
+        let Some(offer) = self.state.door.offered() else { return Ok(()) };
+        let what = format!("{} left behind, and the script is not run", offer.in_words());
+        Err(Error::at(self.state.door.path().display(), what)
+            .cure("--after-recovery keep takes them, drop leaves them; plica edit shows them"))
     }
 
     fn run_all(&mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         while !self.leaving && !self.scripts.is_empty() {
+            self.state.door.tend();
             let ran = self.run_next()?;
             self.said().iter().for_each(|line| terminal::print(line));
             let patience = if ran { Duration::ZERO } else { PATIENCE };

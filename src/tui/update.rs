@@ -204,7 +204,8 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Asked(asked) => answer(state, asked),
         Event::Unlogged(why) => {
             state.recorder.set_place(None);
-            state.complain(format!("the log of this session is not kept: {why}"));
+            // A line that is running is not to blame.
+            state.say(format!("the log of this session is not kept: {why}"));
         }
         Event::FilesChanged(files) => life::follow(state, &files),
         Event::End => state.ask(Effect::Quit),

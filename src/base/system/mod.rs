@@ -14,6 +14,31 @@ pub fn no_follow() -> i32 {
     rustix::fs::OFlags::NOFOLLOW.bits() as i32
 }
 
+/// Gives one file the extended attributes of another (notes, labels, access lists), as far as the system lets us.
+#[cfg(target_os = "linux")]
+pub fn copy_attributes(from: impl AsFd, to: impl AsFd) {
+    /// No list of names and no value is longer on Linux.
+    const MOST: usize = 64 << 10;
+    let (mut names, mut value) = (vec![0; MOST], vec![0; MOST]);
+    let Ok(length) = rustix::fs::flistxattr(&from, &mut names[..]) else { return };
+    for name in names[..length].split(|byte| *byte == 0).filter(|name| !name.is_empty()) {
+        if let Ok(length) = rustix::fs::fgetxattr(&from, name, &mut value[..]) {
+            // Some belong to the system alone; the file is as good without them.
+            let _ = rustix::fs::fsetxattr(&to, name, &value[..length], rustix::fs::XattrFlags::empty());
+        }
+    }
+}
+
+/// Gives one file the extended attributes of another: not known here.
+#[cfg(not(target_os = "linux"))]
+pub fn copy_attributes(_: impl AsFd, _: impl AsFd) {}
+
+/// Whether this user may not write the file, by its owner and mode.
+pub fn is_denied_to_write(path: &std::path::Path) -> bool {
+    let (access, flags) = (rustix::fs::Access::WRITE_OK, rustix::fs::AtFlags::EACCESS);
+    rustix::fs::accessat(rustix::fs::CWD, path, access, flags) == Err(rustix::io::Errno::ACCESS)
+}
+
 /// Whether a process with this number is there (it may belong to somebody else).
 pub fn process_lives(pid: u32) -> bool {
     let Some(pid) = i32::try_from(pid).ok().and_then(rustix::process::Pid::from_raw) else { return false };

@@ -2,9 +2,9 @@
 //! a lock for as long as somebody edits, is kept over save and quit (that is undo after reopening), and drops its oldest
 //! half when it outgrows a bound.
 
-use std::fs::File;
+use std::fs::{File, Permissions};
 use std::io::{self, Read};
-use std::os::unix::fs::{FileExt, MetadataExt};
+use std::os::unix::fs::{FileExt, MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -16,8 +16,8 @@ mod writer;
 
 pub use format::{Contents, Header, Kind, Record, Unreadable, encode, read};
 
-use super::{disk, scene};
-use crate::base::system::folders;
+use super::{beside, disk, scene};
+use crate::base::system::{self, folders};
 use crate::scene::Document;
 use writer::{Message, Shared, Writer};
 
@@ -67,13 +67,13 @@ pub struct Found {
     bytes: Vec<u8>,
     /// What it holds; none where it is new or damaged.
     pub contents: Option<Contents>,
+    /// Where bytes that were not understood are kept.
+    aside: Option<PathBuf>,
 }
 
 /// Where the journal of a scene lies: beside it.
 pub fn path_beside(scene_path: &Path) -> PathBuf {
-    let name = scene_path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.strip_suffix(".plica.json").unwrap_or(&name);
-    disk::folder_of(scene_path).join(format!(".{name}.journal"))
+    beside::path(scene_path, "journal")
 }
 
 /// Where the journal of a scene lies if its folder cannot be written: among the user's state, under a hash of its path.
@@ -112,6 +112,7 @@ pub fn find(scene_path: &Path) -> Result<Found, Unopened> {
 fn lock(path: &Path) -> Result<Found, Unopened> {
     loop {
         let mut file = disk::open_private(path)?;
+        keep_private(&file)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(std::fs::TryLockError::WouldBlock) => {
@@ -139,8 +140,25 @@ fn lock(path: &Path) -> Result<Found, Unopened> {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, what).into());
             }
         };
-        return Ok(Found { file, path: path.to_owned(), bytes, contents });
+        return Ok(Found { file, path: path.to_owned(), bytes, contents, aside: None });
     }
+}
+
+/// A journal that somebody else laid there, or that has a name elsewhere, is not written: its reader, or the owner of the
+/// other name, is not meant. One that others may read is taken from them.
+fn keep_private(file: &File) -> io::Result<()> {
+    let found = file.metadata()?;
+    let refused = |what: &str| Err(io::Error::new(io::ErrorKind::PermissionDenied, what));
+    if !found.is_file() {
+        return refused("is not a regular file");
+    } else if found.uid() != system::user() {
+        return refused("belongs to another user");
+    } else if found.nlink() > 1 {
+        return refused("has another name (a hard link)");
+    } else if found.mode() & 0o077 != 0 {
+        file.set_permissions(Permissions::from_mode(0o600))?;
+    }
+    Ok(())
 }
 
 impl Found {
@@ -167,30 +185,37 @@ impl Found {
     /// from `header`. `revision` is that of the history which the records gave.
     ///
     /// # Errors
-    /// When it cannot be written. What was found is still there then.
-    pub fn open(mut self, header: &Header, records: usize, revision: u64) -> io::Result<Opened> {
+    /// When it cannot be written. What was found is still there then, and locked: this may be tried again.
+    pub fn open(&mut self, header: &Header, records: usize, revision: u64) -> io::Result<Opened> {
         let end = match &self.contents {
             None => 0,
             Some(contents) if records == 0 => contents.header_end,
             Some(contents) => contents.records[records - 1].1,
         };
-        let aside = if end < self.bytes.len() { Some(self.keep_aside(end)?) } else { None };
         if end < self.bytes.len() {
+            if self.aside.is_none() {
+                self.aside = Some(self.keep_aside(end)?);
+            }
             disk::truncate(&self.file, end as u64)?;
+            self.bytes.truncate(end);
         }
-        self.bytes.truncate(end);
         io::Seek::seek(&mut self.file, io::SeekFrom::Start(end as u64))?;
-        if self.contents.is_none() {
-            self.bytes = format::start(header);
-            disk::write(&mut self.file, &self.bytes)?;
+        let bytes = if self.contents.is_none() {
+            // What an earlier try has written is overwritten, to its end.
+            let start = format::start(header);
+            disk::write(&mut self.file, &start)?;
+            self.file.set_len(start.len() as u64)?;
+            start
         } else {
-            self.file.write_all_at(&std::process::id().to_le_bytes(), format::PID_AT as u64)?;
-            self.bytes[format::PID_AT..][..4].copy_from_slice(&std::process::id().to_le_bytes());
-        }
+            let pid = std::process::id().to_le_bytes();
+            self.file.write_all_at(&pid, format::PID_AT as u64)?;
+            self.bytes[format::PID_AT..][..4].copy_from_slice(&pid);
+            self.bytes.clone()
+        };
         disk::sync(&self.file)?;
         disk::sync_folder_of(&self.path)?;
         let empty = records == 0;
-        Ok(Opened { journal: self.start(revision, empty)?, aside })
+        Ok(Opened { journal: self.start(bytes, revision, empty)?, aside: self.aside.clone() })
     }
 
     /// Writes the bytes from `end` on to a file of their own.
@@ -200,20 +225,21 @@ impl Found {
         let names = (1..).map(|n| if n == 1 { format!("{name}.rest") } else { format!("{name}.rest-{n}") });
         let path = names.map(|name| self.path.with_file_name(name)).find(free).expect("some number is free");
         let mut file = disk::create_new(&path, true)?;
-        disk::write(&mut file, &self.bytes[end..])?;
-        disk::sync(&file)?;
-        Ok(path)
+        let written = disk::write(&mut file, &self.bytes[end..]).and_then(|()| disk::sync(&file));
+        // Half of it is of no use, and the next try makes another.
+        written.inspect_err(|_| drop(disk::remove(&path))).map(|()| path)
     }
 
-    fn start(self, revision: u64, empty: bool) -> io::Result<Journal> {
+    fn start(&self, bytes: Vec<u8>, revision: u64, empty: bool) -> io::Result<Journal> {
         let shared = Arc::new(Shared::default());
         shared.acknowledged.store(revision, Ordering::Release);
-        let (length, path) = (self.bytes.len(), self.path.clone());
+        let (length, path) = (bytes.len(), self.path.clone());
         let writer = Writer {
-            file: self.file,
-            path: self.path,
+            // The copy shares the lock.
+            file: self.file.try_clone()?,
+            path: self.path.clone(),
             synced: length,
-            contents: self.bytes,
+            contents: bytes,
             shared: shared.clone(),
             revision,
             failed: None,

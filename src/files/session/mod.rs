@@ -4,18 +4,19 @@
 use std::path::{Path, PathBuf};
 
 use super::holder::{Holder, Sign};
-use super::journal::{self, Found, Header, Journal, Kind, Record, Unopened};
-use super::recovery::{self, Replayed};
-use super::{Options, disk, now_ms, scene, temporary};
+use super::journal::{self, Found, Kind, Unopened};
+use super::{Options, disk, now_ms, scene, temporary, through};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
-use crate::scene::history::{Applied, Stamp};
-use crate::scene::{Document, Edit, History, words};
+use crate::scene::history::{Applied, Stamp, Way};
+use crate::scene::{Document, Edit, History, layout};
 
+mod keeping;
 mod outside;
 #[cfg(test)]
 mod tests;
 
+use keeping::Keeping;
 pub use outside::Taken;
 
 /// What a session may do.
@@ -59,6 +60,16 @@ pub struct Recovery {
     pub file_changed: bool,
 }
 
+impl Recovery {
+    /// `1 unsaved change was`, `3 unsaved changes were`.
+    pub fn in_words(&self) -> String {
+        match self.changes {
+            1 => "1 unsaved change was".into(),
+            many => format!("{many} unsaved changes were"),
+        }
+    }
+}
+
 /// How safe the present document is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Safety {
@@ -77,14 +88,12 @@ pub struct Session {
     options: Options,
     mode: Mode,
     history: History,
-    journal: Option<Journal>,
-    /// Why there is no journal although there should be.
-    journal_missing: Option<String>,
+    keeping: Keeping,
     aside: Option<PathBuf>,
     /// SHA-256 of the file as last read or written.
     file: String,
-    /// Added to the history's steps, so that none is used twice in a journal.
-    first_step: u64,
+    /// The text of the file as last read or written: what is saved is laid out like it.
+    source: String,
     offer: Option<Offer>,
     /// What the file held when it was last read or written; none where that is not known.
     base: Option<Document>,
@@ -115,6 +124,9 @@ impl Session {
         let path = std::fs::canonicalize(path).map_err(|error| Error::at(path.display(), error))?;
         let (found, held_by) = claim(&path, mode)?;
         // Under the lock nobody of ours writes any more: this is the text that counts.
+        if let Some(Ok(_)) = &found {
+            through::mend(&path, scene::is_whole)?;
+        }
         let text = scene::read_text(&path, &options.limits)?;
         let document = scene::parse(&path, &text, options)?;
         let mut session = Session {
@@ -122,12 +134,11 @@ impl Session {
             options: options.clone(),
             mode,
             history: History::new(document.clone()),
-            journal: None,
-            journal_missing: None,
+            keeping: Keeping::Nowhere,
             aside: None,
             file: scene::hash(text.as_bytes()),
-            first_step: 0,
             offer: None,
+            source: text,
             base: Some(document.clone()),
             held_by,
             _sign: None,
@@ -138,48 +149,10 @@ impl Session {
                 session._sign = Sign::put_up(&session.path);
                 session.take_up(found, document);
             }
-            Some(Err(error)) => session.journal_missing = Some(error.to_string()),
+            Some(Err(error)) => session.keeping = Keeping::unfound(error.to_string(), document),
             None => session.mode = Mode::ReadOnly,
         }
         Ok(session)
-    }
-
-    /// Goes on from what the journal tells.
-    fn take_up(&mut self, mut found: Found, document: Document) {
-        let replayed = found.contents.as_ref().and_then(recovery::replay);
-        if replayed.is_none() {
-            found.contents = None;
-        }
-        let (records, revision) = replayed.as_ref().map_or((0, 0), |r| (r.records, r.history.revision()));
-        let header = Header { file: self.file.clone(), document: document.json().clone(), is_file: true };
-        let place = found.path().display().to_string();
-        match found.open(&header, records, revision) {
-            Ok(opened) => (self.journal, self.aside) = (Some(opened.journal), opened.aside),
-            Err(error) => self.journal_missing = Some(format!("{place}: {error}")),
-        }
-        if let Some(replayed) = replayed {
-            self.compare(replayed, document);
-        }
-    }
-
-    /// Decides between the journal's document and the file's.
-    fn compare(&mut self, replayed: Replayed, document: Document) {
-        let Replayed { mut history, unsaved, time_ms, next_step, file, base, .. } = replayed;
-        self.first_step = next_step;
-        history.govern(self.options.rules());
-        let file_changed = file != self.file;
-        if history.document().to_text() == document.to_text() {
-            self.history = history;
-            self.now_saved(file_changed);
-        } else if unsaved > 0 && !history.is_saved() {
-            let words = words::describe(document.json(), &Edit::between(&document, history.document()));
-            let recovery = Recovery { changes: unsaved, words, time_ms, file_changed };
-            let base = base.and_then(|json| Document::from_json_under(json, self.options.rules()).ok());
-            self.offer = Some(Offer { recovery, history, file, base });
-        } else {
-            self.history = history;
-            self.enter(&document);
-        }
     }
 
     /// The file, absolute and free of links.
@@ -231,13 +204,23 @@ impl Session {
         self.enter(&file);
     }
 
-    /// Applies an edit; `held` by a key held down joins the edit before it into one step. None where it changes nothing.
-    /// Unsaved edits still offered are left.
+    /// Refuses to change a document while unsaved edits are offered: what they would be is not known yet.
     ///
     /// # Errors
-    /// When the result has errors in it; the document stays as it was.
+    /// They are.
+    pub fn refuse_undecided(&self) -> std::result::Result<(), Problem> {
+        let Some(recovery) = self.recovery() else { return Ok(()) };
+        let problem = Problem::error("", format!("{} left behind and wait for an answer", recovery.in_words()));
+        Err(problem.hint("keep or drop them first"))
+    }
+
+    /// Applies an edit; `held` by a key held down joins the edit before it into one step. None where it changes nothing.
+    ///
+    /// # Errors
+    /// When the result has errors in it, or unsaved edits are offered; the document stays as it was.
     pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Applied>, Vec<Problem>> {
-        self.discard_recovery();
+        self.refuse_undecided().map_err(|problem| vec![problem])?;
+        self.tend();
         let applied = self.history.apply(edit, Stamp { time_ms: now_ms(), held })?;
         if let Some(applied) = &applied {
             self.record(Kind::Edit, applied);
@@ -250,34 +233,40 @@ impl Session {
         self.history.close_step();
     }
 
-    /// Takes the last step back; none where there is none.
+    /// Takes the last step back; none where there is none, or unsaved edits are offered.
     pub fn undo(&mut self) -> Option<Applied> {
-        self.discard_recovery();
+        self.refuse_undecided().ok()?;
         let applied = self.history.undo()?;
         self.record(Kind::Undo, &applied);
         Some(applied)
     }
 
-    /// Does again what was undone last; none where there is nothing.
+    /// Does again what was undone last; none as for [`Session::undo`].
     pub fn redo(&mut self) -> Option<Applied> {
+        self.refuse_undecided().ok()?;
         let applied = self.history.redo()?;
         self.record(Kind::Redo, &applied);
         Some(applied)
     }
 
-    /// Back to the document as it was at a time, in milliseconds since the epoch.
-    pub fn earlier(&mut self, time_ms: u64) -> Vec<Applied> {
-        self.discard_recovery();
-        let all = self.history.earlier(time_ms);
-        self.record_all(&Kind::Undo, &all);
+    /// Moves through the history: to a state, or to a time. Nothing where unsaved edits are offered.
+    pub fn travel(&mut self, how: impl FnOnce(&mut History) -> Vec<(Way, Applied)>) -> Vec<(Way, Applied)> {
+        if self.offer.is_some() {
+            return Vec::new();
+        }
+        let all = how(&mut self.history);
+        self.record_all(&all);
         all
     }
 
-    /// On to the document as it was at a time, as far as it was undone.
-    pub fn later(&mut self, time_ms: u64) -> Vec<Applied> {
-        let all = self.history.later(time_ms);
-        self.record_all(&Kind::Redo, &all);
-        all
+    /// Gives unsaved edits up: the document is the file's again, and the next opening does not ask. Undo still has them.
+    pub fn give_up(&mut self) {
+        if self.offer.is_some() || self.history.is_saved() {
+            return;
+        }
+        if let Some(base) = self.base.clone().or_else(|| self.file_document()) {
+            self.enter(&base);
+        }
     }
 
     /// Writes the document to its file, atomically.
@@ -290,15 +279,18 @@ impl Session {
         if self.reads_only() {
             return Err(Error::at(place, "is open to read only").cure("save a copy under another name"));
         }
+        self.refuse_undecided().map_err(|problem| Error::at(place, problem))?;
         if overwrite == Overwrite::No {
             self.may_overwrite().map_err(|error| error.cure("take its changes in, or overwrite it"))?;
+            self.refuse_protected().map_err(|error| error.cure("allow to write it (chmod u+w), or overwrite it"))?;
         }
         // The edits first: should we die in between, the journal knows what the file has become. Where they cannot be
         // kept, saving is all the more urgent.
-        if let Some(Err(reason)) = self.journal.as_ref().map(Journal::flush) {
+        self.tend();
+        if let Err(reason) = self.keeping.flush() {
             tracing::warn!("saving without a journal: {reason}");
         }
-        let text = self.document().to_text();
+        let text = self.text();
         let ours = scene::hash(text.as_bytes());
         if let Err(error) = scene::save(&self.path, &text) {
             // It may have come as far as the file and not be safe there: what is there is ours all the same.
@@ -307,17 +299,21 @@ impl Session {
             }
             return Err(error);
         }
-        self.file = ours;
-        self.base = Some(self.document().clone());
+        (self.file, self.source, self.base) = (ours, text, Some(self.document().clone()));
         self.now_saved(true);
         Ok(())
     }
 
+    /// The text that a save writes: what has not changed since the file was read keeps its layout.
+    pub fn text(&self) -> String {
+        layout::rewrite(&self.source, self.document().json())
+    }
+
     /// How safe the present document is.
     pub fn safety(&self) -> Safety {
-        let failing = self.journal.as_ref().and_then(Journal::failing).or_else(|| self.journal_missing.clone());
+        let failing = self.keeping.failing();
         let revision = self.history.revision();
-        let journaled = self.offer.is_some() || self.journal.as_ref().is_some_and(|j| j.acknowledged() >= revision);
+        let journaled = self.offer.is_some() || self.keeping.journal().is_some_and(|j| j.acknowledged() >= revision);
         Safety { saved: self.history.is_saved(), journaled, failing }
     }
 
@@ -326,23 +322,7 @@ impl Session {
     /// # Errors
     /// Why they are not.
     pub fn flush(&self) -> std::result::Result<(), String> {
-        match (&self.journal, &self.journal_missing) {
-            (Some(journal), _) => journal.flush(),
-            (None, Some(reason)) => Err(reason.clone()),
-            (None, None) => Ok(()),
-        }
-    }
-
-    fn record_all(&mut self, kind: &Kind, all: &[Applied]) {
-        all.iter().for_each(|applied| self.record(kind.clone(), applied));
-    }
-
-    fn record(&mut self, kind: Kind, applied: &Applied) {
-        let Some(journal) = &mut self.journal else { return };
-        let (patch, inverse) = (applied.edit.clone(), applied.inverse.clone());
-        let step = self.first_step + applied.step;
-        let record = Record { revision: applied.revision, time: now_ms(), step, kind, patch, inverse };
-        journal.append(&record, self.history.document(), &self.file);
+        self.keeping.flush()
     }
 }
 

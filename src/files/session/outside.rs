@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 
 use super::{Kind, Session};
 use crate::base::error::{Error, Result};
-use crate::files::{now_ms, scene};
+use crate::files::{now_ms, scene, through};
 use crate::scene::history::{Applied, Stamp};
 use crate::scene::merge::{Merged, Side, merge};
 use crate::scene::{Document, Edit, words};
@@ -37,7 +37,7 @@ impl Session {
             self.history.mark_unsaved();
             return Ok((Taken::Gone, None));
         }
-        let (theirs, file) = self.file_version()?;
+        let (theirs, file, text) = self.file_version()?;
         if file == self.file {
             // It may have been away for a moment.
             if self.history.document().to_text() == theirs.to_text() {
@@ -48,21 +48,21 @@ impl Session {
         if let Some(offer) = &mut self.offer {
             // What is offered stays offered; until it is taken or not, the document is the file's.
             offer.recovery.file_changed = true;
-            (self.file, self.base) = (file, Some(theirs.clone()));
+            self.is_file(theirs.clone(), file, text);
             let edit = Edit::between(self.history.document(), &theirs);
             let applied = self.history.apply(edit, Stamp::default()).ok().flatten();
             self.history.mark_saved();
             return Ok((Taken::Whole, applied));
         }
         if self.history.is_saved() {
-            (self.file, self.base) = (file, Some(theirs.clone()));
+            self.is_file(theirs.clone(), file, text);
             return Ok((Taken::Whole, self.enter(&theirs)));
         }
         let (merged, conflicts) = self.merged(&theirs, prefer.unwrap_or(Side::Mine));
         if prefer.is_none() && !conflicts.is_empty() {
             return Ok((Taken::Asked(conflicts), None));
         }
-        (self.file, self.base) = (file, Some(theirs.clone()));
+        self.is_file(theirs.clone(), file, text);
         if merged.to_text() == theirs.to_text() {
             return Ok((Taken::Whole, self.enter(&theirs)));
         }
@@ -76,9 +76,9 @@ impl Session {
     /// # Errors
     /// As [`Session::take_in`].
     pub fn revert(&mut self) -> Result<Option<Applied>> {
-        let (theirs, file) = self.file_version()?;
+        let (theirs, file, text) = self.file_version()?;
         self.discard_recovery();
-        (self.file, self.base) = (file, Some(theirs.clone()));
+        self.is_file(theirs.clone(), file, text);
         Ok(self.enter(&theirs))
     }
 
@@ -87,7 +87,7 @@ impl Session {
     /// # Errors
     /// As [`Session::take_in`].
     pub fn difference(&self) -> Result<Vec<String>> {
-        let (theirs, _) = self.file_version()?;
+        let (theirs, ..) = self.file_version()?;
         Ok(words::describe(self.document().json(), &Edit::between(self.document(), &theirs)))
     }
 
@@ -107,10 +107,28 @@ impl Session {
         }
     }
 
-    /// The document in the file, and the file's hash.
-    fn file_version(&self) -> Result<(Document, String)> {
+    /// The document in the file, the file's hash and its text.
+    fn file_version(&self) -> Result<(Document, String, String)> {
         let text = scene::read_text(&self.path, &self.options.limits)?;
-        Ok((scene::parse(&self.path, &text, &self.options)?, scene::hash(text.as_bytes())))
+        Ok((scene::parse(&self.path, &text, &self.options)?, scene::hash(text.as_bytes()), text))
+    }
+
+    /// The document in the file, where that can be read.
+    pub(super) fn file_document(&self) -> Option<Document> {
+        self.file_version().ok().map(|(document, ..)| document)
+    }
+
+    /// This is what the file holds.
+    fn is_file(&mut self, document: Document, file: String, text: String) {
+        (self.file, self.source, self.base) = (file, text, Some(document));
+    }
+
+    /// Refuses to replace a file that is write-protected.
+    ///
+    /// # Errors
+    /// It is.
+    pub fn refuse_protected(&self) -> Result<()> {
+        through::refuse_protected(&self.path)
     }
 
     /// Whether the file was taken away.

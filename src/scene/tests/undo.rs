@@ -77,6 +77,62 @@ fn earlier_and_later_go_by_time() {
 }
 
 #[test]
+fn undo_is_a_tree_and_time_goes_through_all_of_it() {
+    let mut history = History::new(squint());
+    // As in vim's manual: three edits, three times undo, three other edits.
+    for value in [10, 20, 30] {
+        feather(&mut history, value, value as u64, false);
+    }
+    (0..3).for_each(|_| drop(history.undo().unwrap()));
+    for value in [40, 50, 60] {
+        feather(&mut history, value, value as u64, false);
+    }
+    assert_eq!((history.state(), history.newest(), history.depth()), (6, 6, (3, 0)));
+    for (state, value, way) in [(5, 50.0, 1), (4, 40.0, 1), (3, 30.0, 4), (2, 20.0, 1), (1, 10.0, 1), (0, 4.0, 1)] {
+        assert_eq!((history.go_to(state).len(), now(&history), history.state()), (way, value, state));
+    }
+    // Redo goes along the branch that was left last.
+    history.redo().unwrap();
+    assert_eq!((now(&history), history.depth()), (10.0, (1, 2)));
+    history.undo();
+    history.go_to(6);
+    (0..3).for_each(|_| drop(history.undo().unwrap()));
+    history.redo().unwrap();
+    assert_eq!(now(&history), 40.0);
+    // By time, from one branch into the other.
+    assert_eq!((history.earlier(35).len(), now(&history)), (4, 30.0));
+    assert_eq!((history.later(55).len(), now(&history)), (5, 50.0));
+    assert!(history.go_to(7).is_empty() && history.state() == 5);
+    let told: Vec<_> = history.told_aside(9).into_iter().map(|told| (told.before, told.state, told.words)).collect();
+    let words = |from: i32, to: i32| format!("left eye · feather {from} → {to}");
+    assert_eq!(told, [(0, 1, words(4, 10)), (1, 2, words(10, 20)), (2, 3, words(20, 30))]);
+    assert_eq!(history.told_aside(2).len(), 2);
+    history.go_to(2);
+    let told: Vec<_> = history.told_aside(9).into_iter().map(|told| told.state).collect();
+    assert_eq!((told, history.depth()), (vec![4, 5, 6], (2, 1)));
+}
+
+#[test]
+fn the_version_of_the_format_is_not_for_editing() {
+    for value in [json!(2), json!(0), json!(1.0), json!("1"), json!(null)] {
+        for edit in [
+            Edit::set(&squint(), "/plica", value.clone()),
+            Edit::remove("/plica"),
+            Edit::replace("", {
+                let mut all = squint().json().clone();
+                all["plica"] = value;
+                all
+            }),
+        ] {
+            let problems = squint().apply(&edit).unwrap_err();
+            assert!(problems.iter().any(|problem| problem.to_string().contains("plica")), "{problems:?}");
+        }
+    }
+    let fields: Vec<_> = children(&squint(), "").into_iter().map(|child| child.name).collect();
+    assert!(fields.contains(&"title".into()) && !fields.contains(&"plica".into()), "{fields:?}");
+}
+
+#[test]
 fn what_changes_nothing_is_no_step() {
     let mut history = History::new(squint());
     let edit = Edit::set(history.document(), "/timeline/fps", json!(30));

@@ -8,10 +8,13 @@ use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
     command("w", "[PATH]", "Save; with a path, save elsewhere", |state, call| save(state, call.text, false, false)),
-    command("w!", "", "Save over what another program wrote", |state, _| save(state, "", true, false)),
+    command("w!", "", "Save over what another program wrote, or a read-only file", |state, _| {
+        save(state, "", true, false)
+    }),
     command("wq", "", "Save and leave", |state, _| save(state, "", false, true)),
     command("q", "", "Leave; refused with unsaved edits", quit),
-    command("q!", "", "Leave without saving", |state, _| {
+    command("q!", "", "Leave without saving; undo still has the edits", |state, _| {
+        state.door.give_up();
         state.ask(Effect::Quit);
         Ok(())
     }),

@@ -9,18 +9,26 @@ use crate::tui::terminal::plain;
 use crate::tui::update::Change;
 
 pub const COMMANDS: &[Command] = &[
-    command("undo", "[STEPS]", "Undo", |state, call| steps(state, call, UNDO)),
+    command("undo", "[STEPS|#STATE]", "Undo; #STATE goes to a state that :history lists", |state, call| {
+        match call.text.strip_prefix('#') {
+            Some(number) => go_to(state, number),
+            None => steps(state, call, UNDO),
+        }
+    }),
     command("redo", "[STEPS]", "Redo", |state, call| steps(state, call, REDO)),
     command(
         "earlier",
         "STEPS|30s|3m|2h|1d",
-        "Go back by steps, or to the scene as it was so long ago",
+        "Go back in time, through all branches: by states, or to the scene as it was so long ago",
         |state, call| travel(state, call, UNDO, Door::earlier),
     ),
-    command("later", "STEPS|30s|3m|2h|1d", "Go on again by steps, or by so long a time", |state, call| {
-        travel(state, call, REDO, Door::later)
-    }),
-    command("history", "", "List what can be undone and redone", history).inside(),
+    command(
+        "later",
+        "STEPS|30s|3m|2h|1d",
+        "Go on in time, through all branches: by states, or by so long a time",
+        |state, call| travel(state, call, REDO, Door::later),
+    ),
+    command("history", "", "List what can be undone and redone, and the other branches", history).inside(),
 ];
 
 /// The most steps that are listed each way.
@@ -29,19 +37,26 @@ const MOST_TOLD: usize = 500;
 /// A way through the history.
 #[derive(Clone, Copy)]
 struct Way {
+    back: bool,
     step: fn(&mut Door) -> Option<Change>,
-    /// What the next step does, in words.
-    told: fn(&Door) -> Option<String>,
+    /// What the step does that is so far away, in words; the next one is 1 away.
+    told: fn(&Door, usize) -> Option<String>,
     done: &'static str,
     nothing: &'static str,
 }
 
-const UNDO: Way =
-    Way { step: Door::undo, told: |door| door.history().told(1).pop(), done: "undone", nothing: "nothing to undo" };
+const UNDO: Way = Way {
+    back: true,
+    step: Door::undo,
+    told: |door, away| door.history().told(away).pop(),
+    done: "undone",
+    nothing: "nothing to undo",
+};
 
 const REDO: Way = Way {
+    back: false,
     step: Door::redo,
-    told: |door| door.history().told_ahead(1).pop(),
+    told: |door, away| door.history().told_ahead(away).pop(),
     done: "done again",
     nothing: "nothing to redo",
 };
@@ -55,7 +70,7 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
     let mut count = 0;
     let mut words = None;
     while count < times {
-        let told = (way.told)(&state.door);
+        let told = (way.told)(&state.door, 1);
         let Some(change) = (way.step)(&mut state.door) else { break };
         (count, words) = (count + 1, told);
         state.changed(change);
@@ -69,12 +84,13 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
     Ok(())
 }
 
-/// By steps, or by time.
+/// By states in the order in which they came to be, or by time.
 fn travel(state: &mut State, call: &Call, way: Way, by: fn(&mut Door, Duration) -> (usize, Option<Change>)) -> Done {
-    if call.text.is_empty() || call.text.bytes().all(|b| b.is_ascii_digit()) {
-        return steps(state, call, way);
-    }
     state.door.writable()?;
+    if call.text.is_empty() || call.text.bytes().all(|b| b.is_ascii_digit()) {
+        let times = if call.text.is_empty() { call.times() } else { call.text.parse().unwrap_or(i64::MAX) };
+        return by_states(state, usize::try_from(times).unwrap_or(1), way);
+    }
     let time = duration(call.text).ok_or_else(|| format!("{} is no time: 30s, 3m, 2h or 1d", call.text))?;
     let (count, change) = by(&mut state.door, time);
     let change = change.ok_or_else(|| format!("{} within {}", way.nothing, call.text))?;
@@ -82,6 +98,52 @@ fn travel(state: &mut State, call: &Call, way: Way, by: fn(&mut Door, Duration) 
     let steps = if count == 1 { "1 step".to_owned() } else { format!("{count} steps") };
     state.say(format!("{steps} {}", way.done));
     Ok(())
+}
+
+fn by_states(state: &mut State, times: usize, way: Way) -> Done {
+    let history = state.door.history();
+    let (here, newest) = (history.state(), history.newest());
+    let to = if way.back { here.saturating_sub(times) } else { here.saturating_add(times).min(newest) };
+    if to == here {
+        return Err(way.nothing.into());
+    }
+    let route = history.route(to).ok_or(way.nothing)?;
+    // Where it stays within the branch it is what `undo` and `redo` do, and is said so.
+    let straight = match (way.back, route.back, route.on.len()) {
+        (true, back, 0) => Some(back),
+        (false, 0, on) => history.undone().map(|(state, _)| state).take(on).eq(route.on).then_some(on),
+        _ => None,
+    };
+    let words = straight.and_then(|count| (way.told)(&state.door, count));
+    let change = state.door.go_to(to).ok_or(way.nothing)?;
+    state.changed(change);
+    match (straight, words) {
+        (Some(1), Some(words)) => state.say(format!("{}: {}", way.done, plain(&words))),
+        (Some(count), Some(words)) => state.say(format!("{count} steps {}, the last: {}", way.done, plain(&words))),
+        _ => say_state(state),
+    }
+    Ok(())
+}
+
+/// To a state by its number.
+fn go_to(state: &mut State, number: &str) -> Done {
+    state.door.writable()?;
+    let newest = state.door.history().newest();
+    let to = number.parse().ok().filter(|to| *to <= newest);
+    let to = to.ok_or_else(|| format!("#{number} is no state: there are #0 to #{newest} (:history lists them)"))?;
+    if let Some(change) = state.door.go_to(to) {
+        state.changed(change);
+    }
+    say_state(state);
+    Ok(())
+}
+
+/// Says which state this is.
+fn say_state(state: &mut State) {
+    let history = state.door.history();
+    let (here, newest) = (history.state(), history.newest());
+    let words = history.told(1).pop().unwrap_or_else(|| "the beginning".into());
+    state.say(plain(&format!("at #{here} of {newest}: {words}")));
 }
 
 /// `30s`, `3m`, `2h`, `1d`.
@@ -97,28 +159,40 @@ fn duration(text: &str) -> Option<Duration> {
     Some(Duration::from_secs(number.checked_mul(unit)?))
 }
 
-/// What can be redone, the present, what can be undone: the numbers are what `:redo` and `:undo` take.
+/// What can be redone, the present, what can be undone: the numbers are what `:redo` and `:undo` take; then the steps of
+/// other branches. `#` numbers name the states in the order in which they came to be.
 fn history(state: &mut State, _: &Call) -> Done {
     let history = state.door.history();
-    let saved = history.since_saved();
-    let line = |way: &str, number: usize, words: &str, age: String, saved: bool| {
-        let mark = if saved { "  (as saved)" } else { "" };
-        plain(&format!("{way} {number:<4} {age:>11}  {words}{mark}"))
+    let saved = history.saved();
+    let line = |way: String, state_of: usize, saved_if: usize, time_ms: u64, words: &str| {
+        let mark = if saved == Some(saved_if) { "  (as saved)" } else { "" };
+        plain(&format!("{way:<10} #{state_of:<5} {:>11}  {words}{mark}", state.door.ago(time_ms)))
     };
-    let age = |time_ms| state.door.ago(time_ms);
-    let ahead = history.told_ahead(MOST_TOLD).into_iter().zip(history.undone().iter().rev()).enumerate();
+    let ahead = history.told_ahead(MOST_TOLD).into_iter().zip(history.undone()).zip(1..);
     let mut lines: Vec<String> = ahead
-        .map(|(i, (words, step))| line("redo", i + 1, &words, age(step.time_ms), saved == Some((0, i + 1))))
+        .map(|((words, (state, step)), n)| line(format!("redo {n}"), state, state, step.time_ms, &words))
         .collect();
     lines.reverse();
-    let here = if saved == Some((0, 0)) { "-- now (saved) --" } else { "-- now --" };
+    let here = if history.is_saved() { "-- now (saved) --" } else { "-- now --" };
+    let scroll = lines.len().saturating_sub(3);
     lines.push(here.into());
-    let behind = history.told(MOST_TOLD).into_iter().zip(history.done().iter().rev()).enumerate();
-    // The state after the step before is the one that `:undo N` leads to.
+    let behind = history.told(MOST_TOLD).into_iter().zip(history.done()).zip(1..);
+    // The state before the step is the one that `:undo N` leads to.
+    lines.extend(behind.map(|((words, (state, step)), n)| {
+        let before = history.before(state);
+        line(format!("undo {n}"), state, before, step.time_ms, &words)
+    }));
+    let mut aside = history.told_aside(MOST_TOLD);
+    aside.sort_by_key(|told| std::cmp::Reverse(told.state));
+    if !aside.is_empty() {
+        lines.push(String::new());
+        lines.push("-- other branches: :undo #STATE goes there, g- and g+ go through all states --".into());
+    }
     lines.extend(
-        behind.map(|(i, (words, step))| line("undo", i + 1, &words, age(step.time_ms), saved == Some((i + 1, 0)))),
+        aside
+            .iter()
+            .map(|told| line(format!("after #{}", told.before), told.state, told.state, told.time_ms, &told.words)),
     );
-    let scroll = lines.iter().position(|line| line == here).unwrap_or(0).saturating_sub(3);
     state.mode = Mode::Pages(Pages { title: "history".into(), lines, scroll });
     Ok(())
 }

@@ -67,6 +67,8 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "g g", "move first", "Go to the first row"),
     row(EVERYWHERE, "g o", "jumps newer", "Go on along the jumps again"),
     row(EVERYWHERE, "G", "move last", "Go to the last row, or to the row of the count"),
+    row(EVERYWHERE, "g -", "earlier", "Go to the state before in time, in whatever branch of undo it is"),
+    row(EVERYWHERE, "g +", "later", "Go to the state after in time, in whatever branch of undo it is"),
     row(EVERYWHERE, "g p", "probe", "Open or close the read-out of the pixel under the picture's cursor"),
     row(EVERYWHERE, "g d", "problem next", "Go to the next place where something is wrong"),
     row(EVERYWHERE, "g D", "problem previous", "Go to the place before where something is wrong"),

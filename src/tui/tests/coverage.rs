@@ -24,6 +24,7 @@ const TABLES: &[fn()] = &[
     super::told::tables_are_pasted_over_a_selection,
     super::told::what_was_said_and_what_is_wrong_can_be_read_again,
     super::images::a_picture_of_the_scene_is_opened_and_nothing_else,
+    super::life::unsaved_edits_that_were_left_behind_are_told_in_words_and_offered,
     super::life::what_another_program_writes_is_taken_in_merged_or_asked_about,
     super::finding::what_is_found_is_edited,
     super::tutor::lessons_are_gone_through_by_command,

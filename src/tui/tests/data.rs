@@ -270,6 +270,12 @@ pub fn undo_says_what_it_undid() {
         ("/ \"radius\" Enter + : \"earlier 1h\" Enter", "1 step undone"),
         ("/ \"radius\" Enter + u : \"later 30s\" Enter", "1 step done again"),
         ("u", "nothing to undo"),
+        ("/ \"radius\" Enter + u k j + g -", "at #1 of 2: left eye · radius 60 → 61"),
+        ("/ \"radius\" Enter + u k j + g - g +", "at #2 of 2: left eye · radius 60 → 61"),
+        ("/ \"radius\" Enter + u k j + 2 g -", "undone: left eye · radius 60 → 61"),
+        ("/ \"radius\" Enter + u k j + : \"undo #1\" Enter", "at #1 of 2: left eye · radius 60 → 61"),
+        (": \"undo #1\" Enter", "#1 is no state: there are #0 to #0"),
+        ("g +", "nothing to redo"),
         (": \"undo x\" Enter", "x is no number of steps"),
         (": \"earlier 3w\" Enter", "3w is no time"),
         (": \"later 3m\" Enter", "nothing to redo within 3m"),
@@ -290,6 +296,20 @@ fn the_history_lists_what_each_step_did() {
         ["left eye · feather 1 → 2", "-- now --", "left eye · feather 0 → 1", "left eye · radius 60 → 61  (as saved)"];
     assert_eq!(told, expected);
     assert!(pages.lines[0].starts_with("redo 1") && pages.lines[3].starts_with("undo 2"), "{:?}", pages.lines);
+    press(&mut state, "q u / \"feather\" Enter 9 + : \"history\" Enter");
+    let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+    let told: Vec<String> =
+        pages.lines.iter().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    let expected = [
+        "-- now --",
+        "undo 1 #4 just now mouth · feather 0 → 9",
+        "undo 2 #1 just now left eye · radius 60 → 61 (as saved)",
+        "",
+        "-- other branches: :undo #STATE goes there, g- and g+ go through all states --",
+        "after #2 #3 just now left eye · feather 1 → 2",
+        "after #1 #2 just now left eye · feather 0 → 1",
+    ];
+    assert_eq!(told, expected);
 }
 
 #[test]

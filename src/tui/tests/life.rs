@@ -63,8 +63,15 @@ fn speed_now(state: &State) -> f64 {
 }
 
 #[test]
-fn unsaved_edits_that_were_left_behind_are_told_in_words_and_offered() {
-    for (keys, expected, depth) in [("Enter", 3.0, 2), ("j Enter", 1.0, 3), ("Esc", 1.0, 0)] {
+pub fn unsaved_edits_that_were_left_behind_are_told_in_words_and_offered() {
+    for (keys, expected, depth) in [
+        ("Enter", 3.0, 2),
+        ("j Enter", 1.0, 3),
+        ("Esc", 1.0, 0),
+        ("Esc / \"speed\" Enter + : \"recovery\" Enter Enter", 3.0, 2),
+        ("Esc : \"recovery keep\" Enter", 3.0, 2),
+        ("Esc : \"recovery drop\" Enter", 1.0, 3),
+    ] {
         let place = place();
         let mut state = place.open();
         press(&mut state, "/ \"speed\" Enter + j k +");

@@ -1,5 +1,8 @@
 //! A session against every way in which it may end, and against other programs.
 
+mod keeping;
+mod saving;
+
 use std::path::{Path, PathBuf};
 
 use super::{Mode, Overwrite, Session, Taken};
@@ -358,7 +361,7 @@ fn a_long_journal_drops_its_oldest_part() {
     let mut history = crate::scene::History::new(document.clone());
     let file = scene::hash(text.as_bytes());
     let header = journal::Header { file: file.clone(), document: document.json().clone(), is_file: true };
-    let found = journal::find(&place.scene).unwrap();
+    let mut found = journal::find(&place.scene).unwrap();
     let mut journal = found.open(&header, 0, 0).unwrap().journal;
     journal.compact_every(2000);
     for n in 1..=200 {

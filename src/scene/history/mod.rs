@@ -1,0 +1,320 @@
+//! Undo and redo, without end: the present document, and every edit that was ever made with its inverse. A value: no files,
+//! no clock; times come in.
+
+use serde_json::Value;
+
+use super::check::Rules;
+use super::{Document, Edit, words};
+use crate::base::problem::Problem;
+
+mod replay;
+mod tree;
+
+pub use replay::{Remade, Replay};
+use tree::Tree;
+pub use tree::{Route, Step};
+
+/// When and how an edit was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stamp {
+    /// Milliseconds since the epoch.
+    pub time_ms: u64,
+    /// By a key held down: it joins the edit before it where it only replaces what that one wrote, into one step.
+    pub held: bool,
+}
+
+/// What a change of the history did, as the journal and the link want it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Applied {
+    /// The revision it led to; every change has one of its own, undo and redo too.
+    pub revision: u64,
+    /// The step it belongs to: edits that share it are undone as one.
+    pub step: u64,
+    /// What was applied.
+    pub edit: Edit,
+    /// What takes it back.
+    pub inverse: Edit,
+}
+
+/// Which way a step was gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// It was undone.
+    Back,
+    /// It was done again.
+    On,
+}
+
+/// A step of another branch, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Told {
+    /// The state that it leads to.
+    pub state: usize,
+    /// The state before it.
+    pub before: usize,
+    /// When it was made, in milliseconds since the epoch.
+    pub time_ms: u64,
+    /// What it did.
+    pub words: String,
+}
+
+/// A document with its past and with every other way it went.
+#[derive(Clone, Debug)]
+pub struct History {
+    document: Document,
+    revision: u64,
+    /// The state that the file holds.
+    saved: Option<usize>,
+    tree: Tree,
+}
+
+impl History {
+    /// The history of a document that was just read from its file.
+    pub fn new(document: Document) -> History {
+        History { document, revision: 0, saved: Some(0), tree: Tree::default() }
+    }
+
+    /// The document as it is now.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// From now on edits are checked by these rules.
+    pub fn govern(&mut self, rules: Rules) {
+        self.document.govern(rules);
+    }
+
+    /// How many changes there were, undo and redo included.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Applies an edit; what was undone stays, as another branch. None where the edit changes nothing.
+    pub fn apply(&mut self, edit: Edit, stamp: Stamp) -> Result<Option<Applied>, Vec<Problem>> {
+        let Some((document, inverse)) = self.document.change(&edit)? else { return Ok(None) };
+        self.document = document;
+        self.revision += 1;
+        let step = self.tree.note(edit.clone(), inverse.clone(), stamp, None);
+        Ok(Some(Applied { revision: self.revision, step, edit, inverse }))
+    }
+
+    /// Ends the step: a held key that follows begins another.
+    pub fn close_step(&mut self) {
+        self.tree.close();
+    }
+
+    /// The name of a step that is in no history, for what is recorded all the same.
+    pub fn reserve_step(&mut self) -> u64 {
+        self.tree.reserve_next()
+    }
+
+    /// Takes the last step back; none where there is none.
+    pub fn undo(&mut self) -> Option<Applied> {
+        let step = self.tree.step(self.tree.here())?;
+        let (id, edit, inverse) = (step.id, step.inverse.clone(), step.edit.clone());
+        let applied = self.go(id, edit, inverse)?;
+        self.tree.go_back();
+        Some(applied)
+    }
+
+    /// Does again what was undone last; none where there is nothing.
+    pub fn redo(&mut self) -> Option<Applied> {
+        self.on_to(self.tree.next(self.tree.here())?)
+    }
+
+    fn on_to(&mut self, state: usize) -> Option<Applied> {
+        let step = self.tree.step(state)?;
+        let (id, edit, inverse) = (step.id, step.edit.clone(), step.inverse.clone());
+        let applied = self.go(id, edit, inverse)?;
+        self.tree.arrive(state);
+        Some(applied)
+    }
+
+    fn go(&mut self, step: u64, edit: Edit, inverse: Edit) -> Option<Applied> {
+        self.document = self.document.apply(&edit).ok()?;
+        self.revision += 1;
+        Some(Applied { revision: self.revision, step, edit, inverse })
+    }
+
+    /// Goes to a state, wherever it is: back to where its branch begins, and on.
+    pub fn go_to(&mut self, state: usize) -> Vec<(Way, Applied)> {
+        let Some(route) = self.tree.route(state) else { return Vec::new() };
+        let mut all = Vec::new();
+        for _ in 0..route.back {
+            let Some(applied) = self.undo() else { return all };
+            all.push((Way::Back, applied));
+        }
+        for state in route.on {
+            let Some(applied) = self.on_to(state) else { return all };
+            all.push((Way::On, applied));
+        }
+        all
+    }
+
+    /// Back to the document as it was at a time, in milliseconds since the epoch, in whatever branch it was then.
+    pub fn earlier(&mut self, time_ms: u64) -> Vec<(Way, Applied)> {
+        let mut state = self.tree.here();
+        while self.tree.step(state).is_some_and(|step| step.time_ms > time_ms) {
+            state -= 1;
+        }
+        self.go_to(state)
+    }
+
+    /// On to the document as it was at a time.
+    pub fn later(&mut self, time_ms: u64) -> Vec<(Way, Applied)> {
+        let mut state = self.tree.here();
+        while self.tree.step(state + 1).is_some_and(|step| step.time_ms <= time_ms) {
+            state += 1;
+        }
+        self.go_to(state)
+    }
+
+    /// The present state. States are numbered in the order in which they came to be, from 0.
+    pub fn state(&self) -> usize {
+        self.tree.here()
+    }
+
+    /// The state that came to be last.
+    pub fn newest(&self) -> usize {
+        self.tree.newest()
+    }
+
+    /// The state before another; of the first one itself.
+    pub fn before(&self, state: usize) -> usize {
+        self.tree.before(state).unwrap_or(0)
+    }
+
+    /// The way from the present state to another; none where there is no such state.
+    pub fn route(&self, to: usize) -> Option<Route> {
+        self.tree.route(to)
+    }
+
+    /// When the present state came to be, in milliseconds since the epoch; where it is the first one, when it was left.
+    pub fn time_ms(&self) -> u64 {
+        self.tree.step(self.tree.here().max(1)).map_or(0, |step| step.time_ms)
+    }
+
+    /// The steps that can be undone, with the states that they lead to, the last one first.
+    pub fn done(&self) -> impl Iterator<Item = (usize, &Step)> {
+        self.tree.behind().filter_map(|state| Some((state, self.tree.step(state)?)))
+    }
+
+    /// The steps that can be done again, with the states that they lead to, the next one first.
+    pub fn undone(&self) -> impl Iterator<Item = (usize, &Step)> {
+        self.tree.ahead().filter_map(|state| Some((state, self.tree.step(state)?)))
+    }
+
+    /// What the last `most` steps did, in words, the last one first.
+    pub fn told(&self, most: usize) -> Vec<String> {
+        let mut json = self.document.json().clone();
+        let back = self.done().take(most).map_while(|(_, step)| {
+            step.inverse.patch(&mut json).ok()?;
+            Some(words::in_short(&json, &step.edit))
+        });
+        back.collect()
+    }
+
+    /// What the next `most` steps to be done again will do, in words, the next one first.
+    pub fn told_ahead(&self, most: usize) -> Vec<String> {
+        let mut json = self.document.json().clone();
+        let ahead = self.undone().take(most).map_while(|(_, step)| {
+            let words = words::in_short(&json, &step.edit);
+            step.edit.patch(&mut json).ok().map(|_| words)
+        });
+        ahead.collect()
+    }
+
+    /// The steps of other branches, those that begin near the present state first, at most so many.
+    pub fn told_aside(&self, most: usize) -> Vec<Told> {
+        let after = self.tree.after_each();
+        let mut json = self.document.json().clone();
+        let ahead: Vec<usize> = self.tree.ahead().collect();
+        if ahead.iter().any(|state| self.tree.step(*state).is_none_or(|step| step.edit.patch(&mut json).is_err())) {
+            return Vec::new();
+        }
+        let mut told = Vec::new();
+        let mut from = None;
+        for at in ahead.iter().rev().copied().chain(self.tree.behind()).chain([0]) {
+            // What was just come from is this branch itself.
+            if after[at].iter().any(|state| Some(*state) != from) {
+                self.tell_branches(&after, (at, from), &json, most, &mut told);
+            }
+            if told.len() >= most || self.tree.step(at).is_some_and(|step| step.inverse.patch(&mut json).is_err()) {
+                break;
+            }
+            from = Some(at);
+        }
+        told
+    }
+
+    /// Adds what follows the state `at` but for the branch at `from`; `json` is what it holds.
+    fn tell_branches(
+        &self,
+        after: &[Vec<usize>],
+        (at, from): (usize, Option<usize>),
+        json: &Value,
+        most: usize,
+        told: &mut Vec<Told>,
+    ) {
+        let mut json = json.clone();
+        // States to be reached; a state without its step is left again.
+        let mut open: Vec<(usize, bool)> =
+            after[at].iter().filter(|state| Some(**state) != from).map(|state| (*state, true)).collect();
+        while let Some((state, on)) = open.pop() {
+            let Some(step) = self.tree.step(state) else { continue };
+            if !on {
+                if step.inverse.patch(&mut json).is_err() {
+                    return;
+                }
+                continue;
+            }
+            if told.len() >= most {
+                return;
+            }
+            let words = words::in_short(&json, &step.edit);
+            told.push(Told { state, before: step.before, time_ms: step.time_ms, words });
+            if step.edit.patch(&mut json).is_err() {
+                return;
+            }
+            open.push((state, false));
+            open.extend(after[state].iter().map(|state| (*state, true)));
+        }
+    }
+
+    /// How many steps lie between the present and the last save: back by so many, or on. None where neither leads there.
+    pub fn since_saved(&self) -> Option<(usize, usize)> {
+        let saved = self.saved?;
+        let route = self.tree.route(saved)?;
+        match (route.back, route.on.len()) {
+            (back, 0) => Some((back, 0)),
+            (0, on) if self.tree.ahead().take(on).eq(route.on.iter().copied()) => Some((0, on)),
+            _ => None,
+        }
+    }
+
+    /// The state that the file holds; none where it is not known.
+    pub fn saved(&self) -> Option<usize> {
+        self.saved
+    }
+
+    /// How many steps can be undone and redone.
+    pub fn depth(&self) -> (usize, usize) {
+        (self.tree.behind().count(), self.tree.ahead().count())
+    }
+
+    /// The document as it is now was written to its file.
+    pub fn mark_saved(&mut self) {
+        self.saved = Some(self.tree.here());
+        self.tree.close();
+    }
+
+    /// The file is not what any state was (it was recovered, or another program wrote it).
+    pub fn mark_unsaved(&mut self) {
+        self.saved = None;
+    }
+
+    /// Whether the document is what was last written; undo comes back to it.
+    pub fn is_saved(&self) -> bool {
+        self.saved == Some(self.tree.here())
+    }
+}

@@ -1,0 +1,111 @@
+//! A history made again from what a journal recorded. The changes were checked when they were made: only the document they
+//! lead to is checked again, once, so that thousands of them cost no more than a moment. It is also only then brought to the
+//! present version of the format, since the changes fit the version they were made in.
+
+use serde_json::Value;
+
+use super::{History, Stamp, Tree};
+use crate::base::problem::Problem;
+use crate::scene::check::Rules;
+use crate::scene::{Document, Edit};
+
+/// A history being made again.
+#[derive(Debug)]
+pub struct Replay {
+    json: Value,
+    tree: Tree,
+    revision: u64,
+    saved: Option<usize>,
+}
+
+/// A history that was made again.
+#[derive(Debug)]
+pub struct Remade {
+    /// It, its last step closed.
+    pub history: History,
+    /// What brought the document to the present version of the format, and what takes that back; it is no step.
+    pub migration: Option<(Edit, Edit)>,
+}
+
+impl Replay {
+    /// Begins with the document before the first change; whether a file holds it is not known.
+    pub fn new(json: Value) -> Replay {
+        Replay { json, tree: Tree::default(), revision: 0, saved: None }
+    }
+
+    /// An edit and its inverse, of the step `id`. One to another version of the format begins the history anew.
+    ///
+    /// # Errors
+    /// When it cannot be applied; the replay is of no use any more.
+    pub fn edit(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp, id: u64) -> Result<(), Problem> {
+        let version = self.json.get("plica").cloned();
+        edit.patch(&mut self.json)?;
+        self.revision += 1;
+        if version.as_ref() == self.json.get("plica") {
+            self.tree.note(edit.clone(), inverse.clone(), stamp, Some(id));
+        } else {
+            self.tree = std::mem::take(&mut self.tree).begun_anew();
+            self.tree.reserve(id);
+            self.saved = None;
+        }
+        Ok(())
+    }
+
+    /// The undo that `edit` records. Where it takes back no step that is known, it is an edit like others.
+    ///
+    /// # Errors
+    /// As [`Replay::edit`].
+    pub fn undo(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp, id: u64) -> Result<(), Problem> {
+        if self.tree.step(self.tree.here()).is_none_or(|last| last.inverse != *edit) {
+            return self.edit(edit, inverse, stamp, id);
+        }
+        edit.patch(&mut self.json)?;
+        self.revision += 1;
+        self.tree.go_back();
+        Ok(())
+    }
+
+    /// The redo that `edit` records; as [`Replay::undo`].
+    ///
+    /// # Errors
+    /// As [`Replay::edit`].
+    pub fn redo(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp, id: u64) -> Result<(), Problem> {
+        let Some(state) = self.tree.after_by(edit, id) else { return self.edit(edit, inverse, stamp, id) };
+        edit.patch(&mut self.json)?;
+        self.revision += 1;
+        self.tree.arrive(state);
+        Ok(())
+    }
+
+    /// The document as it is now.
+    pub fn json(&self) -> &Value {
+        &self.json
+    }
+
+    /// The document was written to its file.
+    pub fn saved(&mut self) {
+        self.saved = Some(self.tree.here());
+        self.tree.close();
+    }
+
+    /// The history, its last step closed. `migrate` brings the document to the present version; undo begins anew there.
+    ///
+    /// # Errors
+    /// What is wrong with the document that the changes lead to.
+    pub fn finish(
+        self,
+        rules: Rules,
+        migrate: impl Fn(&mut Value) -> Result<(), Problem>,
+    ) -> Result<Remade, Vec<Problem>> {
+        let Replay { mut json, mut tree, revision, saved } = self;
+        let raw = json.clone();
+        migrate(&mut json).map_err(|problem| vec![problem])?;
+        let is_saved = saved == Some(tree.here());
+        let migrated = raw.get("plica") != json.get("plica");
+        let migration = migrated.then(|| (Edit::replace("", json.clone()), Edit::replace("", raw)));
+        let document = Document::from_json_under(json, rules)?;
+        tree.close();
+        let (tree, saved) = if migrated { (tree.begun_anew(), is_saved.then_some(0)) } else { (tree, saved) };
+        Ok(Remade { history: History { document, revision, saved, tree }, migration })
+    }
+}
