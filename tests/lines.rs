@@ -61,7 +61,7 @@ fn lines_edit_answer_and_fail_by_their_numbers() {
         ("sett a=1\nmove\nq".into(), "", "line 1: there is no command sett", false, false),
         ("?\nq".into(), "set PATH=VALUE", "", true, false),
         ("help undo\nq".into(), ":undo", "", true, false),
-        ("go layers.face.zones.eye.interpolation.method\nenter\nthin-plate\nget layers.face.zones.eye.interpolation.method\n".into(), "\"thin-plate\"", "", true, false),
+        ("go layers.face.zones.eye.interpolation.method\nenter\nthin-plate\nget layers.face.zones.eye.interpolation.method\nq!\n".into(), "\"thin-plate\"", "", true, false),
         ("probe 20,20".into(), "eye", "", true, false),
         (format!("set {speed}=2\nundo\nq"), "is set", "", true, false),
         ("render -o no/such/a.gif".into(), "", "line 1: ", false, false),
