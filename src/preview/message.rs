@@ -11,10 +11,13 @@ use super::Transport;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::originals::Original;
-use crate::scene::edit::Edit;
+use crate::scene::{self, edit::Edit};
 
-/// Version of the protocol; both ends must have the same.
-pub const VERSION: u16 = 2;
+/// Version of the protocol.
+const PROTOCOL: u8 = 2;
+/// What both ends must have the same: the protocol, and above it how much newer than the first the format of scenes is, since
+/// documents and patches go over the link as they are.
+pub const VERSION: u16 = u16::from_le_bytes([PROTOCOL, scene::VERSION as u8 - 1]);
 
 const MAGIC: [u8; 4] = *b"PLCA";
 const HEADER: usize = 12;
@@ -245,7 +248,13 @@ fn read_header(from: &mut impl Read, most: u64) -> Result<Option<(u16, u32)>> {
     let (version, kind) = (u16::from_le_bytes([v0, v1]), u16::from_le_bytes([k0, k1]));
     let length = u32::from_le_bytes([l0, l1, l2, l3]);
     if version != VERSION {
-        let what = format!("the other end speaks version {version} of the protocol, this one version {VERSION}");
+        let (ours, theirs) = (VERSION.to_le_bytes(), version.to_le_bytes());
+        let what = if ours[1] == theirs[1] {
+            format!("the other end speaks version {} of the protocol, this one version {}", theirs[0], ours[0])
+        } else {
+            let theirs = u32::from(theirs[1]) + 1;
+            format!("the other end has scenes of version {theirs}, this one of version {}", scene::VERSION)
+        };
         return Err(Error::at("link", what).cure("use the same plica at both ends"));
     }
     if ![KIND_JSON, KIND_BYTES].contains(&kind) {

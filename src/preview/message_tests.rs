@@ -86,11 +86,12 @@ fn what_is_wrong_is_refused_with_a_reason() {
     let good = bytes(&ToEditor::WantScene);
     let changed = |at: usize, to: &[u8]| [&good[..at], to, &good[at + to.len()..]].concat();
     let with_bytes = |body: &[u8]| [&header(KIND_BYTES, body.len() as u32)[..], body].concat();
-    let table: [(&str, Vec<u8>, &str); 11] = [
+    let table: [(&str, Vec<u8>, &str); 12] = [
         ("garbage", b"GET / HTTP/1.1\r\n\r\n".to_vec(), "not plica"),
         ("a short piece of garbage", b"hi".to_vec(), "not plica"),
         ("an older version", changed(4, &[0, 0]), "speaks version 0"),
         ("a newer version", changed(4, &[3, 0]), "use the same plica"),
+        ("newer scenes", changed(4, &[2, 1]), "has scenes of version 2, this one of version 1"),
         ("an unknown kind", changed(6, &[9, 0]), "unknown kind 9"),
         ("a huge length", changed(8, &[0xff; 4]), "4294967295 bytes"),
         ("one byte too many", changed(8, &(MAX + 1).to_le_bytes()), "67108864 is the most"),

@@ -141,3 +141,23 @@ fn a_journal_that_could_not_be_found_is_looked_for_again() {
     session.recover();
     assert_eq!(undone(&mut session), ["after", "meanwhile", "before", "start"]);
 }
+
+/// Scenes and journals as programs of before left them: both are read for good. `tests/scenes/old` keeps one pair for each
+/// version of the format.
+#[test]
+fn scenes_and_journals_of_old_are_read_for_good() {
+    let old = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/old");
+    let place = place();
+    std::fs::copy(old.join("v1-squint.plica.json"), &place.scene).unwrap();
+    std::fs::copy(old.join("v1-squint.journal"), journal::path_beside(&place.scene)).unwrap();
+    let mut session = open(&place.scene);
+    let offer = session.recovery().unwrap();
+    assert_eq!((offer.changes, offer.file_changed), (2, false));
+    session.recover();
+    assert_eq!((shown(&session), session.history().state(), session.history().newest()), ("unsaved", 5, 5));
+    let feather = |session: &Session| session.document().json().pointer("/layers/0/zones/0/feather").cloned().unwrap();
+    for (state, expected) in [(3, 7), (2, 2), (1, 1), (0, 4)] {
+        session.travel(|history| history.go_to(state));
+        assert_eq!((feather(&session).as_f64(), session.safety().saved), (Some(f64::from(expected)), state == 3));
+    }
+}
