@@ -28,7 +28,7 @@ struct Desk {
 impl Desk {
     fn open() -> Option<Desk> {
         let display = Display::open()?;
-        for tool in ["openbox", "xclock"] {
+        for tool in ["openbox", "xterm"] {
             let found = Command::new("sh").args(["-c", &format!("command -v {tool}")]).output().unwrap();
             if !found.status.success() {
                 assert!(std::env::var_os("CI").is_none(), "in CI {tool} has to be installed");
@@ -36,11 +36,17 @@ impl Desk {
                 return None;
             }
         }
-        let run = |program: &str| {
-            let mut command = Command::new(program);
-            command.env("DISPLAY", &display.name).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+        let run = |line: &[&str]| {
+            let mut command = Command::new(line[0]);
+            command
+                .args(&line[1..])
+                .env("DISPLAY", &display.name)
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap()
         };
-        let manager = run("openbox");
+        let manager = run(&["openbox"]);
         let wait = |what: &str, holds: &dyn Fn() -> bool| {
             let began = std::time::Instant::now();
             while !holds() {
@@ -53,8 +59,8 @@ impl Desk {
             let asked = display.tool("xprop", &["-root", "_NET_SUPPORTING_WM_CHECK"]);
             String::from_utf8(asked).unwrap().contains("window id")
         });
-        let other = run("xclock");
-        wait("a window with the keyboard", &|| tool(&["getactivewindow", "getwindowname"]).contains("xclock"));
+        let other = run(&["xterm", "-T", "terminal", "-e", "sleep", "1000"]);
+        wait("a window with the keyboard", &|| tool(&["getactivewindow", "getwindowname"]).contains("terminal"));
         Some(Desk { manager, other, display })
     }
 
@@ -82,7 +88,7 @@ fn the_editors_window_leaves_the_keyboard_and_another_takes_it() {
     let mut of_editor = place.joining();
     let mut view = View::beside(&desk.display, of_editor.arg("--joined"));
     view.until("a picture", |v| v.shot().cells().iter().any(|p| p[0] > 200));
-    assert!(desk.focused().contains("xclock"), "{}", desk.focused());
+    assert!(desk.focused().contains("terminal"), "{}", desk.focused());
     drop(view);
     let mut view = View::beside(&desk.display, &mut place.command());
     view.until("the keyboard", |_| desk.focused().contains("plica"));

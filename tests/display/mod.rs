@@ -111,6 +111,16 @@ impl Place {
         render::synth(&scene, &loaded.unwrap().0, None).unwrap()
     }
 
+    /// The picture with nothing moving.
+    pub fn still(&self) -> Frame {
+        let mut scene = self.scene();
+        for plica::layers::Layer::Picture(layer) in &mut scene.layers {
+            layer.zones.clear();
+        }
+        let loaded = materials::load(&self.scene, &scene, &Options::default(), &mut materials::Cache::default());
+        cpu::frame(&render::synth(&scene, &loaded.unwrap(), None).unwrap(), 0.0)
+    }
+
     /// The frame as the CPU makes it.
     pub fn frame(&self, number: u64) -> Frame {
         cpu::frame(&self.synth(), self.scene().timeline.time_of(number))

@@ -64,6 +64,12 @@ impl Camera {
         self.fitted = Some(fit);
     }
 
+    /// Takes the first picture: fitted, or in the middle where a zoom was asked for before it came.
+    pub fn first(&mut self, picture: Size, area: Size) {
+        self.center = (picture.to_vec2() / 2.0).to_point();
+        self.resized(picture, area);
+    }
+
     /// One pixel a pixel, around the place in the middle; a picture that has room is shown whole.
     pub fn one(&mut self, picture: Size, area: Size) {
         if picture.width <= area.width && picture.height <= area.height {

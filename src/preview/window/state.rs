@@ -182,8 +182,10 @@ impl State {
 
     /// Takes the size of a new picture and its timeline.
     pub fn load(&mut self, picture: Size, timeline: &Timeline) {
-        if self.picture != picture {
-            self.picture = picture;
+        let before = std::mem::replace(&mut self.picture, picture);
+        if before == Size::ZERO {
+            self.camera.first(picture, self.area());
+        } else if before != picture {
             self.camera.fit(picture, self.area(), Fit::Window);
         }
         self.timeline = timeline.clone();
@@ -452,6 +454,15 @@ mod tests {
         assert_eq!(state.camera, kept);
         state.load(Size::new(100.0, 200.0), &Timeline::default());
         assert_ne!(state.camera, kept);
+    }
+
+    #[test]
+    fn a_zoom_that_was_asked_for_before_the_first_picture_lasts() {
+        let mut state = State::default();
+        state.resize(Size::new(640.0, 434.0), 1.0);
+        state.run("zoom-one");
+        state.load(Size::new(320.0, 200.0), &Timeline::default());
+        assert_eq!((state.camera.zoom, state.camera.center), (1.0, Point::new(160.0, 100.0)));
     }
 
     #[test]
