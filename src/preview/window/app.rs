@@ -337,6 +337,7 @@ impl App {
     fn draw(&mut self) -> Result<()> {
         self.advance();
         let Some(opened) = &mut self.opened else { return Ok(()) };
+        let was_hidden = opened.hidden;
         if opened.is_seen() {
             self.letters.begin();
             match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, &self.letters) {
@@ -348,7 +349,7 @@ impl App {
                 Err(error) => return Err(error),
             }
             self.clock.drawn += 1;
-        } else {
+        } else if !was_hidden {
             self.report();
         }
         self.owed.take().into_iter().for_each(|reply| self.reply(reply));
