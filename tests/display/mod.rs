@@ -118,7 +118,7 @@ impl Place {
             layer.zones.clear();
         }
         let loaded = materials::load(&self.scene, &scene, &Options::default(), &mut materials::Cache::default());
-        cpu::frame(&render::synth(&scene, &loaded.unwrap(), None).unwrap(), 0.0)
+        cpu::frame(&render::synth(&scene, &loaded.unwrap().0, None).unwrap(), 0.0)
     }
 
     /// The frame as the CPU makes it.
