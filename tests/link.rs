@@ -157,7 +157,7 @@ fn a_window_gets_the_state_and_then_joined_edits() {
     assert_eq!(next_title(&window), ("1".into(), 1));
     publish(&editor, &document, 2..=9);
     editor.view("view-field");
-    next(&window, |update| matches!(update, Update::View(name) if name == "view-field").then_some(()));
+    next(&window, |update| matches!(update, Update::View(name) if name == "view-field on").then_some(()));
     shown(&window, 1);
     assert_eq!(next_title(&window), ("9".into(), 9), "eight edits in one patch");
 }

@@ -196,7 +196,7 @@ fn a_lost_link_keeps_the_last_state_and_comes_back() {
     let seen = std::cell::Cell::new((false, false));
     window.next(|update| {
         match update {
-            Update::View(name) if name == "view-field" => seen.set((true, seen.get().1)),
+            Update::View(name) if name == "view-field on" => seen.set((true, seen.get().1)),
             Update::Scene { .. } => seen.set((seen.get().0, true)),
             _ => {}
         }
