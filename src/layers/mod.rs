@@ -94,6 +94,13 @@ impl Layer {
         }
     }
 
+    /// Bytes of memory that places of the layer ask for while it is made ready, one place after the other.
+    pub fn memory(&self) -> Vec<(String, u64)> {
+        match self {
+            Layer::Picture(picture) => folding::check::memory(picture),
+        }
+    }
+
     /// What the pictures and fields that it names say about the layer; paths are relative to it.
     pub fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
         match self {

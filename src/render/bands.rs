@@ -49,10 +49,16 @@ impl<'a> Bands<'a> {
     }
 
     fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<Synth>, Problem> {
-        let layer = |ready: &Ready| LayerSynth::Picture(ready.part(columns.clone(), rows.clone(), self.materials));
-        let synth = |layers: &Vec<Ready>| Synth { size: self.size, layers: layers.iter().map(layer).collect() };
+        let layer = |(i, ready): (usize, &Ready)| {
+            let part = ready.part(columns.clone(), rows.clone(), self.materials);
+            part.map(LayerSynth::Picture).map_err(|problem| problem.under(&format!("/layers/{i}")))
+        };
+        let synth = |layers: &Vec<Ready>| {
+            let layers = layers.iter().enumerate().map(layer).collect::<Result<_, _>>()?;
+            Ok(Synth { size: self.size, layers })
+        };
         let made = self.samples.iter().map(synth).collect();
-        if self.materials.stopped() { Err(Problem::error("", "stopped")) } else { Ok(made) }
+        if self.materials.stopped() { Err(Problem::error("", "stopped")) } else { made }
     }
 
     /// The finished frame at `time`.
@@ -73,7 +79,8 @@ impl<'a> Bands<'a> {
     /// The layers' pictures alone, without zones.
     pub fn pictures(&self) -> Synth {
         let layers = self.samples.first().into_iter().flatten();
-        let layers = layers.map(|ready| LayerSynth::Picture(ready.part(0..0, 0..0, self.materials)));
+        // A part without pixels needs nothing.
+        let layers = layers.filter_map(|ready| ready.part(0..0, 0..0, self.materials).ok().map(LayerSynth::Picture));
         Synth { size: self.size, layers: layers.collect() }
     }
 

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Scene, pointer, shape};
+use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity, nearest, quoted};
 use crate::layers::{Checked, Materials, check as rules};
@@ -25,16 +26,19 @@ pub struct Rules {
     pub points: u64,
     /// Frames of its timeline.
     pub frames: u64,
+    /// Bytes of memory for the document, and for whatever one place of it asks for.
+    pub memory: u64,
 }
 
 impl Rules {
     /// For a document that was checked before.
-    pub const NONE: Rules = Rules { allow_outside: true, anchors: u64::MAX, points: u64::MAX, frames: u64::MAX };
+    pub const NONE: Rules =
+        Rules { allow_outside: true, anchors: u64::MAX, points: u64::MAX, frames: u64::MAX, memory: u64::MAX };
 }
 
 impl Default for Rules {
     fn default() -> Self {
-        Rules { allow_outside: false, anchors: 1_000_000, points: 1_000_000, frames: 100_000 }
+        Rules { allow_outside: false, anchors: 1_000_000, points: 1_000_000, frames: 100_000, memory: 4 << 30 }
     }
 }
 
@@ -150,6 +154,11 @@ fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     }
     let over = sums.into_iter().filter_map(|(what, most, _, over)| Some(too_many(over?, what, most)));
     let mut problems: Vec<Problem> = over.collect();
+    let budget = Budget::new(rules.memory);
+    for (i, layer) in scene.layers.iter().enumerate() {
+        let short = layer.memory().into_iter().filter_map(|(path, bytes)| Some((path, budget.try_take(bytes).err()?)));
+        problems.extend(short.map(|(path, short)| short.problem(format!("/layers/{i}{path}"))));
+    }
     if scene.timeline.frames() > rules.frames {
         problems.push(too_many("/timeline".into(), "frames", rules.frames));
     }

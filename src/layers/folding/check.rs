@@ -3,9 +3,12 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 
-use super::{anchors, counts, fold::Fold, interpolation::Interpolation, outline::Outline, position::Position};
+use super::anchors::{self, Anchor};
+use super::interpolation::{Interpolation, thin_plate_bytes};
+use super::position::Position;
+use super::{counts, fold::Fold, outline::Outline};
 use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
@@ -17,6 +20,12 @@ const MAX_COMPARED: f64 = 20_000.0;
 
 /// Anchors nearer to each other than this stand at one place (folding.md, section 4).
 const SAME_PX: f64 = 1e-6;
+
+/// Anchors that spread less than this across their line, as a share of what they spread along it, are nearly on one.
+const NEARLY_STRAIGHT: f64 = 0.05;
+
+/// Places along a path beyond this are a mistake.
+const MOST_S: f64 = 1e15;
 
 /// So many coincident pairs of a zone are named.
 const MAX_PAIRS: usize = 3;
@@ -90,6 +99,14 @@ pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     }
 }
 
+/// Bytes that the equations of thin plates take, told before they are made.
+pub fn memory(layer: &PictureLayer) -> Vec<(String, u64)> {
+    let zones = layer.zones.iter().enumerate();
+    let plates = zones.filter(|(_, zone)| matches!(zone.interpolation, Interpolation::ThinPlate { .. }));
+    let plates = plates.map(|(i, zone)| (i, counts::all_anchors(zone)));
+    plates.map(|(i, count)| (format!("/zones/{i}/interpolation"), thin_plate_bytes(count as u64))).collect()
+}
+
 /// The masks that the layer names: each with its pointer, and the picture that it is for.
 pub fn masks(layer: &PictureLayer) -> Vec<(String, &str, &str)> {
     let masks = layer.zones.iter().enumerate().filter_map(|(i, zone)| match &zone.fold {
@@ -154,10 +171,27 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
     }
     problems.extend(motion(zone));
     if problems.is_empty() {
-        problems.extend(coincident(zone));
+        problems.extend(anchors_of(zone));
     }
-    problems.extend(position(&zone.position).into_iter().map(|problem| problem.under("/position")));
+    let position = position(&zone.position);
+    let known = position.is_empty();
+    problems.extend(position.into_iter().map(|problem| problem.under("/position")));
+    problems.extend(clock(zone).filter(|_| known));
     problems
+}
+
+/// Numbers that are finite one by one, and not together.
+fn clock(zone: &Zone) -> Option<Problem> {
+    let Zone { speed, shift, .. } = zone;
+    if !(speed * (shift.abs() + 1.0)).is_finite() {
+        let message = format!("{speed} passes at a shift of {shift} timelines are no finite time");
+        return Some(Problem::error("/shift", message).hint("make the shift or the speed smaller"));
+    }
+    // A value that is no number is not within bounds either.
+    let within = |tau: f64| (-MOST_S..=MOST_S).contains(&zone.position.eval(tau));
+    let tau = telling(&zone.position).into_iter().find(|&tau| !within(tau))?;
+    let message = format!("at τ = {tau} the function leads out of all bounds");
+    Some(Problem::error("/position", message).hint(format!("keep s between -{MOST_S:e} and {MOST_S:e}")))
 }
 
 /// An outline encloses something; where it crosses itself, that deserves a word.
@@ -175,13 +209,13 @@ fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
     crossing.map(|place| Problem::warning(path, message(place)).hint(hint)).into_iter().collect()
 }
 
-/// Anchors at one place: there only the first counts.
-fn coincident(zone: &Zone) -> Vec<Problem> {
-    let count: f64 = zone.motion.iter().map(|tool| counts::anchors(tool, &zone.outline)).sum();
-    if count > MAX_COMPARED {
+/// Anchors at one place, where only the first counts; anchors that make a thin plate swing.
+fn anchors_of(zone: &Zone) -> Vec<Problem> {
+    if counts::all_anchors(zone) > MAX_COMPARED {
         return Vec::new();
     }
     let anchors = anchors::anchors(zone);
+    let mut problems: Vec<Problem> = nearly_straight(zone, &anchors).into_iter().collect();
     let cell = |at: Point| ((at.x / SAME_PX).round() as i64, (at.y / SAME_PX).round() as i64);
     let mut first = HashMap::new();
     let mut pairs = Vec::new();
@@ -200,7 +234,33 @@ fn coincident(zone: &Zone) -> Vec<Problem> {
         );
         Problem::warning(format!("/motion/{}", second.tool), message).hint("at that place only the first counts")
     });
-    named.collect()
+    problems.extend(named);
+    problems
+}
+
+/// A thin plate through anchors that are nearly on one line swings far beside it; on one line it would be shepard.
+fn nearly_straight(zone: &Zone, anchors: &[Anchor]) -> Option<Problem> {
+    let plate = matches!(zone.interpolation, Interpolation::ThinPlate { .. });
+    let (along, across) = spread(anchors).filter(|(along, across)| plate && across < &(along * NEARLY_STRAIGHT))?;
+    let last = anchors.len() - 1;
+    let message = format!(
+        "the thin plate's anchors 0 to {last} are nearly on one line: they spread {along:.1} px along it and {across:.1} px \
+         across, and jump vectors beside it become far longer than those of the anchors"
+    );
+    let hint = "add anchors beside the line (a still border, say), or take another interpolation";
+    Some(Problem::warning("/interpolation", message).hint(hint))
+}
+
+/// How far anchors spread along the line that fits them best, and across: standard deviations in pixels.
+fn spread(anchors: &[Anchor]) -> Option<(f64, f64)> {
+    let count = anchors.len() as f64;
+    let center = anchors.iter().fold(Vec2::ZERO, |sum, anchor| sum + anchor.at.to_vec2()) / count;
+    let [xx, xy, yy] = anchors
+        .iter()
+        .map(|anchor| anchor.at.to_vec2() - center)
+        .fold([0.0; 3], |[xx, xy, yy], d| [xx + d.x * d.x / count, xy + d.x * d.y / count, yy + d.y * d.y / count]);
+    let (middle, half) = ((xx + yy) / 2.0, Vec2::new((xx - yy) / 2.0, xy).hypot2().sqrt());
+    (anchors.len() > 2).then(|| ((middle + half).sqrt(), (middle - half).max(0.0).sqrt()))
 }
 
 /// Tools whose fields hang together.
@@ -213,6 +273,20 @@ fn motion(zone: &Zone) -> Vec<Problem> {
         }
     }
     problems
+}
+
+/// Local times at which a value out of bounds would show.
+fn telling(position: &Position) -> Vec<f64> {
+    const EVEN: u32 = 16;
+    let mut taus: Vec<f64> = (0..=EVEN).map(|i| f64::from(i) / f64::from(EVEN)).collect();
+    let inner: Vec<f64> = match position {
+        Position::Keyframes { points, .. } => points.iter().map(|point| point[0]).collect(),
+        Position::Piecewise { segments } => segments.iter().map(|segment| segment.until).collect(),
+        _ => Vec::new(),
+    };
+    taus.extend(inner.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
+    taus.extend(inner);
+    taus
 }
 
 /// Numbers of a position function that hang together.

@@ -3,6 +3,7 @@
 
 use kurbo::Vec2;
 
+use super::model::Zone;
 use super::outline::{Node, Outline, vector};
 use super::tools::Tool;
 use crate::base::geometry::FLATNESS_PX;
@@ -17,6 +18,11 @@ pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
         Tool::StillBorder { spacing } => perimeter(outline) / spacing + 1.0,
         _ => 0.0,
     }
+}
+
+/// Anchors of all tools of a zone.
+pub fn all_anchors(zone: &Zone) -> f64 {
+    zone.motion.iter().map(|tool| anchors(tool, &zone.outline)).sum()
 }
 
 /// Points of an outline: a little more than flattening gives.

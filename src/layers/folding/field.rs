@@ -14,9 +14,11 @@ use super::model::Zone;
 use super::outline::Outline;
 use super::regions::{Crossings, Regions};
 use super::tools::Tool;
+use crate::base::budget::Share;
 use crate::base::geometry::Polygon;
 use crate::base::maths::smoothstep;
 use crate::base::pixels::Grid;
+use crate::base::problem::Problem;
 use crate::layers::Materials;
 
 /// The pixels of a zone: membership, jump vectors, thresholds. Covers the outline's bounding box within the picture.
@@ -151,16 +153,19 @@ pub struct Pixel {
 
 impl Prepared {
     /// Makes a zone ready: anchors, the equations of its interpolation, outlines as polygons.
-    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Self {
-        Prepared {
+    ///
+    /// # Errors
+    /// As [`Interpolator::new`].
+    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Result<Self, Problem> {
+        Ok(Prepared {
             outline: zone.outline.polygon(),
-            interpolator: Interpolator::new(&zone.interpolation, anchors(zone)),
+            interpolator: Interpolator::new(&zone.interpolation, anchors(zone), materials)?,
             dense: dense(zone, materials),
             feather: zone.feather,
             fold: zone.fold.as_ref().and_then(|fold| Some((fold.rule()?, Regions::new(fold.regions())))),
             range: inputs.range,
             place: inputs.place,
-        }
+        })
     }
 
     /// The pixels of row `y`, from column `x0` on.
@@ -229,21 +234,38 @@ impl Prepared {
 }
 
 impl Field {
-    /// The field of `zone`; none where no pixel of the picture is in its bounding box, or where nobody wants it any more.
-    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Option<Arc<Field>> {
+    /// The field of `zone`; `None` where no pixel of the picture is in its bounding box.
+    ///
+    /// # Errors
+    /// It needs too much memory, or nobody wants it any more; the problem's path is relative to the zone.
+    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Made {
         let (width, height) = inputs.size;
-        Prepared::new(zone, inputs, materials).field((0..width, 0..height), materials)
+        Prepared::new(zone, inputs, materials)?.field((0..width, 0..height), materials)
     }
 }
 
+/// A field and the memory that it takes, where there is one.
+pub type Made = Result<Option<(Arc<Field>, Share)>, Problem>;
+
 impl Prepared {
-    /// The field in these columns and rows of the picture alone; none as with [`Field::new`].
-    pub fn field(&self, part: (Range<usize>, Range<usize>), materials: &Materials) -> Option<Arc<Field>> {
+    /// The field in these columns and rows of the picture alone; `None` and errors as with [`Field::new`].
+    pub fn field(&self, part: (Range<usize>, Range<usize>), materials: &Materials) -> Made {
         let prepared = self;
-        let (x0, y0, width, height) = pixel_box(prepared.outline.bounds(), part)?;
-        let row = |y: usize| (!materials.stopped()).then(|| Row::of(&prepared.row(x0, y, width)));
-        let rows: Vec<Row> = (y0..y0 + height).into_par_iter().map(row).collect::<Option<_>>()?;
-        Some(Arc::new(Field {
+        let Some((x0, y0, width, height)) = pixel_box(prepared.outline.bounds(), part) else { return Ok(None) };
+        let take = |bytes| materials.budget.try_take(bytes).map_err(|short| short.problem(""));
+        let row = |y: usize| {
+            if materials.stopped() {
+                return Err(Problem::error("", "stopped"));
+            }
+            let row = Row::of(&prepared.row(x0, y, width));
+            // Rows and the whole of them stand beside one another for a moment.
+            let share = take(2 * row.bytes())?;
+            Ok((row, share))
+        };
+        let rows = (y0..y0 + height).into_par_iter().map(row).collect::<Result<Vec<_>, _>>()?;
+        let (rows, shares): (Vec<Row>, Vec<Share>) = rows.into_iter().unzip();
+        let kept = rows.iter().map(Row::bytes).sum();
+        let field = Field {
             x0,
             y0,
             inside: Grid::from_cells(width, height, joined(&rows, |row| &row.inside)),
@@ -254,7 +276,9 @@ impl Prepared {
                 ahead: Ragged::concat(rows.iter().map(|row| &row.ahead)),
                 behind: Ragged::concat(rows.iter().map(|row| &row.behind)),
             }),
-        }))
+        };
+        drop((rows, shares));
+        Ok(Some((Arc::new(field), take(kept)?)))
     }
 }
 
@@ -268,6 +292,13 @@ struct Row {
 }
 
 impl Row {
+    /// Bytes that it takes.
+    fn bytes(&self) -> u64 {
+        let flags = self.inside.len() + self.in_region.len();
+        let lists = |ragged: &Ragged| size_of_val(&ragged.starts[..]) + size_of_val(&ragged.values[..]);
+        (flags + size_of_val(&self.jumps[..]) + lists(&self.ahead) + lists(&self.behind)) as u64
+    }
+
     fn of(pixels: &[Pixel]) -> Self {
         Row {
             inside: pixels.iter().map(|p| p.inside).collect(),

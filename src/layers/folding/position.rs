@@ -255,10 +255,13 @@ fn turning_points(cycles: f64, phase: f64, first: f64) -> Vec<f64> {
     turns.map(|turn| ((turn - phase) / cycles).clamp(0.0, 1.0)).collect()
 }
 
+/// Rates below this bend nothing, and their quotients run out of digits.
+const NO_RATE: f64 = 1e-100;
+
 /// (e^(kτ) - 1) / (e^k - 1) without overflow; its limit τ for k = 0.
 fn exponential(k: f64, tau: f64) -> f64 {
     match k {
-        0.0 => tau,
+        k if k.abs() < NO_RATE => tau,
         k if k > 0.0 => exp(k * (tau - 1.0)) * expm1(-k * tau) / expm1(-k),
         k => expm1(k * tau) / expm1(k),
     }
@@ -266,7 +269,7 @@ fn exponential(k: f64, tau: f64) -> f64 {
 
 /// (σ(k(τ - 1/2)) - σ(-k/2)) / (σ(k/2) - σ(-k/2)), by σ(x) = (1 + tanh(x/2)) / 2; its limit τ for k = 0.
 fn sigmoid(k: f64, tau: f64) -> f64 {
-    if k == 0.0 {
+    if k.abs() < NO_RATE {
         return tau;
     }
     0.5 + tanh(k * (tau - 0.5) / 2.0) / (2.0 * tanh(k / 4.0))
@@ -353,7 +356,8 @@ mod tests {
             r#"{"function":"exponential","rate":-40}"#,
             r#"{"function":"exponential","rate":1500}"#,
             r#"{"function":"exponential-inverse","rate":1e-9}"#,
-            r#"{"function":"sigmoid","rate":0}"#,
+            r#"{"function":"sigmoid","rate":5e-324}"#,
+            r#"{"function":"exponential","rate":-5e-324}"#,
             r#"{"function":"sigmoid","rate":1500}"#,
             r#"{"function":"exponential-inverse"}"#,
             r#"{"function":"sigmoid"}"#,

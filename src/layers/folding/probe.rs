@@ -51,7 +51,11 @@ pub fn probe(
             continue;
         }
         let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
-        let pixel = Prepared::new(zone, &inputs, materials).row(x, y, 1).pop().unwrap_or_default();
+        let pixel = Prepared::new(zone, &inputs, materials)
+            .map_err(|problem| problem.under(&format!("/zones/{index}")))?
+            .row(x, y, 1)
+            .pop()
+            .unwrap_or_default();
         if pixel.inside {
             let source = source(layer, index, &own, materials)?;
             let clock = Clock::of(zone, wrap);

@@ -10,6 +10,7 @@ use super::fold::Fold;
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
 use super::position::Clock;
+use crate::base::budget::Share;
 use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
@@ -38,6 +39,8 @@ pub struct ZoneSynth {
     /// When they read it.
     pub clock: Clock,
     inputs: Inputs,
+    /// The memory that the field takes, counted for as long as anybody has it.
+    share: Arc<Share>,
 }
 
 /// What the samplers of a zone read, and how it is laid on what is beneath.
@@ -77,20 +80,23 @@ pub fn synth(
         let inputs = Inputs::new(zone, size, place);
         let known =
             previous.into_iter().flat_map(|p| &p.zones).find(|known| known.inputs == inputs && !reads_file(zone));
-        let field = match known {
-            Some(known) => Some(known.field.clone()),
-            None => Field::new(zone, &inputs, materials),
+        let made = match known {
+            Some(known) => Some((known.field.clone(), known.share.clone())),
+            None => Field::new(zone, &inputs, materials)
+                .map_err(|problem| problem.under(&format!("/zones/{index}")))?
+                .map(|(field, share)| (field, Arc::new(share))),
         };
         if materials.stopped() {
             return Err(Problem::error("", "stopped"));
         }
-        zones.extend(field.map(|field| ZoneSynth {
+        zones.extend(made.map(|(field, share)| ZoneSynth {
             name: zone.name.clone(),
             index,
             field,
             source,
             clock: Clock::of(zone, wrap),
             inputs,
+            share,
         }));
     }
     Ok(Synth { picture, zones })
@@ -123,6 +129,7 @@ impl Ready {
             let source = source(layer, index, &picture, materials)?;
             let inputs = Inputs::new(zone, size, place);
             let prepared = Prepared::new(zone, &inputs, materials);
+            let prepared = prepared.map_err(|problem| problem.under(&format!("/zones/{index}")))?;
             Ok((ZoneParts { name: zone.name.clone(), index, source, clock: Clock::of(zone, wrap), inputs }, prepared))
         };
         let zones = layer.zones.iter().enumerate().map(ready).collect::<Result<_, _>>()?;
@@ -135,21 +142,27 @@ impl Ready {
     }
 
     /// These columns and rows of the layer, ready to be shown; beyond them zones show nothing.
-    pub fn part(&self, columns: Range<usize>, rows: Range<usize>, materials: &Materials) -> Synth {
+    ///
+    /// # Errors
+    /// As [`synth`].
+    pub fn part(&self, columns: Range<usize>, rows: Range<usize>, materials: &Materials) -> Result<Synth, Problem> {
         let within = |range: &Range<usize>, most: usize| range.start.min(most)..range.end.min(most);
         let (width, height) = self.size();
-        let zones = self.zones.iter().filter_map(|(zone, prepared)| {
-            let field = prepared.field((within(&columns, width), within(&rows, height)), materials)?;
-            Some(ZoneSynth {
+        let zones = self.zones.iter().map(|(zone, prepared)| {
+            let made = prepared.field((within(&columns, width), within(&rows, height)), materials);
+            let made = made.map_err(|problem| problem.under(&format!("/zones/{}", zone.index)))?;
+            Ok(made.map(|(field, share)| ZoneSynth {
                 name: zone.name.clone(),
                 index: zone.index,
                 field,
                 source: zone.source.clone(),
                 clock: zone.clock.clone(),
                 inputs: zone.inputs.clone(),
-            })
+                share: Arc::new(share),
+            }))
         });
-        Synth { picture: self.picture.clone(), zones: zones.collect() }
+        let zones = zones.filter_map(Result::transpose).collect::<Result<_, Problem>>()?;
+        Ok(Synth { picture: self.picture.clone(), zones })
     }
 }
 

@@ -9,10 +9,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::anchors::Anchor;
+use crate::base::problem::Problem;
+use crate::layers::Materials;
+use thin_plate::NoPlate;
 
+mod cholesky;
 mod inverse_distance;
 mod rigid;
 mod thin_plate;
+pub use thin_plate::bytes as thin_plate_bytes;
 
 /// How the jump vectors of a zone's anchors spread over its pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -138,8 +143,12 @@ enum Method {
 }
 
 impl Interpolator {
-    /// Makes `anchors` ready; for a thin plate this solves its equations.
-    pub fn new(interpolation: &Interpolation, anchors: Vec<Anchor>) -> Self {
+    /// Makes `anchors` ready; for a thin plate this solves its equations, within the memory that is left and for as long as
+    /// somebody wants it.
+    ///
+    /// # Errors
+    /// They need too much memory, or nobody wants them any more; the problem's path is relative to the zone.
+    pub fn new(interpolation: &Interpolation, anchors: Vec<Anchor>, materials: &Materials) -> Result<Self, Problem> {
         use inverse_distance::Modified;
         let method = match *interpolation {
             Interpolation::Shepard { power } => Method::Shepard { power },
@@ -148,15 +157,19 @@ impl Interpolator {
                 Method::Modified(Modified { radius, ring: Some((ring, seed)) })
             }
             Interpolation::ThinPlate { smoothing } => {
+                let bytes = thin_plate::bytes(anchors.len() as u64);
+                let _share = materials.budget.try_take(bytes).map_err(|short| short.problem("/interpolation"))?;
                 let anchors = thin_plate::distinct(&anchors);
-                return match thin_plate::Plate::solve(&anchors, smoothing) {
-                    Some(plate) => Interpolator { anchors, method: Method::ThinPlate(plate) },
-                    None => Interpolator { anchors, method: Method::Shepard { power: two() } },
+                let method = match thin_plate::Plate::solve(&anchors, smoothing, &|| materials.stopped()) {
+                    Ok(plate) => Method::ThinPlate(plate),
+                    Err(NoPlate::Flat) => Method::Shepard { power: two() },
+                    Err(NoPlate::Stopped) => return Err(Problem::error("/interpolation", "stopped")),
                 };
+                return Ok(Interpolator { anchors, method });
             }
             Interpolation::Rigid {} => Method::Rigid,
         };
-        Interpolator { anchors, method }
+        Ok(Interpolator { anchors, method })
     }
 
     /// Writes the interpolated jump vectors of `run` to the beginning of `out`; (0, 0) without anchors.

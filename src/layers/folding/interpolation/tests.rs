@@ -1,8 +1,12 @@
 //! What every method must do, and the values of each against its formula.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use kurbo::{Point, Vec2};
 
 use super::*;
+use crate::base::budget::Budget;
 
 const METHODS: [&str; 9] = [
     r#"{"method":"shepard"}"#,
@@ -17,7 +21,8 @@ const METHODS: [&str; 9] = [
 ];
 
 fn at(json: &str, anchors: &[[f64; 4]], pixel: (u32, u32)) -> Vec2 {
-    let interpolator = Interpolator::new(&serde_json::from_str(json).unwrap(), make(anchors));
+    let interpolator =
+        Interpolator::new(&serde_json::from_str(json).unwrap(), make(anchors), &Materials::default()).unwrap();
     let run = Run { pixel, place: Vec2::new(0.5, 0.5), len: 1 };
     let mut out = Jumps::default();
     interpolator.run(&run, &mut out);
@@ -100,7 +105,8 @@ fn thin_plate_reproduces_an_affine_map_and_rigid_a_rotation() {
 fn a_run_is_its_pixels() {
     let anchors: Vec<[f64; 4]> = (0..40).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
     for method in METHODS {
-        let interpolator = Interpolator::new(&serde_json::from_str(method).unwrap(), make(&anchors));
+        let interpolator =
+            Interpolator::new(&serde_json::from_str(method).unwrap(), make(&anchors), &Materials::default()).unwrap();
         let mut out = Jumps::default();
         interpolator.run(&Run { pixel: (3, 9), place: Vec2::new(0.25, 0.75), len: 50 }, &mut out);
         for k in 0..50u32 {
@@ -116,4 +122,31 @@ fn the_hash_is_that_of_the_paper() {
     // Computed from the published definition with arbitrary-precision integers.
     assert_eq!(inverse_distance::pcg3d(0, 0, 0), [2611992518, 2833812075, 1058359340]);
     assert_eq!(inverse_distance::pcg3d(1, 2, 3), [4204755366, 1223881804, 1500469937]);
+}
+
+#[test]
+fn a_thin_plate_takes_no_more_memory_than_there_is_and_ends_when_asked_to() {
+    let anchors: Vec<[f64; 4]> = (0..100).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
+    let solve = |materials: &Materials| {
+        Interpolator::new(&serde_json::from_str(METHODS[6]).unwrap(), make(&anchors), materials).map(drop)
+    };
+    let budget = |most| Materials { budget: Budget::new(most), ..Materials::default() };
+    let needed = thin_plate_bytes(100);
+    assert!(needed >= 100 * 100 * 8);
+    let materials = budget(needed);
+    solve(&materials).unwrap();
+    assert_eq!(materials.budget.taken(), 0, "given back");
+    let refused = solve(&budget(needed - 1)).unwrap_err();
+    assert_eq!(refused.path, "/interpolation");
+    assert!(refused.message.contains("of memory") && refused.hint.unwrap().contains("--limit memory"));
+    let stop = Some(Arc::new(AtomicBool::new(true)));
+    assert_eq!(solve(&Materials { stop, ..Materials::default() }).unwrap_err().message, "stopped");
+}
+
+#[test]
+fn a_thin_plate_has_the_same_bits_everywhere() {
+    let anchors: Vec<[f64; 4]> =
+        (0..70).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i % 5.0, -i % 3.0]).collect();
+    let found = at(METHODS[6], &anchors, (20, 7));
+    assert_eq!((found.x.to_bits(), found.y.to_bits()), (4609792142237502732, 4599545483544193280), "{found:?}");
 }

@@ -1,15 +1,20 @@
-//! The thin-plate spline: r² ln r with an affine part. The equations are solved by faer, whose sums may differ in the
-//! last bits from one kind of processor to the next (tests/interpolation holds them to 1e-6 px of the anchors).
+//! The thin-plate spline: r² ln r with an affine part, K c + P a = u with P'c = 0. Three reflections turn P into its last
+//! three rows; what they leave of K is positive definite, so that Cholesky solves it, in half the time of elimination with
+//! pivots and with the same bits everywhere.
 
-use faer::{Mat, linalg::solvers::Solve};
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
 
+use super::cholesky::{Matrix, stride};
 use super::{Jumps, Run};
 use crate::base::maths;
 use crate::layers::folding::anchors::Anchor;
 
 /// Anchors nearer than this to an earlier one are dropped, in pixels.
 const SAME_PX: f64 = 1e-6;
+
+/// Terms of the affine part: constant, along x, along y.
+const AFFINE: usize = 3;
 
 /// A solved plate. Lengths are in units of `scale` about `center`, which leaves the plate as it is and its equations
 /// well conditioned.
@@ -18,38 +23,61 @@ pub struct Plate {
     scale: f64,
     /// Place and weights (for x and y) of each kernel.
     kernels: Vec<(Vec2, Vec2)>,
-    /// The affine part: constant, along x, along y.
-    affine: [Vec2; 3],
+    /// The affine part.
+    affine: [Vec2; AFFINE],
+}
+
+/// Bytes that solving a plate through `count` anchors takes.
+pub fn bytes(count: u64) -> u64 {
+    count.saturating_mul(count.saturating_add(6)).saturating_mul(size_of::<f64>() as u64)
+}
+
+/// There is no plate.
+#[derive(Debug, PartialEq, Eq)]
+pub enum NoPlate {
+    /// Fewer than three anchors, or all on one line.
+    Flat,
+    /// Nobody wants it any more.
+    Stopped,
 }
 
 impl Plate {
-    /// Solves for the plate through [`distinct`] anchors; none with fewer than three, or all on one line.
-    pub fn solve(anchors: &[Anchor], smoothing: f64) -> Option<Self> {
+    /// Solves for the plate through [`distinct`] anchors, until `stopped` says so.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn solve(anchors: &[Anchor], smoothing: f64, stopped: &(impl Fn() -> bool + Sync)) -> Result<Self, NoPlate> {
         let n = anchors.len();
         let sum = anchors.iter().fold(Vec2::ZERO, |sum, anchor| sum + anchor.at.to_vec2());
         let center = (sum / n.max(1) as f64).to_point();
         let scale = anchors.iter().map(|a| (a.at - center).hypot2()).fold(0.0, f64::max).sqrt();
         let places: Vec<Vec2> = anchors.iter().map(|a| (a.at - center) / scale).collect();
-        if n < 3 || on_one_line(&places) {
-            return None;
+        if n < AFFINE || on_one_line(&places) {
+            return Err(NoPlate::Flat);
         }
-        let smoothing = smoothing / (scale * scale);
-        let equations = Mat::from_fn(n + 3, n + 3, |row, column| match (row < n, column < n) {
-            (true, true) if row == column => smoothing,
-            (true, true) => kernel((places[row] - places[column]).hypot2()),
-            (true, false) => affine_term(places[row], column - n),
-            (false, true) => affine_term(places[column], row - n),
-            (false, false) => 0.0,
-        });
-        let given = Mat::from_fn(n + 3, 2, |row, column| match anchors.get(row) {
-            Some(anchor) if column == 0 => anchor.jump.x,
-            Some(anchor) => anchor.jump.y,
-            None => 0.0,
-        });
-        let solved = equations.partial_piv_lu().solve(&given);
-        let weight = |row: usize| Vec2::new(solved[(row, 0)], solved[(row, 1)]);
-        let kernels = places.iter().enumerate().map(|(i, place)| (*place, weight(i))).collect();
-        Some(Plate { center, scale, kernels, affine: [weight(n), weight(n + 1), weight(n + 2)] })
+        let mut equations =
+            equations(anchors, &places, smoothing / (scale * scale), stopped).ok_or(NoPlate::Stopped)?;
+        let reflections = Reflections::of(&places);
+        reflections.apply(&mut equations, n);
+        let bent = n - AFFINE;
+        equations.factor(bent, stopped).ok_or(NoPlate::Stopped)?;
+        let mut weights = vec![Vec2::ZERO; n];
+        let mut affine = [Vec2::ZERO; AFFINE];
+        for (column, part) in [(n, Vec2::new(1.0, 0.0)), (n + 1, Vec2::new(0.0, 1.0))] {
+            let mut solved = equations.solve(bent, column);
+            // The rows below are as they were: they tell the affine part.
+            let below = equations.cells[bent * equations.stride..].chunks_exact(equations.stride);
+            let rest: Vec<f64> = below
+                .map(|row| solved.iter().zip(row).fold(row[column], |rest, (weight, cell)| rest - weight * cell))
+                .collect();
+            let terms = reflections.affine(&rest);
+            solved.resize(n, 0.0);
+            reflections.turn_back(&mut solved);
+            weights.iter_mut().zip(&solved).for_each(|(weight, x)| *weight += part * *x);
+            affine.iter_mut().zip(terms).for_each(|(affine, term)| *affine += part * term);
+        }
+        let kernels = places.into_iter().zip(weights).collect();
+        Ok(Plate { center, scale, kernels, affine })
     }
 
     /// The plate at the places of the run.
@@ -72,14 +100,112 @@ impl Plate {
     }
 }
 
+/// K with the smoothing on its diagonal, and beside it the jump vectors' x and y.
+fn equations(
+    anchors: &[Anchor],
+    places: &[Vec2],
+    smoothing: f64,
+    stopped: &(impl Fn() -> bool + Sync),
+) -> Option<Matrix> {
+    let n = places.len();
+    let mut equations = Matrix::new(n, n + 2);
+    let fill = |(i, row): (usize, &mut [f64])| {
+        if stopped() {
+            return None;
+        }
+        for (j, cell) in row[..n].iter_mut().enumerate() {
+            // Each pair in one order, so that both halves hold the same bits.
+            let apart = if i < j { places[i] - places[j] } else { places[j] - places[i] };
+            *cell = if i == j { smoothing } else { kernel(apart.hypot2()) };
+        }
+        (row[n], row[n + 1]) = (anchors[i].jump.x, anchors[i].jump.y);
+        Some(())
+    };
+    equations.cells.par_chunks_mut(stride(n + 2)).enumerate().map(fill).collect::<Option<()>>()?;
+    Some(equations)
+}
+
+/// Three Householder reflections, the first from the last row up.
+struct Reflections {
+    /// The mirrors' normals with 2 / v'v.
+    mirrors: [(Vec<f64>, f64); AFFINE],
+    /// What they make of P's last rows: term by term, row by row.
+    ends: [[f64; AFFINE]; AFFINE],
+}
+
+impl Reflections {
+    fn of(places: &[Vec2]) -> Self {
+        let n = places.len();
+        let mut terms: [Vec<f64>; AFFINE] =
+            std::array::from_fn(|k| places.iter().map(|place| [1.0, place.x, place.y][k]).collect());
+        let mirrors = std::array::from_fn(|k| {
+            let end = n - 1 - k;
+            let mut normal = terms[k].clone();
+            normal[end + 1..].fill(0.0);
+            let length = dot(&normal, &normal).sqrt();
+            normal[end] += if normal[end] < 0.0 { -length } else { length };
+            let squared = dot(&normal, &normal);
+            let factor = if squared > 0.0 { 2.0 / squared } else { 0.0 };
+            terms.iter_mut().for_each(|term| reflect(term, &normal, factor));
+            (normal, factor)
+        });
+        let ends = std::array::from_fn(|k| std::array::from_fn(|row| terms[k][n - AFFINE + row]));
+        Reflections { mirrors, ends }
+    }
+
+    /// Q'KQ in the place of K, and Q' times the two columns beside it.
+    fn apply(&self, equations: &mut Matrix, n: usize) {
+        let stride = equations.stride;
+        for (normal, factor) in &self.mirrors {
+            let cells = &mut equations.cells;
+            let through: Vec<f64> = cells.par_chunks(stride).map(|row| factor * dot(&row[..n], normal)).collect();
+            let half = factor / 2.0 * dot(&through, normal);
+            let sheared: Vec<f64> = through.iter().zip(normal).map(|(through, v)| through - half * v).collect();
+            let beside = [n, n + 1].map(|column| {
+                let sum = cells.chunks_exact(stride).zip(normal).fold(0.0, |sum, (row, v)| sum + row[column] * v);
+                factor * sum
+            });
+            cells.par_chunks_mut(stride).enumerate().for_each(|(i, row)| {
+                let (v, q) = (normal[i], sheared[i]);
+                for (cell, (other_v, other_q)) in row[..n].iter_mut().zip(normal.iter().zip(&sheared)) {
+                    *cell -= v * other_q + q * other_v;
+                }
+                row[n] -= v * beside[0];
+                row[n + 1] -= v * beside[1];
+            });
+        }
+    }
+
+    /// Q times the weights.
+    fn turn_back(&self, weights: &mut [f64]) {
+        self.mirrors.iter().rev().for_each(|(normal, factor)| reflect(weights, normal, *factor));
+    }
+
+    /// The affine part: what P's last rows make of it is `rest`. Term k is 0 above row 2 - k.
+    fn affine(&self, rest: &[f64]) -> [f64; AFFINE] {
+        let mut terms = [0.0; AFFINE];
+        for k in (0..AFFINE).rev() {
+            let row = AFFINE - 1 - k;
+            let known = (k + 1..AFFINE).fold(rest[row], |left, other| left - self.ends[other][row] * terms[other]);
+            terms[k] = known / self.ends[k][row];
+        }
+        terms
+    }
+}
+
+fn reflect(numbers: &mut [f64], normal: &[f64], factor: f64) {
+    let along = factor * dot(numbers, normal);
+    numbers.iter_mut().zip(normal).for_each(|(number, v)| *number -= along * v);
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+}
+
 /// r² ln r of r²; 0 at 0.
 #[inline(always)]
 fn kernel(r2: f64) -> f64 {
     0.5 * r2 * maths::ln_in_loops(r2)
-}
-
-fn affine_term(place: Vec2, i: usize) -> f64 {
-    [1.0, place.x, place.y][i]
 }
 
 /// The anchors without those that are at an earlier one.
