@@ -6,6 +6,7 @@ pub mod change;
 pub mod crossings;
 pub mod error;
 pub mod expression;
+pub mod fault;
 pub mod geometry;
 pub mod keys;
 pub mod maths;

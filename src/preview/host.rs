@@ -14,6 +14,7 @@ use super::message::{self, FromEditor, Role, ToEditor};
 use super::outbox::{Latest, Outbox, Outgoing, Topic};
 use super::{Reply, Transport, views};
 use crate::base::error::{Error, Result};
+use crate::base::fault;
 use crate::base::problem::Problem;
 use crate::scene::edit::Edit;
 
@@ -177,9 +178,9 @@ impl Shared {
             }
             let (shared, scene) = (self.clone(), scene.to_owned());
             let started = thread("link reader", move || {
-                if let Err(error) =
-                    caller.map_err(|e| Error::at("link", e)).and_then(|caller| shared.talk(caller, &scene))
-                {
+                let talk = || caller.map_err(|e| Error::at("link", e)).and_then(|caller| shared.talk(caller, &scene));
+                // A fault ends this connection and no other.
+                if let Ok(Err(error)) = fault::caught(talk) {
                     tracing::info!("{error}");
                 }
                 shared.change(|state| state.connections -= 1);
@@ -216,9 +217,9 @@ impl Shared {
             }
             writing.forget(id);
         });
-        let ended = started.and_then(|()| self.read(id, &mut *reader));
+        let ended = fault::caught(|| started.and_then(|()| self.read(id, &mut *reader)));
         self.forget(id);
-        ended
+        ended.unwrap_or_else(|fault| Err(Error::at("link", fault)))
     }
 
     /// Sends what the outbox holds until the window is gone.

@@ -84,7 +84,7 @@ impl Editor {
             }
         }
         self.end();
-        session.result()
+        self.ended().and(session.result())
     }
 
     /// Takes a line of the input; none at its end.

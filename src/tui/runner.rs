@@ -17,6 +17,7 @@ use super::update::{Effect, Event, update};
 use super::worker::{Job, Worker};
 use super::{input, lines, terminal, view};
 use crate::base::error::{Error, Result};
+use crate::base::fault;
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::files::lines::Log;
 use crate::files::profiles;
@@ -108,11 +109,17 @@ pub fn run(options: Options) -> Result<()> {
         let editor = Editor::new(options, door, None, sender)?;
         return if script { editor.run_unseen(&events) } else { editor.run_lines(&events) };
     }
-    terminal::restore_on_panic();
+    let faults = sender.clone();
+    // Nobody listens once the editor has left.
+    terminal::on_panic(move |fault| drop(faults.send(Event::Fault(fault))));
     let screen = terminal::enter()?;
-    let result = Editor::new(options, door, Some(screen), sender).and_then(|editor| editor.run(&events));
+    // A panic in a loop over all cores comes back to this thread without a word of its own.
+    let result =
+        fault::caught(|| Editor::new(options, door, Some(screen), sender).and_then(|editor| editor.run(&events)));
     terminal::restore();
-    if let Some(folder) = result? {
+    let left =
+        result.unwrap_or_else(|fault| Err(Error::at("the editor", fault).cure("plica edit offers what was typed")))?;
+    if let Some(folder) = left {
         terminal::remark(&format!("your files from the tutor are in {}", folder.display()));
     }
     Ok(())
@@ -180,6 +187,8 @@ pub struct Editor {
     pub(super) eyes: Eyes,
     /// Whether it ends.
     pub(super) leaving: bool,
+    /// Whether a signal ends it.
+    pub(super) interrupted: bool,
 }
 
 impl Editor {
@@ -223,6 +232,7 @@ impl Editor {
             log,
             eyes: Eyes::default(),
             leaving: false,
+            interrupted: false,
         };
         editor.begin();
         editor.load_keys();
@@ -271,6 +281,9 @@ impl Editor {
     }
 
     /// Edits until the person leaves; gives the folder of the tutor, where it was there.
+    ///
+    /// # Errors
+    /// The terminal cannot be drawn on, or a signal ended it.
     fn run(mut self, events: &mpsc::Receiver<Event>) -> Result<Option<PathBuf>> {
         let mut watch = Stopwatch::default();
         while !self.leaving {
@@ -283,7 +296,16 @@ impl Editor {
             let _ = screen.backend_mut().write_all(graphics::forget().as_bytes());
         }
         self.end();
+        self.ended()?;
         Ok(self.options.tutor)
+    }
+
+    /// How it ended.
+    ///
+    /// # Errors
+    /// By a signal.
+    pub fn ended(&self) -> Result<()> {
+        if self.interrupted { Err(Error::Interrupted) } else { Ok(()) }
     }
 
     /// Brings everything to the disk.
@@ -346,6 +368,7 @@ impl Editor {
         if let (Event::Resize(..), Some(cell)) = (&event, ask::cell()) {
             self.state.seeing.graphics.cell = cell;
         }
+        self.interrupted |= matches!(event, Event::End);
         let effects = update(&mut self.state, event);
         if let Some(log) = &self.log {
             self.state.recorder.unwritten().iter().for_each(|line| log.write(line.clone()));

@@ -141,6 +141,7 @@ impl Editor {
         let unsaved = !self.leaving && !self.state.door.is_saved();
         let left = unsaved.then(|| self.state.door.left_unsaved());
         self.end();
+        self.ended()?;
         match (result, left) {
             (Ok(()), Some(left)) => {
                 Err(Error::at("the script", format!("ends, and {left}")).cure("w saves them, q! gives them up"))

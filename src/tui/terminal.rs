@@ -10,6 +10,7 @@ use ratatui::crossterm::{cursor, event, execute, terminal};
 
 use super::clipboard::{Through, sequence};
 use crate::base::error::{Error, Result};
+use crate::base::fault;
 
 /// The terminal that the editor draws on.
 pub type Screen = Terminal<CrosstermBackend<Stdout>>;
@@ -79,12 +80,18 @@ pub fn copy(text: &str) {
     let _ = out.write_all(sequence(text, through).as_bytes()).and_then(|()| out.flush());
 }
 
-/// Makes a panic restore the terminal before its message is printed.
-pub fn restore_on_panic() {
-    let print = std::panic::take_hook();
+/// Makes a panic of this thread, which ends the process, restore the terminal before its message is printed. One of any
+/// other thread goes to the log, and is `told`: the screen stays the editor's.
+pub fn on_panic(told: impl Fn(String) + Send + Sync + 'static) {
+    let (print, main) = (std::panic::take_hook(), std::thread::current().id());
     std::panic::set_hook(Box::new(move |panic| {
-        restore();
-        print(panic);
+        if std::thread::current().id() == main {
+            restore();
+            print(panic);
+        } else {
+            tracing::error!("{panic}\n{}", std::backtrace::Backtrace::force_capture());
+            told(fault::told(panic.payload()));
+        }
     }));
 }
 

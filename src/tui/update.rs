@@ -56,6 +56,8 @@ pub enum Event {
     Command(String),
     /// A script asks for an edit.
     Asked(Asked),
+    /// A thread beside the editor had a fault of its own.
+    Fault(String),
     /// The log of the session cannot be written.
     Unlogged(String),
     /// Files of the scene have changed on the disk.
@@ -202,6 +204,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Transport(transport) => state.follow(transport),
         Event::Command(name) => commands::run_of_window(state, &name),
         Event::Asked(asked) => answer(state, asked),
+        Event::Fault(fault) => state.complain(fault),
         Event::Unlogged(why) => {
             state.recorder.set_place(None);
             // A line that is running is not to blame.

@@ -9,8 +9,9 @@ use super::graphics::Shown;
 use super::seeing::{self, Probed, Request};
 use super::update::{Event, Synthesis};
 use crate::base::error::Error;
+use crate::base::fault;
 use crate::base::problem::Severity;
-use crate::files;
+use crate::files::{self, write};
 use crate::layers::Materials;
 use crate::ops;
 use crate::render::{self, Synth};
@@ -35,11 +36,18 @@ impl Worker {
         let running = Running::default();
         let (shared, in_thread) = (slot.clone(), running.clone());
         std::thread::spawn(move || {
-            let cache = files::materials::Cache::default();
-            let mut studio = Studio { options, cache, made: None, picture: None, running: in_thread };
+            let mut studio = Studio::new(options, in_thread);
             while let Some(request) = next(&shared) {
-                if !studio.serve(&request, &events) {
-                    return;
+                match fault::caught(|| studio.serve(&request, &events)) {
+                    Ok(true) => {}
+                    Ok(false) => return,
+                    Err(fault) => {
+                        // What it kept may be half made: it begins anew.
+                        studio = Studio::new(studio.options, studio.running);
+                        if events.send(Event::Synthesised(Err(fault))).is_err() {
+                            return;
+                        }
+                    }
                 }
             }
         });
@@ -86,8 +94,16 @@ struct Studio {
 }
 
 impl Studio {
+    fn new(options: files::Options, running: Running) -> Studio {
+        let studio = Studio { options, cache: files::materials::Cache::default(), made: None, picture: None, running };
+        studio.run(None);
+        studio
+    }
+
     /// Serves a request; false where nobody listens any more.
     fn serve(&mut self, request: &Request, events: &mpsc::Sender<Event>) -> bool {
+        #[cfg(test)]
+        assert_ne!(request.path, std::path::Path::new("a fault"), "what a test asked for");
         if request.fresh || !self.made.as_ref().is_some_and(|made| Arc::ptr_eq(&made.scene, &request.scene)) {
             if events.send(Event::Synthesising).is_err() {
                 return false;
@@ -144,6 +160,9 @@ impl Studio {
     }
 }
 
+/// How long a subcommand has to end with the editor.
+const LAST: Duration = Duration::from_millis(1500);
+
 /// A subcommand that runs.
 pub struct Job {
     cancel: Arc<AtomicBool>,
@@ -162,14 +181,15 @@ impl Job {
                 Messages { name: name.clone(), said: said.clone(), events: events.clone(), begun: None, shown: None };
             let mut context =
                 ops::Context { out: Box::new(out.clone()), messages: Box::new(messages), cancel: shared, open };
-            let result = command.run(&mut context);
+            let result = fault::caught(|| command.run(&mut context));
             let printed = format!("{}{}", out.text(), said.text());
             let also = said.text().lines().map(|line| format!("; {line}")).collect::<String>();
             let result = match result {
-                Ok(()) if printed.trim().is_empty() => Ok(format!("{name}: done")),
-                Ok(()) => Ok(printed),
-                Err(Error::Interrupted) => Err(format!("{name}: interrupted, nothing half-written is left{also}")),
-                Err(error) => Err(format!("{name}: {error}")),
+                Ok(Ok(())) if printed.trim().is_empty() => Ok(format!("{name}: done")),
+                Ok(Ok(())) => Ok(printed),
+                Ok(Err(Error::Interrupted)) => Err(format!("{name}: interrupted, nothing half-written is left{also}")),
+                Ok(Err(error)) => Err(format!("{name}: {error}")),
+                Err(fault) => Err(format!("{name}: {fault}")),
             };
             // Nobody listens once the editor has left.
             let _ = events.send(Event::Done(result));
@@ -182,11 +202,17 @@ impl Job {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// Asks it to end and waits until it has, so that nothing half-written is left.
+    /// Asks it to end and waits until it has, so that nothing half-written is left. What does not end (a FIFO that nobody
+    /// reads) is left to itself after a while.
     pub fn end(self) {
         self.cancel();
-        if self.thread.join().is_err() {
-            tracing::warn!("a subcommand panicked");
+        let asked = Instant::now();
+        while !self.thread.is_finished() {
+            if asked.elapsed() > LAST {
+                tracing::warn!("a subcommand did not end");
+                return write::remove_unfinished();
+            }
+            std::thread::sleep(Duration::from_millis(5));
         }
     }
 }
@@ -255,6 +281,27 @@ impl ops::Progress for Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_fault_is_told_and_the_next_request_is_served() {
+        let (sender, events) = mpsc::channel();
+        let worker = Worker::start(files::Options::default(), sender);
+        let state = super::super::tests::support::state();
+        let request = |path: &str| Request { path: path.into(), fresh: true, ..seeing::request(&state) };
+        let ended = || {
+            let ends = |event| match event {
+                Event::Synthesised(result) => Some(result.map(drop)),
+                _ => None,
+            };
+            events.iter().find_map(ends).unwrap()
+        };
+        worker.ask(request("a fault"));
+        let told = ended().unwrap_err();
+        assert!(told.starts_with("a fault of its own: ") && told.contains("what a test asked for"), "{told}");
+        worker.ask(request("no/scene"));
+        let told = ended().unwrap_err();
+        assert!(told.contains("no such file"), "{told}");
+    }
 
     #[test]
     fn work_tells_how_far_it_is() {

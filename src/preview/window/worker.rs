@@ -7,6 +7,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use super::text::Fonts;
+use crate::base::fault;
 use crate::base::problem::Problem;
 use crate::layers::Materials;
 use crate::preview::Update;
@@ -95,9 +96,20 @@ fn synthesise(work: &Receiver<(Arc<Scene>, u64)>, mut load: Load, send: &impl Fn
         let (scene, revision) = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
         send(Event::Work("reading the pictures"))?;
-        let (materials, problems) = load(&scene);
-        send(Event::Work("synthesising"))?;
-        match render::synth(&scene, &materials, previous.as_ref()) {
+        let made = fault::caught(|| {
+            let (materials, problems) = load(&scene);
+            send(Event::Work("synthesising"))?;
+            Ok((render::synth(&scene, &materials, previous.as_ref()), problems))
+        });
+        let (synth, problems) = match made {
+            Ok(made) => made?,
+            Err(fault) => {
+                previous = None;
+                send(Event::Problems(vec![Problem::error("", fault)]))?;
+                continue;
+            }
+        };
+        match synth {
             Ok(synth) => {
                 previous = Some(synth.clone());
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;

@@ -9,7 +9,7 @@ use terminput::{Event as Input, KeyEventKind, MouseEventKind, ScrollDirection};
 
 use super::keys;
 use super::update::Event;
-use crate::base::system;
+use crate::base::{fault, system};
 
 mod pieces;
 pub use pieces::{Piece, Pieces};
@@ -21,7 +21,9 @@ pub fn read(mut pieces: Pieces, sender: mpsc::Sender<Event>) {
     std::thread::spawn(move || {
         loop {
             while let Some(piece) = pieces.take(Instant::now()) {
-                if event(&piece).is_some_and(|event| sender.send(event).is_err()) {
+                // A fault is told by its panic; the keys that follow still count.
+                let said = fault::caught(|| event(&piece)).unwrap_or(None);
+                if said.is_some_and(|event| sender.send(event).is_err()) {
                     return;
                 }
             }

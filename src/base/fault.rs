@@ -1,0 +1,35 @@
+//! Faults of our own. A panic ends what was being done and nothing more: whoever starts work on a thread catches it at the
+//! border of that work, tells the person, and goes on with the next. Only the main thread's ends the process.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Does `work`; where it panics, gives one line about that. What the work was changing may be half changed: throw it away.
+///
+/// # Errors
+/// The line.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| told(&*payload))
+}
+
+/// A panic in one line.
+pub fn told(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason is known");
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    format!("a fault of its own: {line} (the log tells more)")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_line() {
+        assert_eq!(caught(|| 5), Ok(5));
+        let of = |work: fn()| caught(work).unwrap_err();
+        assert_eq!(of(|| panic!("two\n  lines")), "a fault of its own: two lines (the log tells more)");
+        assert_eq!(of(|| panic!("number {}", 7)), "a fault of its own: number 7 (the log tells more)");
+        assert!(of(|| std::panic::panic_any(7)).contains("no reason is known"));
+    }
+}
