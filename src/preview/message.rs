@@ -11,7 +11,12 @@ use super::Transport;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::originals::Original;
+<<<<<<< HEAD
 use crate::scene::{self, edit::Edit};
+=======
+use crate::scene::edit::Edit;
+use crate::scene::json;
+>>>>>>> 8d47b75 (An edit makes no more than it says, and a document takes no more memory than is allowed)
 
 /// Version of the protocol.
 const PROTOCOL: u8 = 2;
@@ -21,6 +26,8 @@ pub const VERSION: u16 = u16::from_le_bytes([PROTOCOL, scene::VERSION as u8 - 1]
 
 const MAGIC: [u8; 4] = *b"PLCA";
 const HEADER: usize = 12;
+/// Bytes of memory that a message may take once it is read.
+const MOST_MEMORY: u64 = 1 << 30;
 pub(super) const KIND_JSON: u16 = 1;
 /// JSON, a line end, and bytes that belong to it.
 pub(super) const KIND_BYTES: u16 = 2;
@@ -210,6 +217,9 @@ pub fn read<T: Message>(from: &mut impl Read, most: u64) -> Result<Option<T>> {
     // JSON on one line has no line end in it.
     let json = if kind == KIND_BYTES { body.iter().position(|&byte| byte == b'\n') } else { Some(body.len()) };
     let json = json.ok_or_else(|| not_understood("it has no end"))?;
+    if json::bytes_of_text(&body[..json]) > MOST_MEMORY {
+        return Err(not_understood("it would take too much memory"));
+    }
     let mut message: T = serde_json::from_slice(&body[..json]).map_err(not_understood)?;
     match (message.bytes_mut(), kind) {
         (Some(bytes), KIND_BYTES) => {

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::check::Rules;
 use super::edit::Edit;
 use super::{Scene, VERSION, check, json, migrate};
+use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
 use crate::layers;
@@ -28,6 +29,9 @@ impl Document {
 
     /// The same under other rules than the default ones; they hold for what edits make of it too.
     pub fn parse_under(text: &str, rules: Rules) -> Result<Document, Vec<Problem>> {
+        let budget = Budget::new(rules.memory);
+        let needed = budget.try_take(json::bytes_of_text(text.as_bytes()));
+        let _share = needed.map_err(|short| vec![short.problem("")])?;
         let mut json = json::parse(text).map_err(|problem| vec![problem])?;
         migrate::migrate(&mut json).map_err(|problem| vec![problem])?;
         Document::from_json_under(json, rules)
@@ -102,6 +106,8 @@ impl Document {
         if change == Change::Same {
             return Ok(None);
         }
+        let needed = Budget::new(self.rules.memory).try_take(json::bytes(&json));
+        let _share = needed.map_err(|short| vec![short.problem("")])?;
         let errors = |mut problems: Vec<Problem>| {
             problems.retain(|problem| problem.severity == Severity::Error);
             problems

@@ -82,7 +82,16 @@ impl Edit {
 
     /// Changes `json`, without looking at what comes out. Gives what takes the edit back, to the letter.
     pub(super) fn patch(&self, json: &mut Value) -> Result<Edit, Problem> {
-        let mut undo = self.0.iter().map(|operation| step(json, operation)).collect::<Result<Vec<_>, _>>()?;
+        self.patch_within(json, &mut Copies::default())
+    }
+
+    /// The same as one of several edits, which share what may be copied.
+    pub(super) fn patch_within(&self, json: &mut Value, copies: &mut Copies) -> Result<Edit, Problem> {
+        let mut undo = Vec::with_capacity(self.0.len());
+        for operation in self.0.iter() {
+            copies.bear(json, operation)?;
+            undo.push(step(json, operation)?);
+        }
         undo.reverse();
         Ok(Edit::all(undo))
     }
@@ -101,6 +110,42 @@ impl Edit {
         let mut made = from.json().clone();
         let exact = edit.patch(&mut made).is_ok() && json::same(&made, to.json());
         if exact { edit } else { Edit::replace("", to.json().clone()) }
+    }
+}
+
+/// What `copy` has made so far. It alone makes much of little: each one may double the scene, while whatever else an edit
+/// writes is no longer than the edit. Plica never writes one.
+#[derive(Debug, Default)]
+pub(super) struct Copies(u64);
+
+impl Copies {
+    const MOST_BYTES: u64 = 64 << 20;
+
+    /// Refuses an operation that makes too much, or nests it deeper than a scene may be.
+    fn bear(&mut self, json: &Value, operation: &PatchOperation) -> Result<(), Problem> {
+        let there = |from: &str| json.pointer(from).ok_or_else(|| missing(from));
+        let value = match operation {
+            PatchOperation::Add(one) => &one.value,
+            PatchOperation::Replace(one) => &one.value,
+            PatchOperation::Move(one) => there(one.from.as_str())?,
+            PatchOperation::Copy(one) => {
+                let value = there(one.from.as_str())?;
+                self.0 += json::bytes(value);
+                value
+            }
+            PatchOperation::Remove(_) | PatchOperation::Test(_) => return Ok(()),
+        };
+        let path = operation.path().as_str();
+        if path.matches('/').count() + json::depth(value) > json::MAX_DEPTH {
+            return Err(Problem::error("", format!("the edit nests deeper than {}", json::MAX_DEPTH)));
+        }
+        if self.0 > Copies::MOST_BYTES {
+            let most = Copies::MOST_BYTES >> 20;
+            return Err(
+                Problem::error("", format!("the edit copies more than {most} MiB")).hint("add the values themselves")
+            );
+        }
+        Ok(())
     }
 }
 

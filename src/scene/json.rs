@@ -19,6 +19,33 @@ const MAX_COLUMN: usize = 110;
 /// So many spaces a level.
 pub(super) const INDENT: usize = 2;
 
+/// Bytes of memory that `value` takes, a little more than it does.
+pub fn bytes(value: &Value) -> u64 {
+    let key = |key: &String| (key.len() + size_of::<String>() + 2 * size_of::<usize>()) as u64;
+    size_of::<Value>() as u64
+        + match value {
+            Value::Array(items) => items.iter().map(bytes).sum(),
+            Value::Object(map) => map.iter().map(|(name, value)| key(name) + bytes(value)).sum(),
+            Value::String(text) => text.len() as u64,
+            Value::Null | Value::Bool(_) | Value::Number(_) => 0,
+        }
+}
+
+/// How deep objects and lists are nested in `value`.
+pub fn depth(value: &Value) -> usize {
+    match value {
+        Value::Array(items) => 1 + items.iter().map(depth).max().unwrap_or(0),
+        Value::Object(map) => 1 + map.values().map(depth).max().unwrap_or(0),
+        _ => 0,
+    }
+}
+
+/// Bytes of memory that the value of a JSON text takes at most, told from its punctuation before any of it is made.
+pub fn bytes_of_text(text: &[u8]) -> u64 {
+    let parts = text.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{' | b':')).count() as u64;
+    (parts + 1) * size_of::<Value>() as u64 + text.len() as u64
+}
+
 /// Parses `text`; the problem says the line and the column.
 pub fn parse(text: &str) -> Result<Value, Problem> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
+use super::check::Rules;
 use super::*;
 use crate::base::problem::Problem;
 
@@ -293,4 +294,47 @@ proptest! {
         let end = cut.index(text.len());
         prop_assert!(!text.is_char_boundary(end) || end + 1 >= text.len() || Document::parse(&text[..end]).is_err());
     }
+}
+
+#[test]
+fn an_edit_makes_no_more_than_it_says() {
+    let document = squint();
+    let edit = |operations: Vec<Value>| serde_json::from_value::<Edit>(operations.into()).unwrap();
+    let doubled = |times: usize| {
+        let first = json!({ "op": "add", "path": "/notes", "value": [["x".repeat(1000)]] });
+        let copy = json!({ "op": "copy", "from": "/notes", "path": "/notes/-" });
+        edit(std::iter::once(first).chain(std::iter::repeat_n(copy, times)).collect())
+    };
+    let refusal = |edit: &Edit| edit.patch(&mut document.json().clone()).err().map(|problem| problem.message);
+    assert_eq!(refusal(&doubled(4)), None);
+    assert!(refusal(&doubled(40)).unwrap().contains("copies more than 64 MiB"));
+    let mut replay = history::Replay::new(document.clone());
+    let twelve = doubled(12);
+    let refused = (0..100).find_map(|_| replay.edit(&twelve, &twelve, Stamp::default()).err());
+    assert!(refused.unwrap().message.contains("copies more"), "a journal's edits count together");
+    let deep = |levels: usize| (0..levels).fold(json!(1), |inner, _| json!([inner]));
+    assert_eq!(refusal(&edit(vec![json!({ "op": "add", "path": "/notes", "value": deep(63) })])), None);
+    for operations in [
+        vec![json!({ "op": "add", "path": "/notes", "value": deep(64) })],
+        vec![
+            json!({ "op": "add", "path": "/notes", "value": deep(40) }),
+            json!({ "op": "replace", "path": format!("/notes{}", "/0".repeat(40)), "value": deep(40) }),
+        ],
+    ] {
+        assert!(refusal(&edit(operations)).unwrap().contains("deeper than 64"));
+    }
+}
+
+#[test]
+fn a_document_takes_no_more_memory_than_is_allowed() {
+    let text = squint().to_text();
+    let most = json::bytes_of_text(text.as_bytes());
+    assert!(json::bytes(squint().json()) <= most);
+    let rules = |memory| Rules { memory, ..Rules::default() };
+    let document = Document::parse_under(&text, rules(most)).unwrap();
+    let refused = Document::parse_under(&text, rules(most - 1)).unwrap_err();
+    assert!(refused[0].hint.as_ref().unwrap().contains("--limit memory"), "{refused:?}");
+    let title = |length: usize| Edit::set(&document, "/title", "x".repeat(length).into());
+    document.apply(&title(10)).unwrap();
+    assert!(document.apply(&title(most as usize)).unwrap_err()[0].message.contains("of memory"));
 }
