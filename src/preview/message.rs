@@ -11,12 +11,7 @@ use super::Transport;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::originals::Original;
-<<<<<<< HEAD
-use crate::scene::{self, edit::Edit};
-=======
-use crate::scene::edit::Edit;
-use crate::scene::json;
->>>>>>> 8d47b75 (An edit makes no more than it says, and a document takes no more memory than is allowed)
+use crate::scene::{self, edit::Edit, json};
 
 /// Version of the protocol.
 const PROTOCOL: u8 = 2;

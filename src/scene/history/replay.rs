@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::{History, Stamp, Tree};
 use crate::base::problem::Problem;
 use crate::scene::check::Rules;
+use crate::scene::edit::Copies;
 use crate::scene::{Document, Edit};
 
 /// A history being made again.
@@ -16,6 +17,7 @@ pub struct Replay {
     tree: Tree,
     revision: u64,
     saved: Option<usize>,
+    copies: Copies,
 }
 
 /// A history that was made again.
@@ -30,7 +32,7 @@ pub struct Remade {
 impl Replay {
     /// Begins with the document before the first change; whether a file holds it is not known.
     pub fn new(json: Value) -> Replay {
-        Replay { json, tree: Tree::default(), revision: 0, saved: None }
+        Replay { json, tree: Tree::default(), revision: 0, saved: None, copies: Copies::default() }
     }
 
     /// An edit and its inverse, of the step `id`. One to another version of the format begins the history anew.
@@ -39,7 +41,7 @@ impl Replay {
     /// When it cannot be applied; the replay is of no use any more.
     pub fn edit(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp, id: u64) -> Result<(), Problem> {
         let version = self.json.get("plica").cloned();
-        edit.patch(&mut self.json)?;
+        edit.patch_within(&mut self.json, &mut self.copies)?;
         self.revision += 1;
         if version.as_ref() == self.json.get("plica") {
             self.tree.note(edit.clone(), inverse.clone(), stamp, Some(id));
@@ -59,7 +61,7 @@ impl Replay {
         if self.tree.step(self.tree.here()).is_none_or(|last| last.inverse != *edit) {
             return self.edit(edit, inverse, stamp, id);
         }
-        edit.patch(&mut self.json)?;
+        edit.patch_within(&mut self.json, &mut self.copies)?;
         self.revision += 1;
         self.tree.go_back();
         Ok(())
@@ -71,7 +73,7 @@ impl Replay {
     /// As [`Replay::edit`].
     pub fn redo(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp, id: u64) -> Result<(), Problem> {
         let Some(state) = self.tree.after_by(edit, id) else { return self.edit(edit, inverse, stamp, id) };
-        edit.patch(&mut self.json)?;
+        edit.patch_within(&mut self.json, &mut self.copies)?;
         self.revision += 1;
         self.tree.arrive(state);
         Ok(())
@@ -97,7 +99,7 @@ impl Replay {
         rules: Rules,
         migrate: impl Fn(&mut Value) -> Result<(), Problem>,
     ) -> Result<Remade, Vec<Problem>> {
-        let Replay { mut json, mut tree, revision, saved } = self;
+        let Replay { mut json, mut tree, revision, saved, .. } = self;
         let raw = json.clone();
         migrate(&mut json).map_err(|problem| vec![problem])?;
         let is_saved = saved == Some(tree.here());

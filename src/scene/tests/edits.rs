@@ -308,9 +308,9 @@ fn an_edit_makes_no_more_than_it_says() {
     let refusal = |edit: &Edit| edit.patch(&mut document.json().clone()).err().map(|problem| problem.message);
     assert_eq!(refusal(&doubled(4)), None);
     assert!(refusal(&doubled(40)).unwrap().contains("copies more than 64 MiB"));
-    let mut replay = history::Replay::new(document.clone());
+    let mut replay = history::Replay::new(document.json().clone());
     let twelve = doubled(12);
-    let refused = (0..100).find_map(|_| replay.edit(&twelve, &twelve, Stamp::default()).err());
+    let refused = (0..100).find_map(|id| replay.edit(&twelve, &twelve, Stamp::default(), id).err());
     assert!(refused.unwrap().message.contains("copies more"), "a journal's edits count together");
     let deep = |levels: usize| (0..levels).fold(json!(1), |inner, _| json!([inner]));
     assert_eq!(refusal(&edit(vec![json!({ "op": "add", "path": "/notes", "value": deep(63) })])), None);
