@@ -5,10 +5,37 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::scene::{Document, json};
+
 /// Macros that play macros, at most.
 const DEEPEST: usize = 50;
 /// Lines that one key plays, at most: keys never wait for long.
 const MOST_PLAYED: usize = if cfg!(test) { 300 } else { 10_000 };
+
+/// Bytes of scenes that the lines of one key change, at most, in sum: on a large scene each line takes longer.
+const MOST_CHANGED: u64 = 16 << 30;
+
+/// How much the lines that one key plays have done.
+#[derive(Clone, Debug, Default)]
+pub struct Work {
+    lines: usize,
+    bytes: u64,
+}
+
+impl Work {
+    /// A line is about to change `document`.
+    ///
+    /// # Errors
+    /// There were too many.
+    pub fn spend(&mut self, document: &Document) -> Result<(), String> {
+        if self.lines == MOST_PLAYED || self.bytes > MOST_CHANGED {
+            return Err(format!("stopped after {} lines", self.lines));
+        }
+        self.lines += 1;
+        self.bytes += json::bytes(document.json());
+        Ok(())
+    }
+}
 
 /// What is kept of a command that was run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +87,7 @@ pub struct Recorder {
     played: Option<char>,
     /// Commands running now that play other lines, and how many lines they have played.
     playing: usize,
-    spent: usize,
+    spent: Work,
     /// Commands running now of which the line is kept: what they run is part of them.
     within: usize,
 }
@@ -71,7 +98,9 @@ impl Recorder {
         match kept {
             Kept::Inside => {}
             Kept::Played => {
-                self.spent = if self.playing == 0 { 0 } else { self.spent };
+                if self.playing == 0 {
+                    self.spent = Work::default();
+                }
                 self.playing += 1;
             }
             Kept::Line | Kept::Change | Kept::Answer => self.within += 1,
@@ -156,9 +185,8 @@ impl Recorder {
     ///
     /// # Errors
     /// There were too many.
-    pub fn spend(&mut self) -> Result<(), String> {
-        self.spent += 1;
-        if self.spent > MOST_PLAYED { Err(format!("stopped after {MOST_PLAYED} lines")) } else { Ok(()) }
+    pub fn spend(&mut self, document: &Document) -> Result<(), String> {
+        self.spent.spend(document)
     }
 
     /// The lines that `.` runs.

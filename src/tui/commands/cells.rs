@@ -174,7 +174,7 @@ fn take(state: &mut State, choice: Choice, word: &str) -> Done {
 
 /// Steps every selected cell from its own value: numbers by the step, choices by one.
 fn step(state: &mut State, call: &Call) -> Done {
-    let by = call.text.parse::<i64>().unwrap_or(1) * call.times();
+    let by = call.text.parse::<i64>().unwrap_or(1).saturating_mul(call.times());
     let sheet = state.sheet();
     let (_, cell) = current(state).ok_or("there is nothing to step here")?;
     if !cell.is_number() {

@@ -169,9 +169,9 @@ pub fn entries() -> Vec<String> {
 }
 
 fn scroll(state: &mut State, call: &Call) -> Done {
-    let by = call.text.parse::<i64>().unwrap_or(1) * call.times();
+    let by = call.text.parse::<i64>().unwrap_or(1).saturating_mul(call.times());
     if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.mode {
-        *scroll = (*scroll as i64 + by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
+        *scroll = (*scroll as i64).saturating_add(by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
     }
     Ok(())
 }

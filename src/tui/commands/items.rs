@@ -1,12 +1,13 @@
 //! Rows and nodes as a whole: added, taken away, doubled and moved.
 
-use serde_json::{Value, json};
+use serde_json::{Value, json as value};
 
 use super::naming::unused;
 use super::yanking::stem;
 use super::{Call, Command, Done, command, unquoted};
+use crate::base::budget;
 use crate::scene::field::{self, Kind};
-use crate::scene::{Edit, pointer};
+use crate::scene::{Edit, json, pointer};
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry;
@@ -41,7 +42,7 @@ fn add(state: &mut State, call: &Call) -> Done {
 
 /// A picture by its file, as written relative to the scene, under the file's name.
 fn add_picture(state: &mut State, path: &str) -> Done {
-    let entry = (stem(path).to_owned(), json!({ "path": path }));
+    let entry = (stem(path).to_owned(), value!({ "path": path }));
     let added = Edit::insert_entries(state.document(), "/images", [entry].into_iter().collect());
     let (edit, pointer) = added.ok_or("there is no list of pictures")?;
     state.edit(edit, false)?;
@@ -167,8 +168,22 @@ fn follow(state: &mut State, list: &str, at: usize, by: i64) {
     state.settle();
 }
 
+/// Refuses what would take this much memory beside the scene, before any of it is made.
+pub fn bearable(state: &State, bytes: u64) -> Done {
+    let most = state.door.options().limits.paste.saturating_mul(8);
+    if bytes <= most {
+        return Ok(());
+    }
+    Err(format!(
+        "that makes {} of the scene, at most {} at once (--limit paste)",
+        budget::size(bytes),
+        budget::size(most)
+    ))
+}
+
 /// Copies follow the last of what they are copies of, and take over the selection.
 fn duplicate(state: &mut State, call: &Call) -> Done {
+    let times = call.times_of("duplicate")?;
     let path = target(state)?;
     if let Some((map, name)) = pointer::split(&path).filter(|(map, _)| *map == "/images") {
         let value = field::value(state.document(), &path).unwrap_or(Value::Null);
@@ -181,7 +196,8 @@ fn duplicate(state: &mut State, call: &Call) -> Done {
     let (list, from, to) = block(state)?;
     let items = field::value(state.document(), &list).unwrap_or(Value::Null);
     let items = items.as_array().and_then(|items| items.get(from..=to)).unwrap_or_default();
-    let copies = items.iter().cloned().cycle().take(items.len() * call.times() as usize).collect();
+    bearable(state, items.iter().map(json::bytes).sum::<u64>().saturating_mul(times as u64))?;
+    let copies = items.iter().cloned().cycle().take(items.len() * times).collect();
     let added = Edit::insert_all(state.document(), &list, to + 1, copies);
     let (edit, path) = added.ok_or("only items of lists are duplicated")?;
     let revision = state.door.revision();

@@ -36,7 +36,7 @@ fn play(state: &mut State, call: &Call) -> Done {
         text => letter(text)?,
     };
     let lines = state.recorder.play(letter)?;
-    for _ in 0..call.times() {
+    for _ in 0..call.times_of("play-macro")? {
         for (at, line) in lines.iter().enumerate() {
             repeat(state, line).map_err(|why| format!("macro {letter} stopped at line {} ({line}): {why}", at + 1))?;
         }
@@ -46,7 +46,7 @@ fn play(state: &mut State, call: &Call) -> Done {
 
 /// Runs a line of several; one that is refused leaves no list open.
 fn repeat(state: &mut State, line: &str) -> Done {
-    state.recorder.spend()?;
+    state.recorder.spend(state.door.document())?;
     obey(state, line, None).inspect_err(|_| {
         if matches!(state.mode, Mode::Choice(_)) {
             state.mode = Mode::Normal;
@@ -61,7 +61,7 @@ fn again(state: &mut State, call: &Call) -> Done {
     if call.count.is_some() {
         *last = Said { count: None, ..Said::parse(last, None) }.to_string();
     }
-    for _ in 0..call.times() {
+    for _ in 0..call.times_of("again")? {
         for line in &lines {
             repeat(state, line)?;
         }

@@ -47,10 +47,24 @@ pub struct Call<'a> {
     pub count: Option<usize>,
 }
 
+/// Counts go so far: to any row that a scene may have.
+const MOST_COUNT: usize = 1_000_000;
+
 impl Call<'_> {
     /// The count, 1 where none was typed.
     pub fn times(&self) -> i64 {
         self.count.unwrap_or(1) as i64
+    }
+
+    /// The count of a command that makes something each time.
+    ///
+    /// # Errors
+    /// It is more than anybody means.
+    pub fn times_of(&self, name: &str) -> Result<usize, String> {
+        /// Keys never wait for long.
+        const MOST: usize = 10_000;
+        let times = self.count.unwrap_or(1);
+        if times > MOST { Err(format!("{name} goes {MOST} times at most, not {times}")) } else { Ok(times) }
     }
 }
 
@@ -200,6 +214,9 @@ pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
     let said = Said::parse(line, count);
     if said.name.is_empty() {
         return Ok(());
+    }
+    if let Some(count) = said.count.filter(|&count| count > MOST_COUNT) {
+        return Err(format!("a count goes to {MOST_COUNT}, not {count}"));
     }
     #[cfg(test)]
     super::tests::coverage::ran(said.name);

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::items::{go_to, target};
+use super::items::{bearable, go_to, target};
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
@@ -10,6 +10,7 @@ use crate::scene::insert::misfit;
 use crate::scene::{Document, Edit, address, json, pointer};
 use crate::tui::app::{Pane, State};
 use crate::tui::clipboard::{MOST_BYTES, Yanked};
+use crate::tui::recorder::Work;
 use crate::tui::sheet::Sheet;
 use crate::tui::update::Effect;
 use crate::tui::{entry, numbers, rows, terminal};
@@ -110,7 +111,13 @@ fn paste(state: &mut State, call: &Call) -> Done {
             Yanked { value, name: None }
         }
     };
-    (0..call.times()).try_for_each(|_| paste_value(state, &yanked))
+    let times = call.times_of("paste")?;
+    bearable(state, json::bytes(&yanked.value).saturating_mul(times as u64))?;
+    let mut work = Work::default();
+    (0..times).try_for_each(|_| {
+        work.spend(state.document())?;
+        paste_value(state, &yanked)
+    })
 }
 
 /// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, over a
