@@ -3,7 +3,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
@@ -41,12 +41,32 @@ pub fn create_new(path: &Path, private: bool) -> io::Result<File> {
     OpenOptions::new().read(true).write(true).create_new(true).mode(mode).open(path)
 }
 
-/// Opens a file of ours to read and write, made with mode 0600 where missing. A link is refused.
+/// Opens a file of ours to read and write, made with mode 0600 where missing. A link, and whatever is no regular file, is
+/// refused; a FIFO makes nobody wait.
 pub fn open_private(path: &Path) -> io::Result<File> {
     operation(None)?;
     let mut options = OpenOptions::new();
-    options.read(true).write(true).create(true).truncate(false).mode(0o600).custom_flags(system::no_follow());
-    options.open(path)
+    let flags = system::no_follow() | system::no_wait();
+    options.read(true).write(true).create(true).truncate(false).mode(0o600).custom_flags(flags);
+    regular(options.open(path)?)
+}
+
+/// The file, where it is a regular one.
+///
+/// # Errors
+/// It is a folder, a FIFO, a device or a socket: `InvalidInput`, and says which.
+pub fn regular(file: File) -> io::Result<File> {
+    let kind = file.metadata()?.file_type();
+    let kinds = [
+        (kind.is_dir(), "a folder"),
+        (kind.is_fifo(), "a FIFO"),
+        (kind.is_char_device() || kind.is_block_device(), "a device"),
+        (kind.is_socket(), "a socket"),
+    ];
+    match kinds.iter().find(|(is, _)| *is) {
+        None => Ok(file),
+        Some((_, name)) => Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {name}, not a file"))),
+    }
 }
 
 /// Writes all of `bytes` where the file stands.
@@ -122,4 +142,21 @@ fn operation(written: Option<(&mut File, &[u8])>) -> io::Result<()> {
         std::process::abort();
     }
     Err(io::Error::other("injected fault"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_ours_is_a_regular_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        rustix::fs::mknodat(rustix::fs::CWD, path("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RWXU, 0)
+            .unwrap();
+        std::os::unix::fs::symlink("file", path("link")).unwrap();
+        open_private(&path("file")).unwrap();
+        assert_eq!(open_private(&path("fifo")).unwrap_err().to_string(), "is a FIFO, not a file");
+        assert!(open_private(&path("link")).is_err());
+    }
 }

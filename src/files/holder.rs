@@ -93,9 +93,9 @@ pub fn path_beside(scene: &Path) -> PathBuf {
 
 fn read(scene: &Path) -> Option<Holder> {
     let mut bytes = Vec::new();
-    let file = OpenOptions::new().read(true).custom_flags(system::no_follow()).open(path_beside(scene)).ok()?;
-    file.metadata().ok().filter(std::fs::Metadata::is_file)?;
-    file.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
+    let flags = system::no_follow() | system::no_wait();
+    let file = OpenOptions::new().read(true).custom_flags(flags).open(path_beside(scene)).ok()?;
+    disk::regular(file).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
     serde_json::from_slice(&bytes).ok()
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use crate::base::error::{Error, Result};
-use crate::base::system::folders;
+use crate::base::system::{self, folders};
 
 /// A log longer than this begins anew; the old one is kept once.
 const MOST_BYTES: u64 = 1 << 20;
@@ -67,7 +67,10 @@ impl Log {
             if self.path.metadata().is_ok_and(|found| found.is_file() && found.len() > MOST_BYTES) {
                 std::fs::rename(&self.path, self.path.with_extension("log.old"))?;
             }
-            self.file = Some(OpenOptions::new().append(true).create(true).mode(0o600).open(&self.path)?);
+            let mut options = OpenOptions::new();
+            // A FIFO that nobody reads is no place for a log, and none to wait at.
+            options.append(true).create(true).mode(0o600).custom_flags(system::no_wait());
+            self.file = Some(options.open(&self.path)?);
         }
         self.file.as_mut().ok_or_else(|| io::ErrorKind::NotFound.into())
     }

@@ -1,8 +1,7 @@
 //! Paths that a scene names: they stay beneath its folder unless a person allows otherwise, and are regular files.
 
 use std::fs::File;
-use std::io;
-use std::os::unix::fs::FileTypeExt;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::{Options, disk};
@@ -61,18 +60,22 @@ pub fn open_named(path: &Path) -> Result<File> {
     regular(File::from(opened), &place)
 }
 
-fn regular(file: File, place: &str) -> Result<File> {
-    let kind = file.metadata().map_err(|error| Error::at(place, error))?.file_type();
-    let kinds = [
-        (kind.is_dir(), "a folder"),
-        (kind.is_fifo(), "a FIFO"),
-        (kind.is_char_device() || kind.is_block_device(), "a device"),
-        (kind.is_socket(), "a socket"),
-    ];
-    match kinds.iter().find(|(is, _)| *is) {
-        None => Ok(file),
-        Some((_, name)) => Err(Error::at(place, format!("is {name}, not a file")).cure("name a regular file")),
+/// Reads a regular file of at most `most` bytes; whatever else lies there makes nobody wait.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let file = disk::regular(beneath::open_anywhere(path)?.into())?;
+    let mut bytes = Vec::new();
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("is larger than {most} bytes")));
     }
+    Ok(bytes)
+}
+
+fn regular(file: File, place: &str) -> Result<File> {
+    disk::regular(file).map_err(|error| match error.kind() {
+        io::ErrorKind::InvalidInput => Error::at(place, error).cure("name a regular file"),
+        _ => Error::at(place, error),
+    })
 }
 
 fn explain(place: &str, error: io::Error) -> Error {

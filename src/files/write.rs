@@ -40,7 +40,7 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
 pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     let mut bytes = Vec::new();
     paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
-    if std::fs::read(to).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
+    if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
 }
 
 /// A file being written, to take its place on [`Atomic::commit`]. Dropped before that, it leaves nothing behind.

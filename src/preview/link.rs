@@ -166,7 +166,13 @@ impl Drop for Door {
 
 /// Waits for this process's turn; it ends when the file is dropped.
 fn turn(path: &Path) -> io::Result<File> {
-    let file = File::options().write(true).create(true).truncate(false).mode(0o600).open(path)?;
+    let file = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .mode(0o600)
+        .custom_flags(system::no_wait())
+        .open(path)?;
     file.lock()?;
     Ok(file)
 }

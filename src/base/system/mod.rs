@@ -39,6 +39,11 @@ pub fn is_denied_to_write(path: &std::path::Path) -> bool {
     rustix::fs::accessat(rustix::fs::CWD, path, access, flags) == Err(rustix::io::Errno::ACCESS)
 }
 
+/// For `OpenOptions::custom_flags`: a FIFO makes nobody wait, and no terminal becomes ours.
+pub fn no_wait() -> i32 {
+    (rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY).bits() as i32
+}
+
 /// Whether a process with this number is there (it may belong to somebody else).
 pub fn process_lives(pid: u32) -> bool {
     let Some(pid) = i32::try_from(pid).ok().and_then(rustix::process::Pid::from_raw) else { return false };

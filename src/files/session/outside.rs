@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 
 use super::{Kind, Session};
 use crate::base::error::{Error, Result};
-use crate::files::{now_ms, scene, through};
+use crate::files::{now_ms, paths, scene, through};
 use crate::scene::history::{Applied, Stamp};
 use crate::scene::merge::{Merged, Side, merge};
 use crate::scene::{Document, Edit, words};
@@ -141,7 +141,7 @@ impl Session {
     /// # Errors
     /// That reason.
     pub fn may_overwrite(&self) -> Result<()> {
-        match std::fs::read(&self.path) {
+        match paths::read(&self.path, self.options.limits.scene) {
             Ok(bytes) if scene::hash(&bytes) == self.file => Ok(()),
             Ok(_) => Err(Error::at(self.path.display(), "was changed by another program")),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
@@ -151,7 +151,7 @@ impl Session {
 
     /// Whether the file holds just this, after a save that failed on its way.
     pub(super) fn file_holds(&self, hash: &str) -> bool {
-        std::fs::read(&self.path).is_ok_and(|bytes| scene::hash(&bytes) == hash)
+        paths::read(&self.path, self.options.limits.scene).is_ok_and(|bytes| scene::hash(&bytes) == hash)
     }
 
     /// The document of the file enters as one edit.
