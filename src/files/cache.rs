@@ -10,13 +10,13 @@ use std::time::SystemTime;
 use sha2::{Digest, Sha256};
 
 use super::originals::{Contents, contents, hex};
-use super::temporary;
 use super::write::Atomic;
+use super::{Limits, paths, temporary};
 use crate::base::error::{Error, Result};
 use crate::base::system::folders;
 
-/// The most bytes that are kept.
-pub const MOST: u64 = 1 << 30;
+/// The most files that are kept, and that one scene may name.
+pub const MOST_FILES: usize = 4096;
 
 /// A folder of files named by their hash.
 #[derive(Clone, Debug)]
@@ -30,10 +30,10 @@ impl Cache {
     ///
     /// # Errors
     /// There is no home, or the folder cannot be made.
-    pub fn of_user() -> Result<Cache> {
+    pub fn of_user(limits: &Limits) -> Result<Cache> {
         let folder =
             folders::cache().ok_or_else(|| Error::at("cache", "there is no home").cure("set XDG_CACHE_HOME"))?;
-        Cache::at(folder.join("images"), MOST)
+        Cache::at(folder.join("images"), limits.cache)
     }
 
     /// One in `folder`, of at most `most` bytes.
@@ -50,7 +50,7 @@ impl Cache {
     /// The file with these contents, where it is here and whole; one that is not is removed.
     pub fn find(&self, wanted: &Contents) -> Option<PathBuf> {
         let path = self.path(&wanted.hash)?;
-        let mut file = File::open(&path).ok()?;
+        let mut file = paths::open_named(&path).ok()?;
         if contents(&mut file).ok().as_ref() != Some(wanted) {
             // It is asked for again; what cannot be removed is replaced then.
             drop(fs::remove_file(&path));
@@ -70,6 +70,11 @@ impl Cache {
         Ok(Incoming { file: Atomic::create(&path)?, path, wanted: wanted.clone(), hash: Sha256::new(), have: 0 })
     }
 
+    /// The most bytes that are kept.
+    pub fn most(&self) -> u64 {
+        self.most
+    }
+
     /// Removes the least recently used until the rest fits; what is in `used` stays.
     pub fn trim(&self, used: &BTreeSet<String>) {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
@@ -80,15 +85,15 @@ impl Cache {
             })
             .collect();
         files.sort();
-        let mut all: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
+        let (mut all, mut count) = (files.iter().map(|(_, bytes, _)| bytes).sum::<u64>(), files.len());
         let unused = |path: &Path| !path.file_name().is_some_and(|name| used.contains(&*name.to_string_lossy()));
         for (_, bytes, path) in files.iter().filter(|(_, _, path)| unused(path)) {
-            if all <= self.most {
+            if all <= self.most && count <= MOST_FILES {
                 return;
             }
             // Another window may have been first.
             drop(fs::remove_file(path));
-            all -= bytes;
+            (all, count) = (all - bytes, count - 1);
         }
     }
 
@@ -165,7 +170,7 @@ mod tests {
     #[test]
     fn what_is_whole_is_found_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let cache = Cache::at(folder.path().join("plica/images"), MOST).unwrap();
+        let cache = Cache::at(folder.path().join("plica/images"), 1 << 30).unwrap();
         assert_eq!(cache.find(&told(b"cat")), None);
         let path = keep(&cache, b"cat");
         assert_eq!(cache.find(&told(b"cat")), Some(path.clone()));
@@ -182,6 +187,15 @@ mod tests {
             let told = Contents { hash: hash.to_owned(), bytes: 1 };
             assert!(cache.begin(&told).is_err() && cache.find(&told).is_none(), "{hash}");
         }
+    }
+
+    #[test]
+    fn files_are_counted_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::at(folder.path().to_owned(), u64::MAX).unwrap();
+        (0..MOST_FILES + 3).for_each(|i| fs::write(folder.path().join(i.to_string()), "").unwrap());
+        cache.trim(&BTreeSet::new());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), MOST_FILES);
     }
 
     #[test]

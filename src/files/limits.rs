@@ -33,6 +33,8 @@ pub struct Limits {
     pub paste: u64,
     /// Width and height of a picture given to the GPU by the window, each.
     pub texture: u64,
+    /// Bytes of files from other machines that are kept.
+    pub cache: u64,
 }
 
 /// A row of the table.
@@ -50,7 +52,7 @@ pub struct Limit {
 const MIB: u64 = 1 << 20;
 
 /// Every limit.
-pub const TABLE: [Limit; 13] = [
+pub const TABLE: [Limit; 14] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
     limit("memory", "bytes that what is read and made may take, in sum", 4096 * MIB, |l| &mut l.memory),
@@ -64,6 +66,7 @@ pub const TABLE: [Limit; 13] = [
     limit("message", "bytes of a message between editor and window", 64 * MIB, |l| &mut l.message),
     limit("paste", "bytes pasted at once", 16 * MIB, |l| &mut l.paste),
     limit("texture", "side of a picture in the window; larger ones are reduced", 1 << 20, |l| &mut l.texture),
+    limit("cache", "bytes of files from other machines that are kept", 1024 * MIB, |l| &mut l.cache),
 ];
 
 const fn limit(name: &'static str, help: &'static str, default: u64, of: fn(&mut Limits) -> &mut u64) -> Limit {
@@ -86,6 +89,7 @@ impl Default for Limits {
             message: 0,
             paste: 0,
             texture: 0,
+            cache: 0,
         };
         for row in &TABLE {
             *(row.of)(&mut limits) = row.default;

@@ -13,6 +13,7 @@ use sha2::{Digest, Sha256};
 
 use super::materials::{self, Stamp};
 use super::{Options, paths};
+use crate::base::budget::size;
 use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 
@@ -98,6 +99,11 @@ fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found
     let stamp = Stamp::of(&file).map_err(place)?;
     if let Some(old) = old.filter(|old| old.stamp == stamp) {
         return Ok(old.clone());
+    }
+    let length = file.metadata().map_err(place)?.len();
+    if length > options.limits.memory {
+        let what = format!("is {} long, at most {} are sent", size(length), size(options.limits.memory));
+        return Err(Error::at(path, what).cure("make it smaller, or give --limit memory=BYTES"));
     }
     let contents = contents(&mut file).map_err(place)?;
     Ok(Arc::new(Found { stamp, contents, file }))

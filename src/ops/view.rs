@@ -68,7 +68,7 @@ fn here(scene: &Path, joined: bool, options: Options) -> Result<Source> {
 }
 
 fn there(way: Way, context: &Context) -> Result<Source> {
-    let kept = Cache::of_user()?;
+    let kept = Cache::of_user(&way.options.limits)?;
     let name = format!("{} on {}", way.address.file_name(), way.address.host);
     let (copies, options) = (fetch::Shared::default(), way.options.clone());
     // Ctrl-C at a question of ssh's ends ssh first.

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::client::Link;
 use super::fetch::{Fetch, Shared};
+use super::keys::{KEYS, PLAY, VIEW};
 use super::link::{ALIVE, HangUp, Wire};
 use super::message::{FromEditor, ToEditor};
 use super::ssh::Way;
@@ -100,6 +101,7 @@ impl Far {
     }
 
     fn take(&mut self, said: FromEditor) -> Outcome {
+        let Some(said) = harmless(said) else { return Ok(()) };
         match self.talk.take(said)? {
             Some(FromEditor::Images(originals)) => {
                 let changed = self.fetch.told(originals);
@@ -198,10 +200,50 @@ impl Far {
     }
 }
 
+/// What the far end says, without commands that change more than the view: nobody there closes a window here, goes full
+/// screen or loses the GPU.
+fn harmless(said: FromEditor) -> Option<FromEditor> {
+    let is_view = |name: &String| {
+        let row = KEYS.iter().find(|row| row.command == name);
+        row.is_some_and(|row| [PLAY, VIEW].contains(&row.context)) && name != "view-full-screen"
+    };
+    match said {
+        FromEditor::View(name) => is_view(&name).then_some(FromEditor::View(name)),
+        FromEditor::Views(names) => Some(FromEditor::Views(names.into_iter().filter(is_view).collect())),
+        other => Some(other),
+    }
+}
+
 impl Drop for Far {
     fn drop(&mut self) {
         if let Some(hang_up) = self.going.lock().unwrap_or_else(PoisonError::into_inner).take() {
             hang_up.now();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_far_end_changes_the_view_and_no_more() {
+        for (name, obeyed) in [
+            ("view-field", true),
+            ("zoom-in", true),
+            ("play", true),
+            ("quit", false),
+            ("view-full-screen", false),
+            ("mark-point", false),
+            ("select-point", false),
+            ("lose-device", false),
+            ("", false),
+        ] {
+            let view = harmless(FromEditor::View(name.into()));
+            assert_eq!(view, obeyed.then(|| FromEditor::View(name.into())), "{name}");
+        }
+        let names = |names: &[&str]| FromEditor::Views(names.iter().map(|name| (*name).to_owned()).collect());
+        assert_eq!(harmless(names(&["quit", "view-grid"])), Some(names(&["view-grid"])));
+        assert_eq!(harmless(FromEditor::Alive), Some(FromEditor::Alive));
     }
 }

@@ -6,8 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::message::ToEditor;
+use crate::base::budget::size;
 use crate::base::error::Result;
-use crate::files::cache::{Cache, Incoming};
+use crate::files::cache::{Cache, Incoming, MOST_FILES};
 use crate::files::materials::Copies;
 use crate::files::originals::{Contents, Original, PIECE};
 
@@ -55,6 +56,8 @@ impl Fetch {
         self.missing.clear();
         let mut copies = self.copies.lock().unwrap_or_else(PoisonError::into_inner);
         let before = copies.clone();
+        // All that one scene names is kept at once: together it must fit too.
+        let mut counted = BTreeMap::new();
         let named: BTreeSet<&str> = originals.iter().map(|one| one.path.as_str()).collect();
         copies.retain(|path, _| named.contains(path.as_str()));
         self.have.retain(|path, _| named.contains(path.as_str()));
@@ -65,6 +68,12 @@ impl Fetch {
                     format!(
                         "is {} bytes long, at most {} are allowed (give --limit memory=BYTES)",
                         contents.bytes, self.most
+                    )
+                }
+                Ok(contents) if !fits(&mut counted, &contents, self.cache.most()) => {
+                    format!(
+                        "the scene's files are more than {MOST_FILES}, or more than {} together (give --limit cache=BYTES)",
+                        size(self.cache.most())
                     )
                 }
                 Ok(contents) if self.have.get(&path) == Some(&contents.hash) => continue,
@@ -185,6 +194,17 @@ impl Fetch {
     }
 }
 
+/// Counts a file, each once, unless there are too many or they are too large together.
+fn fits(counted: &mut BTreeMap<String, u64>, contents: &Contents, most: u64) -> bool {
+    let before: u64 = counted.values().sum();
+    let more = counted.len() < MOST_FILES && before.checked_add(contents.bytes).is_some_and(|all| all <= most);
+    let fits = counted.contains_key(&contents.hash) || more;
+    if fits {
+        counted.entry(contents.hash.clone()).or_insert(contents.bytes);
+    }
+    fits
+}
+
 /// How many pieces may be on their way: more while they come as fast as the first did, fewer once they wait for one another.
 #[derive(Debug)]
 struct Pace {
@@ -261,6 +281,21 @@ mod tests {
         assert!(took < Duration::from_secs(6), "{took:?} for 4 s worth of bytes");
         let (took, _) = play(4_000_000, 10e6, Duration::from_millis(200));
         assert!(took < Duration::from_secs(6), "{took:?} far away");
+    }
+
+    #[test]
+    fn all_files_of_a_scene_fit_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut fetch = Fetch::new(Cache::at(folder.path().into(), 10).unwrap(), Shared::default(), 100);
+        let told = |path: &str, content: &[u8]| Original {
+            path: path.into(),
+            file: Ok(Contents { hash: hash(content), bytes: content.len() as u64 }),
+        };
+        fetch.told(vec![told("a", b"123456"), told("b", b"123456"), told("c", b"78901"), told("d", b"2345")]);
+        assert_eq!(fetch.missing.len(), 2, "a is b; c is too much; d fits again");
+        let copies = fetch.copies.lock().unwrap().clone();
+        assert_eq!(copies.keys().collect::<Vec<_>>(), ["c"]);
+        assert!(copies["c"].as_ref().unwrap_err().contains("--limit cache"));
     }
 
     #[test]
