@@ -38,7 +38,7 @@ fn listening(child: &Child) {
 #[test]
 fn a_signal_ends_with_130_even_where_work_is_stuck() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["INT", "TERM", "HUP"] {
+    for name in ["INT", "TERM", "HUP", "QUIT", "ALRM", "USR1", "USR2"] {
         // A scene from a standard input that never comes.
         let mut child = plica(&["check", "-"], folder.path()).stdin(Stdio::piped()).spawn().unwrap();
         listening(&child);
@@ -139,4 +139,45 @@ fn nothing_from_a_file_steers_the_terminal() {
     assert!(!said.chars().any(|c| c.is_control() && c != '\n'), "{said:?}");
     let (status, said) = outcome(plica(&["check", "missing\x1b[2J"], folder.path()));
     assert!(status == Some(1) && !said.contains('\x1b') && said.contains("no such file"), "{said:?}");
+    // What the parser of the command line quotes, and what stands in a message of ours.
+    for (line, status) in [
+        (&["check", "a", "b\x1b[31mRED\x1b]0;title\x07"][..], 2),
+        (&["no\x1bsuch"], 2),
+        (&["--no-\x1b[2Jsuch"], 2),
+        (&["render", "a", "-o", "x.gif", "--samples", "\x1b[31m"], 2),
+        (&["probe", "a", "--at", "\u{9b}31m"], 2),
+        (&["check", "x\nplica: all is well"], 1),
+        (&["get", "a", "x\nplica: all is well"], 1),
+        (&["field", "a", "-o", "x\nplica: all is well"], 2),
+        (&["check", "a", "x\nplica: all is well"], 2),
+    ] {
+        let (ended, said) = outcome(plica(line, folder.path()));
+        let steers = said.chars().any(|c| c.is_control() && c != '\n');
+        let forged = said.lines().any(|line| line.starts_with("plica: all"));
+        assert!(ended == Some(status) && !steers && !forged, "{line:?}: {ended:?} {said:?}");
+    }
+}
+
+#[test]
+fn nothing_waits_at_a_fifo() {
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = |name: &str| {
+        let path = folder.path().join(name);
+        assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
+    };
+    let scene =
+        r#"{"plica": 1, "images": {"f": {"path": "f"}}, "layers": [{"kind": "picture", "name": "l", "image": "f"}]}"#;
+    std::fs::write(folder.path().join("s.plica.json"), scene).unwrap();
+    ["f", ".s.journal", ".s.editor", "log", "fifo.plica.json"].into_iter().for_each(fifo);
+    for (line, status, part) in [
+        (&["set", "s.plica.json", "title=cat"][..], 0, ""),
+        (&["get", "s.plica.json", "title"], 0, "cat"),
+        (&["check", "s.plica.json"], 1, "is a FIFO, not a file"),
+        (&["check", "fifo.plica.json"], 1, "is a FIFO, not a file"),
+        (&["set", "fifo.plica.json", "title=cat"], 1, "is a FIFO, not a file"),
+        (&["schema", "--log", "log"], 1, "log: cannot be written"),
+    ] {
+        let (ended, said) = outcome(plica(line, folder.path()));
+        assert!(ended == Some(status) && said.contains(part), "{line:?}: {ended:?} {said}");
+    }
 }

@@ -2,12 +2,13 @@
 //! and the cure.
 
 use crate::base::problem::Problem;
+use crate::base::text::line;
 
 /// What went wrong around a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Work that failed: a place (a file, a device, an option), what happened there, and the cure where it is known.
-    #[error("{place}: {what}{}", cure.as_ref().map(|c| format!(" ({c})")).unwrap_or_default())]
+    #[error("{}: {}{}", line(place), line(what), cure.as_ref().map(|c| format!(" ({})", line(c))).unwrap_or_default())]
     Failed {
         /// A file, a device, an option.
         place: String,
@@ -17,7 +18,7 @@ pub enum Error {
         cure: Option<String>,
     },
     /// A document that has errors in it; all of them.
-    #[error("{file}: {}", list(problems))]
+    #[error("{}: {}", line(file), list(problems))]
     Scene {
         /// The scene file.
         file: String,

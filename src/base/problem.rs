@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use crate::base::text::printable;
+use crate::base::text::line;
 
 /// How bad a [`Problem`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -61,11 +61,11 @@ impl fmt::Display for Problem {
         };
         // Keys and names come from files: none of them may steer a terminal.
         if !self.path.is_empty() {
-            write!(f, "{}: ", printable(&self.path))?;
+            write!(f, "{}: ", line(&self.path))?;
         }
-        write!(f, "{kind}{}", printable(&self.message))?;
+        write!(f, "{kind}{}", line(&self.message))?;
         match &self.hint {
-            Some(hint) => write!(f, " ({})", printable(hint)),
+            Some(hint) => write!(f, " ({})", line(hint)),
             None => Ok(()),
         }
     }

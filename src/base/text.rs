@@ -25,6 +25,12 @@ pub fn took(milliseconds: u64) -> String {
         0..59_950 => format!("{:.1} s", milliseconds as f64 / 1e3),
         _ => format!("{} min {} s", milliseconds / 60_000, milliseconds / 1000 % 60),
     }
+/// The same in one line: a name with a line end in it forges no line of ours.
+pub fn line(text: &str) -> Cow<'_, str> {
+    if !text.contains(['\n', '\t']) {
+        return printable(text);
+    }
+    printable(text).replace('\n', "\\n").replace('\t', "\\t").into()
 }
 
 /// How long ago something was, in words: `3 min ago`.
@@ -86,5 +92,7 @@ mod tests {
         ] {
             assert_eq!(printable(text), shown);
         }
+        assert_eq!(line("a\n\tb\x1b"), "a\\n\\tb\\u{1b}");
+        assert_eq!(line("plain"), "plain");
     }
 }

@@ -1,5 +1,7 @@
 //! The top of the command line: parse, run one subcommand, print one error, exit status.
 
+use std::borrow::Cow;
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -8,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::{CommandFactory, Parser};
 
 use crate::base::error::{Error, Result};
+use crate::base::text;
 use crate::files;
 use crate::ops::Context;
 use crate::ops::command_line::CommandLine;
@@ -18,7 +21,7 @@ mod process;
 
 /// Runs the process.
 pub fn main() -> ExitCode {
-    let line = CommandLine::parse();
+    let line = CommandLine::try_parse().unwrap_or_else(|error| refuse(error));
     let cancel = Arc::new(AtomicBool::new(false));
     let closed = Arc::new(AtomicBool::new(false));
     let mut context = Context::process(cancel.clone());
@@ -27,8 +30,36 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(_) if closed.load(Ordering::Relaxed) => ExitCode::SUCCESS,
         Err(error) => {
-            context.messages.say(&format!("plica: {error}"));
+            context.messages.say(&format!("plica: {}", quoting(&error)));
             ExitCode::from(error.exit_status())
+        }
+    }
+}
+
+/// The error, with the words of the command line that it quotes on one line each.
+fn quoting(error: &Error) -> String {
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    let split = words.filter(|word| word.contains('\n'));
+    split.fold(error.to_string(), |text, word| text.replace(&word, &text::line(&word)))
+}
+
+/// Says what is wrong in the command line, and ends. The message quotes words of it, which may be names that somebody else
+/// chose: where one of them would steer the terminal, it is written out.
+fn refuse(error: clap::Error) -> ! {
+    let steers = |word: &OsString| matches!(text::line(&word.to_string_lossy()), Cow::Owned(_));
+    if !std::env::args_os().any(|word| steers(&word)) {
+        error.exit();
+    }
+    let harmless = std::env::args_os().map(|word| text::line(&word.to_string_lossy()).into_owned());
+    match CommandLine::try_parse_from(harmless) {
+        Err(error) => error.exit(),
+        // As a name it would do: what is left to say is that it was not taken as it is.
+        Ok(_) => {
+            let first = error.to_string();
+            let first = first.lines().next().unwrap_or_default();
+            // Where nobody reads it there is nothing more to do.
+            let _ = writeln!(std::io::stderr(), "{}", text::line(first));
+            std::process::exit(Error::Usage(String::new()).exit_status().into())
         }
     }
 }

@@ -12,8 +12,8 @@ use crate::base::system::signals::{self, Answer, Registration, Signal};
 use crate::base::text::printable;
 use crate::files::temporary;
 
-/// How long work may take to see that it is cancelled.
-const GRACE: Duration = Duration::from_secs(5);
+/// How long work may take to see that it is cancelled: a person waits no longer for the prompt.
+const GRACE: Duration = Duration::from_millis(400);
 
 /// Lets the first signal to end cancel the work; a second one, or patience running out, ends the process.
 ///
@@ -26,6 +26,8 @@ pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
         _ => {
             std::thread::spawn(|| {
                 std::thread::sleep(GRACE);
+                // Where nobody reads it there is nothing more to do.
+                let _ = writeln!(io::stderr(), "plica: {}", Error::Interrupted);
                 end()
             });
             Answer::Done

@@ -54,6 +54,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let synth = render::synth(&scene, &opened.materials, None).map_err(|problem| opened.failed(problem))?;
     context.check_cancelled()?;
     let step = args.step.map(|step| step as usize);
+    // A row of a table, as a number and as text.
+    const ROW: u64 = 160;
+    let every = if matches!(kind, Kind::Csv) { step.unwrap_or(1) as u64 } else { u64::MAX };
+    let rows = (synth.size.0 as u64).div_ceil(every) * (synth.size.1 as u64).div_ceil(every);
+    let _share = opened.materials.budget.take(rows.saturating_mul(ROW), args.output.display())?;
     let plot = || plot(&scene, &synth, step, !args.no_picture);
     let bytes = match kind {
         Kind::Svg => svg(&plot())?.into_bytes(),

@@ -12,8 +12,9 @@ use super::{
     opened::{Opened, Unloaded},
     scene_options::SceneOptions,
 };
+use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
-use crate::base::pixels::{Frame, Linear};
+use crate::base::pixels::{Frame, Linear, Rgba};
 use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::{Show, Target, range, rate::Rate, scale};
@@ -237,6 +238,16 @@ fn command(args: &Args) -> String {
     words.chain(args.gpu.then(|| " --gpu".to_owned())).collect()
 }
 
+/// Bytes that a frame of `own` size takes while it is made, and scaled to `size`: as light and as colours.
+fn frame_bytes(own: (usize, usize), size: (usize, usize)) -> u64 {
+    const LIGHT: u64 = size_of::<Rgba>() as u64;
+    const COLORS: u64 = size_of::<[u8; 4]>() as u64;
+    let pixels = |(width, height): (usize, usize)| width as u64 * height as u64;
+    // Scaling has copies of both.
+    let scaled = if own == size { 0 } else { pixels(own) * 2 * LIGHT + pixels(size) * (2 * LIGHT + COLORS) };
+    pixels(own) * (LIGHT + COLORS) + scaled
+}
+
 /// What turns a time into a finished frame.
 struct Renderer<'a> {
     opened: &'a Opened,
@@ -246,6 +257,8 @@ struct Renderer<'a> {
     bands: Option<Bands<'a>>,
     /// Width and height of the finished frame.
     size: (usize, usize),
+    /// The memory that frames take while they are made.
+    _share: Share,
     #[cfg(feature = "window")]
     gpu: Option<Box<crate::render::gpu::Gpu>>,
 }
@@ -261,6 +274,10 @@ impl<'a> Renderer<'a> {
             (None, 1) => vec![opened.synth()?],
             (None, n) => opened.samples(n)?,
         };
+        // In bands a frame is there as colours alone.
+        let bytes = samples.first().map_or(frame_bytes((0, 0), size), |synth| frame_bytes(synth.size, size));
+        let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));
+        let share = opened.materials.budget.take(bytes, place)?;
         #[cfg(not(feature = "window"))]
         if args.gpu {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));
@@ -272,6 +289,7 @@ impl<'a> Renderer<'a> {
             samples,
             bands,
             size,
+            _share: share,
             #[cfg(feature = "window")]
             gpu,
         })

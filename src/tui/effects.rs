@@ -14,7 +14,7 @@ use super::worker::Job;
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
-use crate::files::{lines, paths, write};
+use crate::files::{lines, paths, picture, write};
 use crate::ops;
 
 impl Editor {
@@ -66,9 +66,13 @@ impl Editor {
             // Without a screen there is no clipboard to hand it to.
             Effect::Copy(text) => text.lines().for_each(terminal::print),
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
-            Effect::EditImage(path) => match image_editor::open(&path) {
-                Ok(said) => self.state.say(said),
-                Err(why) => self.state.complain(why),
+            // What the desktop opens may be run: only what is a picture is handed to it.
+            Effect::EditImage(path) => match picture::size(&path, &self.options.files.limits) {
+                Err(error) => self.state.complain(error.to_string()),
+                Ok(_) => match image_editor::open(&path) {
+                    Ok(said) => self.state.say(said),
+                    Err(why) => self.state.complain(why),
+                },
             },
             Effect::View(None) => {
                 // Why there is none is told each time it is asked for.

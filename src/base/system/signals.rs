@@ -4,7 +4,9 @@
 use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGWINCH};
+use signal_hook::consts::{
+    SIGALRM, SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP, SIGUSR1, SIGUSR2, SIGWINCH, SIGXCPU,
+};
 
 /// What the thread listens to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,14 +25,19 @@ pub enum Signal {
     Resize,
 }
 
-/// One row a signal.
-const TABLE: [(Signal, i32); 6] = [
+/// One row a signal. Whatever else would end the process asks it to end: it leaves nothing half done, and no terminal raw.
+const TABLE: [(Signal, i32); 11] = [
     (Signal::Hangup, SIGHUP),
     (Signal::Terminate, SIGTERM),
     (Signal::Interrupt, SIGINT),
     (Signal::Stop, SIGTSTP),
     (Signal::Continue, SIGCONT),
     (Signal::Resize, SIGWINCH),
+    (Signal::Terminate, SIGQUIT),
+    (Signal::Terminate, SIGALRM),
+    (Signal::Terminate, SIGUSR1),
+    (Signal::Terminate, SIGUSR2),
+    (Signal::Terminate, SIGXCPU),
 ];
 
 /// Whether a handler has done what the signal asks for; else the next older one is called.
