@@ -25,6 +25,8 @@ pub fn took(milliseconds: u64) -> String {
         0..59_950 => format!("{:.1} s", milliseconds as f64 / 1e3),
         _ => format!("{} min {} s", milliseconds / 60_000, milliseconds / 1000 % 60),
     }
+}
+
 /// The same in one line: a name with a line end in it forges no line of ours.
 pub fn line(text: &str) -> Cow<'_, str> {
     if !text.contains(['\n', '\t']) {

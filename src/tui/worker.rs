@@ -10,8 +10,12 @@ use super::seeing::{self, Probed, Request};
 use super::update::{Event, Synthesis};
 use crate::base::error::Error;
 use crate::base::fault;
+<<<<<<< HEAD
 use crate::base::problem::Severity;
 use crate::files::{self, write};
+=======
+use crate::files::{self, temporary};
+>>>>>>> 68762ae (Lines of errors stand for themselves)
 use crate::layers::Materials;
 use crate::ops;
 use crate::render::{self, Synth};
@@ -210,7 +214,7 @@ impl Job {
         while !self.thread.is_finished() {
             if asked.elapsed() > LAST {
                 tracing::warn!("a subcommand did not end");
-                return write::remove_unfinished();
+                return temporary::remove_unfinished();
             }
             std::thread::sleep(Duration::from_millis(5));
         }
