@@ -10,12 +10,8 @@ use super::seeing::{self, Probed, Request};
 use super::update::{Event, Synthesis};
 use crate::base::error::Error;
 use crate::base::fault;
-<<<<<<< HEAD
 use crate::base::problem::Severity;
-use crate::files::{self, write};
-=======
 use crate::files::{self, temporary};
->>>>>>> 68762ae (Lines of errors stand for themselves)
 use crate::layers::Materials;
 use crate::ops;
 use crate::render::{self, Synth};
