@@ -62,9 +62,11 @@ impl Editor {
                 let found = paths::complete(beside.as_deref().unwrap_or(Path::new(".")), &path);
                 self.take(Event::Completed(found.into_iter().map(|path| format!("{name} {path}")).collect()));
             }
-            Effect::Copy(text) if self.screen.is_some() => terminal::copy(&text),
-            // Without a screen there is no clipboard to hand it to.
-            Effect::Copy(text) => text.lines().for_each(terminal::print),
+            Effect::Copy(text) => match &mut self.screen {
+                Some(screen) => terminal::copy(screen, &text),
+                // Without a screen there is no clipboard to hand it to.
+                None => text.lines().for_each(terminal::print),
+            },
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             // What the desktop opens may be run: only what is a picture is handed to it.
             Effect::EditImage(path) => match picture::size(&path, &self.options.files.limits) {
@@ -168,6 +170,7 @@ impl Editor {
         if self.screen.is_none() {
             return signals::default_action(Signal::Stop);
         }
+        self.drain();
         terminal::restore();
         signals::default_action(Signal::Stop);
         match terminal::enter() {

@@ -19,6 +19,7 @@ mod line;
 mod lines;
 mod numbers;
 mod offscreen;
+mod pace;
 mod palette;
 mod panes;
 mod place;

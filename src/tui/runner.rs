@@ -15,7 +15,7 @@ use super::transport::Stopwatch;
 use super::tutor::Tutor;
 use super::update::{Effect, Event, update};
 use super::worker::{Job, Worker};
-use super::{input, lines, terminal, view};
+use super::{input, lines, pace, terminal, view};
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::system::signals::{self, Answer, Signal};
@@ -91,6 +91,12 @@ impl Options {
         Ok(Options { path, window, read_only, keep_recovery, script, graphics, tutor: None, files })
     }
 }
+
+/// How often a terminal that does not read is looked at.
+const BEHIND: Duration = Duration::from_millis(20);
+
+/// How long a terminal has to read what is left, before the editor leaves it.
+const LAST_LOOK: Duration = Duration::from_millis(500);
 
 /// How long the editor has to end by itself once the system asks for it.
 const GRACE: Duration = Duration::from_secs(2);
@@ -189,6 +195,8 @@ pub struct Editor {
     pub(super) leaving: bool,
     /// Whether a signal ends it.
     pub(super) interrupted: bool,
+    /// When the drawing began that the terminal has not read yet.
+    drawn: Option<Instant>,
 }
 
 impl Editor {
@@ -233,6 +241,7 @@ impl Editor {
             eyes: Eyes::default(),
             leaving: false,
             interrupted: false,
+            drawn: None,
         };
         editor.begin();
         editor.load_keys();
@@ -295,6 +304,7 @@ impl Editor {
             // A terminal that has gone away has nothing to forget.
             let _ = screen.backend_mut().write_all(graphics::forget().as_bytes());
         }
+        self.drain();
         self.end();
         self.ended()?;
         Ok(self.options.tutor)
@@ -316,12 +326,30 @@ impl Editor {
         self.log = None;
     }
 
+    /// Gives the terminal a moment to read what is left for it.
+    pub fn drain(&mut self) {
+        self.screen.iter_mut().for_each(|screen| pace::drain(screen.backend_mut(), LAST_LOOK));
+    }
+
     fn draw(&mut self) -> Result<()> {
         let (state, Some(screen)) = (&self.state, &mut self.screen) else { return Ok(()) };
+        let failed = |e| Error::at("the terminal", e);
+        if pace::is_behind() {
+            Write::flush(screen.backend_mut()).map_err(failed)?;
+            if pace::is_behind() {
+                return Ok(());
+            }
+        }
+        if let Some(begun) = self.drawn.take() {
+            self.eyes.wrote(state, begun.elapsed());
+        }
         let begun = Instant::now();
-        let drawn = screen.draw(|frame| view::draw(frame, state)).map(drop);
-        self.eyes.wrote(state, begun.elapsed());
-        drawn.map_err(|e| Error::at("the terminal", e))
+        screen.draw(|frame| view::draw(frame, state)).map_err(failed)?;
+        match pace::is_behind() {
+            true => self.drawn = Some(begun),
+            false => self.eyes.wrote(state, begun.elapsed()),
+        }
+        Ok(())
     }
 
     /// Waits for an event and takes all that are there, so that many cost one drawing.
@@ -329,6 +357,7 @@ impl Editor {
         let script_goes_on = !self.scripts.is_empty() && self.state.seen.work.is_none();
         let patience = match self.state.playing {
             _ if script_goes_on => Duration::ZERO,
+            _ if pace::is_behind() => BEHIND,
             true => Duration::from_millis(33),
             false => self.eyes.patience(self.state.door.patience()),
         };

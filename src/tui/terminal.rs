@@ -1,7 +1,7 @@
 //! The terminal itself: every mode that the editor sets, and the one function that undoes all of them, used by the normal
 //! exit, errors, panics and signals alike.
 
-use std::io::{IsTerminal, Stdout, Write, stderr, stdin, stdout};
+use std::io::{IsTerminal, Write, stderr, stdin, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ratatui::Terminal;
@@ -9,11 +9,12 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::crossterm::{cursor, event, execute, terminal};
 
 use super::clipboard::{Through, sequence};
+use super::pace::{Pace, is_behind};
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 
 /// The terminal that the editor draws on.
-pub type Screen = Terminal<CrosstermBackend<Stdout>>;
+pub type Screen = Terminal<CrosstermBackend<Pace>>;
 
 /// Whether any mode is set; only then is there something to undo.
 static SET: AtomicBool = AtomicBool::new(false);
@@ -42,7 +43,7 @@ pub fn enter() -> Result<Screen> {
     SET.store(true, Ordering::SeqCst);
     let modes =
         execute!(stdout(), terminal::EnterAlternateScreen, event::EnableBracketedPaste, event::EnableMouseCapture);
-    let screen = modes.and_then(|()| Terminal::new(CrosstermBackend::new(stdout())));
+    let screen = modes.and_then(|()| Terminal::new(CrosstermBackend::new(Pace::new())));
     screen.map_err(|e| {
         restore();
         failed(e)
@@ -57,6 +58,11 @@ pub fn size() -> Option<(u16, u16)> {
 /// Undoes every mode, shows the cursor and gives the screen back. May be called at any time, from any thread, twice.
 pub fn restore() {
     if SET.swap(false, Ordering::SeqCst) {
+        if is_behind() {
+            // It does not read, and whoever writes would wait for it: its keys are as they were, at least.
+            let _ = terminal::disable_raw_mode();
+            return;
+        }
         let mut out = stdout();
         // A terminal that has gone away cannot be restored; there is nobody to tell.
         let _ = execute!(
@@ -73,11 +79,11 @@ pub fn restore() {
 }
 
 /// Hands a text to the clipboard of the terminal, where it takes one.
-pub fn copy(text: &str) {
+pub fn copy(screen: &mut Screen, text: &str) {
     let through = Through::of(|name| std::env::var(name).ok());
-    let mut out = stdout();
+    let out = screen.backend_mut();
     // A terminal that has gone away is met at the next drawing.
-    let _ = out.write_all(sequence(text, through).as_bytes()).and_then(|()| out.flush());
+    let _ = out.write_all(sequence(text, through).as_bytes()).and_then(|()| Write::flush(out));
 }
 
 /// Makes a panic of this thread, which ends the process, restore the terminal before its message is printed. One of any

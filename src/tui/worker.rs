@@ -161,7 +161,7 @@ impl Studio {
 }
 
 /// How long a subcommand has to end with the editor.
-const LAST: Duration = Duration::from_millis(1500);
+const LAST: Duration = Duration::from_millis(400);
 
 /// A subcommand that runs.
 pub struct Job {

@@ -94,6 +94,14 @@ pub fn is_shared(_: &std::path::Path) -> bool {
     true
 }
 
+/// The terminal at the other end of `stream`, opened once more, so that writing to it never waits.
+pub fn open_terminal(stream: impl AsFd) -> io::Result<std::fs::File> {
+    use rustix::fs::{Mode, OFlags};
+    let name = rustix::termios::ttyname(stream, Vec::new())?;
+    let flags = OFlags::WRONLY | OFlags::NONBLOCK | OFlags::NOCTTY | OFlags::CLOEXEC;
+    Ok(rustix::fs::open(name, flags, Mode::empty())?.into())
+}
+
 /// Whether a terminal is at the other end.
 pub fn is_terminal(stream: impl AsFd) -> bool {
     rustix::termios::isatty(stream)

@@ -1,0 +1,107 @@
+//! The way to the terminal. What was drawn waits here for as long as the terminal does not read (a frozen link, Ctrl-S), so
+//! that the editor goes on meanwhile: keys count, and the journal has them. Nothing more is drawn until all of it is gone;
+//! then the screen goes from what it shows to what is so.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Write, stdout};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::base::system;
+
+/// Whether the terminal has something left to read.
+static BEHIND: AtomicBool = AtomicBool::new(false);
+
+/// Whether the terminal has not read yet all that was drawn.
+pub fn is_behind() -> bool {
+    BEHIND.load(Ordering::Relaxed)
+}
+
+/// Writes to the terminal without ever waiting for it.
+#[derive(Debug)]
+pub struct Pace {
+    /// The terminal, opened so that writes do not wait; none where that cannot be, and they do.
+    terminal: Option<File>,
+    waiting: Vec<u8>,
+}
+
+impl Pace {
+    /// The way to the terminal at standard output.
+    pub fn new() -> Pace {
+        Pace { terminal: system::open_terminal(stdout()).ok(), waiting: Vec::new() }
+    }
+
+    fn push(&mut self) -> io::Result<()> {
+        let Some(terminal) = &mut self.terminal else {
+            let mut out = stdout().lock();
+            out.write_all(&self.waiting).and_then(|()| out.flush())?;
+            self.waiting.clear();
+            return Ok(());
+        };
+        let mut sent = 0;
+        let pushed = loop {
+            match terminal.write(&self.waiting[sent..]) {
+                _ if sent == self.waiting.len() => break Ok(()),
+                Ok(0) => break Err(ErrorKind::WriteZero.into()),
+                Ok(bytes) => sent += bytes,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::WouldBlock => break Ok(()),
+                Err(error) => break Err(error),
+            }
+        };
+        self.waiting.drain(..sent);
+        BEHIND.store(!self.waiting.is_empty(), Ordering::Relaxed);
+        pushed
+    }
+}
+
+impl Write for Pace {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.waiting.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.push()
+    }
+}
+
+/// Gives the terminal this long to read what is left.
+pub fn drain(screen: &mut impl Write, most: Duration) {
+    let begun = Instant::now();
+    // A terminal that has gone away reads nothing more.
+    while screen.flush().is_ok() && is_behind() && begun.elapsed() < most {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Read;
+    use std::os::fd::OwnedFd;
+    use std::os::unix::net::UnixStream;
+
+    #[test]
+    fn a_terminal_that_does_not_read_makes_nobody_wait() {
+        let (ours, mut theirs) = UnixStream::pair().unwrap();
+        ours.set_nonblocking(true).unwrap();
+        let mut pace = Pace { terminal: Some(OwnedFd::from(ours).into()), waiting: Vec::new() };
+        let drawn: Vec<u8> = (0..4_000_000_u32).map(|i| (i % 251) as u8).collect();
+        pace.write_all(&drawn).unwrap();
+        pace.flush().unwrap();
+        assert!(!pace.waiting.is_empty(), "more than a socket takes at once");
+        let reader = std::thread::spawn(move || {
+            let mut read = vec![0; 4_000_000];
+            theirs.read_exact(&mut read).unwrap();
+            read
+        });
+        while !pace.waiting.is_empty() {
+            pace.flush().unwrap();
+            std::thread::yield_now();
+        }
+        assert!(reader.join().unwrap() == drawn);
+        pace.write_all(b"to nobody").unwrap();
+        assert!(pace.flush().is_err(), "gone away");
+    }
+}
