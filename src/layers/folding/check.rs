@@ -184,7 +184,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
 fn clock(zone: &Zone) -> Option<Problem> {
     let Zone { speed, shift, .. } = zone;
     if !(speed * (shift.abs() + 1.0)).is_finite() {
-        let message = format!("{speed} passes at a shift of {shift} timelines are no finite time");
+        let message = format!("{speed:?} passes at a shift of {shift:?} timelines are no finite time");
         return Some(Problem::error("/shift", message).hint("make the shift or the speed smaller"));
     }
     // A value that is no number is not within bounds either.
