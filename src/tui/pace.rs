@@ -2,7 +2,6 @@
 //! that the editor goes on meanwhile: keys count, and the journal has them. Nothing more is drawn until all of it is gone;
 //! then the screen goes from what it shows to what is so.
 
-use std::fs::File;
 use std::io::{self, ErrorKind, Write, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -18,17 +17,17 @@ pub fn is_behind() -> bool {
 }
 
 /// Writes to the terminal without ever waiting for it.
-#[derive(Debug)]
 pub struct Pace {
-    /// The terminal, opened so that writes do not wait; none where that cannot be, and they do.
-    terminal: Option<File>,
+    /// The terminal, opened so that writes do not wait; `None` where that cannot be, and they do.
+    terminal: Option<Box<dyn Write + Send>>,
     waiting: Vec<u8>,
 }
 
 impl Pace {
     /// The way to the terminal at standard output.
     pub fn new() -> Pace {
-        Pace { terminal: system::open_terminal(stdout()).ok(), waiting: Vec::new() }
+        let terminal = system::open_terminal(stdout()).ok();
+        Pace { terminal: terminal.map(|terminal| Box::new(terminal) as Box<dyn Write + Send>), waiting: Vec::new() }
     }
 
     fn push(&mut self) -> io::Result<()> {
@@ -79,14 +78,13 @@ pub fn drain(screen: &mut impl Write, most: Duration) {
 mod tests {
     use super::*;
     use std::io::Read;
-    use std::os::fd::OwnedFd;
     use std::os::unix::net::UnixStream;
 
     #[test]
     fn a_terminal_that_does_not_read_makes_nobody_wait() {
         let (ours, mut theirs) = UnixStream::pair().unwrap();
         ours.set_nonblocking(true).unwrap();
-        let mut pace = Pace { terminal: Some(OwnedFd::from(ours).into()), waiting: Vec::new() };
+        let mut pace = Pace { terminal: Some(Box::new(ours)), waiting: Vec::new() };
         let drawn: Vec<u8> = (0..4_000_000_u32).map(|i| (i % 251) as u8).collect();
         pace.write_all(&drawn).unwrap();
         pace.flush().unwrap();
