@@ -275,7 +275,8 @@ impl<'a> Renderer<'a> {
             (None, n) => opened.samples(n)?,
         };
         // In bands a frame is there as colours alone.
-        let bytes = samples.first().map_or(frame_bytes((0, 0), size), |synth| frame_bytes(synth.size, size));
+        let colors = (size.0 * size.1 * size_of::<[u8; 4]>()) as u64;
+        let bytes = samples.first().map_or(colors, |synth| frame_bytes(synth.size, size));
         let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));
         let share = opened.materials.budget.take(bytes, place)?;
         #[cfg(not(feature = "window"))]
