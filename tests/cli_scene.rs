@@ -5,6 +5,9 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use image::RgbaImage;
+use plica::files::Options;
+use plica::files::session::{Mode, Session};
+use plica::scene::Edit;
 
 /// What one run gave.
 #[derive(Debug, PartialEq)]
@@ -46,6 +49,87 @@ fn nothing_is_the_short_help() {
     let help = ok(plica(folder.path(), &[]));
     assert!(help.contains("Usage: plica") && help.contains("Examples:"), "{help}");
     assert_eq!(plica(folder.path(), &["frobnicate"]).status, 2);
+}
+
+const BY_HAND: &str = concat!(
+    "{ \"title\" : \"by hand\", \"plica\": 1,\r\n\t\"timeline\": { \"fps\": 1e1, \"duration\": 2.50 },\r\n",
+    "  \"images\": {\"cat\":{\"path\":\"cat.png\"}}}"
+);
+
+/// A folder with a scene that somebody wrote by hand.
+fn by_hand() -> tempfile::TempDir {
+    let folder = folder();
+    std::fs::write(folder.path().join("cat.plica.json"), BY_HAND).unwrap();
+    folder
+}
+
+fn saved(folder: &tempfile::TempDir) -> String {
+    std::fs::read_to_string(folder.path().join("cat.plica.json")).unwrap()
+}
+
+#[test]
+fn set_changes_what_it_sets_and_nothing_else() {
+    let folder = by_hand();
+    ok(plica(folder.path(), &["set", "cat.plica.json", "timeline.fps=12"]));
+    assert_eq!(saved(&folder), BY_HAND.replace("1e1", "12"));
+    ok(plica(folder.path(), &["set", "cat.plica.json", "title=other", "timeline.fps=12.5"]));
+    assert_eq!(saved(&folder), BY_HAND.replace("1e1", "12.5").replace("by hand", "other"));
+    let refused = plica(folder.path(), &["set", "cat.plica.json", "plica=2"]);
+    assert_eq!((refused.status, refused.messages.contains("not for editing")), (1, true), "{refused:?}");
+    assert_eq!(saved(&folder), BY_HAND.replace("1e1", "12.5").replace("by hand", "other"));
+}
+
+#[test]
+fn set_leaves_protected_files_alone_and_hard_links_together() {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    let folder = by_hand();
+    let (scene, other) = (folder.path().join("cat.plica.json"), folder.path().join("other"));
+    std::fs::hard_link(&scene, &other).unwrap();
+    ok(plica(folder.path(), &["set", "cat.plica.json", "title=x"]));
+    assert_eq!((scene.metadata().unwrap().nlink(), std::fs::read_to_string(&other).unwrap()), (2, saved(&folder)));
+    std::fs::set_permissions(&scene, std::fs::Permissions::from_mode(0o444)).unwrap();
+    let before = saved(&folder);
+    let refused = plica(folder.path(), &["set", "cat.plica.json", "title=y"]);
+    assert_eq!((refused.status, refused.messages.contains("is read-only")), (1, true), "{refused:?}");
+    assert_eq!(saved(&folder), before);
+    let session = Session::open(&scene, &Options::default(), Mode::Edit).unwrap();
+    assert_eq!(session.recovery(), None, "nothing is left behind");
+}
+
+#[test]
+fn many_sets_at_once_wait_for_each_other() {
+    let folder = by_hand();
+    std::thread::scope(|scope| {
+        for name in ["a", "b", "c", "d", "e", "f"] {
+            let folder = folder.path();
+            let setting = format!("images.{name}={{\"path\": \"cat.png\"}}");
+            scope.spawn(move || ok(plica(folder, &["set", "cat.plica.json", &setting])));
+        }
+    });
+    let images = ok(plica(folder.path(), &["get", "cat.plica.json", "images"]));
+    let images: serde_json::Value = serde_json::from_str(&images).unwrap();
+    assert_eq!(images.as_object().unwrap().len(), 7, "{images}");
+}
+
+#[test]
+fn set_asks_what_becomes_of_unsaved_edits_and_keeps_them_until_then() {
+    for (answer, title) in [("keep", "precious"), ("drop", "by hand")] {
+        let folder = by_hand();
+        let path = folder.path().join("cat.plica.json");
+        let open = || Session::open(&path, &Options::default(), Mode::Edit).unwrap();
+        let mut session = open();
+        let patch = serde_json::json!([{ "op": "replace", "path": "/title", "value": "precious" }]);
+        session.apply(Edit(serde_json::from_value(patch).unwrap()), false).unwrap();
+        drop(session);
+        let refused = plica(folder.path(), &["set", "cat.plica.json", "timeline.fps=5"]);
+        assert_eq!(refused.status, 1);
+        assert!(refused.messages.contains("1 unsaved change was left behind"), "{refused:?}");
+        assert!(refused.messages.contains("--after-recovery"), "{refused:?}");
+        assert_eq!((open().recovery().map(|offer| offer.changes), saved(&folder).as_str()), (Some(1), BY_HAND));
+        ok(plica(folder.path(), &["set", "cat.plica.json", "timeline.fps=5", "--after-recovery", answer]));
+        assert_eq!(saved(&folder), BY_HAND.replace("1e1", "5").replace("by hand", title));
+        assert_eq!(open().recovery(), None);
+    }
 }
 
 #[test]

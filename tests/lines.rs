@@ -58,7 +58,7 @@ fn lines_edit_answer_and_fail_by_their_numbers() {
         (format!("set {speed}=2\nq!\n"), "is set", "", true, false),
         (format!("set {speed}=2\nq\nq!\nget {speed}"), "is set", "line 2: there are unsaved edits", false, false),
         (format!("set {speed}=-x\nset {speed}=2\nw"), "is saved", "line 1: ", false, true),
-        ("sett a=1\nmove\nq".into(), "", "line 1: there is no command sett", false, false),
+        ("sett a=1\nmove\nq".into(), "", "line 1: there is no command \"sett\"", false, false),
         ("?\nq".into(), "set PATH=VALUE", "", true, false),
         ("help undo\nq".into(), ":undo", "", true, false),
         ("go layers.face.zones.eye.interpolation.method\nenter\nthin-plate\nget layers.face.zones.eye.interpolation.method\nq!\n".into(), "\"thin-plate\"", "", true, false),
@@ -94,6 +94,40 @@ fn what_was_left_behind_is_offered_in_words() {
     let told = text(&second.stderr);
     assert!(told.contains("1 unsaved change was left behind") && told.contains("eye · speed 1 → 2"), "{told}");
     assert!(saved(folder.path()).contains("\"speed\": 2"));
+}
+
+#[test]
+fn nothing_is_changed_while_unsaved_edits_wait_for_an_answer() {
+    let folder = folder();
+    run(folder.path(), &[], "set title=precious\n");
+    for (arguments, lines, told) in [
+        (&[][..], "set title=x\nw\n", "line 1: 1 unsaved change was left behind: :recovery keep"),
+        (&["--script", "script"], "", "1 unsaved change was left behind, and the script is not run"),
+    ] {
+        std::fs::write(folder.path().join("script"), "set title=x\nw\n").unwrap();
+        let output = run(folder.path(), arguments, lines);
+        let complained = text(&output.stderr);
+        assert!(complained.contains(told), "{complained}");
+        assert_eq!((output.status.code(), saved(folder.path()).as_str()), (Some(1), SCENE));
+    }
+    let output = run(folder.path(), &["--after-recovery", "keep"], "get title\nw\n");
+    assert!(output.status.success() && text(&output.stdout).contains("precious"), "{}", text(&output.stderr));
+    assert!(saved(folder.path()).contains("precious"));
+}
+
+#[test]
+fn edits_that_no_journal_holds_are_not_promised() {
+    let folder = folder();
+    // A newer program's journal: it is not to be touched.
+    let mut journal = b"PLICAJNL".to_vec();
+    journal.extend([9, 0, 0, 0, 0, 0, 0, 0]);
+    std::fs::write(folder.path().join(".cat.journal"), &journal).unwrap();
+    let output = run(folder.path(), &[], "set title=x\n");
+    let complained = text(&output.stderr);
+    assert!(complained.contains("no journal: ") && complained.contains("not saved, and lost"), "{complained}");
+    assert!(!complained.contains("offers them"), "{complained}");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(std::fs::read(folder.path().join(".cat.journal")).unwrap(), journal);
 }
 
 #[test]

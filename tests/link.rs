@@ -242,7 +242,7 @@ fn bad_peers_are_refused_and_harm_nobody() {
     let mut pointer = hello(Role::Script);
     message::write(&mut pointer, &ToEditor::Pointer { x: 0.0, y: 0.0 }).unwrap();
     let mut newer = hello(Role::Window);
-    newer[4] = 2;
+    newer[4] = 9;
     let mut huge = hello(Role::Window);
     huge[8..12].fill(0xff);
     let half = hello(Role::Window)[..20].to_vec();
@@ -250,7 +250,7 @@ fn bad_peers_are_refused_and_harm_nobody() {
     cut_later.extend(&half);
     let table: [(&str, Vec<u8>, bool, &str); 8] = [
         ("garbage", b"GET / HTTP/1.1\r\n\r\n".to_vec(), false, "not plica"),
-        ("another version", newer, false, "version 2"),
+        ("another version", newer, false, "version 9"),
         ("a huge length", huge, false, "is the most"),
         ("nothing at all", Vec::new(), false, "does not answer"),
         ("half a hello", half, true, "in the middle"),

@@ -148,7 +148,10 @@ fn the_file_is_followed_there_with_its_pictures() {
     assert!(set.unwrap().success());
     window.shows("set");
     std::fs::write(&stage.scene, "{\"plica\": 1, ").unwrap();
-    window.notice("line 1");
+    window.next(|update| match update {
+        Update::Problems(problems) => problems.iter().any(|p| p.to_string().contains("line 1")).then_some(()),
+        _ => None,
+    });
     std::fs::write(&stage.scene, text("mended")).unwrap();
     window.shows("mended");
     paint(stage.folder.path(), 5);

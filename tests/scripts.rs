@@ -58,6 +58,19 @@ fn a_script_edits_answers_and_saves() {
 }
 
 #[test]
+fn a_script_that_ends_with_unsaved_edits_has_failed() {
+    let folder = folder();
+    let output = run(folder.path(), "set title=x\n");
+    let said = text(&output.stderr);
+    assert!(said.contains("the edits are not saved; the next `plica edit` offers them"), "{said}");
+    assert_eq!(output.status.code(), Some(1));
+    let folder = self::folder();
+    let output = run(folder.path(), "set title=x\nq!\n");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(text(&run(folder.path(), "get title").stdout), "\"\"\n", "nothing is asked");
+}
+
+#[test]
 fn a_mistake_ends_it_with_its_line() {
     for (script, place, part) in [
         ("w\n# a\nmove down\nsett a=1\nwq", "script:4", "did you mean \"set\""),

@@ -226,10 +226,15 @@ pub fn join(scene: &Path, role: Role, most: u64) -> Result<Option<(FromEditor, W
     Ok(Some((hello, wire)))
 }
 
-/// Says hello and returns the answer, a [`FromEditor::Hello`] of at most `most` bytes.
+/// Says hello and returns the answer, a [`FromEditor::Hello`] of at most `most` bytes. Where hello cannot be written, what
+/// the other end has said before it left tells more than the broken pipe does.
 pub fn shake_hands(to: &mut impl Write, from: &mut impl Read, role: Role, most: u64) -> Result<FromEditor> {
-    message::write(to, &ToEditor::Hello { program: env!("CARGO_PKG_VERSION").into(), role })?;
-    match message::read(from, most)? {
+    let written = message::write(to, &ToEditor::Hello { program: env!("CARGO_PKG_VERSION").into(), role });
+    let answer = message::read(from, most)?;
+    if answer.is_some() {
+        written?;
+    }
+    match answer {
         Some(hello @ FromEditor::Hello { .. }) => Ok(hello),
         Some(FromEditor::Bye(reason)) => Err(Error::at("editor", reason)),
         Some(_) => Err(Error::at("link", "the editor did not say hello")),

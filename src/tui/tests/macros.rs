@@ -43,7 +43,7 @@ fn what_cannot_be_played_is_said() {
         ("q a j q q a @ a q @ a", "macros play one another 50 deep"),
         ("q a j k q 9 0 0 0 @ a", "stopped after 300 lines"),
         (": \"1000000000 duplicate\" Enter", "a count goes to 1000000"),
-        (": \"99999999999999999999 duplicate\" Enter", "no command 99999999999999999999"),
+        (": \"99999999999999999999 duplicate\" Enter", "no command \"99999999999999999999\""),
         (&motion(": \"10001 duplicate\" Enter"), "duplicate goes 10000 times at most, not 10001"),
         (&motion("d : \"10001 again\" Enter"), "again goes 10000 times at most"),
         (&motion("y y : \"10001 paste\" Enter"), "paste goes 10000 times at most"),
