@@ -203,7 +203,9 @@ impl Far {
 /// What the far end says, without commands that change more than the view: nobody there closes a window here, goes full
 /// screen or loses the GPU.
 fn harmless(said: FromEditor) -> Option<FromEditor> {
-    let is_view = |name: &String| {
+    // A switch says what it is set to: `view-field on`.
+    let is_view = |line: &String| {
+        let name = line.strip_suffix(" on").or(line.strip_suffix(" off")).unwrap_or(line);
         let row = KEYS.iter().find(|row| row.command == name);
         row.is_some_and(|row| [PLAY, VIEW].contains(&row.context)) && name != "view-full-screen"
     };
@@ -230,10 +232,15 @@ mod tests {
     fn the_far_end_changes_the_view_and_no_more() {
         for (name, obeyed) in [
             ("view-field", true),
+            ("view-field on", true),
+            ("view-outlines off", true),
+            ("view-field on on", false),
             ("zoom-in", true),
             ("play", true),
             ("quit", false),
             ("view-full-screen", false),
+            ("view-full-screen on", false),
+            ("quit on", false),
             ("mark-point", false),
             ("select-point", false),
             ("lose-device", false),

@@ -383,6 +383,8 @@ impl Editor {
             status => format!("window: {status}"),
         };
         if seen != self.window_told {
+            // What was said of a window that is off does not outlive it.
+            self.state.message.take_if(|message| message.text == self.window_told);
             self.window_told.clone_from(&seen);
             let off = matches!(self.preview.status(), Status::OffBecause(_));
             if off {
