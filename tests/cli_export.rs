@@ -268,7 +268,10 @@ fn nor_does_the_editor_replace_what_its_scene_reads() {
         ("w ~/copy.plica.json", false),
     ] {
         fs::write(dir.join("lines"), lines).unwrap();
-        let output = plica(dir, "edit s.plica.json --script lines --after-recovery drop").env("HOME", dir.join("home")).output().unwrap();
+        let output = plica(dir, "edit s.plica.json --script lines --after-recovery drop")
+            .env("HOME", dir.join("home"))
+            .output()
+            .unwrap();
         let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
         let told = ["no output may replace", "is there already", "journal"].iter().any(|part| said.contains(part));
         assert_eq!((told, output.status.success()), (refused, !refused), "{lines}: {said}");

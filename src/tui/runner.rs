@@ -396,6 +396,15 @@ impl Editor {
 
     /// Takes an event, and does what it asks for.
     pub fn take(&mut self, event: Event) {
+        match &event {
+            // The terminal may have lost cells though it is as large again as what was drawn last.
+            Event::Resize(..) => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),
+            // What is typed counts by the size that there is now: the signal of a new one may be on its way yet.
+            Event::Key(_) | Event::Paste(_) if self.screen.is_some() => {
+                self.state.size = terminal::size().unwrap_or(self.state.size);
+            }
+            _ => {}
+        }
         if let (Event::Resize(..), Some(cell)) = (&event, ask::cell()) {
             self.state.seeing.graphics.cell = cell;
         }

@@ -233,7 +233,8 @@ fn answer(state: &mut State, asked: Asked) {
 /// Says how something ended: in the line, or in pages of its own where it is longer.
 fn report(state: &mut State, result: Result<String, String>) {
     match result {
-        Ok(text) if text.trim_end().contains('\n') => {
+        // Nobody who is typing is interrupted: `:messages` has it then.
+        Ok(text) if text.trim_end().contains('\n') && matches!(state.mode, Mode::Normal | Mode::Pages(_)) => {
             let lines = text.lines().map(super::terminal::plain).collect();
             state.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
         }

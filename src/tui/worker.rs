@@ -182,11 +182,9 @@ impl Job {
             let mut context =
                 ops::Context { out: Box::new(out.clone()), messages: Box::new(messages), cancel: shared, open };
             let result = fault::caught(|| command.run(&mut context));
-            let printed = format!("{}{}", out.text(), said.text());
             let also = said.text().lines().map(|line| format!("; {line}")).collect::<String>();
             let result = match result {
-                Ok(Ok(())) if printed.trim().is_empty() => Ok(format!("{name}: done")),
-                Ok(Ok(())) => Ok(printed),
+                Ok(Ok(())) => Ok(answer(&name, &out.text(), &said.text())),
                 Ok(Err(Error::Interrupted)) => Err(format!("{name}: interrupted, nothing half-written is left{also}")),
                 Ok(Err(error)) => Err(format!("{name}: {error}")),
                 Err(fault) => Err(format!("{name}: {fault}")),
@@ -214,6 +212,19 @@ impl Job {
             }
             std::thread::sleep(Duration::from_millis(5));
         }
+    }
+}
+
+/// What a subcommand that went well comes to. What it printed is read in pages; what it only said is one line, how it ended
+/// before what it warned of.
+fn answer(name: &str, printed: &str, said: &str) -> String {
+    if !printed.trim().is_empty() {
+        return format!("{printed}{said}");
+    }
+    let lines: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
+    match lines.split_last() {
+        Some((last, earlier)) => [&[*last], earlier].concat().join("; "),
+        None => format!("{name}: done"),
     }
 }
 
@@ -281,6 +292,22 @@ impl ops::Progress for Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_only_said_is_one_line_that_begins_with_the_end() {
+        for (printed, said, expected) in [
+            ("", "", "render: done"),
+            ("", "done: a.gif\n", "done: a.gif"),
+            (
+                "",
+                "s: warning: nothing moves\nframes 8/8\ndone: a.gif\n",
+                "done: a.gif; s: warning: nothing moves; frames 8/8",
+            ),
+            ("a\nb\n", "warning\n", "a\nb\nwarning\n"),
+        ] {
+            assert_eq!(answer("render", printed, said), expected);
+        }
+    }
 
     #[test]
     fn a_fault_is_told_and_the_next_request_is_served() {

@@ -104,7 +104,7 @@ fn a_storm_of_sizes_loses_no_key() {
     editor.wait_for("made");
     editor.press("/speed\r");
     for i in 0..200 {
-        editor.resize(10 + i % 40, 40 + (i * 7) % 120);
+        editor.resize(20 + i % 40, 80 + (i * 7) % 120);
         editor.press("+");
     }
     editor.resize(24, 80);
