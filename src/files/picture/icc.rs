@@ -127,6 +127,9 @@ fn black_point(profile: &ColorProfile, lut: &Lut, inputs: usize) -> [f64; 3] {
             }
             None => return [0.0; 3],
         }
+    } else if profile.lut_a_to_b_colorimetric.is_none() {
+        // Little CMS looks for none where the profile does not say that it is colorimetric.
+        return [0.0; 3];
     } else if inputs == 4 {
         [1.0; MOST]
     } else {

@@ -7,8 +7,8 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 /// At most so many pages are looked at.
 const MOST_PAGES: usize = 64;
-/// At most so many values of an entry are read.
-const MOST_VALUES: u64 = 1 << 17;
+/// At most so many values of an entry are read: more than the largest palette has, and any color profile.
+const MOST_VALUES: u64 = 4 << 20;
 
 pub(super) const SUBFILE: u16 = 254;
 pub(super) const COMPRESSION: u16 = 259;
@@ -16,6 +16,7 @@ pub(super) const PHOTOMETRIC: u16 = 262;
 pub(super) const COLOR_MAP: u16 = 320;
 pub(super) const SUB_PAGES: u16 = 330;
 pub(super) const EXTRA_SAMPLES: u16 = 338;
+pub(super) const PROFILE: u16 = 34675;
 pub(super) const DNG: u16 = 50706;
 
 /// How numbers stand in the file.
@@ -129,7 +130,7 @@ impl Page {
     pub fn values(&self, file: &mut File, form: Form, tag: u16) -> Vec<u64> {
         let Some(entry) = self.entry(tag) else { return Vec::new() };
         let size = match entry.kind {
-            1 | 6 => 1,
+            1 | 6 | 7 => 1,
             3 | 8 => 2,
             4 | 9 | 13 => 4,
             16..=18 => 8,
@@ -138,9 +139,11 @@ impl Page {
         let count = entry.count.min(MOST_VALUES) as usize;
         let inside = count * size <= form.offset();
         let at = if inside { Ok(entry.at) } else { number(file, form, entry.at, form.offset()) };
-        let mut bytes = vec![0; count * size];
-        let read = at.and_then(|at| file.seek(SeekFrom::Start(at))).and_then(|_| file.read_exact(&mut bytes));
-        if read.is_err() {
+        // What an entry claims is taken only as far as the file has it.
+        let mut bytes = Vec::new();
+        let read = at.and_then(|at| file.seek(SeekFrom::Start(at)));
+        let read = read.and_then(|_| file.take((count * size) as u64).read_to_end(&mut bytes));
+        if read.is_err() || bytes.len() < count * size {
             return Vec::new();
         }
         bytes.chunks_exact(size).map(|b| form.number(b)).collect()

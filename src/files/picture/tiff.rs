@@ -9,7 +9,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-use super::ifd::{self, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, Page, SUBFILE, Told};
+use super::ifd::{self, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, PROFILE, Page, SUBFILE, Told};
 use super::limits::{self, check_size};
 use super::{Color, Decoded, Model, Opened, Raw, jpeg, kinds};
 use crate::base::error::{Error, Result};
@@ -34,6 +34,8 @@ struct About {
     lab: Option<bool>,
     /// Whether alpha is the first extra sample, and multiplied into the others.
     associated: Option<bool>,
+    /// The decoder refuses a profile that is large beside its picture.
+    profile: Option<Vec<u8>>,
 }
 
 /// Reads the header.
@@ -58,7 +60,7 @@ pub(super) fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opene
     let orientation = decoder.find_tag(Tag::Orientation).ok().flatten().and_then(|v| v.into_u16().ok());
     let orientation =
         orientation.and_then(|v| Orientation::from_exif(v.min(255) as u8)).map_or(1, Orientation::to_exif);
-    let decode = Box::new(move || decode(decoder, color, size, &about, &place));
+    let decode = Box::new(move || decode(decoder, color, size, about, &place));
     Ok(Opened { size, orientation, bytes, decode })
 }
 
@@ -102,7 +104,8 @@ fn about(file: &mut File, form: Form, page: &Page) -> (About, Vec<(u64, Vec<u8>)
         Some(2) => Some(false),
         _ => None,
     };
-    let mut about = About { palette: None, lab: None, associated };
+    let profile = page.has(PROFILE).then(|| page.values(file, form, PROFILE).iter().map(|&v| v as u8).collect());
+    let mut about = About { palette: None, lab: None, associated, profile };
     let mut changes = vec![page.first(form)];
     match photometric {
         Some(PALETTE) => {
@@ -118,8 +121,7 @@ fn about(file: &mut File, form: Form, page: &Page) -> (About, Vec<(u64, Vec<u8>)
     (about, changes)
 }
 
-fn decode(mut decoder: Tiff, color: ColorType, size: (usize, usize), about: &About, place: &str) -> Result<Decoded> {
-    let profile = decoder.get_tag_u8_vec(Tag::IccProfile).ok();
+fn decode(mut decoder: Tiff, color: ColorType, size: (usize, usize), about: About, place: &str) -> Result<Decoded> {
     let mut result = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut result).map_err(|error| explain(place, error))?;
     if result.as_buffer(0).byte_len() < layout.complete_len {
@@ -129,9 +131,9 @@ fn decode(mut decoder: Tiff, color: ColorType, size: (usize, usize), about: &Abo
     let raw = raw(result, color.bit_depth(), &layout, size, color.num_samples().into());
     let raw = raw.ok_or_else(|| unknown(place, color))?;
     let raw = if layout.planes > 1 { interleaved(raw, layout.planes) } else { raw };
-    let color_of = |profile: Option<Vec<u8>>| profile.map_or(Color::Untagged, Color::Icc);
-    let (model, samples) = shaped(raw, color, about).ok_or_else(|| unknown(place, color))?;
-    Ok(Decoded { size, model, samples, color: color_of(profile), notes: Vec::new() })
+    let (model, samples) = shaped(raw, color, &about).ok_or_else(|| unknown(place, color))?;
+    let color = about.profile.map_or(Color::Untagged, Color::Icc);
+    Ok(Decoded { size, model, samples, color, notes: Vec::new() })
 }
 
 fn unknown(place: &str, color: ColorType) -> Error {

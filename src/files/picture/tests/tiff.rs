@@ -16,7 +16,7 @@ fn tiff(pages: &[(Vec<Entry>, Vec<u8>)]) -> Vec<u8> {
         entries.extend([(273, 4, vec![strip]), (279, 4, vec![pixels.len() as u32])]);
         entries.sort();
         let bytes_of = |(_, kind, values): &Entry| -> Vec<u8> {
-            let size = [1, 0, 2, 4][usize::from(*kind) - 1];
+            let size = [1, 0, 2, 4, 8, 1, 1][usize::from(*kind) - 1];
             values.iter().flat_map(|value| value.to_le_bytes()[..size].to_vec()).collect()
         };
         let mut rows = Vec::new();
@@ -123,6 +123,14 @@ fn samples_of_every_kind_are_read() {
         let texel = found.picture.texel(0, 0);
         assert!(texel.iter().zip(expected).all(|(a, b)| (a - b).abs() < 2e-3), "{name}: {texel:?} for {expected:?}");
     }
+}
+
+#[test]
+fn a_profile_is_larger_than_its_picture() {
+    let mut entries = page((1, 1), &[8], 1);
+    entries.push((34675, 7, vec![9; 200_000]));
+    let found = read_bytes(&tiff(&[(entries, vec![255])])).unwrap();
+    assert!(found.notes[0].contains("profile is broken"), "{:?}", found.notes);
 }
 
 #[test]
