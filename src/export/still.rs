@@ -6,6 +6,10 @@ use png::{BitDepth, ColorType, Encoder, EncodingError};
 
 use crate::base::pixels::Frame;
 
+/// Above so many bytes pixels are packed piece by piece: as a whole they would stand in memory once more.
+const LARGE: usize = 256 << 20;
+const CHUNK: usize = 1 << 20;
+
 /// sRGB in the numbers of ITU-T H.273: primaries of BT.709, transfer of sRGB, no matrix, full range.
 const CICP_SRGB: [u8; 4] = [1, 13, 0, 1];
 
@@ -35,9 +39,19 @@ pub fn frame(frame: &Frame) -> Result<Vec<u8>, EncodingError> {
 pub fn pixels(size: (usize, usize), pixels: &[u8]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut writer = srgb(&mut bytes, size, |_| Ok(()))?;
-    writer.write_image_data(pixels)?;
+    put(&mut writer, pixels)?;
     writer.finish()?;
     Ok(bytes)
+}
+
+/// Packs the pixels of a PNG that is no animation.
+pub fn put<W: Write>(writer: &mut png::Writer<W>, pixels: &[u8]) -> Result<(), EncodingError> {
+    if pixels.len() <= LARGE {
+        return writer.write_image_data(pixels);
+    }
+    let mut stream = writer.stream_writer_with_size(CHUNK)?;
+    stream.write_all(pixels)?;
+    stream.finish()
 }
 
 /// Data in four channels of `depth` bits, 8 or 16, row by row; without a color space, so that nobody converts it.

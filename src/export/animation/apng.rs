@@ -37,11 +37,14 @@ fn header(out: Lent, show: &Show) -> std::result::Result<png::Writer<Lent>, png:
 
 impl Apng {
     fn write(&mut self, rect: Rect, frame: &Frame) -> std::result::Result<(), png::EncodingError> {
-        if self.before.is_some() {
-            self.writer.reset_frame_position()?; // else the new width is held against the old place
-            self.writer.set_frame_dimension(rect.width() as u32, rect.height() as u32)?;
-            self.writer.set_frame_position(rect.x0 as u32, rect.y0 as u32)?;
+        if self.before.is_none() {
+            let whole = frame.cells().as_flattened();
+            let alone = self.show.frames == 1;
+            return if alone { still::put(&mut self.writer, whole) } else { self.writer.write_image_data(whole) };
         }
+        self.writer.reset_frame_position()?; // else the new width is held against the old place
+        self.writer.set_frame_dimension(rect.width() as u32, rect.height() as u32)?;
+        self.writer.set_frame_position(rect.x0 as u32, rect.y0 as u32)?;
         self.writer.write_image_data(&rect.cut(frame))
     }
 }
