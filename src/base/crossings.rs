@@ -10,7 +10,7 @@ const MAX_PAIRS: usize = 2_000_000;
 /// Areas below this share of the squared size count as none.
 const FLAT: f64 = 1e-12;
 
-/// Why a polygon encloses nothing; none where it does.
+/// Why a polygon encloses nothing; `None` if it does.
 pub fn emptiness(polygon: &Polygon) -> Option<&'static str> {
     let vertices = polygon.vertices();
     let Some(&a) = vertices.first() else { return Some("has no points") };
@@ -72,7 +72,7 @@ fn opens(polygon: &Polygon, (i, j): (usize, usize), place: Point, slack: f64) ->
         && thick(&mut vertices[j + 1..].iter().chain(&vertices[..=i]).copied())
 }
 
-/// Where two sides cross; none where they only touch.
+/// Where two sides cross; `None` if they only touch.
 fn crossing((a, b): (Point, Point), (c, d): (Point, Point)) -> Option<Point> {
     let side_of = |p: Point| (b - a).cross(p - a);
     let (of_c, of_d) = (side_of(c), side_of(d));

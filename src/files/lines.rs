@@ -45,7 +45,7 @@ pub struct Log {
 
 impl Log {
     /// A log in the user's state folder, named by the scene; `header` is written before its first line. Where it cannot be
-    /// written, `failed` is told once. None where there is no such folder.
+    /// written, `failed` is told once. `None` if there is no such folder.
     pub fn begin(scene: &Path, header: Vec<String>, failed: impl FnOnce(String) + Send + 'static) -> Option<Log> {
         Some(Log::begin_in(&folders::state()?.join("sessions"), scene, header, failed))
     }

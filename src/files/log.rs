@@ -13,7 +13,7 @@ use crate::base::system::{self, folders};
 /// A log longer than this begins anew; the old one is kept once.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Starts the log in `file`, else in the user's state folder, and tells where it is. None where there is no such folder.
+/// Starts the log in `file`, else in the user's state folder, and tells where it is. `None` if there is no such folder.
 ///
 /// # Errors
 /// When `file` is given and cannot be written.

@@ -29,7 +29,7 @@ pub struct Cache {
     fields: Store<VectorField>,
     /// The memory that is left for them and what is made of them; as the limits said when it was first used.
     budget: Option<Budget>,
-    /// Set once nobody wants any more what is being loaded.
+    /// Cancellation flag of the loading.
     pub stop: Option<Arc<AtomicBool>>,
 }
 

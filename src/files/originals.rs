@@ -72,7 +72,7 @@ impl Originals {
         self.found.iter().map(|(path, found)| Original { path: path.clone(), file: file(found) }).collect()
     }
 
-    /// The bytes from `offset` on, at most [`PIECE`], of the file with this hash; none where there is none.
+    /// The bytes from `offset` on, at most [`PIECE`], of the file with this hash; `None` if there is none.
     pub fn piece(&self, hash: &str, offset: u64) -> Vec<u8> {
         let mut bytes = vec![0; PIECE];
         let found = self.found.values().flatten().find(|found| found.contents.hash == hash);

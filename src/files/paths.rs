@@ -100,7 +100,7 @@ pub fn typed(path: &str) -> PathBuf {
 const MOST_OFFERED: usize = 500;
 
 /// The paths that begin with `typed`, relative to `folder` unless absolute: folders end in `/`; hidden ones only where a dot
-/// is typed. None where the folder cannot be read.
+/// is typed. `None` if the folder cannot be read.
 pub fn complete(folder: &Path, typed: &str) -> Vec<String> {
     let (parent, begun) = typed.rfind('/').map_or(("", typed), |at| typed.split_at(at + 1));
     let Ok(entries) = std::fs::read_dir(folder.join(self::typed(parent))) else { return Vec::new() };

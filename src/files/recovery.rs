@@ -30,7 +30,7 @@ pub struct Replayed {
     pub migration: Option<(Edit, Edit)>,
 }
 
-/// Does the records of a journal again, as far as they can be done and lead to a document without errors. None where none
+/// Does the records of a journal again, as far as they can be done and lead to a document without errors. `None` if none
 /// do: it does not start from a document that this program understands.
 pub fn replay(contents: &Contents) -> Option<Replayed> {
     replay_with(contents, &migrate::migrate)

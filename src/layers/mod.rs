@@ -78,7 +78,7 @@ impl Layer {
         }
     }
 
-    /// The layer that `json` means, where `change` is how that differs from what this one was read from; none where it
+    /// The layer that `json` means, where `change` is how that differs from what this one was read from; `None` if it
     /// must be read as a whole.
     pub fn reread(&self, json: &Value, change: &Change) -> Option<Layer> {
         match self {
@@ -129,7 +129,7 @@ impl Layer {
         }
     }
 
-    /// What the `old` thing at `path` (relative to the layer) becomes as one of the kind `to`; none where fields of the
+    /// What the `old` thing at `path` (relative to the layer) becomes as one of the kind `to`; `None` if fields of the
     /// same name are all that both kinds can have in common.
     pub fn turned(&self, path: &str, old: &Value, to: &str) -> Option<Turned> {
         match self {
@@ -174,7 +174,7 @@ pub struct Materials {
     pub masks: BTreeMap<(String, String), Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
-    /// Set once nobody wants any more what is made of them: a synthesis under way then ends with an error.
+    /// Cancellation flag of the synthesis.: a synthesis under way then ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
     /// The memory that is left for what is made of them.
     pub budget: Budget,

@@ -120,7 +120,7 @@ pub fn parse(words: &[String]) -> Result<Command> {
     table.try_get_matches_from(words).and_then(|found| Command::from_arg_matches(&found)).map_err(usage)
 }
 
-/// What `--help` says of a subcommand; none where there is no such one.
+/// What `--help` says of a subcommand; `None` if there is no such one.
 pub fn help(name: &str) -> Option<String> {
     let mut table = Command::augment_subcommands(clap::Command::new("plica"));
     table.build();

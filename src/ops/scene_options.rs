@@ -33,7 +33,7 @@ pub struct RecoveryOptions {
 }
 
 impl RecoveryOptions {
-    /// Whether they are taken; none where that was not said.
+    /// Whether they are taken; `None` if that was not said.
     pub fn keep(&self) -> Option<bool> {
         self.after_recovery.as_ref().map(|word| word == "keep")
     }

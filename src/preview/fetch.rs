@@ -184,7 +184,7 @@ impl Fetch {
         self.missing.remove(hash);
     }
 
-    /// How far it is, for the person; none where nothing is on its way.
+    /// How far it is, for the person; `None` if nothing is on its way.
     pub fn progress(&self) -> Option<String> {
         let incoming = self.incoming.as_ref()?;
         let Contents { hash, bytes } = incoming.wanted();

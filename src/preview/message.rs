@@ -78,7 +78,7 @@ pub enum FromEditor {
         hash: String,
         /// Where the bytes stand in the file.
         offset: u64,
-        /// The bytes; none where the file is not there any more.
+        /// The bytes; `None` if the file is not there any more.
         #[serde(skip)]
         bytes: Vec<u8>,
     },

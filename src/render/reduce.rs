@@ -57,7 +57,7 @@ fn means(picture: &Picture, factor: usize) -> Picture {
     Picture::from_cells(width, height, (0..width * height).map(block).collect())
 }
 
-/// None where no block has its middle in the zone's box.
+/// `None` if no block has its middle in the zone's box.
 fn zone(zone: &ZoneSynth, pictures: &mut Pictures) -> Option<ZoneSynth> {
     let factor = pictures.factor;
     let mut small = zone.clone();

@@ -43,13 +43,13 @@ impl Edit {
     }
 
     /// Adds a new item with sensible values to the list at `list`, before the one at `index` or as near to it as an
-    /// ascending list allows; and the pointer it gets. None where there is no such list.
+    /// ascending list allows; and the pointer it gets. `None` if there is no such list.
     pub fn insert_new(document: &Document, list: &str, index: usize) -> Option<(Edit, String)> {
         let (index, item) = new_item(document, list, index)?;
         Some((Edit::insert(document, list, index, item), pointer::join(list, index)))
     }
 
-    /// Adds a copy of the item at `path` after it, under a name of its own; and the pointer it gets. None where `path` is
+    /// Adds a copy of the item at `path` after it, under a name of its own; and the pointer it gets. `None` if `path` is
     /// no item of a list.
     pub fn duplicate(document: &Document, path: &str) -> Option<(Edit, String)> {
         let (list, last) = pointer::split(path)?;
@@ -58,7 +58,7 @@ impl Edit {
         Edit::insert_all(document, list, index + 1, vec![copy])
     }
 
-    /// Moves the item at `path` to `index` of its list; and the pointer it gets. None where either is no item of a list.
+    /// Moves the item at `path` to `index` of its list; and the pointer it gets. `None` if either is no item of a list.
     pub fn move_item(document: &Document, path: &str, index: usize) -> Option<(Edit, String)> {
         let (list, last) = pointer::split(path)?;
         let items = document.json().pointer(list)?.as_array()?;

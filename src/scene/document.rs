@@ -97,7 +97,7 @@ impl Document {
         Ok(self.change(edit)?.map_or_else(|| self.clone(), |(document, _)| document))
     }
 
-    /// The same, with what takes the edit back; none where it changes nothing. Only what the edit changes is read and
+    /// The same, with what takes the edit back; `None` if it changes nothing. Only what the edit changes is read and
     /// checked again; it comes to what the whole check says.
     pub(super) fn change(&self, edit: &Edit) -> Result<Option<(Document, Edit)>, Vec<Problem>> {
         let mut json = Value::clone(&self.json);

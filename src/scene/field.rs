@@ -81,7 +81,7 @@ pub struct Child {
     pub field: Field,
 }
 
-/// What stands at `pointer`, or could; none where the schema knows no such place.
+/// What stands at `pointer`, or could; `None` if the schema knows no such place.
 pub fn field(document: &Document, pointer: &str) -> Option<Field> {
     let place = Place::of(document.json(), pointer)?;
     let last = pointer::split(pointer).map(|(_, last)| last).unwrap_or_default();
@@ -89,14 +89,14 @@ pub fn field(document: &Document, pointer: &str) -> Option<Field> {
     Some(Field::new(name, place))
 }
 
-/// The value at `pointer`, or its default; `null` for an optional thing that is not there. None where the schema knows
+/// The value at `pointer`, or its default; `null` for an optional thing that is not there. `None` if the schema knows
 /// no such place.
 pub fn value(document: &Document, pointer: &str) -> Option<Value> {
     let place = Place::of(document.json(), pointer)?;
     place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
 }
 
-/// What the kind of thing at `pointer` computes, by its tag; none where it computes nothing.
+/// What the kind of thing at `pointer` computes, by its tag; `None` if it computes nothing.
 pub fn formula(document: &Document, pointer: &str) -> Option<&'static str> {
     let place = Place::of(document.json(), pointer)?;
     place.shape.branch(place.value)?.formula()

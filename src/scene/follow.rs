@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::{Document, Edit, pointer};
 
 impl Edit {
-    /// Where the place at `pointer` is after this edit, which led to `after`; none where it was taken away.
+    /// Where the place at `pointer` is after this edit, which led to `after`; `None` if it was taken away.
     pub fn follow(&self, after: &Document, pointer: &str) -> Option<String> {
         let item = |path: &str| {
             let (list, last) = pointer::split(path)?;

@@ -15,7 +15,7 @@ use crate::layers;
 /// More items than this are written with their list as a whole: one operation, however many there are.
 const ONE_BY_ONE: usize = 100;
 
-/// Why `value` cannot stand at `path`, by the schema alone; none where it can. Paths of the problem are relative to it.
+/// Why `value` cannot stand at `path`, by the schema alone; `None` if it can. Paths of the problem are relative to it.
 pub fn misfit(document: &Document, path: &str, value: &Value) -> Option<Problem> {
     match Place::of(document.json(), path) {
         Some(place) => shape::problems(place.shape, value).into_iter().next(),
@@ -26,7 +26,7 @@ pub fn misfit(document: &Document, path: &str, value: &Value) -> Option<Problem>
 impl Edit {
     /// Adds `items` to the list at `list`, before the one at `index`: names become unique, and in a list that ascends each
     /// goes to its place (where that is taken, one item goes half way to the next, many replace what is there). With it,
-    /// the pointer of the first. None where there is no such list, or nothing to add.
+    /// the pointer of the first. `None` if there is no such list, or nothing to add.
     pub fn insert_all(document: &Document, list: &str, index: usize, items: Vec<Value>) -> Option<(Edit, String)> {
         let place = Place::of(document.json(), list)?;
         let Body::List(..) = place.shape.body() else { return None };
@@ -54,7 +54,7 @@ impl Edit {
         Some((write(document, list, all.into()), first))
     }
 
-    /// Adds entries to the map at `map`, under names of their own; with it, the pointer of the first. None where there is
+    /// Adds entries to the map at `map`, under names of their own; with it, the pointer of the first. `None` if there is
     /// no such map, or nothing to add.
     pub fn insert_entries(document: &Document, map: &str, entries: Map<String, Value>) -> Option<(Edit, String)> {
         let place = Place::of(document.json(), map)?;

@@ -20,7 +20,7 @@ pub enum Side {
 pub struct Conflict {
     /// Where it is in the version that is here.
     pub pointer: String,
-    /// What stands there here; none where it was taken away.
+    /// What stands there here; `None` if it was taken away.
     pub mine: Option<Value>,
     /// What stands there on the other side.
     pub theirs: Option<Value>,
@@ -98,7 +98,7 @@ impl Merger {
         merged
     }
 
-    /// None where the lists cannot be brought together.
+    /// `None` if the lists cannot be brought together.
     fn list(&mut self, lists: &Lists, at: &str) -> Option<Vec<Value>> {
         // Coordinates belong together.
         if lists.mine.iter().chain(lists.theirs).any(Value::is_number) {
@@ -142,7 +142,7 @@ impl Merger {
     }
 }
 
-/// Lists that each side changed in one stretch, apart from each other. None where the stretches meet.
+/// Lists that each side changed in one stretch, apart from each other. `None` if the stretches meet.
 fn beside(lists: &Lists) -> Option<Vec<Value>> {
     let (mine, theirs) = (Stretch::of(lists.base, lists.mine), Stretch::of(lists.base, lists.theirs));
     let apart = |a: &Stretch, b: &Stretch| a.end < b.start || (a.end == b.start && a.start < b.end);
@@ -175,7 +175,7 @@ impl<'a> Stretch<'a> {
     }
 }
 
-/// The names of all items; none where one has none or two have the same.
+/// The names of all items; `None` if one has none or two have the same.
 fn names(items: &[Value]) -> Option<Vec<String>> {
     let names: Vec<String> = items.iter().map(|item| name_of(Some(item))).collect::<Option<_>>()?;
     let unique = names.iter().enumerate().all(|(i, name)| !names[..i].contains(name));

@@ -243,7 +243,7 @@ impl Shape {
         branch.map(|branch| Shape { site: self.site, body: branch, outer: None, tag: None, optional: self.optional })
     }
 
-    /// The branch that `value` chooses: itself where there is no tag, none where the tag is missing or unknown.
+    /// The branch that `value` chooses: itself where there is no tag, `None` if the tag is missing or unknown.
     pub fn branch(self, value: Option<&Value>) -> Option<Shape> {
         match self.body() {
             Body::Tagged(tag) => self.variant(value?.get(tag)?.as_str()?),
@@ -298,7 +298,7 @@ fn tag_of(branch: &'static Value) -> Option<&'static str> {
 pub struct Place<'a> {
     /// Its shape.
     pub shape: Shape,
-    /// The value written there, else the default; none where there is neither.
+    /// The value written there, else the default; `None` if there is neither.
     pub value: Option<&'a Value>,
     /// Whether it is written in the document.
     pub set: bool,
@@ -312,7 +312,7 @@ impl<'a> Place<'a> {
         Place { shape: Shape::root(), value: Some(json), set: true, required: true }
     }
 
-    /// What `pointer` leads to; none where the schema knows no such place or a list is not so long. The place just after
+    /// What `pointer` leads to; `None` if the schema knows no such place or a list is not so long. The place just after
     /// the end of a list, also written `-`, and any name in a map are places without a value.
     pub fn of(json: &'a Value, pointer: &str) -> Option<Place<'a>> {
         if !pointer.is_empty() && !pointer.starts_with('/') {

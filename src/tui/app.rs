@@ -48,7 +48,7 @@ pub struct State {
     pub column: usize,
     /// The row where the selection began.
     pub selected_from: Option<usize>,
-    /// The row where it ends; none where it ends at the cursor.
+    /// The row where it ends; `None` if it ends at the cursor.
     pub selected_to: Option<usize>,
     /// What is going on.
     pub mode: Mode,

@@ -44,7 +44,7 @@ impl Choice {
     }
 }
 
-/// The words that a cell takes; none where it is typed.
+/// The words that a cell takes; `None` if it is typed.
 pub fn options(state: &State, kind: &Kind) -> Vec<(String, String)> {
     match kind {
         Kind::Choice(all) | Kind::Tagged { variants: all, .. } => {
@@ -63,7 +63,7 @@ pub fn options(state: &State, kind: &Kind) -> Vec<(String, String)> {
     }
 }
 
-/// The list for a cell, the cursor on what it has; none where it is typed.
+/// The list for a cell, the cursor on what it has; `None` if it is typed.
 pub fn of_cell(state: &State, cell: &Cell, others: Vec<String>) -> Option<Choice> {
     let options = options(state, &cell.field.kind);
     let at = options.iter().position(|(word, _)| *word == cell.text).unwrap_or(0);

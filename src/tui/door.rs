@@ -164,7 +164,7 @@ impl Door {
         (!edit.is_empty()).then(|| Change { document: self.document().clone(), revision: self.revision(), edit })
     }
 
-    /// Applies an edit; one of a held key joins the one before it. None where it changes nothing.
+    /// Applies an edit; one of a held key joins the one before it. `None` if it changes nothing.
     ///
     /// # Errors
     /// What would be wrong in the scene.
@@ -178,13 +178,13 @@ impl Door {
         Change { document: self.document().clone(), revision: applied.revision, edit: applied.edit }
     }
 
-    /// Takes the last step back; none where there is none.
+    /// Takes the last step back; `None` if there is none.
     pub fn undo(&mut self) -> Option<Change> {
         let applied = self.session.undo()?;
         Some(self.change(applied))
     }
 
-    /// Does the last undone step again; none where there is none.
+    /// Does the last undone step again; `None` if there is none.
     pub fn redo(&mut self) -> Option<Change> {
         let applied = self.session.redo()?;
         Some(self.change(applied))
@@ -260,7 +260,7 @@ impl Door {
         Ok(format!("{} is saved", self.path().display()))
     }
 
-    /// The scene as its file has it, as one edit. None where there is no difference.
+    /// The scene as its file has it, as one edit. `None` if there is no difference.
     ///
     /// # Errors
     /// The file cannot be read, or has errors in it.

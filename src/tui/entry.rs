@@ -77,7 +77,7 @@ pub fn skipped(state: &State) -> Option<String> {
     (some < all).then(|| format!("{some} of {all} rows have {head}"))
 }
 
-/// The word that says what kind of item stands at a place; none where there are no kinds.
+/// The word that says what kind of item stands at a place; `None` if there are no kinds.
 fn kind_of<'a>(document: &'a Document, field: &Field, pointer: &str) -> Option<&'a str> {
     let Kind::Tagged { tag, .. } = field.kind else { return None };
     document.json().pointer(pointer)?.get(tag)?.as_str()
@@ -110,7 +110,7 @@ pub fn each(
     Ok(Edit::all(edits.collect::<Result<Vec<_>, _>>()?))
 }
 
-/// What the entry under way comes to, or what is wrong with it: the values of the first rows of the selection. None where
+/// What the entry under way comes to, or what is wrong with it: the values of the first rows of the selection. `None` if
 /// no number is being typed.
 pub fn hint(state: &State) -> Option<Result<String, String>> {
     const SHOWN: usize = 3;

@@ -52,7 +52,7 @@ enum Place {
     Apart(String),
 }
 
-/// The place of the thing at `pointer` itself; none where it has none.
+/// The place of the thing at `pointer` itself; `None` if it has none.
 fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
     let field = field::field(document, pointer)?;
     if is_pair(&field, ["x", "y"]) {

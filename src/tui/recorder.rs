@@ -149,7 +149,7 @@ impl Recorder {
         self.recording = Some((letter, Vec::new()));
     }
 
-    /// Ends the recording: its letter, and how many lines it has. None where there is none.
+    /// Ends the recording: its letter, and how many lines it has. `None` if there is none.
     pub fn end_macro(&mut self) -> Option<(char, usize)> {
         let (letter, lines) = self.recording.take()?;
         let count = lines.len();
@@ -210,7 +210,7 @@ impl Recorder {
         &self.log[from..]
     }
 
-    /// The file that the log is written to; none where it is not.
+    /// The file that the log is written to; `None` if it is not.
     pub fn place(&self) -> Option<&Path> {
         self.place.as_deref()
     }

@@ -88,7 +88,7 @@ pub struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// The list at `list`; none where its items are more than numbers.
+    /// The list at `list`; `None` if its items are more than numbers.
     pub fn of(document: &'a Document, list: &str) -> Option<Target<'a>> {
         let Kind::List(item) = field::field(document, list)?.kind else { return None };
         let tag = match item.kind {
@@ -200,7 +200,7 @@ impl<'a> Target<'a> {
 }
 
 impl Specimen {
-    /// Of the first kind of item, or of another one; none where it is more than numbers.
+    /// Of the first kind of item, or of another one; `None` if it is more than numbers.
     fn of(document: &Document, list: &str, kind: Option<(&str, &str)>) -> Option<Specimen> {
         let (edit, path) = Edit::insert_new(document, list, 0)?;
         let mut with = document.apply(&edit).ok()?;
@@ -331,7 +331,7 @@ pub fn number(text: &str) -> Option<f64> {
 }
 
 /// What separates the fields of a table: of tabs, semicolons and commas the first that its first record has outside quotes
-/// (RFC 4180); none where spaces do.
+/// (RFC 4180); `None` if spaces do.
 fn delimiter(text: &str) -> Option<char> {
     let (mut quoted, mut found) = (false, [false; 3]);
     for c in text.trim_start().chars() {

@@ -171,7 +171,7 @@ pub struct Editor {
     pub(super) options: Options,
     /// What is shown and changed.
     pub(super) state: State,
-    /// The terminal; none where only a script is run.
+    /// The terminal; `None` if only a script is run.
     pub(super) screen: Option<terminal::Screen>,
     /// Where events come in.
     pub(super) sender: mpsc::Sender<Event>,
@@ -183,11 +183,11 @@ pub struct Editor {
     pub(super) preview: Preview,
     /// What was last told of the window.
     pub(super) window_told: String,
-    /// The files of the scene; none where they cannot be watched.
+    /// The files of the scene; `None` if they cannot be watched.
     pub(super) watch: Option<Watch>,
     /// The scripts that run.
     pub(super) scripts: Scripts,
-    /// The log of the session; none where there is no folder for it.
+    /// The log of the session; `None` if there is no folder for it.
     pub(super) log: Option<Log>,
     /// What the panes have asked the worker for.
     pub(super) eyes: Eyes,

@@ -58,7 +58,7 @@ pub struct Probed {
 }
 
 impl Probed {
-    /// The answer, as `plica probe` has it; none where there is no such pixel.
+    /// The answer, as `plica probe` has it; `None` if there is no such pixel.
     pub fn new(asked: Asked, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
         let Layer::Picture(layer) = scene.layers.get(asked.layer)?;
         let (x, y) = asked.pixel;
@@ -129,7 +129,7 @@ pub fn protocol(state: &State) -> Protocol {
     state.seeing.graphics.protocol(state.depth)
 }
 
-/// The part of the picture that its pane shows; none where there is no such pane on the screen.
+/// The part of the picture that its pane shows; `None` if there is no such pane on the screen.
 pub fn part(state: &State) -> Option<Part> {
     let area = view::picture(state)?;
     let dots = state.seeing.graphics.dots(protocol(state), (area.width, area.height));

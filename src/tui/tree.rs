@@ -24,7 +24,7 @@ pub struct TreeRow {
     pub note: String,
     /// How deep it stands.
     pub depth: usize,
-    /// Whether it is folded; none where nothing is below it.
+    /// Whether it is folded; `None` if nothing is below it.
     pub folded: Option<bool>,
 }
 

@@ -56,7 +56,7 @@ impl Palette {
     }
 }
 
-/// Every color of the frames, ascending; none where they are too many.
+/// Every color of the frames, ascending; `None` if they are too many.
 fn few(frames: &[Frame]) -> Option<Vec<[u8; 3]>> {
     let mut all = HashSet::new();
     for color in frames.iter().flat_map(opaque) {

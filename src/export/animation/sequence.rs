@@ -23,7 +23,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern in the file name of `path`: `%d`, or `%04d` for at least four digits; `%%` is a `%`. None where the
+    /// The pattern in the file name of `path`: `%d`, or `%04d` for at least four digits; `%%` is a `%`. `None` if the
     /// name has no `%`.
     pub fn parse(path: &Path) -> Result<Option<Self>> {
         let wrong = |what: &str| Error::Usage(format!("{}: {what} (as in frame-%04d.png)", path.display()));

@@ -31,7 +31,7 @@ fn moves_at_init(folds: &Folds, i: usize) -> bool {
     folds.inside.cells()[i] == (folds.rule == Rule::FlyOver)
 }
 
-/// The `thresholds` texture of a zone whose position function takes s from `low` to `high`; none where the first stretch
+/// The `thresholds` texture of a zone whose position function takes s from `low` to `high`; `None` if the first stretch
 /// of every pixel tells all.
 pub fn thresholds(field: &Field, (low, high): (f64, f64)) -> Option<Thresholds> {
     let folds = field.folds.as_ref()?;

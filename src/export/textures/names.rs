@@ -65,7 +65,7 @@ fn plain(name: &str) -> String {
     if plain.is_empty() { "zone".into() } else { plain.into() }
 }
 
-/// The files that an earlier run wrote to the folder `dir`, as its manifest tells; none where there is none.
+/// The files that an earlier run wrote to `dir`, from its manifest; `None` if there is no manifest.
 pub fn earlier(dir: &Path) -> BTreeSet<String> {
     let text = lines::read(&dir.join(MANIFEST)).ok();
     let manifest = text.and_then(|text| serde_json::from_str::<Value>(&text).ok());

@@ -65,7 +65,7 @@ pub struct Found {
     file: File,
     path: PathBuf,
     bytes: Vec<u8>,
-    /// What it holds; none where it is new or damaged.
+    /// What it holds; `None` if it is new or damaged.
     pub contents: Option<Contents>,
     /// Where bytes that were not understood are kept.
     aside: Option<PathBuf>,

@@ -73,7 +73,7 @@ pub(super) struct Table {
 }
 
 impl Spoken {
-    /// What the numbers of a cICP chunk mean (ITU-T H.273), none where they are reserved or no RGB.
+    /// What the numbers of a cICP chunk mean (ITU-T H.273), `None` if they are reserved or no RGB.
     pub fn of_cicp(primaries: u8, transfer: u8, matrix: u8, full: bool) -> Option<Self> {
         const BT601: [[f64; 2]; 3] = [[0.63, 0.34], [0.31, 0.595], [0.155, 0.07]];
         let with = |white, [r, g, b]: [[f64; 2]; 3]| Some([white, r, g, b]);
@@ -164,7 +164,7 @@ impl Curve {
 }
 
 impl Shaper {
-    /// From the light of its channels to that of sRGB; none where they are the same.
+    /// From the light of its channels to that of sRGB; `None` if they are the same.
     fn to_srgb(&self) -> Option<[[f64; 3]; 3]> {
         let rows = times(&FROM_XYZ, &self.matrix?);
         let same = (0..9).all(|i| (rows[i / 3][i % 3] - f64::from(u8::from(i / 3 == i % 3))).abs() < 1e-3);
@@ -216,7 +216,7 @@ impl Table {
     }
 }
 
-/// The picture, its color followed as far as it can be; none where its samples cannot be what they are said to be.
+/// The picture, its color followed as far as it can be; `None` if its samples cannot be what they are said to be.
 pub(super) fn apply(decoded: Decoded) -> Option<Found> {
     let Decoded { size: (width, height), model, samples, color, mut notes } = decoded;
     let profile = profile(&color, model, &samples, &mut notes);
@@ -396,7 +396,7 @@ fn srgb_from_linear(light: f64) -> f64 {
 static FROM_XYZ: LazyLock<[[f64; 3]; 3]> =
     LazyLock::new(|| to_xyz(SRGB).and_then(|matrix| inverse(&matrix)).unwrap_or_default());
 
-/// From primaries to XYZ, white brought to D50 as Bradford does; none where they enclose nothing.
+/// From primaries to XYZ, white brought to D50 as Bradford does; `None` if they enclose nothing.
 fn to_xyz([white, red, green, blue]: Primaries) -> Option<[[f64; 3]; 3]> {
     const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
     let xyz = |[x, y]: [f64; 2]| [x / y, 1.0, (1.0 - x - y) / y];

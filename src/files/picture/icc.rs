@@ -160,7 +160,7 @@ struct Lut<'a> {
 }
 
 impl<'a> Lut<'a> {
-    /// None where the numbers in it do not hang together.
+    /// `None` if its numbers contradict one another.
     fn of(lut: &'a LutWarehouse, pcs: DataColorSpace) -> Option<Self> {
         let sound = match lut {
             LutWarehouse::Lut(lut) => old_is_sound(lut),

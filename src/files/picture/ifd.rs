@@ -126,7 +126,7 @@ impl Page {
         self.entry(tag).is_some()
     }
 
-    /// The whole numbers of an entry; none where there is no such entry.
+    /// The whole numbers of an entry; `None` if there is no such entry.
     pub fn values(&self, file: &mut File, form: Form, tag: u16) -> Vec<u64> {
         let Some(entry) = self.entry(tag) else { return Vec::new() };
         let size = match entry.kind {

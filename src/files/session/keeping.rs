@@ -27,7 +27,7 @@ pub(super) enum Keeping {
 /// A journal that could not be opened.
 #[derive(Debug)]
 pub(super) struct Waiting {
-    /// It, locked; none where it could not even be found.
+    /// It, locked; `None` if it could not even be found.
     found: Option<Found>,
     /// The document that it leads to, by so many records.
     leads_to: Document,

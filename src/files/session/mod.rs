@@ -95,7 +95,7 @@ pub struct Session {
     /// The text of the file as last read or written: what is saved is laid out like it.
     source: String,
     offer: Option<Offer>,
-    /// What the file held when it was last read or written; none where that is not known.
+    /// What the file held when it was last read or written; `None` if that is not known.
     base: Option<Document>,
     /// Who edits the scene instead of us.
     held_by: Option<Holder>,
@@ -214,7 +214,7 @@ impl Session {
         Err(problem.hint("keep or drop them first"))
     }
 
-    /// Applies an edit; `held` by a key held down joins the edit before it into one step. None where it changes nothing.
+    /// Applies an edit; `held` by a key held down joins the edit before it into one step. `None` if it changes nothing.
     ///
     /// # Errors
     /// When the result has errors in it, or unsaved edits are offered; the document stays as it was.
@@ -233,7 +233,7 @@ impl Session {
         self.history.close_step();
     }
 
-    /// Takes the last step back; none where there is none, or unsaved edits are offered.
+    /// Takes the last step back; `None` if there is none, or unsaved edits are offered.
     pub fn undo(&mut self) -> Option<Applied> {
         self.refuse_undecided().ok()?;
         let applied = self.history.undo()?;

@@ -70,7 +70,7 @@ fn dense_of(tool: &Tool, materials: &Materials) -> Option<Dense> {
     }
 }
 
-/// The map T of a transform, of which J(q) = T(q) - q; none where the tool is another one.
+/// The map T of a transform, of which J(q) = T(q) - q; `None` if the tool is another one.
 pub fn transform(tool: &Tool) -> Option<Affine> {
     let about = |center: &[f64; 2], linear: [f64; 4]| {
         let c = vector(*center);

@@ -86,7 +86,7 @@ impl Ragged {
 }
 
 impl Folds {
-    /// The effective place e(s) of pixel `i` of the box, none where it is still.
+    /// The effective place e(s) of pixel `i` of the box, `None` if it is still.
     pub fn effective(&self, i: usize, s: f64) -> Option<f64> {
         let crossings = if s < 0.0 { self.behind.of(i) } else { self.ahead.of(i) };
         self.rule.effective(self.inside.cells()[i], crossings, s)

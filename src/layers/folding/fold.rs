@@ -61,7 +61,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// The effective place e(s) of an active sampler, none where it is still. `inside` tells whether the init-position
+    /// The effective place e(s) of an active sampler, `None` if it is still. `inside` tells whether the init-position
     /// is in a region; `crossings` are the places where that changes on the side of s, from 0 outwards. On a crossing
     /// itself the state nearer to 0 still holds.
     pub fn effective(self, inside: bool, crossings: &[f64], s: f64) -> Option<f64> {

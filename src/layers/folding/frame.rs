@@ -48,7 +48,7 @@ fn zone_pixel(zone: &ZoneSynth, s: f64, (column, y): (usize, usize), still: &mut
     }
 }
 
-/// e(s) of pixel `i` of the box, none where its sampler is not active.
+/// e(s) of pixel `i` of the box, `None` if its sampler is not active.
 pub fn effective(field: &Field, i: usize, s: f64) -> Option<f64> {
     match &field.folds {
         None => Some(s),

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::model::{PictureLayer, Zone};
 use crate::base::change::{Change, Items};
 
-/// The layer that `json` means, where `change` is how that differs from what `old` was read from; none where it must be
+/// The layer that `json` means, where `change` is how that differs from what `old` was read from; `None` if it must be
 /// read as a whole.
 pub fn layer(old: &PictureLayer, json: &Value, change: &Change) -> Option<PictureLayer> {
     let zones = list(&old.zones, json, change, "zones", zone)?;

@@ -23,7 +23,7 @@ pub struct Snap {
     pub cure: String,
 }
 
-/// The first jump of a zone while the timeline is played in a loop; none where every pass ends as it begins.
+/// The first jump of a zone while the timeline is played in a loop; `None` if every pass ends as it begins.
 pub fn snap(zone: &Zone, wrap: Wrap) -> Option<Snap> {
     let clock = Clock::of(zone, wrap);
     let still = |tool: &Tool| matches!(tool, Tool::StillBorder { .. });

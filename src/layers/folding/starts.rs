@@ -35,7 +35,7 @@ fn middle(r: Rect) -> Rect {
     if half.width().min(half.height()) >= 4.0 { half.round() } else { half }
 }
 
-/// The field `field` of a new `variant` (an outline's kind, a tool, a method, a function); none where zeros will do.
+/// The field `field` of a new `variant` (an outline's kind, a tool, a method, a function); `None` if zeros will do.
 pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     let (c, w, h) = (bounds.center(), bounds.width(), bounds.height());
     let [tl, tr, br, bl] = corners(bounds);
@@ -87,7 +87,7 @@ pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
     }
 }
 
-/// A new item of the list `list` of a `variant`, to stand before item `index`, and the index it gets; none where an item
+/// A new item of the list `list` of a `variant`, to stand before item `index`, and the index it gets; `None` if an item
 /// does not depend on its neighbours.
 pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
     let closed = match (variant, list) {

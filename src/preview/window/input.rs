@@ -4,7 +4,7 @@ use winit::keyboard::{Key, ModifiersState, NamedKey};
 
 use crate::preview::keys::{KEYS, repeats};
 
-/// The command bound to a key; none where Ctrl, Alt or Super are held with it: those keys are the system's. On macOS letters
+/// The command bound to a key; `None` if Ctrl, Alt or Super are held with it: those keys are the system's. On macOS letters
 /// and signs are typed with Alt. What comes again while the key is held counts for what steps and moves.
 pub fn command(key: &Key, held: ModifiersState, again: bool) -> Option<&'static str> {
     let alt = if cfg!(target_os = "macos") { ModifiersState::empty() } else { ModifiersState::ALT };

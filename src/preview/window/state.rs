@@ -267,7 +267,7 @@ impl State {
         if panel || marked || self.words.put_away() { Outcome::Redraw } else { Outcome::Window }
     }
 
-    /// Whether a switch is on; none where the command is no switch that all windows are to show alike.
+    /// Whether a switch is on; `None` if the command is no switch that all windows are to show alike.
     pub fn is_on(&mut self, command: &str) -> Option<bool> {
         if command == "view-whole-frames" {
             return Some(self.transport.whole_frames);

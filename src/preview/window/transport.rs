@@ -55,7 +55,7 @@ impl Transport {
         self.speed = *if by > 0 { faster } else { slower }.unwrap_or(&self.speed);
     }
 
-    /// Seconds until another whole frame is shown; none where that is not waited for.
+    /// Seconds until another whole frame is shown; `None` if that is not waited for.
     pub fn until_next(&self, timeline: &Timeline) -> Option<f64> {
         let rest = 1.0 - (self.frame - self.frame.floor());
         (self.playing && self.whole_frames).then(|| rest / (timeline.fps * self.speed))

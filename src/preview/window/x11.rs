@@ -18,7 +18,7 @@ pub struct Desk {
 const ALL_MASTERS: u16 = 1;
 
 impl Desk {
-    /// The window as its server knows it; none where it is no window of an X server.
+    /// The window as its server knows it; `None` if it is no window of an X server.
     pub fn of(window: &Window) -> Option<Desk> {
         let window = match window.window_handle().ok()?.as_raw() {
             RawWindowHandle::Xlib(handle) => u32::try_from(handle.window).ok()?,

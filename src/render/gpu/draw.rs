@@ -204,7 +204,7 @@ fn manner(zone: &ZoneSynth) -> Manner {
     }
 }
 
-/// The zone's box within the frame; none where they do not meet.
+/// The zone's box within the frame; `None` if they do not meet.
 fn scissor(zone: &ZoneSynth, into: &wgpu::Texture) -> Option<[u32; 4]> {
     let (x, y) = (zone.field.x0 as u32, zone.field.y0 as u32);
     let width = (zone.field.inside.width() as u32).min(into.width().saturating_sub(x));

@@ -89,7 +89,7 @@ impl History {
         self.revision
     }
 
-    /// Applies an edit; what was undone stays, as another branch. None where the edit changes nothing.
+    /// Applies an edit; what was undone stays, as another branch. `None` if the edit changes nothing.
     pub fn apply(&mut self, edit: Edit, stamp: Stamp) -> Result<Option<Applied>, Vec<Problem>> {
         let Some((document, inverse)) = self.document.change(&edit)? else { return Ok(None) };
         self.document = document;
@@ -108,7 +108,7 @@ impl History {
         self.tree.reserve_next()
     }
 
-    /// Takes the last step back; none where there is none.
+    /// Takes the last step back; `None` if there is none.
     pub fn undo(&mut self) -> Option<Applied> {
         let step = self.tree.step(self.tree.here())?;
         let (id, edit, inverse) = (step.id, step.inverse.clone(), step.edit.clone());
@@ -117,7 +117,7 @@ impl History {
         Some(applied)
     }
 
-    /// Does again what was undone last; none where there is nothing.
+    /// Does again what was undone last; `None` if there is nothing.
     pub fn redo(&mut self) -> Option<Applied> {
         self.on_to(self.tree.next(self.tree.here())?)
     }
@@ -184,7 +184,7 @@ impl History {
         self.tree.before(state).unwrap_or(0)
     }
 
-    /// The way from the present state to another; none where there is no such state.
+    /// The way from the present state to another; `None` if there is no such state.
     pub fn route(&self, to: usize) -> Option<Route> {
         self.tree.route(to)
     }
@@ -281,7 +281,7 @@ impl History {
         }
     }
 
-    /// How many steps lie between the present and the last save: back by so many, or on. None where neither leads there.
+    /// How many steps lie between the present and the last save: back by so many, or on. `None` if neither leads there.
     pub fn since_saved(&self) -> Option<(usize, usize)> {
         let saved = self.saved?;
         let route = self.tree.route(saved)?;
@@ -292,7 +292,7 @@ impl History {
         }
     }
 
-    /// The state that the file holds; none where it is not known.
+    /// The state that the file holds; `None` if it is not known.
     pub fn saved(&self) -> Option<usize> {
         self.saved
     }

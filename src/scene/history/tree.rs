@@ -169,7 +169,7 @@ impl Tree {
         after
     }
 
-    /// The way from the present state to another. None where there is no such state.
+    /// The way from the present state to another. `None` if there is no such state.
     pub fn route(&self, to: usize) -> Option<Route> {
         if to > self.steps.len() {
             return None;

@@ -218,7 +218,7 @@ fn sibling(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// The same place in the next or previous item of the same kind; none where there is no other.
+/// The same place in the next or previous item of the same kind; `None` if there is no other.
 fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, String> {
     let json = state.document().json();
     let mut item = node;

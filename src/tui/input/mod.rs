@@ -49,7 +49,7 @@ pub fn feed(pieces: &mut Pieces) -> bool {
     }
 }
 
-/// The event that a piece says; none where it says nothing to the editor.
+/// The event that a piece says; `None` if it says nothing to the editor.
 pub fn event(piece: &Piece) -> Option<Event> {
     match piece {
         Piece::Paste(text) => Some(Event::Paste(text.clone())),

@@ -96,7 +96,7 @@ impl Pieces {
         }
     }
 
-    /// How long to wait for more before `take` gives what is held for what it is; none where nothing is.
+    /// How long to wait for more before `take` gives what is held for what it is; `None` if nothing is.
     pub fn patience(&self, now: Instant) -> Option<Duration> {
         match shape(&self.held)? {
             Shape::Begun(patience, _) => Some((self.last + patience).saturating_duration_since(now)),
@@ -142,7 +142,7 @@ impl Pieces {
     }
 }
 
-/// What `bytes` begin with; none where there are none.
+/// What `bytes` begin with; `None` if there are none.
 fn shape(bytes: &[u8]) -> Option<Shape> {
     let (&first, rest) = bytes.split_first()?;
     if first != 0x1b {

@@ -110,7 +110,7 @@ impl Keymap {
         Found::Nothing
     }
 
-    /// The key that runs a line in a context; none where no key does.
+    /// The key that runs a line in a context; `None` if no key does.
     pub fn key_of(&self, context: &str, command: &str) -> Option<&str> {
         let row = self.rows.iter().find(|row| row.context == context && row.command == command);
         row.map(|row| &*row.key)

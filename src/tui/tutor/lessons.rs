@@ -281,7 +281,7 @@ fn zones(state: &State) -> &[Value] {
     zones.map_or(&[], Vec::as_slice)
 }
 
-/// What stands at `path` of the zone; none where nothing is written.
+/// What stands at `path` of the zone; `None` if nothing is written.
 fn value(state: &State, path: &str) -> Option<Value> {
     zones(state).iter().find(|zone| zone["name"] == ZONE)?.pointer(path).cloned()
 }

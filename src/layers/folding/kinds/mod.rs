@@ -28,7 +28,7 @@ impl Turned {
     }
 }
 
-/// What the `old` thing at `path` (relative to the layer) becomes as a `to`. None where fields of the same name are all
+/// What the `old` thing at `path` (relative to the layer) becomes as a `to`. `None` if fields of the same name are all
 /// that both kinds can have in common.
 pub fn turned(layer: &PictureLayer, path: &str, old: &Value, to: &str) -> Option<Turned> {
     let tokens: Vec<&str> = path.split('/').skip(1).collect();

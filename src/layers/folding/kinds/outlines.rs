@@ -17,7 +17,7 @@ const WITHIN_PX: f64 = 0.05;
 /// The handles of an ellipse's four nodes, as a share of its radii: nowhere farther from it than 0.03 % of them.
 const HANDLE: f64 = 0.552_284_749_830_793_6;
 
-/// An outline as one of the kind `to`; none where it is of that kind, or there is no such kind.
+/// An outline as one of the kind `to`; `None` if it is of that kind, or there is no such kind.
 pub fn turned(old: &Outline, to: &str) -> Option<Turned> {
     let there = kind(old);
     Some(match (old, to) {

@@ -10,7 +10,7 @@ const A_CYCLE: f64 = 8.0;
 /// Keyframes at most.
 const MOST: f64 = 64.0;
 
-/// A position function as one of the kind `to`; none where the fields that both have say all there is to keep.
+/// A position function as one of the kind `to`; `None` if the fields that both have say all there is to keep.
 pub fn turned(old: &Position, to: &str) -> Option<Turned> {
     match (old, to) {
         (Position::Linear, "keyframes") | (Position::Piecewise { .. }, "piecewise") => None,

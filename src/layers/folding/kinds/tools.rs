@@ -19,7 +19,7 @@ const MOST: usize = 10_000;
 /// Vectors that differ by less than this are the same.
 const SAME_PX: f64 = 1e-6;
 
-/// A tool of `zone` as one of the kind `to`; none where it is of that kind, or there is no such kind.
+/// A tool of `zone` as one of the kind `to`; `None` if it is of that kind, or there is no such kind.
 pub fn turned(zone: &Zone, old: &Tool, to: &str) -> Option<Turned> {
     let kind = serde_json::to_value(old).ok()?.get("tool")?.as_str()?.to_owned();
     let turning = Turning { zone, old, kind, bounds: zone.outline.polygon().bounds() };
@@ -65,7 +65,7 @@ impl Turning<'_> {
         Turned::whole(tool).but_if(lost)
     }
 
-    /// The anchors of the old tool, with how many were left out; none where it gives none.
+    /// The anchors of the old tool, with how many were left out; `None` if it gives none.
     fn anchors(&self) -> Option<(Vec<Given>, usize)> {
         if counts::anchors(self.old, &self.zone.outline) == 0.0 {
             return None;

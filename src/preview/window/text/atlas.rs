@@ -62,7 +62,7 @@ impl Atlas {
         std::mem::take(&mut self.changed)
     }
 
-    /// Takes a glyph; none where it is empty or finds no room.
+    /// Takes a glyph; `None` if it is empty or finds no room.
     pub fn put(&mut self, image: &SwashImage) -> Option<Spot> {
         let (width, height) = (image.placement.width, image.placement.height);
         let [x, y] = self.place(width, height)?;

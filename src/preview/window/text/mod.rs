@@ -232,7 +232,7 @@ impl Inner {
         laid
     }
 
-    /// The glyph in the atlas; none where there is nothing to see, or no room.
+    /// The glyph in the atlas; `None` if there is nothing to see, or no room.
     fn spot(&mut self, key: CacheKey) -> Option<Spot> {
         if let Some(spot) = self.spots.get(&key) {
             return *spot;
