@@ -174,14 +174,14 @@ pub struct Materials {
     pub masks: BTreeMap<(String, String), Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
-    /// Cancellation flag of the synthesis.: a synthesis under way then ends with an error.
+    /// Cancellation flag: once set, a synthesis under way ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
     /// The memory that is left for what is made of them.
     pub budget: Budget,
 }
 
 impl Materials {
-    /// Whether nobody wants any more what is made of them.
+    /// Whether the synthesis has been cancelled.
     pub fn stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
