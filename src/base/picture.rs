@@ -16,11 +16,14 @@ pub struct Picture {
 
 /// Which samples a pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it all")]
 pub enum Channels {
+    /// Luma alone.
     Grey = 1,
+    /// Luma, then alpha.
     GreyAlpha = 2,
+    /// Red, green, blue.
     Rgb = 3,
+    /// Red, green, blue, then alpha.
     Rgba = 4,
 }
 
