@@ -82,7 +82,7 @@ impl Editor {
                 self.preview.open_window();
             }
             Effect::View(Some(command)) => self.preview.view(&command),
-            Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),
+            Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
         }

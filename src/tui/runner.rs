@@ -398,7 +398,7 @@ impl Editor {
     pub fn take(&mut self, event: Event) {
         match &event {
             // The terminal may have lost cells though it is as large again as what was drawn last.
-            Event::Resize(..) => self.screen.iter_mut().for_each(|screen| drop(screen.clear())),
+            Event::Resize(..) => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             // What is typed counts by the size that there is now: the signal of a new one may be on its way yet.
             Event::Key(_) | Event::Paste(_) if self.screen.is_some() => {
                 self.state.size = terminal::size().unwrap_or(self.state.size);

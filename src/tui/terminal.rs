@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::crossterm::{cursor, event, execute, terminal};
+use ratatui::layout::{Position, Rect};
 
 use super::clipboard::{Through, sequence};
 use super::pace::{Pace, is_behind};
@@ -53,6 +54,13 @@ pub fn enter() -> Result<Screen> {
 /// The size of the terminal, in cells.
 pub fn size() -> Option<(u16, u16)> {
     terminal::size().ok()
+}
+
+/// Draws all of the screen anew the next time. Ratatui's own `clear` asks the terminal for its cursor, and takes keys while
+/// it waits for the answer; a resize asks nothing.
+pub fn forget(screen: &mut Screen) -> std::io::Result<()> {
+    let size = screen.size()?;
+    screen.resize(Rect::from((Position::ORIGIN, size)))
 }
 
 /// Undoes every mode, shows the cursor and gives the screen back. May be called at any time, from any thread, twice.

@@ -113,6 +113,19 @@ fn a_storm_of_sizes_loses_no_key() {
     assert_eq!((editor.end(), saved_speed(&folder)), (0, json!(201)));
 }
 
+/// The terminal here answers no question, so whoever asks it one takes the keys that follow.
+#[test]
+fn drawing_anew_loses_no_key() {
+    let folder = folder();
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("made");
+    editor.press("/speed\r");
+    editor.press(&"\x0c+".repeat(40));
+    editor.wait_for("41");
+    editor.press(":wq\r");
+    assert_eq!((editor.end(), saved_speed(&folder)), (0, json!(41)));
+}
+
 #[test]
 fn a_closed_terminal_ends_the_editor_by_itself() {
     let folder = folder();
