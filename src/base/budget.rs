@@ -27,7 +27,7 @@ pub struct Share {
     bytes: u64,
 }
 
-/// More was wanted than is left.
+/// More was asked for than is left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Short {
     wanted: u64,
@@ -49,7 +49,7 @@ impl Budget {
         self.try_take(bytes).map_err(|short| short.at(place))
     }
 
-    /// As [`Budget::take`], for those that have a better place to name.
+    /// As [`Budget::take`], for callers that can name a better place.
     ///
     /// # Errors
     /// When more would be kept than the budget allows.
@@ -86,12 +86,12 @@ impl Drop for Share {
 }
 
 impl Short {
-    /// The error at a file or an option.
+    /// As an error about a file or an option.
     pub fn at(self, place: impl Display) -> Error {
         Error::at(place, self.what()).cure(self.cure())
     }
 
-    /// The problem at a place of the scene.
+    /// As a problem at a place in the scene.
     pub fn problem(self, path: impl Into<String>) -> Problem {
         Problem::error(path, self.what()).hint(self.cure())
     }
@@ -108,7 +108,7 @@ impl Short {
     }
 }
 
-/// Bytes in the unit that leaves two or three digits.
+/// A number of bytes in the unit that leaves two or three digits.
 pub fn size(bytes: u64) -> String {
     const UNITS: [(u32, &str); 3] = [(30, "GiB"), (20, "MiB"), (10, "KiB")];
     match UNITS.iter().find(|(shift, _)| bytes >> shift >= 1) {

@@ -1,19 +1,19 @@
 //! The sides of a polygon in nested chains, so that most of a fine curve is passed over at a glance: four sides make a
-//! chain, four chains a longer one, up to the whole polygon. A chain knows its box, and a straight axis from which none of
-//! it is farther than its band. A line that keeps clear of that crosses none of its sides; only where a line meets or grazes
-//! a chain are its parts looked at, and at the end the sides themselves. A line that parts the ends of a chain which bends one
-//! way only, by less than half a turn, crosses one side of it, found by halving. So what is found is what a look at every side
-//! finds.
+//! chain, four chains a longer one, up to the whole polygon. A chain has a box, a straight axis, and a band: no part of the
+//! chain is farther from the axis than the band. A line that keeps clear of both crosses none of its sides; the parts of a
+//! chain, and at the end the sides themselves, are looked at only where a line meets or grazes it. A chain that bends one way
+//! only, by less than half a turn, is crossed once by a line that separates its ends, in a side found by halving. The result
+//! is the same as if every side had been looked at.
 
 use kurbo::{Point, Rect, Vec2};
 
 /// Sides in a shortest chain, and chains in one that is longer.
 const FAN: usize = 4;
 
-/// A share of the lengths at hand that is larger than any error of rounding.
+/// As a share of the lengths involved: more than any rounding error.
 const ROUNDING: f64 = 1e-12;
 
-/// Lines shorter than this pass nothing over: their products could vanish.
+/// Shorter lines skip no chains: their products could underflow.
 const SHORT: f64 = 1e-100;
 
 /// Every chain of a polygon, level by level: first those of sides; the last level is the whole.
@@ -52,7 +52,7 @@ pub struct Line {
     pub q: Point,
     /// From s = 0 to s = 1.
     pub d: Vec2,
-    /// The length of `d`; infinite where it is too short to tell anything by.
+    /// The length of `d`; infinite where it is too short to decide anything.
     length: f64,
 }
 
@@ -63,7 +63,7 @@ impl Line {
         Line { q, d, length: if length > SHORT { length } else { f64::INFINITY } }
     }
 
-    /// On which side of the line `p` lies, and how far, in lengths of `d`: above 0 on its left as axes are drawn in mathematics.
+    /// On which side of the line `p` is, and how far, in lengths of `d`: positive on its left with the y axis pointing up.
     pub fn side(&self, p: Point) -> f64 {
         self.d.cross(p - self.q)
     }
@@ -91,7 +91,7 @@ impl Chain {
         Chain { bounds, axis, band, is_arc: is_arc(vertices) }
     }
 
-    /// Whether the whole of it lies clearly on one side of the line.
+    /// Whether all of it is clearly on one side of the line.
     fn is_beside(&self, line: &Line) -> bool {
         let (a, b) = (self.axis.0 - line.q, self.axis.1 - line.q);
         let lengths = a.x.abs() + a.y.abs() + b.x.abs() + b.y.abs() + self.band;
@@ -141,7 +141,7 @@ impl Chains {
         part.parts(self.levels[part.level - 1].len())
     }
 
-    /// Adds the chains that together hold all sides of `part` that meet `area`, none of them much larger than it.
+    /// Adds chains that together hold all sides of `part` that meet `area`, none of them much larger than `area`.
     pub fn near(&self, part: Part, area: Rect, found: &mut Vec<Part>) {
         let Rect { x0, y0, x1, y1 } = self.chain(part).bounds;
         if !meets(&self.chain(part).bounds, &area) {
@@ -155,7 +155,7 @@ impl Chains {
         }
     }
 
-    /// Hands over the sides of `part` in chains whose box meets `area`, by the numbers of their first vertices.
+    /// Calls back with the sides of `part` in chains whose box meets `area`, by the numbers of their first vertices.
     pub fn each_near(&self, part: Part, area: Rect, each: &mut impl FnMut(std::ops::Range<usize>)) {
         if !meets(&self.chain(part).bounds, &area) {
             return;
@@ -166,7 +166,7 @@ impl Chains {
         }
     }
 
-    /// Hands over the sides of `part` that the line may cross, by the numbers of their first vertices.
+    /// Calls back with the sides of `part` that the line may cross, by the numbers of their first vertices.
     pub fn each_met(&self, part: Part, line: &Line, vertices: &[Point], each: &mut impl FnMut(std::ops::Range<usize>)) {
         let chain = self.chain(part);
         if chain.is_beside(line) {

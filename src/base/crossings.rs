@@ -27,9 +27,9 @@ pub fn emptiness(polygon: &Polygon) -> Option<&'static str> {
     (twice_area.abs() <= least && self_crossing(polygon, 0.0).is_none()).then_some("has no area")
 }
 
-/// A place where two sides of a polygon cross properly; none too where that takes too long to find out. Of curves, whose
-/// sides lie within `slack` of them, a crossing counts only where it shuts off more than such sides may: where two pieces
-/// leave a node almost side by side, their straight sides cross although the curves do not.
+/// A place where two sides of a polygon cross properly; `None` also if that takes too long to find out. For curves, whose
+/// sides are within `slack` of them, a crossing counts only if it cuts off more than that slack can explain: where two
+/// pieces leave a node almost side by side, their straight sides cross although the curves do not.
 pub fn self_crossing(polygon: &Polygon, slack: f64) -> Option<Point> {
     let mut sides: Vec<(usize, (Point, Point))> = polygon.sides().enumerate().filter(|(_, (a, b))| a != b).collect();
     sides.sort_by(|(_, s), (_, t)| s.0.x.min(s.1.x).total_cmp(&t.0.x.min(t.1.x)));
@@ -54,8 +54,8 @@ pub fn self_crossing(polygon: &Polygon, slack: f64) -> Option<Point> {
     None
 }
 
-/// Whether both parts into which a crossing at `place` of two sides takes a polygon apart are thicker than what two sides
-/// may be off by.
+/// Whether the crossing of two sides at `place` divides the polygon into two parts that are both thicker than what two
+/// sides may be off by.
 fn opens(polygon: &Polygon, (i, j): (usize, usize), place: Point, slack: f64) -> bool {
     let vertices = polygon.vertices();
     let thick = |ring: &mut dyn Iterator<Item = Point>| {
@@ -191,7 +191,7 @@ mod tests {
         }
     }
 
-    /// Nodes as people place them: in whole pixels, handles short, long, none, or along those of the other side.
+    /// Nodes as people place them: on whole pixels; handles short, long, missing, or in line with the handle opposite.
     fn nodes() -> impl Strategy<Value = Nodes> {
         let place = (0..60i32, 0..60i32).prop_map(|(x, y)| (f64::from(x), f64::from(y)));
         let handle = (-25..25i32, -25..25i32).prop_map(|(x, y)| (f64::from(x), f64::from(y)));

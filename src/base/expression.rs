@@ -2,7 +2,7 @@
 //! computed over named variables. A parser of our own: it is small, its limits are ours, and it evaluates as it reads.
 //!
 //! Angles are degrees, as they are everywhere in a scene. A comma between digits is a decimal point (`4,5`), except in the
-//! list of a function's arguments, where it separates; a true minus sign (U+2212) is a minus.
+//! list of a function's arguments, where it separates them; a true minus sign (U+2212) is a minus.
 
 use super::maths;
 
@@ -122,7 +122,7 @@ struct Parser<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
-    /// How many lists of arguments it is in.
+    /// How many argument lists the parser is in.
     lists: usize,
     variables: &'a Variables<'a>,
 }

@@ -1,13 +1,13 @@
-//! Faults of our own. A panic ends what was being done and nothing more: whoever starts work on a thread catches it at the
-//! border of that work, tells the person, and goes on with the next. Only the main thread's ends the process.
+//! Faults of our own. A panic ends what was being done and nothing more: whatever starts work on a thread catches the panic
+//! at the border of that work, reports it, and goes on. Only a panic of the main thread ends the process.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does `work`; where it panics, gives one line about that. What the work was changing may be half changed: throw it away.
+/// Does `work`; a panic becomes an error. What the work was changing may be half changed: throw it away.
 ///
 /// # Errors
-/// The line.
+/// The panic, in one line.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| told(&*payload))
 }

@@ -11,7 +11,7 @@ use super::chains::{Chains, Line, Part};
 
 /// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
 /// should. That many sides are looked at only where it matters ([`Chains`]): four of them lie within 0.001 px of their
-/// chord, and a path that keeps farther from it is done with them.
+/// chord, and a path that stays farther away skips all four at once.
 pub const FLATNESS_PX: f64 = 2e-5;
 
 /// A closed polygon, even-odd; the closing side is implied. At least three vertices, all finite.
@@ -77,7 +77,7 @@ impl Polygon {
         (0..n).map(move |i| (self.vertices[i], self.vertices[(i + 1) % n]))
     }
 
-    /// The chains of sides that may meet `area`: all sides that do lie in one of them.
+    /// The chains of sides that may meet `area`: every side that does is in one of them.
     pub fn parts_near(&self, area: Rect) -> Vec<Part> {
         let mut found = Vec::new();
         self.chains.whole().into_iter().for_each(|whole| self.chains.near(whole, area, &mut found));
@@ -129,7 +129,7 @@ impl Polygon {
         found
     }
 
-    /// Hands over the places s where a line crosses a side of `part`, in no order.
+    /// Calls back with each s where the line crosses a side of `part`, in no order.
     pub fn crossings_in(&self, part: Part, line: &Line, each: &mut impl FnMut(f64)) {
         self.chains.each_met(part, line, &self.vertices, &mut |sides| {
             self.some(sides).filter_map(|(a, b)| side_crossing(a, b, line)).for_each(&mut *each);

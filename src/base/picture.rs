@@ -1,4 +1,4 @@
-//! Pictures as they were read: codes of 8 or 16 bits, halves or floats, and what makes light of them. A photograph takes
+//! Pictures as they were read: codes of 8 or 16 bits, halves or floats, and what turns them into light. A photograph takes
 //! 3 bytes a pixel instead of 16; every read gives linear, premultiplied RGBA all the same.
 
 use std::sync::{Arc, LazyLock};
@@ -67,17 +67,17 @@ impl Samples {
     }
 }
 
-/// What makes linear sRGB light of codes.
+/// What turns codes into linear sRGB light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light<const CODES: usize> {
     /// The light of each code, of red, green and blue.
     pub curves: [Arc<[f32; CODES]>; 3],
-    /// From the light of other primaries, row by row; what lies outside sRGB is clipped.
+    /// Converts light from other primaries, row by row; what is outside sRGB is clipped.
     pub matrix: Option<[[f32; 3]; 3]>,
 }
 
 impl<const CODES: usize> Light<CODES> {
-    /// One curve for all channels, and no other primaries.
+    /// One curve for all channels; the primaries are those of sRGB.
     pub fn of_curve(curve: impl Fn(f64) -> f64) -> Self {
         let curve = table(curve);
         Light { curves: std::array::from_fn(|_| curve.clone()), matrix: None }
@@ -121,7 +121,7 @@ pub fn value_of_half(bits: u16) -> f32 {
     }
 }
 
-/// Gives linear, premultiplied RGBA of pixel `i`.
+/// The linear, premultiplied RGBA of pixel `i`.
 trait Texels {
     fn at(&self, i: usize) -> Rgba;
 }
@@ -228,7 +228,7 @@ impl Picture {
         &self.samples
     }
 
-    /// Bytes of memory that it takes.
+    /// How many bytes of memory it takes.
     pub fn bytes(&self) -> u64 {
         let each = match self.samples {
             Samples::Bytes(..) => 1,
@@ -244,8 +244,8 @@ impl Picture {
         with_texels!(self, texels => texels.at(y * self.width + x))
     }
 
-    /// Gives an encoded pixel that is clear the color that the picture has at `place`, where it has one: straight codes have,
-    /// whatever their alpha.
+    /// Gives a fully transparent encoded pixel the color that the picture has at `place`, where it has one: pictures with
+    /// straight alpha do, whatever the alpha.
     pub fn keep_clear_color(&self, place: Option<(usize, usize)>, code: &mut [u8; 4]) {
         let Some((x, y)) = place.filter(|_| code[3] == 0) else { return };
         let count = self.channels.count();

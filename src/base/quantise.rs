@@ -1,8 +1,8 @@
-//! Few colors for many: boxes cut at the mean of the one that errs most (variance cut), then settled by k-means; and the
-//! nearest of them, found at once.
+//! Few colors for many: the box with the largest error is cut at its mean (variance cut), then k-means settles them; and a
+//! fast search for the nearest of them.
 //!
 //! Distances are those of sRGB codes. Boxes and means in Oklab gave 0.5 dB less on photographs at the same size of file, and
-//! no fewer specks: what errors of a few codes look like is decided by how they are spread.
+//! no fewer specks: how visible errors of a few codes are depends on how they are spread.
 
 use std::collections::HashMap;
 
@@ -16,14 +16,14 @@ const ROUNDS: usize = 16;
 /// Bits of a channel that are left out where colors are counted together; their mean stays.
 const COARSE: u32 = 1;
 
-/// How often colors occur. Counted in any order and in any pieces it is the same.
+/// How often colors occur. The order and the pieces in which they are counted make no difference.
 #[derive(Default)]
 pub struct Histogram {
     bins: HashMap<[u8; 3], [u64; 4]>,
 }
 
 impl Histogram {
-    /// Of these colors.
+    /// Counts these colors.
     pub fn of(colors: impl Iterator<Item = [u8; 3]>) -> Self {
         let mut histogram = Histogram::default();
         for color in colors {
@@ -44,7 +44,7 @@ impl Histogram {
         self
     }
 
-    /// At most `most` colors (up to 256) that stand for all, ascending; none without any.
+    /// At most `most` colors (up to 256) that represent all, ascending; none if there are none.
     pub fn palette(self, most: usize) -> Vec<[u8; 3]> {
         let mut bins: Vec<_> = self.bins.into_iter().collect();
         bins.sort_unstable();
@@ -164,7 +164,7 @@ impl Nearest {
     }
 }
 
-/// The colors that may be the nearest to a place in the cell: none of the others is as near as one of them is anywhere.
+/// The colors that may be the nearest to a place in the cell.
 fn near(colors: &[Codes], cell: usize) -> Vec<u8> {
     let low = [cell / (CELLS * CELLS), cell / CELLS % CELLS, cell % CELLS].map(|i| i as f64 * WIDTH);
     let square = |color: &Codes, axis: &dyn Fn(f64, f64) -> f64| {

@@ -11,7 +11,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     text.chars().map(|c| if steers(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }
 
-/// So many bytes, in a unit that fits: `1.2 MB`.
+/// A number of bytes, in a unit that fits: `1.2 MB`.
 pub fn bytes(count: u64) -> String {
     let units = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
     // What would be rounded up to 1000 has the next unit.
@@ -27,7 +27,7 @@ pub fn took(milliseconds: u64) -> String {
     }
 }
 
-/// The same in one line: a name with a line end in it forges no line of ours.
+/// The same in one line: a name with a line end in it cannot forge a line of ours.
 pub fn line(text: &str) -> Cow<'_, str> {
     if !text.contains(['\n', '\t']) {
         return printable(text);

@@ -44,7 +44,7 @@ fn quoting(error: &Error) -> String {
 }
 
 /// Says what is wrong in the command line, and ends. The message quotes words of it, which may be names that somebody else
-/// chose: where one of them would steer the terminal, it is written out.
+/// chose: control characters in them are escaped.
 fn refuse(error: clap::Error) -> ! {
     let steers = |word: &OsString| matches!(text::line(&word.to_string_lossy()), Cow::Owned(_));
     if !std::env::args_os().any(|word| steers(&word)) {

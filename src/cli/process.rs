@@ -12,7 +12,7 @@ use crate::base::system::signals::{self, Answer, Registration, Signal};
 use crate::base::text::printable;
 use crate::files::temporary;
 
-/// How long work may take to see that it is cancelled: a person waits no longer for the prompt.
+/// How long work may take to notice that it is cancelled: a person should not wait longer for the prompt.
 const GRACE: Duration = Duration::from_millis(400);
 
 /// Lets the first signal to end cancel the work; a second one, or patience running out, ends the process.

@@ -1,4 +1,4 @@
-//! sRGB as an ICC profile, for files that say their colors in no other way. It is written here number by number, so that it
+//! sRGB as an ICC profile, for files that cannot say their colors in any other way. It is written here number by number, so that it
 //! is small and the same everywhere.
 //!
 //! Layout: ICC.1:2010 (version 4.3). The primaries are those of BT.709 adapted to D50, and add up to it exactly.

@@ -6,7 +6,7 @@ use png::{BitDepth, ColorType, Encoder, EncodingError};
 
 use crate::base::pixels::Frame;
 
-/// Above so many bytes pixels are packed piece by piece: as a whole they would stand in memory once more.
+/// Above this many bytes pixels are packed piece by piece: as a whole they would be in memory once more.
 const LARGE: usize = 256 << 20;
 const CHUNK: usize = 1 << 20;
 
@@ -44,7 +44,7 @@ pub fn pixels(size: (usize, usize), pixels: &[u8]) -> Result<Vec<u8>, EncodingEr
     Ok(bytes)
 }
 
-/// Packs the pixels of a PNG that is no animation.
+/// Packs the pixels of a PNG that is not an animation.
 pub fn put<W: Write>(writer: &mut png::Writer<W>, pixels: &[u8]) -> Result<(), EncodingError> {
     if pixels.len() <= LARGE {
         return writer.write_image_data(pixels);
@@ -54,7 +54,7 @@ pub fn put<W: Write>(writer: &mut png::Writer<W>, pixels: &[u8]) -> Result<(), E
     stream.finish()
 }
 
-/// Data in four channels of `depth` bits, 8 or 16, row by row; without a color space, so that nobody converts it.
+/// Data in four channels of `depth` bits, 8 or 16, row by row; without a color space, so that no reader converts it.
 pub fn data(width: usize, height: usize, depth: u8, codes: &[u16]) -> Result<Vec<u8>, EncodingError> {
     let (depth, raw) = match depth {
         8 => (BitDepth::Eight, codes.iter().map(|&c| c as u8).collect::<Vec<u8>>()),

@@ -39,7 +39,7 @@ pub fn is_denied_to_write(path: &std::path::Path) -> bool {
     rustix::fs::accessat(rustix::fs::CWD, path, access, flags) == Err(rustix::io::Errno::ACCESS)
 }
 
-/// For `OpenOptions::custom_flags`: a FIFO makes nobody wait, and no terminal becomes ours.
+/// For `OpenOptions::custom_flags`: opening a FIFO never blocks, and no terminal becomes ours.
 pub fn no_wait() -> i32 {
     (rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY).bits() as i32
 }
@@ -114,8 +114,8 @@ pub fn readable(stream: impl AsFd, within: std::time::Duration) -> bool {
     rustix::event::poll(&mut one, within.as_ref()).is_ok_and(|ready| ready > 0)
 }
 
-/// Reads what is there, at most as much as there is room for; nothing at the end. No buffer of the library lies between, so
-/// nothing can stay in one.
+/// Reads what is available, at most as much as there is room for; 0 at the end. Nothing is left behind in a buffer of the
+/// standard library, because there is none.
 pub fn read(stream: impl AsFd, into: &mut [u8]) -> io::Result<usize> {
     Ok(rustix::io::retry_on_intr(|| rustix::io::read(&stream, &mut *into))?)
 }

@@ -1,5 +1,5 @@
-//! Which process this is, so that another one can tell whether it still runs. A process number alone says little: numbers
-//! are used again, containers count their own, and other machines see the same folders.
+//! Which process this is, so that another one can find out whether it still runs. A process number alone says little:
+//! numbers are reused, containers have their own, and other machines see the same folders.
 
 use std::sync::OnceLock;
 use std::time::{Duration, SystemTime};

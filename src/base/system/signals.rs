@@ -25,7 +25,7 @@ pub enum Signal {
     Resize,
 }
 
-/// One row a signal. Whatever else would end the process asks it to end: it leaves nothing half done, and no terminal raw.
+/// One row per signal. Whatever would otherwise kill the process asks it to end: nothing is left half done, no terminal raw.
 const TABLE: [(Signal, i32); 11] = [
     (Signal::Hangup, SIGHUP),
     (Signal::Terminate, SIGTERM),

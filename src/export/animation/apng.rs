@@ -42,7 +42,7 @@ impl Apng {
             let alone = self.show.frames == 1;
             return if alone { still::put(&mut self.writer, whole) } else { self.writer.write_image_data(whole) };
         }
-        self.writer.reset_frame_position()?; // else the new width is held against the old place
+        self.writer.reset_frame_position()?; // otherwise the new width is checked against the old place
         self.writer.set_frame_dimension(rect.width() as u32, rect.height() as u32)?;
         self.writer.set_frame_position(rect.x0 as u32, rect.y0 as u32)?;
         self.writer.write_image_data(&rect.cut(frame))

@@ -41,7 +41,7 @@ impl Rect {
     }
 }
 
-/// The least rectangle around the pixels that `differ` from `a` to `b`, frames of one size; `None` if no pixel does.
+/// The smallest rectangle around the pixels that `differ` from `a` to `b`, frames of one size; `None` if no pixel does.
 pub fn around(a: &Frame, b: &Frame, differ: impl Fn([u8; 4], [u8; 4]) -> bool) -> Option<Rect> {
     let mut found: Option<Rect> = None;
     for y in 0..b.height() {

@@ -1,23 +1,23 @@
-//! Frames in the colors of a palette, by error diffusion (Sierra's small kernel) that remembers: a pixel that is what it was
-//! in the frame before keeps its color and passes on the error that it passed on then. So what does not move does not
-//! shimmer, and costs nothing to write.
+//! Frames in the colors of a palette, by error diffusion (Sierra's small kernel) with a memory: a pixel that has not changed
+//! since the frame before keeps its color and passes on the same error as then. So what does not move does not shimmer,
+//! and costs nothing to write.
 
 use super::palette::{Palette, is_opaque};
 use crate::base::pixels::Frame;
 
 /// How much of an error its neighbours make good. With all of it they look grainier, for a mean that no eye tells apart.
 const STRENGTH: f32 = 0.9;
-/// Errors up to this many codes are let be.
+/// Errors up to this many codes are ignored.
 const UNSEEN: f32 = 0.5;
 
-/// What a pixel has become, and what it owes.
+/// The color that a pixel became, and the error that it passes on.
 #[derive(Clone, Copy, Default)]
 struct Shown {
     index: u8,
     error: [f32; 3],
 }
 
-/// Frames that follow one another in the colors of one palette.
+/// Turns frames that follow one another into the colors of one palette.
 #[derive(Default)]
 pub struct Dither {
     before: Option<(Frame, Vec<Shown>)>,
@@ -29,7 +29,7 @@ impl Dither {
         let (width, n) = (frame.width(), frame.cells().len());
         let (source, mut shown) = self.before.take().unzip();
         let mut all = shown.take().unwrap_or_else(|| vec![Shown::default(); n]);
-        // A column before the first and one after the last take what falls beside the picture.
+        // One more column on each side takes the error that falls outside the picture.
         let (mut owed, mut below) = (vec![[0.0f32; 3]; width + 2], vec![[0.0f32; 3]; width + 2]);
         for (y, row) in all.chunks_mut(width.max(1)).enumerate() {
             for (x, pixel) in row.iter_mut().enumerate() {
@@ -52,7 +52,7 @@ impl Dither {
     }
 }
 
-/// The color for a pixel that is to make good what its neighbours owe.
+/// The color for a pixel, with the error of its neighbours.
 fn choose(palette: &Palette, color: [u8; 4], owed: [f32; 3]) -> Shown {
     if !is_opaque(color) {
         return Shown { index: palette.transparent(), error: [0.0; 3] };

@@ -1,5 +1,5 @@
-//! Video by the person's own ffmpeg: frames go to its standard input as they are, and it writes a temporary file that takes
-//! its place when all of it is there. Codecs of video are a world of their own; whoever needs another line pipes y4m.
+//! Video by the person's own ffmpeg: frames go to its standard input as they are, and it writes a temporary file that is
+//! moved into place when it is complete. Video codecs are a world of their own; whoever needs other settings pipes y4m.
 //!
 //! The files say what their numbers mean: matrix and primaries, the transfer of sRGB, and limited range.
 
@@ -71,13 +71,13 @@ impl Codec {
         (side(show.width), side(show.height))
     }
 
-    /// What ffmpeg is told between its name and the file, for our frames.
+    /// The arguments between ffmpeg's name and the output file, for our frames.
     fn arguments(&self, show: &Show) -> Vec<String> {
         let line = format!("{} {}", bare(show, self.size(show)), self.output(show, &convert(show)));
         line.split(' ').map(str::to_owned).collect()
     }
 
-    /// What it makes of frames that went through a filter.
+    /// The output settings, after the filter.
     fn output(&self, show: &Show, filter: &str) -> String {
         let (matrix, pixels) = (show.matrix().ffmpeg(), self.pixels);
         let tags = format!("setparams=colorspace={matrix}:color_primaries=bt709:color_trc=iec61966-2-1:range=tv");
@@ -88,7 +88,7 @@ impl Codec {
         )
     }
 
-    /// The line that a person can run instead, where there is an ffmpeg. What has no alpha goes as y4m, which lies on black.
+    /// The command that a person can run instead, where there is an ffmpeg. Formats without alpha get y4m, which is on black.
     fn line(&self, show: &Show) -> String {
         let (size, own) = (self.size(show), (show.width, show.height));
         let pad = if size == own { String::new() } else { format!("pad={}:{},", size.0, size.1) };
@@ -109,7 +109,7 @@ fn bare(show: &Show, (width, height): (usize, usize)) -> String {
     format!("-f rawvideo -pixel_format rgba -video_size {width}x{height} -framerate {num}/{den} -i pipe:0")
 }
 
-/// The filter that makes Y'CbCr of them.
+/// The filter that converts them to Y'CbCr.
 fn convert(show: &Show) -> String {
     format!("scale=out_color_matrix={}:out_range=tv:flags=accurate_rnd+full_chroma_int,", show.matrix().ffmpeg())
 }
@@ -117,7 +117,7 @@ fn convert(show: &Show) -> String {
 /// Whether the person has an ffmpeg, asked before work begins.
 ///
 /// # Errors
-/// There is none: what can be done instead.
+/// If there is none; the message says what can be done instead.
 pub fn find(codec: &Codec, show: &Show) -> Result<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path).map(|folder| folder.join("ffmpeg")).find(|file| file.is_file());
@@ -146,21 +146,21 @@ pub fn begin(codec: &'static Codec, place: &Place, show: Show) -> Result<Box<dyn
     command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
     command.args(codec.arguments(&show)).arg(as_file(file.temporary()));
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-    // Ctrl-C is ours: ffmpeg would end the file in good order.
+    // Ctrl-C is for us: ffmpeg would take it and finish the file.
     let mut child = command.process_group(0).spawn().map_err(|e| show.failed(format!("ffmpeg: {e}")))?;
     let (frames, said) = (child.stdin.take(), child.stderr.take());
     let said = said.map(|mut said| std::thread::spawn(move || listen(&mut said)));
     Ok(Box::new(Video { codec, show, child, frames, said, file: Some(file), transparent: false }))
 }
 
-/// A path that ffmpeg takes for nothing else.
+/// A path that ffmpeg cannot mistake for something else.
 fn as_file(path: &Path) -> OsString {
     let mut word = OsString::from("file:");
     word.push(path);
     word
 }
 
-/// The end of what the program says.
+/// The end of the program's standard error.
 fn listen(said: &mut impl Read) -> String {
     let (mut all, mut piece) = (Vec::new(), [0; 1024]);
     while let Ok(n @ 1..) = said.read(&mut piece) {
@@ -187,7 +187,7 @@ impl Video {
         bytes
     }
 
-    /// Waits until ffmpeg has ended; ends it where the work is cancelled.
+    /// Waits until ffmpeg has ended; kills it if the work is cancelled.
     fn wait(&mut self) -> Result<ExitStatus> {
         loop {
             if self.show.cancel.load(Ordering::Relaxed) {
@@ -243,7 +243,7 @@ impl Sink for Video {
     }
 }
 
-/// Whatever happened, no ffmpeg goes on.
+/// Whatever happened, no ffmpeg keeps running.
 impl Drop for Video {
     fn drop(&mut self) {
         self.frames = None;

@@ -12,13 +12,13 @@ pub struct Keeps {
     pub alpha: &'static str,
     /// Its color.
     pub colors: &'static str,
-    /// How long a frame stands.
+    /// How long a frame is shown.
     pub timing: &'static str,
     /// What follows the end.
     pub ending: &'static str,
 }
 
-/// How a format is written.
+/// How a format is encoded.
 #[derive(Clone, Copy)]
 pub enum Writer {
     /// By an encoder of our own.
@@ -29,7 +29,7 @@ pub enum Writer {
 
 /// One row of the table of formats.
 pub struct Format {
-    /// How `--format` calls it.
+    /// Its name for `--format`.
     pub name: &'static str,
     /// File name extensions that mean it, lower case.
     pub extensions: &'static [&'static str],
@@ -39,14 +39,14 @@ pub struct Format {
     pub streams: bool,
     /// What it keeps.
     pub keeps: Keeps,
-    /// What messages call it, and how a file of it is known.
+    /// What messages call it, and how a file of it is recognised.
     pub kind: Kind,
     pub(super) writer: Writer,
 }
 
 const NO_ENDING: &str = "none: the player decides";
 
-/// Every format of one file. A sequence of files is told by its pattern, see [`super::Target::file`].
+/// Every format of one file. A sequence of files is recognised by its pattern, see [`super::Target::file`].
 pub const FORMATS: &[Format] = &[
     Format {
         name: "apng",
@@ -132,7 +132,7 @@ pub const FORMATS: &[Format] = &[
     },
 ];
 
-/// Numbered files and a single picture, which have a row but are no format of their own.
+/// Numbered files and a single picture, which have a row but are not formats of their own.
 const STILLS: [(&str, &str, Keeps); 2] = [
     (
         "%04d.png",
@@ -176,7 +176,7 @@ pub fn kept() -> String {
     cells.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The same table in Markdown, what each is for in it.
+/// The same table in Markdown, including what each is for.
 #[cfg(test)]
 pub fn markdown() -> String {
     let help = std::iter::once("for").chain(rows().map(|(_, help, _)| help));

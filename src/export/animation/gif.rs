@@ -107,7 +107,7 @@ struct Pending {
     /// What of it must be written.
     rect: Rect,
     indices: Vec<u8>,
-    /// Whether all that is as in the frame before may be left transparent: nothing is cleared between the two.
+    /// Whether pixels that have not changed may be left transparent: nothing is cleared between the two frames.
     same: Option<Vec<bool>>,
     /// Its own colours, where it has some.
     own: Option<Vec<[u8; 3]>>,
@@ -115,7 +115,7 @@ struct Pending {
 }
 
 impl Pending {
-    /// The frame with its pixels compressed; those that are the `same` as before are left transparent.
+    /// The frame with its pixels compressed; those that are the `same` as before stay transparent.
     fn encode(&self, delay: u16, dispose: DisposalMethod, same: Option<&Vec<bool>>) -> gif::Frame<'static> {
         let Pending { rect, indices, transparent, .. } = self;
         let index = |i: usize| if same.is_some_and(|same| same[i]) { *transparent } else { indices[i] };
@@ -197,7 +197,7 @@ impl Writer {
         Pending { rect: Rect::whole(frame), shown, indices, same: None, own, transparent }
     }
 
-    /// Writes a frame, with what is as before transparent or not, whichever is smaller.
+    /// Writes a frame, with unchanged pixels transparent or not, whichever is smaller.
     fn write(&mut self, pending: &Pending, dispose: DisposalMethod) -> Result<()> {
         let delay = self.show.rate.delay(self.count, UNITS).min(65535) as u16;
         let whole = pending.encode(delay, dispose, None);

@@ -1,5 +1,5 @@
-//! How R'G'B' becomes Y'CbCr. Untagged video is taken for BT.709 from 720 lines on and for BT.601 below, so that is what is
-//! written unless a person says otherwise.
+//! How R'G'B' becomes Y'CbCr. Players take untagged video for BT.709 from 720 lines on and for BT.601 below, so that is the
+//! default.
 
 /// A matrix of Y'CbCr.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub enum Matrix {
     Bt709,
 }
 
-/// Video of so many lines is large.
+/// From this many lines on, video counts as large.
 const LARGE: usize = 720;
 
 impl Matrix {
@@ -23,7 +23,7 @@ impl Matrix {
         Some([Matrix::Bt601, Matrix::Bt709][at])
     }
 
-    /// The one that a player expects of video of so many lines.
+    /// The one that players assume for video of `lines` lines.
     pub fn expected(lines: usize) -> Matrix {
         if lines < LARGE { Matrix::Bt601 } else { Matrix::Bt709 }
     }

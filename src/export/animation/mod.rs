@@ -45,11 +45,11 @@ pub struct Show {
     pub rate: Rate,
     /// Whether it plays once and then holds its last frame, or for ever.
     pub once: bool,
-    /// The matrix that a person asks for; `None` is the one that players expect.
+    /// The matrix that was asked for; `None` is the one that players assume.
     pub matrix: Option<Matrix>,
-    /// The command that makes the same without its output, for messages that tell another way.
+    /// The command line without its output, for messages that suggest another way.
     pub command: String,
-    /// The wish to stop, for what waits for another program.
+    /// Cancellation flag, for what waits for another program.
     pub cancel: Arc<AtomicBool>,
 }
 
@@ -117,7 +117,7 @@ impl Target {
     /// PNG for a single frame to `.png`, else the format that the extension names. `guard` looks at every file.
     ///
     /// # Errors
-    /// A wrong command line, an unknown extension lists the table; a file that the guard does not give.
+    /// A wrong command line (for an unknown extension with the table of formats), or a file that the guard refuses.
     pub fn file(path: &Path, numbers: &[u64], guard: &mut Guard) -> Result<Self> {
         if let Some(pattern) = sequence::Pattern::parse(path)? {
             return Ok(Target(Goal::Sequence(sequence::Places::new(&pattern, numbers, guard)?)));
@@ -162,7 +162,7 @@ impl Target {
         matches!(self.0, Goal::Sequence(_))
     }
 
-    /// Whether it is made of Y'CbCr, which has a matrix.
+    /// Whether it is Y'CbCr, which has a matrix.
     pub fn has_matrix(&self) -> bool {
         let (Goal::File(_, kind, _) | Goal::Stream(_, kind, _)) = &self.0 else { return false };
         matches!(kind, Kind::Y4m | Kind::Mp4 | Kind::WebM | Kind::Mov)
@@ -182,10 +182,10 @@ impl Target {
         }
     }
 
-    /// Whether the show can be written at all, asked before its first frame is made.
+    /// Whether the show can be written at all; to be asked before its first frame is made.
     ///
     /// # Errors
-    /// A program is missing: what can be done instead.
+    /// If a program is missing; the message says what can be done instead.
     pub fn ready(&self, show: &Show) -> Result<()> {
         match &self.0 {
             Goal::File(_, _, Writer::Ffmpeg(codec)) => ffmpeg::find(codec, show).map(drop),

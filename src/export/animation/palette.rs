@@ -17,7 +17,7 @@ impl Palette {
     /// One of the 256 is left for transparency.
     pub const MOST: usize = 255;
 
-    /// The palette for the colors of `frames`, transparent pixels aside: all of them where they are few enough.
+    /// The palette for the colors of `frames`, without transparent pixels: the colors themselves if they are few enough.
     pub fn of(frames: &[Frame]) -> Self {
         Palette::from_colors(few(frames).unwrap_or_else(|| {
             let count = |frame: &Frame| Histogram::of(opaque(frame));

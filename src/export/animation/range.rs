@@ -1,4 +1,4 @@
-//! Which frames: `A`, `A-B`, `A-B:S` and comma lists of them, as the range expressions of Open Job Description; `B-A` counts
+//! Which frames: `A`, `A-B`, `A-B:S` and comma lists of them, like the range expressions of Open Job Description; `B-A` counts
 //! down.
 
 use crate::base::error::{Error, Result};

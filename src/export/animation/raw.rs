@@ -1,7 +1,7 @@
 //! Uncompressed frames for other programs: YUV4MPEG2 and bare RGBA.
 //!
-//! y4m is 4:4:4, 8 bits, in limited range, by the matrix that players expect of its size. The header says all of it, but
-//! few readers look at the matrix there: whoever makes a file of it should say it again (docs/outputs.md has the lines).
+//! y4m is 4:4:4, 8 bits, in limited range, by the matrix that players assume for its size. The header says all of it, but
+//! few readers look at the matrix there: whoever encodes it should say it again (docs/outputs.md has the commands).
 
 use std::io::Write;
 

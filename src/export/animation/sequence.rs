@@ -1,5 +1,5 @@
-//! A PNG file a frame, numbered by a pattern such as `%04d.png`. Each file is there, whole, as soon as it can be: whoever
-//! ends the work keeps what is done. As many frames as there are threads are compressed at once, so that memory stays bounded.
+//! One PNG file per frame, numbered by a pattern such as `%04d.png`. Each file appears, whole, as soon as it can: what is
+//! done stays if the work is ended. As many frames as there are threads are compressed at once, so that memory stays bounded.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::Write;
@@ -74,7 +74,7 @@ impl Places {
     /// The files for frames of these numbers.
     ///
     /// # Errors
-    /// The folder is not there, or the guard does not give a file.
+    /// The folder does not exist, or the guard refuses a file.
     pub fn new(pattern: &Pattern, numbers: &[u64], guard: &mut Guard) -> Result<Places> {
         if !pattern.folder.is_dir() {
             let error = Error::at(pattern.folder.display(), "the folder is not there");
@@ -155,11 +155,11 @@ impl Sink for Sequence {
     }
 }
 
-/// What is finished stays, also what is just being written.
+/// What is finished stays, and so does what is being written at the moment.
 impl Drop for Sequence {
     fn drop(&mut self) {
         while !self.writing.is_empty() {
-            // An error that ends the work has been told.
+            // An error that ends the work has been reported.
             let _ = self.wait();
         }
     }

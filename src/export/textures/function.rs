@@ -1,13 +1,13 @@
-//! Position functions as a texture: one row a zone, places spread evenly in τ. Between them stand knots, in the manifest:
-//! where s jumps or bends, and where it is too steep for straight lines from place to place.
+//! Position functions as a texture: one row per zone, columns spread evenly in τ. The manifest adds knots between them:
+//! where s jumps or bends, and where it is too steep for straight lines from column to column.
 
 use super::data::{Channel, Texture};
 use crate::base::pixels::Grid;
 use crate::layers::folding::position::Position;
 
-/// Places in τ, the first number of them that will do.
+/// Numbers of columns, the first that will do is taken.
 const COLUMNS: [usize; 4] = [1024, 4096, 16384, 65536];
-/// A row with no more knots than these will do.
+/// A row with at most this many knots will do.
 const FEW: usize = 512;
 /// No row has more, however far off it is.
 const MOST: usize = 4096;
@@ -38,7 +38,7 @@ pub struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// With as many columns and knots as the tolerances ask for; only `exact` numbers are worth more than the fewest columns.
+    /// With as many columns and knots as the tolerances need; only `exact` numbers are worth more than the fewest columns.
     pub fn new(rows: &'a [Row<'a>], exact: bool) -> Self {
         let sizes = if exact { &COLUMNS[..] } else { &COLUMNS[..1] };
         let mut columns = sizes[0];
@@ -68,7 +68,7 @@ impl<'a> Table<'a> {
         Texture { values: Grid::from_cells(self.columns, self.rows.len().max(1), cells), channels }
     }
 
-    /// The largest difference between a function and what is read between its points.
+    /// The largest difference between a function and its interpolation.
     pub fn error_between(&self) -> f64 {
         let of_row = |(row, knots): (&Row, &Vec<Knot>)| {
             let texels: Vec<f64> = (0..self.columns).map(|i| row.position.eval(self.tau(i))).collect();
@@ -106,7 +106,7 @@ fn read(texels: &[f64], knots: &[Knot], tau: f64) -> f64 {
     left.1 + (right.1 - left.1) * (tau - left.0) / (right.0 - left.0)
 }
 
-/// Jumps and bends, and what else it takes to be within the tolerance, or as near to it as the most knots allow.
+/// Jumps and bends, and the knots that it takes to be within the tolerance, or as near to it as the limit on knots allows.
 fn knots(row: &Row, columns: usize) -> Vec<Knot> {
     let mut tolerance = row.tolerance;
     loop {

@@ -155,7 +155,7 @@ pub struct Zone {
     pub breaks: Vec<Break>,
     /// Points between the columns of the function texture, ascending: τ, and s just before it, at it and just after it.
     pub knots: Vec<Knot>,
-    /// Where the sampler of the box's first pixel stands at s = 0, in atlas pixels: init R and G without their rounding.
+    /// Where the sampler of the box's first pixel is at s = 0, in atlas pixels: init R and G without their rounding.
     pub origin: [f64; 2],
     /// The init texture.
     pub init: TextureNote,

@@ -32,8 +32,8 @@ use function::{Row, Table};
 use manifest::{CONVENTIONS, Colour, Function, Light, Manifest, PieceNote, Slots, ThresholdsNote, VERSION};
 use names::{COLOUR, LIGHT, MANIFEST};
 
-/// How far off a sampler may be for what is read between the points of a position function, in pixels: at the hardest edge
-/// that is half a code.
+/// How far off a sampler may be because a position function is interpolated, in pixels: at the hardest edge that is half a
+/// code.
 const UNSEEN_PX: f64 = 5e-4;
 
 /// How far beyond a crossing s must be to have passed it: a 32-bit float is that exact.
@@ -47,8 +47,8 @@ pub struct Written {
     pub error_px: f64,
 }
 
-/// Writes the textures of `scene`, whose synthesis is `synth`, to the folder at `place`, all of them or none; the files of an
-/// earlier run that are none of these go. `step` is told how many of how many zones are done and ends the work by an error.
+/// Writes the textures of `scene`, whose synthesis is `synth`, to the folder at `place`, all of them or none; other files of
+/// an earlier run are removed. `step` is called with the zones done and their number, and ends the work by an error.
 ///
 /// # Errors
 /// The folder cannot be written, a depth cannot hold the scene, or `step`'s.
@@ -141,7 +141,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The position functions, each as exact as the longest jump vector of its zone asks for.
+    /// The position functions, each as exact as the longest jump vector of its zone requires.
     fn rows(&self) -> Vec<Row<'_>> {
         let row = |zone: &Planned<'a>| {
             let square = |&[x, y]: &[f32; 2]| f64::from(x) * f64::from(x) + f64::from(y) * f64::from(y);

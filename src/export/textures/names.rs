@@ -1,5 +1,5 @@
-//! How the files of a folder of textures are called, told before anything is made: which names a scene's textures may have,
-//! and which an earlier run wrote.
+//! The names of the files in a folder of textures, known before anything is made: which ones a scene's textures may have, and
+//! which ones an earlier run wrote.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub const LIGHT: &str = "colour.exr";
 /// The names that the textures of a scene may have.
 pub struct Names {
     fixed: Vec<String>,
-    /// How the names of zones begin.
+    /// Beginnings of the names of zones' files.
     stems: Vec<String>,
     extension: &'static str,
 }
@@ -39,7 +39,7 @@ impl Names {
         Names { fixed, stems: stems.collect(), extension }
     }
 
-    /// Whether a file of this name may come into being.
+    /// Whether a file of this name may be made.
     pub fn may_be(&self, name: &str) -> bool {
         let texture = |stem: &String| {
             let rest = name.strip_prefix(stem.as_str())?.strip_suffix(self.extension)?.strip_suffix('.')?;
@@ -58,7 +58,7 @@ pub fn stem(layer: Option<&str>, zone: &str) -> String {
     format!("{layer}{}-", plain(zone))
 }
 
-/// Letters, digits, `-` and `_` of a name, others as `-`.
+/// A name with `-` in place of everything but letters, digits, `-` and `_`.
 fn plain(name: &str) -> String {
     let plain: String = name.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
     let plain = plain.trim_matches('-');
@@ -77,7 +77,7 @@ pub fn earlier(dir: &Path) -> BTreeSet<String> {
     names
 }
 
-/// The names of files in a manifest; only such as a run writes.
+/// The names of files in a manifest; only those that a run writes.
 fn collect(value: &Value, names: &mut BTreeSet<String>) {
     let is_ours = |name: &&String| {
         let ours = [".png", ".exr"].iter().any(|end| name.ends_with(end));

@@ -1,4 +1,4 @@
-//! What stands in the folder. `tests/player.rs` plays it.
+//! What is in the folder. `tests/player.rs` plays it.
 
 use std::path::Path;
 use std::sync::Arc;
