@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use plica::preview::Reply;
 use plica::preview::editor::{Event, Preview};
-use plica::preview::message::{self, FromEditor};
+use plica::preview::wire::message::{self, FromEditor};
 use plica::scene::Document;
 use plica::tui::{Change, Offscreen};
 

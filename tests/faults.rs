@@ -16,13 +16,14 @@ use std::time::{Duration, Instant};
 
 use plica::files::Options;
 use plica::files::cache::Cache;
-use plica::preview::address::Address;
-use plica::preview::client::Link;
 use plica::preview::editor::Preview;
-use plica::preview::link::{self, HangUp, Wire};
-use plica::preview::message::Role;
-use plica::preview::ssh::Way;
-use plica::preview::{Reply, Update, attach, far, fetch};
+use plica::preview::follow::client::Link;
+use plica::preview::remote::address::Address;
+use plica::preview::remote::ssh::Way;
+use plica::preview::remote::{attach, far, fetch};
+use plica::preview::wire::link::{self, HangUp, Wire};
+use plica::preview::wire::message::Role;
+use plica::preview::{Reply, Update};
 use plica::scene::{Document, Edit};
 use serde_json::json;
 

@@ -11,11 +11,12 @@ use std::time::Duration;
 use plica::files::cache::Cache;
 use plica::files::{Options, materials};
 use plica::layers::Materials;
-use plica::preview::address::Address;
-use plica::preview::client::Link;
 use plica::preview::editor::{Event, Preview};
-use plica::preview::ssh::Way;
-use plica::preview::{Reply, Update, far, fetch};
+use plica::preview::follow::client::Link;
+use plica::preview::remote::address::Address;
+use plica::preview::remote::ssh::Way;
+use plica::preview::remote::{far, fetch};
+use plica::preview::{Reply, Update};
 use plica::scene::{Document, Edit, Scene};
 use serde_json::json;
 

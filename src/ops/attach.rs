@@ -8,8 +8,8 @@ use std::time::Duration;
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
-use crate::preview::attach;
-use crate::preview::link::{HangUp, Wire};
+use crate::preview::remote::attach;
+use crate::preview::wire::link::{HangUp, Wire};
 
 /// How often a signal is looked for.
 const LOOK: Duration = Duration::from_millis(250);

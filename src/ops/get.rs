@@ -6,7 +6,7 @@ use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::files;
-use crate::preview::script;
+use crate::preview::editor::script;
 use crate::scene::{address, field};
 
 /// Print a value of a scene, or its default, as JSON.

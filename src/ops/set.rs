@@ -11,7 +11,7 @@ use super::scene_options::{RecoveryOptions, SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::session::{Mode, Overwrite, Session, Taken};
-use crate::preview::script;
+use crate::preview::editor::script;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, address};
 

@@ -10,10 +10,11 @@ use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::files::cache::Cache;
 use crate::files::{Options, materials};
-use crate::preview::address::{Address, SCHEME};
-use crate::preview::client::{self, Link};
-use crate::preview::ssh::Way;
-use crate::preview::{far, fetch, window};
+use crate::preview::follow::client::{self, Link};
+use crate::preview::remote::address::{Address, SCHEME};
+use crate::preview::remote::ssh::Way;
+use crate::preview::remote::{far, fetch};
+use crate::preview::window;
 
 /// Open the preview window
 #[derive(clap::Args)]

@@ -1,25 +1,13 @@
 //! The preview: the window in its own process, and the link that feeds it. The link needs no window and no display.
 
-pub mod address;
-pub mod attach;
-pub mod client;
 pub mod editor;
-pub mod far;
-pub mod fetch;
-mod host;
-mod keeper;
+pub mod follow;
 pub mod keys;
-pub mod link;
-pub mod message;
-#[cfg(test)]
-mod message_tests;
-mod outbox;
-pub mod script;
-pub mod ssh;
-mod talk;
+pub mod remote;
 mod views;
 #[cfg(feature = "window")]
 pub mod window;
+pub mod wire;
 
 use std::sync::Arc;
 

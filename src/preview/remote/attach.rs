@@ -6,17 +6,17 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::client;
-use super::editor::Event;
-use super::host::{Shared, thread};
-use super::link::{ALIVE, HANDSHAKE, SILENCE, Wire};
-use super::message::{self, FromEditor, ToEditor};
-use super::outbox::{Latest, Measured, Topic};
-use super::talk::News;
-use super::{Reply, Update};
 use crate::base::error::{Error, Result};
 use crate::files::Options;
 use crate::files::originals::Originals;
+use crate::preview::editor::Event;
+use crate::preview::editor::host::{Shared, thread};
+use crate::preview::editor::outbox::{Latest, Measured, Topic};
+use crate::preview::follow::client;
+use crate::preview::follow::talk::News;
+use crate::preview::wire::link::{ALIVE, HANDSHAKE, SILENCE, Wire};
+use crate::preview::wire::message::{self, FromEditor, ToEditor};
+use crate::preview::{Reply, Update};
 use crate::scene::edit::Edit;
 
 /// How long the scene may take to be read for the first time.

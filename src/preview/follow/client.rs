@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::Duration;
 
-use super::link;
-use super::message::{FromEditor, Role};
 use super::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
-use super::{Reply, Update};
 use crate::base::error::Error;
 use crate::files::watch::Watch;
 use crate::files::{self, Options, materials};
+use crate::preview::wire::link;
+use crate::preview::wire::message::{FromEditor, Role};
+use crate::preview::{Reply, Update};
 
 /// How often an editor is looked for while there is none.
 const LOOK: Duration = Duration::from_millis(250);
@@ -34,7 +34,7 @@ pub fn follow(scene: &Path, options: &Options, joined: bool) -> Link {
 }
 
 /// The same for anybody who takes the news.
-pub(super) fn follow_with(scene: &Path, options: &Options, joined: bool, sink: Sink) -> Sender<Reply> {
+pub(in crate::preview) fn follow_with(scene: &Path, options: &Options, joined: bool, sink: Sink) -> Sender<Reply> {
     let (talk, replies, heard) = Talk::new(scene.display().to_string(), options, sink);
     let client = Client { scene: scene.to_owned(), joined, talk, watch: None };
     std::thread::spawn(move || drop(client.run(&heard)));

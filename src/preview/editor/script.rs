@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use super::link::{self, Wire};
-use super::message::{self, FromEditor, Role, ToEditor};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
+use crate::preview::wire::link::{self, Wire};
+use crate::preview::wire::message::{self, FromEditor, Role, ToEditor};
 use crate::scene::Document;
 use crate::scene::check::Rules;
 use crate::scene::edit::Edit;

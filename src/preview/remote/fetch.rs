@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::message::ToEditor;
 use crate::base::budget::size;
 use crate::base::error::Result;
 use crate::files::cache::{Cache, Incoming, MOST_FILES};
 use crate::files::materials::Copies;
 use crate::files::originals::{Contents, Original, PIECE};
+use crate::preview::wire::message::ToEditor;
 
 /// The copies, for whoever loads them.
 pub type Shared = Arc<Mutex<Copies>>;

@@ -8,11 +8,11 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::address::{Address, quoted};
-use super::keeper::tail;
-use super::link::{self, HangUp, LEFT, SILENCE, Wire};
-use super::message::{FromEditor, NOT_PLICA, Role};
 use crate::base::error::{Error, Result};
 use crate::files::Options;
+use crate::preview::editor::keeper::tail;
+use crate::preview::wire::link::{self, HangUp, LEFT, SILENCE, Wire};
+use crate::preview::wire::message::{FromEditor, NOT_PLICA, Role};
 
 /// How long it may take until the far end says hello: somebody may be typing a password.
 const PATIENCE: Duration = Duration::from_secs(120);

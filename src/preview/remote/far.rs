@@ -6,15 +6,15 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::client::Link;
 use super::fetch::{Fetch, Shared};
-use super::keys::{KEYS, PLAY, VIEW};
-use super::link::{ALIVE, HangUp, Wire};
-use super::message::{FromEditor, ToEditor};
 use super::ssh::Way;
-use super::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
 use crate::base::error::{Error, Result};
 use crate::files::cache::Cache;
+use crate::preview::follow::client::Link;
+use crate::preview::follow::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
+use crate::preview::keys::{KEYS, PLAY, VIEW};
+use crate::preview::wire::link::{ALIVE, HangUp, Wire};
+use crate::preview::wire::message::{FromEditor, ToEditor};
 
 /// Waits before going there again, by attempts that failed in a row.
 const WAITS_SECS: [u64; 5] = [1, 2, 5, 10, 30];

@@ -7,10 +7,10 @@ use std::io::{self, Read, Write};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 
-use super::Transport;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::originals::Original;
+use crate::preview::Transport;
 use crate::scene::{self, edit::Edit, json};
 
 /// Version of the protocol.

@@ -6,11 +6,11 @@ use std::collections::{BTreeSet, VecDeque};
 use std::io;
 use std::sync::Arc;
 
-use super::Transport;
-use super::message::FromEditor;
-use super::views::Views;
 use crate::base::problem::Problem;
 use crate::files::originals::Originals;
+use crate::preview::Transport;
+use crate::preview::views::Views;
+use crate::preview::wire::message::FromEditor;
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
@@ -25,7 +25,7 @@ const MAX_WANTS: usize = 256;
 
 /// The editor's state, as windows see it.
 #[derive(Clone)]
-pub(super) struct Latest {
+pub(in crate::preview) struct Latest {
     pub document: Document,
     pub revision: u64,
     pub selection: Option<String>,
@@ -60,7 +60,7 @@ impl Latest {
 
 /// What only the latest counts of, in the order in which it is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Topic {
+pub(in crate::preview) enum Topic {
     Selection,
     Transport,
     Views,
@@ -71,7 +71,7 @@ pub(super) enum Topic {
 
 /// An edit with its length on the wire, measured once for all windows. `None`: longer than a patch may be.
 #[derive(Clone)]
-pub(super) struct Measured {
+pub(in crate::preview) struct Measured {
     edit: Arc<Edit>,
     bytes: Option<usize>,
 }
@@ -107,7 +107,7 @@ enum Change {
 }
 
 /// See the top of the file.
-pub(super) struct Outbox {
+pub(in crate::preview) struct Outbox {
     /// The revision last sent, and whether its answer is still owed.
     sent: u64,
     owed: bool,
@@ -120,7 +120,7 @@ pub(super) struct Outbox {
 
 /// A message whose costly part (cloning, writing as JSON) is done later, outside any lock.
 #[derive(Debug)]
-pub(super) enum Outgoing {
+pub(in crate::preview) enum Outgoing {
     Scene { document: Document, revision: u64 },
     Patch { from_revision: u64, to_revision: u64, edits: Vec<Arc<Edit>> },
     Plain(FromEditor),

@@ -1,23 +1,29 @@
 //! The editor's side of the link. Every window has a thread that writes and one that reads; the editor only leaves word in
 //! the state between them, under a lock that nobody holds while writing, so it never waits for a window.
 
+pub(super) mod host;
+pub(super) mod keeper;
+pub(super) mod outbox;
+pub mod script;
+
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-use super::host::{Shared, thread};
-use super::keeper::{Keeper, Life};
-use super::link::{Door, Listener};
-use super::outbox::{Latest, Measured, Topic};
-use super::{Reply, Transport, address};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::base::system;
 use crate::files::Options;
+use crate::preview::remote::address;
+use crate::preview::wire::link::{Door, Listener};
+use crate::preview::{Reply, Transport};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
+use host::{Shared, thread};
+use keeper::{Keeper, Life};
+use outbox::{Latest, Measured, Topic};
 
 /// How long leaving windows are waited for at the end.
 const FAREWELL: Duration = Duration::from_millis(300);
@@ -88,7 +94,7 @@ pub struct Asked {
 }
 
 impl Asked {
-    pub(super) fn new(edit: Edit) -> (Self, mpsc::Receiver<Vec<Problem>>) {
+    pub(in crate::preview) fn new(edit: Edit) -> (Self, mpsc::Receiver<Vec<Problem>>) {
         let (answer, answered) = mpsc::sync_channel(1);
         (Asked { edit, answer }, answered)
     }
@@ -277,7 +283,7 @@ mod tests {
 
     use super::*;
     use crate::preview::Update;
-    use crate::preview::client;
+    use crate::preview::follow::client;
 
     const PATIENCE: Duration = Duration::from_secs(60);
 

@@ -7,15 +7,15 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::editor::{Asked, Event, Status};
 use super::keeper::Life;
-use super::link::{self, Caller, HangUp, Listener, Wire};
-use super::message::{self, FromEditor, Role, ToEditor};
 use super::outbox::{Latest, Outbox, Outgoing, Topic};
-use super::{Reply, Transport, views};
+use super::{Asked, Event, Status};
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::problem::Problem;
+use crate::preview::wire::link::{self, Caller, HangUp, Listener, Wire};
+use crate::preview::wire::message::{self, FromEditor, Role, ToEditor};
+use crate::preview::{Reply, Transport, views};
 use crate::scene::edit::Edit;
 
 /// The most connections at a time.
@@ -24,7 +24,7 @@ const MAX_PEERS: usize = 64;
 const ANSWER: Duration = Duration::from_secs(10);
 
 /// What the threads share.
-pub(super) struct Shared {
+pub(in crate::preview) struct Shared {
     state: Mutex<State>,
     changed: Condvar,
     deliver: Box<dyn Fn(Event) + Send + Sync>,
@@ -33,7 +33,7 @@ pub(super) struct Shared {
 }
 
 /// How things stand.
-pub(super) struct State {
+pub(in crate::preview) struct State {
     pub latest: Latest,
     pub peers: BTreeMap<u64, Peer>,
     next_peer: u64,
@@ -47,7 +47,7 @@ pub(super) struct State {
 }
 
 /// One window that has joined.
-pub(super) struct Peer {
+pub(in crate::preview) struct Peer {
     pub outbox: Outbox,
     pub hang_up: HangUp,
 }
@@ -61,7 +61,7 @@ struct Report {
 }
 
 /// Starts a thread that nobody waits for.
-pub(super) fn thread(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
+pub(in crate::preview) fn thread(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
     let started = std::thread::Builder::new().name(name.into()).spawn(work);
     started.map(drop).map_err(|e| Error::at("link", e))
 }

@@ -6,18 +6,18 @@ use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::link::{HangUp, Wire};
-use super::message::{self, FromEditor, ToEditor};
-use super::views::Views;
-use super::{Reply, Update};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::Options;
+use crate::preview::views::Views;
+use crate::preview::wire::link::{HangUp, Wire};
+use crate::preview::wire::message::{self, FromEditor, ToEditor};
+use crate::preview::{Reply, Update};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
 /// What is told of a scene that is followed.
-pub(super) enum News {
+pub(in crate::preview) enum News {
     /// The document of this revision.
     Document {
         /// The document.
@@ -36,10 +36,10 @@ pub(super) enum News {
 }
 
 /// Takes news; tells whether anybody is still there to hear them.
-pub(super) type Sink = Box<dyn FnMut(News) -> bool + Send>;
+pub(in crate::preview) type Sink = Box<dyn FnMut(News) -> bool + Send>;
 
 /// What the thread of a talk hears.
-pub(super) enum Heard {
+pub(in crate::preview) enum Heard {
     /// Whoever serves this session says something.
     Said(u64, FromEditor),
     /// The connection of this session ended; the reason where it was a fault.
@@ -53,13 +53,13 @@ pub(super) enum Heard {
 }
 
 /// The window is gone: nothing is left to do.
-pub(super) struct WindowGone;
+pub(in crate::preview) struct WindowGone;
 
 /// How a step of the talk ends.
-pub(super) type Outcome<T = ()> = std::result::Result<T, WindowGone>;
+pub(in crate::preview) type Outcome<T = ()> = std::result::Result<T, WindowGone>;
 
 /// See the top of the file.
-pub(super) struct Talk {
+pub(in crate::preview) struct Talk {
     /// What messages call the scene.
     pub place: String,
     /// What a scene may take.
@@ -146,7 +146,7 @@ impl Talk {
 
     /// What went wrong is all that is wrong now.
     pub fn failed(&mut self, error: Error) -> Outcome {
-        let problems = super::problems(error, &self.place);
+        let problems = crate::preview::problems(error, &self.place);
         self.problems(problems)
     }
 
@@ -248,7 +248,7 @@ impl Drop for Talk {
 }
 
 /// Tells a window: what comes back after a lost link is not switched over.
-pub(super) fn window_sink(updates: Sender<Update>) -> Sink {
+pub(in crate::preview) fn window_sink(updates: Sender<Update>) -> Sink {
     let mut views = Views::default();
     let mut shown = None;
     Box::new(move |news| {

@@ -37,7 +37,7 @@ impl Backoff {
 
 /// How the process is doing.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Life {
+pub(in crate::preview) enum Life {
     /// Runs, or will again in a moment.
     Running,
     /// Ended by itself with success: the person closed it.
@@ -47,7 +47,7 @@ pub(super) enum Life {
 }
 
 /// A process that is kept alive until this is dropped, which ends it.
-pub(super) struct Keeper {
+pub(in crate::preview) struct Keeper {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
@@ -162,7 +162,7 @@ impl Shared {
 }
 
 /// The last bytes of a stream, as text.
-pub(super) fn tail(mut stream: impl Read) -> String {
+pub(in crate::preview) fn tail(mut stream: impl Read) -> String {
     let mut kept = VecDeque::new();
     let mut buffer = [0; 1024];
     while let Ok(n) = stream.read(&mut buffer) {

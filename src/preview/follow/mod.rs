@@ -1,0 +1,4 @@
+//! Following a scene as a window does: in the editor that has it open, else in its file. Needs no window and no display.
+
+pub mod client;
+pub(super) mod talk;
