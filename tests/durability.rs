@@ -136,16 +136,34 @@ fn gate(name: &str) {
 
 // What the parent does.
 
+/// How many names the scene's file has. One with two is written in place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Names {
+    One,
+    Two,
+}
+
 struct Place {
     folder: tempfile::TempDir,
     scene: PathBuf,
+    names: Names,
 }
 
-fn place() -> Place {
+fn place(names: Names) -> Place {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("cat.plica.json");
     std::fs::write(&scene, "{ \"plica\": 1, \"title\": \"0\" }\n").unwrap();
-    Place { folder, scene }
+    let place = Place { folder, scene, names };
+    if names == Names::Two {
+        std::fs::hard_link(&place.scene, place.other_name()).unwrap();
+    }
+    place
+}
+
+impl Place {
+    fn other_name(&self) -> PathBuf {
+        self.folder.path().join("other")
+    }
 }
 
 struct Running {
@@ -227,6 +245,15 @@ fn check(place: &Place, said: &Said, before: u64, context: &str) -> [u64; 3] {
     let (found, status) = looking.end();
     assert!(status.success() && found.refused.is_none(), "{context}: {found:?}");
     let left: Vec<u64> = found.left.split(' ').map(|number| number.parse().unwrap()).collect();
+    if place.names == Names::Two {
+        let [one, other] = [&place.scene, &place.other_name()].map(|path| std::fs::metadata(path).unwrap().ino());
+        assert_eq!(one, other, "{context}: the names are parted");
+        let text = std::fs::read_to_string(place.other_name()).unwrap();
+        assert!(
+            serde_json::from_str::<serde_json::Value>(&text).is_ok(),
+            "{context}: {text} stays after the next opening"
+        );
+    }
     let recovered = left[0];
     assert!(recovered >= said.acknowledged.max(in_file), "{context}: {recovered} is left of {said:?}");
     assert!(recovered <= said.edited.max(before), "{context}: {recovered} was never made; {said:?}");
@@ -245,7 +272,7 @@ fn check_once(place: &Place, said: &Said, context: &str) {
 #[test]
 fn killed_at_random_nothing_acknowledged_is_lost() {
     const KILLS: u32 = 60;
-    let place = place();
+    let place = place(Names::One);
     let (mut before, mut acknowledged) = (0, 0);
     // Any sequence of pauses will do; this one is the same every time.
     let mut random = 1u64;
@@ -267,20 +294,23 @@ fn killed_at_random_nothing_acknowledged_is_lost() {
 
 #[test]
 fn every_file_operation_killed_at_and_failing_once() {
-    let count = run_once("whole", None).operations;
-    assert!(count >= 20, "{count} operations");
-    for n in 0..count {
-        for kind in ["kill", "error"] {
-            run_once(&format!("{kind} at operation {n}"), Some(format!("{kind} {n}")));
+    for names in [Names::One, Names::Two] {
+        let count = run_once(names, "whole", None).operations;
+        assert!(count >= 20, "{count} operations");
+        for n in 0..count {
+            for kind in ["kill", "error"] {
+                run_once(names, &format!("{names:?}: {kind} at operation {n}"), Some(format!("{kind} {n}")));
+            }
         }
+        tell(&format!(
+            "{count} file operations of an open, edits and saves (names: {names:?}): killed at and failing once each, \
+             by the file layer"
+        ));
     }
-    tell(&format!(
-        "{count} file operations of an open, edits and saves: killed at and failing once each, by the file layer"
-    ));
 }
 
-fn run_once(context: &str, fault: Option<String>) -> Said {
-    let place = place();
+fn run_once(names: Names, context: &str, fault: Option<String>) -> Said {
+    let place = place(names);
     let kills = fault.as_ref().is_some_and(|fault| fault.starts_with("kill"));
     let mut running = start("once", &place, fault);
     running.go();
@@ -297,17 +327,18 @@ fn every_system_call_killed_at_and_failing_once() {
         return tell("strace is missing or tracing is forbidden: file operations met by the file layer alone");
     }
     let mut cases = Vec::new();
-    for thread in [Thread::Main, Thread::Journal] {
-        let place = place();
+    // The journal is the same for a scene of two names.
+    for (thread, names) in [(Thread::Main, Names::One), (Thread::Main, Names::Two), (Thread::Journal, Names::One)] {
+        let place = place(names);
         let log = place.folder.path().join("log");
         traced(&place, thread, &["-o", log.to_str().unwrap()]);
         let calls = calls(&std::fs::read_to_string(log).unwrap());
         assert!(calls.contains_key(if thread == Thread::Main { "fsync" } else { "fdatasync" }), "{calls:?}");
         for (call, count) in calls {
             for n in 1..=count {
-                cases.push((thread, format!("inject={call}:signal=KILL:when={n}")));
+                cases.push((thread, names, format!("inject={call}:signal=KILL:when={n}")));
                 if !NEVER_FAIL.contains(&call.as_str()) {
-                    cases.push((thread, format!("inject={call}:error=EIO:when={n}")));
+                    cases.push((thread, names, format!("inject={call}:error=EIO:when={n}")));
                 }
             }
         }
@@ -316,10 +347,10 @@ fn every_system_call_killed_at_and_failing_once() {
     std::thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
-                while let Some((thread, inject)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let place = place();
+                while let Some((thread, names, inject)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let place = place(*names);
                     let (said, status) = traced(&place, *thread, &["-o", "/dev/null", "-e", inject]);
-                    let context = format!("{thread:?} {inject}");
+                    let context = format!("{thread:?} {names:?} {inject}");
                     assert!(status.success() || inject.contains("KILL"), "{context}: {said:?}");
                     check_once(&place, &said, &context);
                 }
@@ -410,7 +441,7 @@ fn after_a_failed_sync_another_file_is_written() {
     if !may_trace() {
         return tell("strace is missing or tracing is forbidden: a failed sync of the journal was not seen alone");
     }
-    let place = place();
+    let place = place(Names::One);
     let (said, _) = traced(&place, Thread::Journal, &["-o", "/dev/null", "-e", "inject=fdatasync:error=EIO:when=1"]);
     let failing = said.failing.as_ref().expect("the failure is told");
     assert!(failing.contains("Input/output") && failing.ends_with("then Ok(()) with another file: true"), "{failing}");
@@ -423,7 +454,7 @@ fn a_save_syncs_before_and_after_the_rename() {
     if !may_trace() {
         return tell("strace is missing or tracing is forbidden: the order of a save was not seen");
     }
-    let place = place();
+    let place = place(Names::One);
     let log = place.folder.path().join("log");
     traced(&place, Thread::Main, &["-y", "-o", log.to_str().unwrap()]);
     let log = std::fs::read_to_string(log).unwrap();

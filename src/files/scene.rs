@@ -66,7 +66,7 @@ fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
 /// # Errors
 /// As [`write_atomic`]: the scene is not saved then.
 pub fn save(path: &Path, text: &str) -> Result<()> {
-    if through::has_other_names(path) {
+    if through::has_other_names(path)? {
         through::write_through(path, text.as_bytes())
     } else {
         write_atomic(path, text.as_bytes())

@@ -2,7 +2,7 @@
 //! part them, so such a file is written in place. A copy of the new text, safe on the disk before the first byte is written,
 //! takes the place of the file's own text where a save was cut short.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
@@ -15,18 +15,31 @@ use crate::base::system;
 /// Refuses to replace a file that is write-protected.
 ///
 /// # Errors
-/// It is, for everybody or for this user.
+/// It is, for everybody or for this user; or what it is cannot be told.
 pub fn refuse_protected(path: &Path) -> Result<()> {
-    let writable = path.metadata().is_ok_and(|found| found.mode() & 0o222 != 0);
-    if path.exists() && (!writable || system::is_denied_to_write(path)) {
-        return Err(Error::at(path.display(), "is read-only"));
+    match found(path)? {
+        Some(found) if found.mode() & 0o222 == 0 || system::is_denied_to_write(path) => {
+            Err(Error::at(path.display(), "is read-only"))
+        }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// Whether the file at `path` has other names.
-pub fn has_other_names(path: &Path) -> bool {
-    path.metadata().is_ok_and(|found| found.is_file() && found.nlink() > 1)
+///
+/// # Errors
+/// That cannot be told: to replace the file could part it from them.
+pub fn has_other_names(path: &Path) -> Result<bool> {
+    Ok(found(path)?.is_some_and(|found| found.is_file() && found.nlink() > 1))
+}
+
+/// What is at `path`; `None` if nothing is.
+fn found(path: &Path) -> Result<Option<Metadata>> {
+    match path.metadata() {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(write::cannot_write(path, error)),
+    }
 }
 
 /// Writes `bytes` into the file at `path`, which keeps its names, owner, mode and attributes.
@@ -124,9 +137,9 @@ mod tests {
         let folder = folder.path().canonicalize().unwrap();
         let (scene, other) = (folder.join("a.plica.json"), folder.join("b"));
         std::fs::write(&scene, "{\"old\": true}").unwrap();
-        assert!(!has_other_names(&scene));
+        assert!(!has_other_names(&scene).unwrap());
         std::fs::hard_link(&scene, &other).unwrap();
-        assert!(has_other_names(&scene));
+        assert!(has_other_names(&scene).unwrap());
         std::fs::set_permissions(&scene, std::fs::Permissions::from_mode(0o444)).unwrap();
         write_through(&scene, b"{}").unwrap();
         assert_eq!(std::fs::read(&other).unwrap(), b"{}");
