@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a failing test says so by a panic, in its helpers too")]
 
+mod binary;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -26,10 +28,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn plica(folder: &Path, line: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
-    command.args(line.split_whitespace()).current_dir(folder).env("XDG_STATE_HOME", folder.join("state"));
-    command.stdin(Stdio::null());
-    command
+    binary::plica(folder, line.split_whitespace())
 }
 
 fn run(folder: &Path, line: &str) -> Output {

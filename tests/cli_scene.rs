@@ -1,8 +1,10 @@
 //! The commands that make, read and change scenes: the real program in a fresh folder.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
 
+mod binary;
+
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use image::RgbaImage;
 use plica::files::Options;
@@ -18,15 +20,7 @@ struct Ran {
 }
 
 fn plica(folder: &Path, args: &[&str]) -> Ran {
-    let run = Command::new(env!("CARGO_BIN_EXE_plica"))
-        .args(args)
-        .current_dir(folder)
-        .env("XDG_STATE_HOME", folder.join("state"))
-        .env("XDG_RUNTIME_DIR", folder.join("run"))
-        .env("HOME", folder)
-        .output()
-        .unwrap();
-    let Output { status, stdout, stderr } = run;
+    let Output { status, stdout, stderr } = binary::plica(folder, args).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     Ran { status: status.code().unwrap(), out: text(stdout), messages: text(stderr) }
 }

@@ -3,9 +3,11 @@
 #![cfg(feature = "tui")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod binary;
+
 use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 const SCENE: &str = r#"{
   "plica": 1,
@@ -29,10 +31,8 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn run(folder: &Path, arguments: &[&str], lines: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
-    command.args(["edit", "cat.plica.json"]).args(arguments).current_dir(folder);
-    command.env("XDG_STATE_HOME", folder.join("state")).env("XDG_RUNTIME_DIR", folder).env("TERM", "dumb");
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut command = binary::plica(folder, ["edit", "cat.plica.json"]);
+    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     // One that refuses to begin reads nothing.
     let _ = child.stdin.take().unwrap().write_all(lines.as_bytes());

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails where its helpers do")]
 
+mod binary;
+
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -9,9 +11,8 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 fn plica(arguments: &[&str], folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
-    command.args(arguments).current_dir(folder).env("XDG_STATE_HOME", folder.join("state"));
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut command = binary::plica(folder, arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 

@@ -3,8 +3,10 @@
 #![cfg(feature = "tui")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod binary;
+
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 const SCENE: &str = r#"{
   "plica": 1,
@@ -34,11 +36,7 @@ fn folder() -> tempfile::TempDir {
 
 fn run(folder: &Path, script: &str) -> Output {
     std::fs::write(folder.join("script"), script).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
-    command.args(["edit", "cat.plica.json", "--script", "script"]).current_dir(folder);
-    command.env("XDG_STATE_HOME", folder.join("state")).env("XDG_RUNTIME_DIR", folder);
-    command.env("XDG_CONFIG_HOME", folder.join("config"));
-    command.output().unwrap()
+    binary::plica(folder, ["edit", "cat.plica.json", "--script", "script"]).output().unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {

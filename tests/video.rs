@@ -6,6 +6,8 @@
     reason = "a test that cannot go on fails, and says what it leaves out"
 )]
 
+mod binary;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -32,10 +34,7 @@ fn folder((width, height): (u32, u32)) -> tempfile::TempDir {
 }
 
 fn plica(folder: &Path, line: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_plica"));
-    command.args(line.split_whitespace()).current_dir(folder).env("XDG_STATE_HOME", folder.join("state"));
-    command.stdin(Stdio::null());
-    command
+    binary::plica(folder, line.split_whitespace())
 }
 
 fn has_ffmpeg(encoder: &str) -> bool {
