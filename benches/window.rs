@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 
 use plica::preview::Reply;
 use plica::preview::editor::{Event, Preview};
-use plica::preview::wire::message::{self, FromEditor};
+use plica::preview::wire::frame;
+use plica::preview::wire::message::FromEditor;
 use plica::scene::Document;
 use plica::tui::{Change, Offscreen};
 
@@ -59,7 +60,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         times.push(began.elapsed().as_secs_f64() * 1000.0);
         let (from_revision, to_revision, patch) = (revision - 1, *revision, edit.clone());
         let mut sent = Vec::new();
-        message::write(&mut sent, &FromEditor::Patch { from_revision, to_revision, patch })?;
+        frame::write(&mut sent, &FromEditor::Patch { from_revision, to_revision, patch })?;
         bytes.push(sent.len() as f64);
     }
     println!("key to pixels, {SIDE} x {SIDE} zone: median {:.1} ms, worst {:.1} ms", median(&mut times), worst(&times));

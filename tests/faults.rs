@@ -21,7 +21,9 @@ use plica::preview::follow::client::Link;
 use plica::preview::remote::address::Address;
 use plica::preview::remote::ssh::Way;
 use plica::preview::remote::{attach, far, fetch};
-use plica::preview::wire::link::{self, HangUp, Wire};
+use plica::preview::wire::connection::{HangUp, Wire};
+use plica::preview::wire::frame::most;
+use plica::preview::wire::handshake;
 use plica::preview::wire::message::Role;
 use plica::preview::{Reply, Update};
 use plica::scene::{Document, Edit};
@@ -92,7 +94,7 @@ impl Stage {
         let address = Address { user: None, host: "far".into(), port: None, path: "s".into() };
         let (program, remote_plica) = ("/no/ssh".into(), String::new());
         let way = Way { address, program, remote_plica, options: Options::default() };
-        let hello = link::shake_hands(&mut &here, &mut &here, Role::Window, link::most()).unwrap();
+        let hello = handshake::shake_hands(&mut &here, &mut &here, Role::Window, most()).unwrap();
         let cache = Cache::at(self.folder.path().join("cache"), 1 << 30).unwrap();
         (far::follow(way, (hello, wire(here)), cache, fetch::Shared::default()).unwrap(), count)
     }
@@ -224,7 +226,7 @@ fn a_link_cut_anywhere_is_told_and_ends_nothing_else() {
     }
     for cut in [0, 1, 11, 12, 100] {
         let (here, _) = stage.ends(Bad { cut, ..GOOD });
-        let error = link::shake_hands(&mut &here, &mut &here, Role::Window, link::most()).unwrap_err().to_string();
+        let error = handshake::shake_hands(&mut &here, &mut &here, Role::Window, most()).unwrap_err().to_string();
         assert!(error.contains("in the middle") || error.contains("left at once"), "{cut}: {error}");
     }
     let (link, _) = stage.window(GOOD);

@@ -17,8 +17,8 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["toml", "base64", "csv"], &["tui/"]),
     (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),
     // The link keeps the file of its socket; `base/system` makes the user's folders.
-    (&["std::fs"], &["files/", "base/system", "preview/wire/link.rs"]),
-    (&["std::net", "std::os::unix::net"], &["preview/wire/link.rs"]),
+    (&["std::fs"], &["files/", "base/system", "preview/wire/socket"]),
+    (&["std::net", "std::os::unix::net"], &["preview/wire/"]),
     (&["rustix", "signal_hook"], &["base/system"]),
     (&["naga"], &["render/wgsl"]),
     (&["image", "png", "gif", "webp"], &["files/", "export/"]),

@@ -15,8 +15,9 @@ use plica::files::Options;
 use plica::preview::editor::script;
 use plica::preview::editor::{Event, Preview, Status};
 use plica::preview::follow::client::{self, Link};
-use plica::preview::wire::link;
-use plica::preview::wire::message::{self, FromEditor, Role, ToEditor};
+use plica::preview::wire::frame::{self, most};
+use plica::preview::wire::message::{FromEditor, Role, ToEditor};
+use plica::preview::wire::socket::socket_path;
 use plica::preview::{Reply, Transport, Update};
 use plica::scene::Document;
 use plica::scene::edit::Edit;
@@ -58,7 +59,7 @@ impl Stage {
 
     /// A peer that speaks the protocol by hand.
     fn peer(&self) -> UnixStream {
-        let peer = UnixStream::connect(link::socket_path(&self.scene).unwrap()).unwrap();
+        let peer = UnixStream::connect(socket_path(&self.scene).unwrap()).unwrap();
         peer.set_read_timeout(Some(PATIENCE)).unwrap();
         peer
     }
@@ -66,14 +67,14 @@ impl Stage {
     /// A peer that has joined as a window and got the first document.
     fn joined(&self) -> UnixStream {
         let mut peer = self.peer();
-        message::write(&mut peer, &ToEditor::Hello { program: "test".into(), role: Role::Window }).unwrap();
+        frame::write(&mut peer, &ToEditor::Hello { program: "test".into(), role: Role::Window }).unwrap();
         assert!(matches!(hear(&mut peer), FromEditor::Hello { revision: 0, .. }));
         peer
     }
 }
 
 fn hear(peer: &mut UnixStream) -> FromEditor {
-    message::read(peer, link::most()).unwrap().expect("the editor is there")
+    frame::read(peer, most()).unwrap().expect("the editor is there")
 }
 
 /// An edit of the title, and the document it makes.
@@ -221,7 +222,7 @@ fn a_patch_that_does_not_fit_is_answered_with_the_scene() {
     let (editor, _events) = stage.editor();
     let mut peer = stage.joined();
     publish(&editor, &stage.document, 1..=3);
-    message::write(&mut peer, &ToEditor::WantScene).unwrap();
+    frame::write(&mut peer, &ToEditor::WantScene).unwrap();
     loop {
         if let FromEditor::Scene { revision, document } = hear(&mut peer) {
             assert_eq!((revision, &document["title"]), (3, &Value::from("3")));
@@ -236,13 +237,13 @@ fn bad_peers_are_refused_and_harm_nobody() {
     let (editor, _events) = stage.editor();
     let hello = |role| {
         let mut bytes = Vec::new();
-        message::write(&mut bytes, &ToEditor::Hello { program: "test".into(), role }).unwrap();
+        frame::write(&mut bytes, &ToEditor::Hello { program: "test".into(), role }).unwrap();
         bytes
     };
     let mut edit = hello(Role::Window);
-    message::write(&mut edit, &ToEditor::Edit { revision: 0, patch: Edit::default() }).unwrap();
+    frame::write(&mut edit, &ToEditor::Edit { revision: 0, patch: Edit::default() }).unwrap();
     let mut pointer = hello(Role::Script);
-    message::write(&mut pointer, &ToEditor::Pointer { x: 0.0, y: 0.0 }).unwrap();
+    frame::write(&mut pointer, &ToEditor::Pointer { x: 0.0, y: 0.0 }).unwrap();
     let mut newer = hello(Role::Window);
     newer[4] = 9;
     let mut huge = hello(Role::Window);
@@ -344,7 +345,7 @@ fn one_scene_has_one_editor() {
 fn the_socket_is_private_and_goes_with_the_editor() {
     use std::os::unix::fs::PermissionsExt;
     let stage = stage();
-    let path = link::socket_path(&stage.scene).unwrap();
+    let path = socket_path(&stage.scene).unwrap();
     let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
     let (editor, _events) = stage.editor();
     assert_eq!((mode(&path), mode(path.parent().unwrap())), (0o600, 0o700));

@@ -9,7 +9,7 @@ use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::preview::remote::attach;
-use crate::preview::wire::link::{HangUp, Wire};
+use crate::preview::wire::connection::{HangUp, Wire};
 
 /// How often a signal is looked for.
 const LOOK: Duration = Duration::from_millis(250);

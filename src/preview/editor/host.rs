@@ -7,14 +7,17 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::events::{Asked, Event};
 use super::keeper::Life;
 use super::outbox::{Latest, Outbox, Outgoing, Topic};
-use super::{Asked, Event, Status};
+use super::status::Status;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::problem::Problem;
-use crate::preview::wire::link::{self, Caller, HangUp, Listener, Wire};
-use crate::preview::wire::message::{self, FromEditor, Role, ToEditor};
+use crate::preview::wire::connection::{HangUp, Wire};
+use crate::preview::wire::frame;
+use crate::preview::wire::message::{FromEditor, Role, ToEditor};
+use crate::preview::wire::socket::{Caller, Listener};
 use crate::preview::{Reply, Transport, views};
 use crate::scene::edit::Edit;
 
@@ -212,7 +215,7 @@ impl Shared {
         self.tell(|_| {});
         let writing = self.clone();
         let started = thread("link writer", move || {
-            if let Err(error) = message::write(&mut writer, &hello).and_then(|()| writing.write(id, &mut *writer)) {
+            if let Err(error) = frame::write(&mut writer, &hello).and_then(|()| writing.write(id, &mut *writer)) {
                 tracing::info!("{error}");
             }
             writing.forget(id);
@@ -248,8 +251,8 @@ impl Shared {
                 }
             };
             match outgoing {
-                Some(outgoing) => message::write(&mut to, &outgoing.into_message())?,
-                None => return message::write(&mut to, &FromEditor::Bye("the editor was closed".into())),
+                Some(outgoing) => frame::write(&mut to, &outgoing.into_message())?,
+                None => return frame::write(&mut to, &FromEditor::Bye("the editor was closed".into())),
             }
         }
     }
@@ -264,7 +267,7 @@ impl Shared {
 
     /// Takes what the window says until it is gone.
     fn read(&self, id: u64, mut from: &mut (dyn Read + Send)) -> Result<()> {
-        while let Some(said) = message::read::<ToEditor>(&mut from, link::most())? {
+        while let Some(said) = frame::read::<ToEditor>(&mut from, frame::most())? {
             match said {
                 ToEditor::Ack { revision, synth_ms } => {
                     self.change(|state| state.report.synth_ms = Some(synth_ms));
@@ -318,13 +321,13 @@ impl Shared {
 
     fn talk_with_script(&self, mut wire: Wire, scene: &Path) -> Result<()> {
         let latest = self.lock().latest.clone();
-        message::write(&mut wire.writer, &hello(scene, &latest))?;
-        while let Some(said) = message::read::<ToEditor>(&mut wire.reader, link::most())? {
+        frame::write(&mut wire.writer, &hello(scene, &latest))?;
+        while let Some(said) = frame::read::<ToEditor>(&mut wire.reader, frame::most())? {
             let ToEditor::Edit { revision, patch } = said else {
                 return Err(Error::at("link", "a script said what only a window says"));
             };
             let problems = self.ask(revision, patch);
-            message::write(&mut wire.writer, &FromEditor::Edited(problems))?;
+            frame::write(&mut wire.writer, &FromEditor::Edited(problems))?;
         }
         Ok(())
     }

@@ -5,8 +5,10 @@ use std::path::Path;
 
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
-use crate::preview::wire::link::{self, Wire};
-use crate::preview::wire::message::{self, FromEditor, Role, ToEditor};
+use crate::preview::wire::connection::Wire;
+use crate::preview::wire::frame::{self, most};
+use crate::preview::wire::handshake;
+use crate::preview::wire::message::{FromEditor, Role, ToEditor};
 use crate::scene::Document;
 use crate::scene::check::Rules;
 use crate::scene::edit::Edit;
@@ -52,7 +54,7 @@ struct Joined {
 }
 
 fn ask(scene: &Path) -> Result<Option<Joined>> {
-    let Some((hello, wire)) = link::join(scene, Role::Script, link::most())? else { return Ok(None) };
+    let Some((hello, wire)) = handshake::join(scene, Role::Script, most())? else { return Ok(None) };
     let FromEditor::Hello { revision, document, .. } = hello else { return Err(gone()) };
     let document = Document::from_json_under(document, Rules::NONE);
     let document = document.map_err(|problems| Error::Scene { file: scene.display().to_string(), problems })?;
@@ -61,8 +63,8 @@ fn ask(scene: &Path) -> Result<Option<Joined>> {
 
 impl Joined {
     fn edit(&mut self, patch: Edit) -> Result<Vec<Problem>> {
-        message::write(&mut self.wire.writer, &ToEditor::Edit { revision: self.revision, patch })?;
-        match message::read(&mut self.wire.reader, link::most())? {
+        frame::write(&mut self.wire.writer, &ToEditor::Edit { revision: self.revision, patch })?;
+        match frame::read(&mut self.wire.reader, most())? {
             Some(FromEditor::Edited(problems)) => Ok(problems),
             _ => Err(gone()),
         }

@@ -9,7 +9,7 @@ use super::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
 use crate::base::error::Error;
 use crate::files::watch::Watch;
 use crate::files::{self, Options, materials};
-use crate::preview::wire::link;
+use crate::preview::wire::handshake;
 use crate::preview::wire::message::{FromEditor, Role};
 use crate::preview::{Reply, Update};
 
@@ -78,7 +78,7 @@ impl Client {
 
     /// Joins the editor where one answers.
     fn join(&mut self) -> Outcome<bool> {
-        let joined = match link::join(&self.scene, Role::Window, self.talk.options.limits.message) {
+        let joined = match handshake::join(&self.scene, Role::Window, self.talk.options.limits.message) {
             Ok(Some((hello, wire))) => self.talk.enter(hello, wire),
             Ok(None) => return Ok(false),
             Err(error) => Err(error),

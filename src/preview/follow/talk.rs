@@ -10,8 +10,9 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::Options;
 use crate::preview::views::Views;
-use crate::preview::wire::link::{HangUp, Wire};
-use crate::preview::wire::message::{self, FromEditor, ToEditor};
+use crate::preview::wire::connection::{HangUp, Wire};
+use crate::preview::wire::frame;
+use crate::preview::wire::message::{FromEditor, ToEditor};
 use crate::preview::{Reply, Update};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
@@ -281,7 +282,7 @@ impl Outlet {
     /// A connection that cannot be written to is lost for reading too, where that is noticed.
     fn send(&self, message: &ToEditor) {
         let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if writer.as_mut().is_some_and(|writer| message::write(writer, message).is_err()) {
+        if writer.as_mut().is_some_and(|writer| frame::write(writer, message).is_err()) {
             *writer = None;
         }
     }
@@ -295,7 +296,7 @@ impl Outlet {
 
 /// Hands on what is said, until the other end hangs up or nobody `takes` it any more.
 fn listen(mut from: &mut dyn Read, most: u64, takes: impl Fn(FromEditor) -> bool) -> Result<()> {
-    while let Some(said) = message::read(&mut from, most)? {
+    while let Some(said) = frame::read(&mut from, most)? {
         if !takes(said) {
             break;
         }

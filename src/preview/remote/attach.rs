@@ -14,8 +14,10 @@ use crate::preview::editor::host::{Shared, thread};
 use crate::preview::editor::outbox::{Latest, Measured, Topic};
 use crate::preview::follow::client;
 use crate::preview::follow::talk::News;
-use crate::preview::wire::link::{ALIVE, HANDSHAKE, SILENCE, Wire};
-use crate::preview::wire::message::{self, FromEditor, ToEditor};
+use crate::preview::wire::connection::{ALIVE, SILENCE, Wire};
+use crate::preview::wire::frame;
+use crate::preview::wire::handshake::HANDSHAKE;
+use crate::preview::wire::message::{FromEditor, ToEditor};
 use crate::preview::{Reply, Update};
 use crate::scene::edit::Edit;
 
@@ -33,7 +35,7 @@ pub fn serve(scene: &Path, options: &Options, wire: Wire) -> Result<()> {
     let (sender, greeted) = mpsc::channel();
     let most = options.limits.message;
     thread("greeting", move || {
-        let hello = message::read::<ToEditor>(&mut reader, most);
+        let hello = frame::read::<ToEditor>(&mut reader, most);
         drop(sender.send((hello, reader)));
     })?;
     let refused = match greeted.recv_timeout(HANDSHAKE) {
@@ -49,7 +51,7 @@ pub fn serve(scene: &Path, options: &Options, wire: Wire) -> Result<()> {
         Err(_) => Error::at("link", "the other end does not answer"),
     };
     // A courtesy: who does not understand it sees how this process ends.
-    drop(message::write(&mut writer, &FromEditor::Bye(refused.to_string())));
+    drop(frame::write(&mut writer, &FromEditor::Bye(refused.to_string())));
     Err(refused)
 }
 

@@ -13,7 +13,7 @@ use crate::files::cache::Cache;
 use crate::preview::follow::client::Link;
 use crate::preview::follow::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
 use crate::preview::keys::{KEYS, PLAY, VIEW};
-use crate::preview::wire::link::{ALIVE, HangUp, Wire};
+use crate::preview::wire::connection::{ALIVE, HangUp, Wire};
 use crate::preview::wire::message::{FromEditor, ToEditor};
 
 /// Waits before going there again, by attempts that failed in a row.

@@ -11,8 +11,10 @@ use super::address::{Address, quoted};
 use crate::base::error::{Error, Result};
 use crate::files::Options;
 use crate::preview::editor::keeper::tail;
-use crate::preview::wire::link::{self, HangUp, LEFT, SILENCE, Wire};
-use crate::preview::wire::message::{FromEditor, NOT_PLICA, Role};
+use crate::preview::wire::connection::{HangUp, SILENCE, Wire};
+use crate::preview::wire::frame::NOT_PLICA;
+use crate::preview::wire::handshake::{self, LEFT};
+use crate::preview::wire::message::{FromEditor, Role};
 
 /// How long it may take until the far end says hello: somebody may be typing a password.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -87,7 +89,7 @@ impl Way {
                 late.now();
             }
         });
-        let hello = link::shake_hands(&mut stdin, &mut stdout, Role::Window, self.options.limits.message);
+        let hello = handshake::shake_hands(&mut stdin, &mut stdout, Role::Window, self.options.limits.message);
         drop(answered);
         match hello {
             Ok(hello) => {

@@ -6,7 +6,8 @@ use std::io::{self, Read};
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::message::{self, *};
+use super::frame::{self, *};
+use super::message::*;
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::files::Limits;
@@ -17,7 +18,7 @@ use crate::scene::edit::Edit;
 const MAX: u32 = 64 << 20;
 
 fn read<T: Message>(from: &mut impl Read) -> Result<Option<T>> {
-    message::read(from, Limits::default().message)
+    frame::read(from, Limits::default().message)
 }
 
 fn bytes(message: &impl Message) -> Vec<u8> {
