@@ -6,7 +6,7 @@ mod scenes;
 use divan::Bencher;
 use plica::layers::Materials;
 use plica::layers::folding::field::{Field, Inputs};
-use plica::layers::folding::synth::CENTRE;
+use plica::layers::parts::moment::CENTRE;
 
 fn main() {
     divan::main();

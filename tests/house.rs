@@ -183,7 +183,8 @@ fn an_outside_crate_has_one_door() {
 #[test]
 fn slices_never_name_one_another() {
     let sources = sources();
-    let slices: Vec<&str> = sources.iter().filter_map(Source::slice).collect();
+    // `parts` holds what all of them share, and names none of them.
+    let slices: Vec<&str> = sources.iter().filter_map(Source::slice).filter(|&slice| slice != "parts").collect();
     let mut broken = Vec::new();
     for source in &sources {
         let Some(own) = source.slice() else { continue };

@@ -8,8 +8,7 @@ use std::path::PathBuf;
 
 use plica::base::pixels::Frame;
 use plica::files::profiles;
-use plica::layers::folding::anchors::anchors;
-use plica::render;
+use plica::layers::folding::{anchors::anchors, synth::Synth};
 use plica::scene::Document;
 use show::{Show, TIMES, at, no_seam, step, still_outside};
 
@@ -154,7 +153,7 @@ fn the_wound_closes() {
     let (open, closed) = (flesh(&show.frame(0.0)), flesh(&show.frame(0.5)));
     assert!(open > 4000 && closed * 2 < open, "flesh {open} -> {closed}");
     assert_eq!(anchors(&show.layer().zones[0]).len(), 62);
-    let render::LayerSynth::Picture(synth) = &show.synth.layers[0];
+    let synth = show.synth.layers[0].downcast::<Synth>().unwrap();
     let folds = synth.zones[0].field.folds.as_ref().unwrap();
     let thresholds = |i: usize| folds.ahead.of(i).iter().filter(|&&s| s > 0.0 && s <= 1.0).count();
     let most = (0..folds.inside.cells().len()).map(thresholds).max();

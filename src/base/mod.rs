@@ -15,5 +15,6 @@ pub mod picture;
 pub mod pixels;
 pub mod problem;
 pub mod quantise;
+pub mod reduce;
 pub mod system;
 pub mod text;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use kurbo::Rect;
+use kurbo::{Rect, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -17,7 +17,13 @@ use crate::base::problem::Problem;
 
 pub mod check;
 pub mod folding;
+pub mod parts;
+pub mod ready;
 pub mod timeline;
+
+use parts::repeat::Repeat;
+use ready::{Prepared, Ready};
+use timeline::Wrap;
 
 /// A position or vector in image pixels, [x, y], x right and y down.
 pub type Xy = [f64; 2];
@@ -126,6 +132,53 @@ impl Layer {
     pub fn files(&self) -> Vec<(String, &str)> {
         match self {
             Layer::Picture(picture) => folding::check::files(picture),
+        }
+    }
+
+    /// The image whose size a frame may take, if the layer has one.
+    pub fn frame_of(&self) -> Option<&str> {
+        match self {
+            Layer::Picture(picture) => Some(&picture.image),
+        }
+    }
+
+    /// Makes the layer ready to be shown at any time. What `previous` has in common with it is taken over. `place` is the
+    /// place in each pixel that is looked at: its centre, or another for supersampling.
+    ///
+    /// # Errors
+    /// Something that the layer names is not among the materials, or nobody wants it any more; the problem's path is
+    /// relative to the layer.
+    pub fn synth(
+        &self,
+        wrap: Wrap,
+        materials: &Materials,
+        place: Vec2,
+        previous: Option<&dyn Ready>,
+    ) -> Result<Arc<dyn Ready>, Problem> {
+        match self {
+            Layer::Picture(picture) => {
+                let previous = previous.and_then(|previous| previous.downcast());
+                Ok(Arc::new(folding::synth::synth(picture, wrap, materials, place, previous)?))
+            }
+        }
+    }
+
+    /// Makes what all parts of the layer share.
+    ///
+    /// # Errors
+    /// As [`Layer::synth`].
+    pub fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem> {
+        match self {
+            Layer::Picture(picture) => {
+                Ok(Box::new(folding::synth::PreparedLayer::new(picture, wrap, materials, place)?))
+            }
+        }
+    }
+
+    /// What happens to the layer where time starts anew.
+    pub fn repeat(&self, wrap: Wrap) -> Repeat {
+        match self {
+            Layer::Picture(picture) => folding::seam::repeat(picture, wrap),
         }
     }
 

@@ -19,7 +19,6 @@ use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::{Show, Target, range, rate::Rate, scale};
 use crate::files::outputs::{self, Place};
-use crate::layers::Layer;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
@@ -194,10 +193,7 @@ fn target(
 
 /// Width and height of the finished frames.
 fn frame_size(args: &Args, opened: &Opened) -> Result<(usize, usize)> {
-    let first = opened.document.scene().layers.first().map(|Layer::Picture(layer)| layer);
-    let picture = first.and_then(|layer| opened.materials.picture(&layer.image, "/image").ok());
-    // A scene without a picture has no frames: its synthesis says so.
-    let own = picture.map_or((0, 0), |picture| (picture.width(), picture.height()));
+    let own = crate::render::frame_size(opened.document.scene(), &opened.materials);
     args.size.as_ref().map_or(Ok(own), |text| scale::parse(text, own))
 }
 

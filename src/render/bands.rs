@@ -6,10 +6,11 @@ use std::ops::Range;
 
 use kurbo::Vec2;
 
-use super::{LayerSynth, Synth, cpu};
+use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, encode};
 use crate::base::problem::Problem;
-use crate::layers::folding::synth::{CENTRE, Ready};
+use crate::layers::parts::moment::CENTRE;
+use crate::layers::ready::Prepared;
 use crate::layers::{Layer, Materials};
 use crate::scene::Scene;
 
@@ -21,7 +22,7 @@ pub struct Bands<'a> {
     materials: &'a Materials,
     size: (usize, usize),
     /// The layers, for every sample of a pixel.
-    samples: Vec<Vec<Ready>>,
+    samples: Vec<Vec<Box<dyn Prepared>>>,
 }
 
 impl<'a> Bands<'a> {
@@ -32,15 +33,17 @@ impl<'a> Bands<'a> {
     pub fn new(scene: &Scene, materials: &'a Materials, n: u32) -> Result<Self, Problem> {
         let places = if n == 1 { vec![CENTRE] } else { super::places(n).collect() };
         let layers = |place: Vec2| {
-            let ready = |(i, Layer::Picture(layer)): (usize, &Layer)| {
-                let ready = Ready::new(layer, scene.timeline.wrap, materials, place);
-                ready.map_err(|problem| problem.under(&format!("/layers/{i}")))
+            let prepare = |(i, layer): (usize, &Layer)| {
+                let prepared = layer.prepare(scene.timeline.wrap, materials, place);
+                prepared.map_err(|problem| problem.under(&format!("/layers/{i}")))
             };
-            scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()
+            scene.layers.iter().enumerate().map(prepare).collect::<Result<Vec<_>, _>>()
         };
+        if scene.layers.is_empty() {
+            return Err(super::no_layers());
+        }
         let samples = places.into_iter().map(layers).collect::<Result<Vec<_>, _>>()?;
-        let size = samples.first().and_then(|layers| layers.first()).map(Ready::size).ok_or_else(super::no_layers)?;
-        Ok(Bands { materials, size, samples })
+        Ok(Bands { materials, size: super::frame_size(scene, materials), samples })
     }
 
     /// Width and height of a frame.
@@ -49,12 +52,12 @@ impl<'a> Bands<'a> {
     }
 
     fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<Synth>, Problem> {
-        let layer = |(i, ready): (usize, &Ready)| {
-            let part = ready.part(columns.clone(), rows.clone(), self.materials);
-            part.map(LayerSynth::Picture).map_err(|problem| problem.under(&format!("/layers/{i}")))
-        };
-        let synth = |layers: &Vec<Ready>| {
-            let layers = layers.iter().enumerate().map(layer).collect::<Result<_, _>>()?;
+        let synth = |layers: &Vec<Box<dyn Prepared>>| {
+            let layers = layers.iter().enumerate().map(|(i, prepared)| {
+                let part = prepared.part(columns.clone(), rows.clone(), self.materials);
+                part.map_err(|problem| problem.under(&format!("/layers/{i}")))
+            });
+            let layers = layers.collect::<Result<_, _>>()?;
             Ok(Synth { size: self.size, layers })
         };
         let made = self.samples.iter().map(synth).collect();
@@ -76,11 +79,11 @@ impl<'a> Bands<'a> {
         Ok(Grid::from_cells(width, height, cells))
     }
 
-    /// The layers' pictures alone, without zones.
+    /// The layers with nothing that moves.
     pub fn pictures(&self) -> Synth {
         let layers = self.samples.first().into_iter().flatten();
         // A part without pixels needs nothing.
-        let layers = layers.filter_map(|ready| ready.part(0..0, 0..0, self.materials).ok().map(LayerSynth::Picture));
+        let layers = layers.filter_map(|prepared| prepared.part(0..0, 0..0, self.materials).ok());
         Synth { size: self.size, layers: layers.collect() }
     }
 

@@ -5,9 +5,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{LayerSynth, Synth};
+use super::Synth;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
-use crate::layers::folding;
+use crate::layers::parts::moment::Columns;
+use crate::layers::ready::Still;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
 pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
@@ -16,11 +17,25 @@ pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
 
 /// These rows of it alone.
 fn rows(synth: &Synth, scene_time: f64, rows: Range<usize>) -> Linear {
-    let width = synth.size.0;
+    lines(synth, scene_time, Columns::All, &rows.collect::<Vec<_>>())
+}
+
+/// These rows, and of them these columns.
+fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Linear {
+    let width = match columns {
+        Columns::All => synth.size.0,
+        Columns::Some(columns) => columns.len(),
+    };
+    let moment = synth.moment(scene_time);
+    let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
     let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
-    picture.cells_mut().par_chunks_mut(width.max(1)).enumerate().for_each(|(i, row)| {
-        for layer in &synth.layers {
-            lay(layer, scene_time, rows.start + i, row);
+    let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
+    lines.for_each(|(out, &y)| {
+        let mut own = vec![[0.0; 4]; width];
+        for layer in &layers {
+            own.fill([0.0; 4]);
+            layer.row(y, columns, &mut own);
+            out.iter_mut().zip(&own).for_each(|(beneath, &color)| *beneath = over(color, *beneath));
         }
     });
     picture
@@ -49,19 +64,7 @@ pub fn finish_rows(samples: &[Synth], scene_time: f64, band: Range<usize>, out: 
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame), and no others: what a
 /// small view of a large picture costs.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
-    let mut picture = Linear::filled(columns.len(), rows.len(), [0.0; 4]);
-    let lines = picture.cells_mut().par_chunks_mut(columns.len().max(1)).zip(rows.par_iter());
-    lines.for_each(|(out, &y)| {
-        for LayerSynth::Picture(layer) in &synth.layers {
-            if y < layer.picture.height() {
-                let within = &columns[..columns.partition_point(|&x| x < layer.picture.width())];
-                let mut own = vec![[0.0; 4]; within.len()];
-                folding::frame::columns(layer, scene_time, y, within, &mut own);
-                out.iter_mut().zip(own).for_each(|(beneath, colour)| *beneath = over(colour, *beneath));
-            }
-        }
-    });
-    picture
+    lines(synth, scene_time, Columns::Some(columns), rows)
 }
 
 /// The mean of the frames of several samples of each pixel, in linear light.
@@ -94,26 +97,12 @@ pub fn finish(picture: &Linear) -> Frame {
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 
-/// Gives clear pixels of a finished frame the colors that their pictures have there: straight alpha keeps them.
+/// Gives clear pixels of a finished frame the colors that their layers have there: straight alpha keeps them.
 pub fn keep_clear_colors(synth: &Synth, frame: &mut Frame) {
     let width = frame.width().max(1);
     frame.cells_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         for (x, code) in row.iter_mut().enumerate().filter(|(_, code)| code[3] == 0) {
-            for LayerSynth::Picture(layer) in &synth.layers {
-                let within = x < layer.picture.width() && y < layer.picture.height();
-                layer.picture.keep_clear_color(within.then_some((x, y)), code);
-            }
+            synth.layers.iter().for_each(|layer| layer.keep_clear_color((x, y), code));
         }
     });
-}
-
-/// Lays row `y` of a layer over what is there.
-fn lay(layer: &LayerSynth, scene_time: f64, y: usize, row: &mut [Rgba]) {
-    let LayerSynth::Picture(synth) = layer;
-    if y >= synth.picture.height() {
-        return;
-    }
-    let mut own = vec![[0.0; 4]; synth.picture.width()];
-    folding::frame::row(synth, scene_time, y, &mut own);
-    row.iter_mut().zip(own).for_each(|(beneath, colour)| *beneath = over(colour, *beneath));
 }

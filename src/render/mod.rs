@@ -1,9 +1,13 @@
 //! Layers over one another: synthesis of a scene, and its frames on the CPU (the reference) and the GPU.
 
+use std::sync::Arc;
+
 use kurbo::Vec2;
 
 use crate::base::problem::Problem;
-use crate::layers::{Layer, Materials, folding};
+use crate::layers::parts::moment::{CENTRE, Moment};
+use crate::layers::ready::Ready;
+use crate::layers::{Layer, Materials};
 use crate::scene::Scene;
 
 pub mod bands;
@@ -19,17 +23,17 @@ pub mod seams;
 /// What a frame of a scene needs except the time.
 #[derive(Clone, Debug)]
 pub struct Synth {
-    /// Width and height of a frame, in pixels: those of the first picture layer.
+    /// Width and height of a frame, in pixels.
     pub size: (usize, usize),
     /// The layers, in the scene's order.
-    pub layers: Vec<LayerSynth>,
+    pub layers: Vec<Arc<dyn Ready>>,
 }
 
-/// What a frame of one layer needs except the time.
-#[derive(Clone, Debug)]
-pub enum LayerSynth {
-    /// A picture layer.
-    Picture(folding::synth::Synth),
+impl Synth {
+    /// What a frame at scene time `t` depends on beside the layers.
+    pub fn moment(&self, t: f64) -> Moment {
+        Moment { t, size_px: self.size }
+    }
 }
 
 /// Makes a scene ready to be shown at any time. What `previous` has in common with it is taken over.
@@ -37,7 +41,7 @@ pub enum LayerSynth {
 /// # Errors
 /// There is no layer, or a picture that a layer names is not among the materials.
 pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> Result<Synth, Problem> {
-    synth_at(scene, materials, folding::synth::CENTRE, previous)
+    synth_at(scene, materials, CENTRE, previous)
 }
 
 /// As [`synth`], for n x n places spread evenly over each pixel; [`cpu::picture`] averages their frames.
@@ -59,17 +63,21 @@ fn no_layers() -> Problem {
 }
 
 fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<&Synth>) -> Result<Synth, Problem> {
-    let synth_layer = |(i, layer): (usize, &Layer)| match layer {
-        Layer::Picture(layer) => {
-            let before = previous.and_then(|p| p.layers.get(i)).map(|LayerSynth::Picture(before)| before);
-            folding::synth::synth(layer, scene.timeline.wrap, materials, place, before)
-                .map(LayerSynth::Picture)
-                .map_err(|problem| problem.under(&format!("/layers/{i}")))
-        }
+    let ready = |(i, layer): (usize, &Layer)| {
+        let before = previous.and_then(|synth| synth.layers.get(i)).map(|before| &**before);
+        let ready = layer.synth(scene.timeline.wrap, materials, place, before);
+        ready.map_err(|problem| problem.under(&format!("/layers/{i}")))
     };
-    let layers = scene.layers.iter().enumerate().map(synth_layer).collect::<Result<Vec<_>, _>>()?;
-    let Some(LayerSynth::Picture(first)) = layers.first() else {
+    let layers = scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()?;
+    if layers.is_empty() {
         return Err(no_layers());
-    };
-    Ok(Synth { size: (first.picture.width(), first.picture.height()), layers })
+    }
+    Ok(Synth { size: frame_size(scene, materials), layers })
+}
+
+/// Width and height of a frame: those of the first picture that a layer gives it, else 1280 x 720.
+pub fn frame_size(scene: &Scene, materials: &Materials) -> (usize, usize) {
+    let named = scene.layers.iter().find_map(Layer::frame_of);
+    let picture = named.and_then(|name| materials.pictures.get(name));
+    picture.map_or((1280, 720), |picture| (picture.width(), picture.height()))
 }

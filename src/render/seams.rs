@@ -1,62 +1,47 @@
 //! Loops that snap: what jumps where time starts anew, and is seen to. A sampler that jumps where a fold hides it, or over
 //! one color, is told of no one.
 
-use super::{LayerSynth, Synth, cpu};
+use std::borrow::Borrow;
+
+use super::{Synth, cpu};
 use crate::base::pixels::encode;
 use crate::base::problem::Problem;
-use crate::layers::Layer;
-use crate::layers::folding::model::Zone;
-use crate::layers::folding::seam::{BESIDE, Snap, closing, needs_time_alone, snap};
+use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::scene::Scene;
 
-/// Pixels of a zone that are looked at, each way.
+/// Pixels of what jumps that are looked at, each way.
 const PLACES: usize = 64;
 /// A channel that differs by more codes than this is seen to jump,
 const SEEN: u8 = 8;
-/// and so is the zone where more than one in so many pixels do.
+/// and so is the whole where more than one in so many pixels do.
 const ONE_IN: usize = 500;
 
-/// A zone whose sampler jumps.
-struct Suspect<'a> {
-    layer: usize,
-    index: usize,
-    zone: &'a Zone,
-    snap: Snap,
-}
-
-/// A warning for every zone that is seen to jump in the loop; `synth` is asked for only where one may.
-pub fn warnings<S: std::borrow::Borrow<Synth>>(scene: &Scene, synth: impl FnOnce() -> Option<S>) -> Vec<Problem> {
-    let suspects = suspects(scene);
-    if suspects.is_empty() {
+/// A warning for everything that is seen to jump in the loop; `synth` is asked for only where something may.
+pub fn warnings<S: Borrow<Synth>>(scene: &Scene, synth: impl FnOnce() -> Option<S>) -> Vec<Problem> {
+    if scene.timeline.frames() < 2 {
+        return Vec::new();
+    }
+    let layers: Vec<Repeat> = scene.layers.iter().map(|layer| layer.repeat(scene.timeline.wrap)).collect();
+    if layers.iter().all(|layer| layer.snaps.is_empty()) {
         return Vec::new();
     }
     let Some(synth) = synth() else { return Vec::new() };
-    let seen = suspects.iter().filter(|suspect| is_seen(synth.borrow(), suspect));
-    seen.map(|suspect| warning(scene, suspect)).collect()
+    let speeds: Vec<f64> = layers.iter().flat_map(|layer| layer.speeds.iter().copied()).collect();
+    let snaps = layers.iter().enumerate().flat_map(|(i, layer)| layer.snaps.iter().map(move |snap| (i, snap)));
+    let seen = snaps.filter(|(_, snap)| is_seen(synth.borrow(), snap));
+    seen.map(|(i, snap)| warning(scene.timeline.duration, &speeds, snap).under(&format!("/layers/{i}"))).collect()
 }
 
-fn zones(scene: &Scene) -> impl Iterator<Item = (usize, usize, &Zone)> {
-    let layers = scene.layers.iter().enumerate();
-    layers.flat_map(|(i, Layer::Picture(layer))| layer.zones.iter().enumerate().map(move |(j, zone)| (i, j, zone)))
-}
-
-fn suspects(scene: &Scene) -> Vec<Suspect<'_>> {
-    let suspect = |(layer, index, zone)| Some(Suspect { layer, index, zone, snap: snap(zone, scene.timeline.wrap)? });
-    if scene.timeline.frames() < 2 { Vec::new() } else { zones(scene).filter_map(suspect).collect() }
-}
-
-/// Whether the pixels of the zone differ before and after the jump.
-fn is_seen(synth: &Synth, suspect: &Suspect) -> bool {
-    let bounds = suspect.zone.outline.polygon().bounds();
-    let LayerSynth::Picture(layer) = &synth.layers[suspect.layer];
+/// Whether the pixels of what jumps differ before and after.
+fn is_seen(synth: &Synth, snap: &Snap) -> bool {
     let places = |low: f64, high: f64, most: usize| -> Vec<usize> {
         let (low, high) = (low.max(0.0) as usize, (high.ceil().max(0.0) as usize).min(most));
         let step = high.saturating_sub(low).div_ceil(PLACES).max(1);
         (low..high).step_by(step).collect()
     };
-    let columns = places(bounds.x0, bounds.x1, synth.size.0.min(layer.picture.width()));
-    let rows = places(bounds.y0, bounds.y1, synth.size.1.min(layer.picture.height()));
-    let (before, after) = match suspect.snap.time {
+    let columns = places(snap.bounds.x0, snap.bounds.x1, synth.size.0);
+    let rows = places(snap.bounds.y0, snap.bounds.y1, synth.size.1);
+    let (before, after) = match snap.time {
         1.0 => (1.0 - BESIDE, BESIDE),
         time => (time - BESIDE, time + BESIDE),
     };
@@ -66,21 +51,25 @@ fn is_seen(synth: &Synth, suspect: &Suspect) -> bool {
     count * ONE_IN > columns.len() * rows.len()
 }
 
-fn warning(scene: &Scene, suspect: &Suspect) -> Problem {
-    let Snap { time, s: (before, after), cure } = &suspect.snap;
-    let place = if *time == 1.0 { "where it begins anew".into() } else { format!("at t = {time:.3}") };
-    let round = |s: f64| (s * 1000.0).round() / 1000.0;
-    let message = format!("the loop snaps {place}: s jumps from {} to {}", round(*before), round(*after));
-    let mut hint = cure.clone();
-    let wrap = scene.timeline.wrap;
-    let moving: Vec<&Zone> = zones(scene).map(|(.., zone)| zone).filter(|zone| needs_time_alone(zone, wrap)).collect();
-    if needs_time_alone(suspect.zone, wrap)
-        && let Some(n) = closing(&moving).filter(|n| *n > 1)
+/// The warning about a jump in a timeline of `duration` seconds; its path is relative to the layer.
+fn warning(duration: f64, speeds: &[f64], snap: &Snap) -> Problem {
+    let place = if snap.time == 1.0 { "where it begins anew".into() } else { format!("at t = {:.3}", snap.time) };
+    let message = format!("the loop snaps {place}: {}", snap.what);
+    let mut hint = snap.cure.clone();
+    if snap.needs_time_alone
+        && let Some(n) = closing(speeds).filter(|n| *n > 1)
     {
-        let seconds = round(scene.timeline.duration * f64::from(n));
+        let seconds = (duration * f64::from(n) * 1000.0).round() / 1000.0;
         hint += &format!("; at the same pace a duration of {seconds} s closes it, with every speed times {n}");
     }
-    Problem::warning(format!("/layers/{}/zones/{}", suspect.layer, suspect.index), message).hint(hint)
+    Problem::warning(snap.path.as_str(), message).hint(hint)
+}
+
+/// The least number of timelines after which everything of these speeds has made whole passes; `None` if it is above a
+/// thousand.
+fn closing(speeds: &[f64]) -> Option<u32> {
+    let whole = |speed: f64, n: f64| ((speed * n).round() - speed * n).abs() < 1e-6;
+    (1..=1000).find(|&n| speeds.iter().all(|&speed| whole(speed, f64::from(n))))
 }
 
 #[cfg(test)]
@@ -144,6 +133,15 @@ mod tests {
             (json!({ "fold": { "rule": "fly-over", "regions": region(200.0, 9.0) } }), "repeat"),
         ] {
             assert_eq!(found(zone.clone(), wrap), [], "{zone} {wrap}");
+        }
+    }
+
+    #[test]
+    fn the_time_in_which_all_periods_close() {
+        for (speeds, n) in
+            [(&[1.5][..], Some(2)), (&[1.5, -0.4], Some(10)), (&[1.0, 2.0], Some(1)), (&[0.123_456], None)]
+        {
+            assert_eq!(closing(speeds), n, "{speeds:?}");
         }
     }
 }

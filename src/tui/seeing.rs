@@ -11,11 +11,14 @@ use super::app::{Mode, State};
 use super::graphics::{Graphics, Marks, Protocol, Shown, Wanted};
 use super::{place, sight, tree, view};
 use crate::base::pixels::encode;
-use crate::layers::folding::probe::{Probe, probe};
+use crate::layers::folding::{
+    self,
+    probe::{Probe, probe},
+};
 use crate::layers::{Layer, Materials};
 use crate::render::overlay::View;
 use crate::render::part::Part;
-use crate::render::{LayerSynth, Synth, cpu};
+use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
 /// What there is to see.
@@ -72,8 +75,8 @@ impl Probed {
 /// The longest jump vector of every zone, in pixels.
 pub fn longest(synth: &Synth) -> Vec<(usize, usize, f64)> {
     let mut all = Vec::new();
-    for (i, LayerSynth::Picture(layer)) in synth.layers.iter().enumerate() {
-        for zone in &layer.zones {
+    for (i, layer) in synth.layers.iter().enumerate() {
+        for zone in layer.downcast::<folding::synth::Synth>().iter().flat_map(|layer| &layer.zones) {
             let squares = zone.field.jumps.cells().iter().map(|&[x, y]| x * x + y * y);
             all.push((i, zone.index, f64::from(squares.fold(0.0, f32::max)).sqrt()));
         }

@@ -7,7 +7,7 @@ use kurbo::Point;
 use plica::base::geometry::Polygon;
 use plica::base::pixels::Frame;
 use plica::files;
-use plica::layers::folding::model::PictureLayer;
+use plica::layers::folding::{self, model::PictureLayer};
 use plica::layers::{Layer, Materials};
 use plica::render;
 use plica::scene::Document;
@@ -49,7 +49,7 @@ impl Show {
     /// For every pixel, how many zones hold it.
     pub fn zones(&self) -> Vec<u32> {
         let (width, height) = self.synth.size;
-        let render::LayerSynth::Picture(layer) = &self.synth.layers[0];
+        let layer = self.synth.layers[0].downcast::<folding::synth::Synth>().unwrap();
         let mut count = vec![0; width * height];
         for field in layer.zones.iter().map(|zone| &zone.field) {
             for y in 0..field.inside.height() {

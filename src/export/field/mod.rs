@@ -6,9 +6,9 @@ use kurbo::{Point, Rect, Vec2};
 use crate::base::maths::atan2;
 use crate::base::oklab::hue;
 use crate::base::pixels::Frame;
-use crate::layers::folding::field::Field;
+use crate::layers::folding::{self, field::Field};
 use crate::render::overlay::{Dot, Shape, View, overlay};
-use crate::render::{LayerSynth, Synth, cpu};
+use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
 mod letters;
@@ -86,7 +86,11 @@ pub fn arrows(synth: &Synth, step: usize) -> Vec<Arrow> {
 }
 
 fn fields(synth: &Synth) -> impl Iterator<Item = &Field> {
-    let zones = synth.layers.iter().flat_map(|LayerSynth::Picture(layer)| &layer.zones);
+    let zones = synth
+        .layers
+        .iter()
+        .filter_map(|layer| layer.downcast::<folding::synth::Synth>())
+        .flat_map(|layer| &layer.zones);
     zones.map(|zone| &*zone.field)
 }
 

@@ -12,8 +12,8 @@ use crate::layers::Layer;
 use crate::layers::folding::atlas::{Area, Atlas, Need, Piece, reach};
 use crate::layers::folding::fold::Fold;
 use crate::layers::folding::model::{PictureLayer, Zone};
-use crate::layers::folding::synth::ZoneSynth;
-use crate::render::{LayerSynth, Synth};
+use crate::layers::folding::{self, synth::ZoneSynth};
+use crate::render::Synth;
 use crate::scene::Scene;
 
 mod data;
@@ -112,9 +112,8 @@ impl<'a> Plan<'a> {
     fn new(scene: &'a Scene, synth: &'a Synth) -> Self {
         let (mut needs, mut zones) = (Vec::new(), Vec::new());
         let mut layer_needs = Vec::new();
-        for (index, (Layer::Picture(model), LayerSynth::Picture(layer))) in
-            scene.layers.iter().zip(&synth.layers).enumerate()
-        {
+        for (index, (Layer::Picture(model), layer)) in scene.layers.iter().zip(&synth.layers).enumerate() {
+            let Some(layer) = layer.downcast::<folding::synth::Synth>() else { continue };
             let area = Area::whole(&layer.picture);
             let picture = layer.picture.clone();
             layer_needs.push((needs.len(), model.name.as_str()));

@@ -5,35 +5,63 @@ use kurbo::{Point, Vec2};
 use super::field::Field;
 use super::synth::{Source, Synth, ZoneSynth};
 use crate::base::pixels::{Rgba, over};
+use crate::layers::parts::moment::Columns;
+use crate::layers::ready::Still;
 
-/// Writes row `y` of the layer at scene time `time` to `out`.
-pub fn row(synth: &Synth, time: f64, y: usize, out: &mut [Rgba]) {
-    synth.picture.row(0, y, out);
-    for zone in &synth.zones {
-        let field = &*zone.field;
-        if (field.y0..field.y0 + field.inside.height()).contains(&y) {
-            zone_row(zone, zone.clock.s(time), y, &mut out[field.x0..field.x0 + field.inside.width()]);
-        }
-    }
+/// A picture layer at one time.
+pub struct Frame<'a> {
+    synth: &'a Synth,
+    /// The place along the jump paths of each zone.
+    s: Vec<f64>,
 }
 
-/// As [`row`] for some of its columns only, each within the picture: equal to what [`row`] writes there.
-pub fn columns(synth: &Synth, time: f64, y: usize, columns: &[usize], out: &mut [Rgba]) {
-    out.iter_mut().zip(columns).for_each(|(out, &x)| *out = synth.picture.texel(x, y));
-    for zone in &synth.zones {
-        let field = &*zone.field;
-        if (field.y0..field.y0 + field.inside.height()).contains(&y) {
-            let s = zone.clock.s(time);
-            let within = field.x0..field.x0 + field.inside.width();
+impl<'a> Frame<'a> {
+    /// The layer at scene time `t`.
+    pub fn new(synth: &'a Synth, t: f64) -> Self {
+        Frame { synth, s: synth.zones.iter().map(|zone| zone.clock.s(t)).collect() }
+    }
+
+    /// The zones that meet row `y`, in order, each with its s.
+    fn zones(&self, y: usize) -> impl Iterator<Item = (&ZoneSynth, f64)> {
+        let meets = move |zone: &ZoneSynth| (zone.field.y0..zone.field.y0 + zone.field.inside.height()).contains(&y);
+        self.synth.zones.iter().zip(self.s.iter().copied()).filter(move |(zone, _)| meets(zone))
+    }
+
+    fn all(&self, y: usize, out: &mut [Rgba]) {
+        self.synth.picture.row(0, y, out);
+        for (zone, s) in self.zones(y) {
+            // A frame may end within the picture.
+            let end = (zone.field.x0 + zone.field.inside.width()).min(out.len());
+            let Some(beneath) = out.get_mut(zone.field.x0..end) else { continue };
+            beneath.iter_mut().enumerate().for_each(|(column, still)| zone_pixel(zone, s, (column, y), still));
+        }
+    }
+
+    fn some(&self, y: usize, columns: &[usize], out: &mut [Rgba]) {
+        out.iter_mut().zip(columns).for_each(|(out, &x)| *out = self.synth.picture.texel(x, y));
+        for (zone, s) in self.zones(y) {
+            let within = zone.field.x0..zone.field.x0 + zone.field.inside.width();
             let covered = out.iter_mut().zip(columns).filter(|(_, x)| within.contains(*x));
-            covered.for_each(|(out, &x)| zone_pixel(zone, s, (x - field.x0, y), out));
+            covered.for_each(|(out, &x)| zone_pixel(zone, s, (x - zone.field.x0, y), out));
         }
     }
 }
 
-/// Shows one zone over what lies beneath, in the part of row `y` that its box covers.
-fn zone_row(zone: &ZoneSynth, s: f64, y: usize, beneath: &mut [Rgba]) {
-    beneath.iter_mut().enumerate().for_each(|(column, still)| zone_pixel(zone, s, (column, y), still));
+impl Still for Frame<'_> {
+    fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
+        let (width, height) = (self.synth.picture.width(), self.synth.picture.height());
+        match columns {
+            _ if y >= height => {}
+            Columns::All => {
+                let own = width.min(out.len());
+                self.all(y, &mut out[..own]);
+            }
+            Columns::Some(columns) => {
+                let own = columns.partition_point(|&x| x < width);
+                self.some(y, &columns[..own], &mut out[..own]);
+            }
+        }
+    }
 }
 
 /// Shows the pixel in column `column` of the zone's box, row `y` of the picture, over what lies beneath.

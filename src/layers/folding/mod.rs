@@ -16,6 +16,7 @@ pub mod model;
 pub mod outline;
 pub mod position;
 pub mod probe;
+pub mod reduce;
 pub mod regions;
 pub mod reread;
 pub mod seam;

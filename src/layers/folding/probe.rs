@@ -5,8 +5,9 @@ use kurbo::{Point, Vec2};
 use super::field::{Inputs, Pixel, Prepared};
 use super::model::{PictureLayer, Zone};
 use super::position::Clock;
-use super::synth::{CENTRE, source};
+use super::synth::source;
 use crate::base::problem::Problem;
+use crate::layers::parts::moment::CENTRE;
 use crate::layers::{Materials, timeline::Wrap};
 
 /// What one pixel of a zone does at one time.

@@ -1,30 +1,37 @@
 //! Where a zone's sampler jumps because time starts anew: at the seam of a loop, and wherever a pass ends before. Jumps
 //! within a position function are meant; these often are not.
 
-use super::model::Zone;
+use super::model::{PictureLayer, Zone};
 use super::position::{Clock, Position};
 use super::tools::Tool;
+use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::layers::timeline::Wrap;
-
-/// How near to a jump it is looked at, in timelines.
-pub const BESIDE: f64 = 1e-7;
 
 /// The least jump in s.
 const LEAST: f64 = 0.01;
 
-/// A jump.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Snap {
-    /// The scene time at which it happens; 1 is the seam.
-    pub time: f64,
-    /// s before and after.
-    pub s: (f64, f64),
-    /// What would mend it, for this zone alone.
-    pub cure: String,
+/// How a layer repeats: the first jump of each zone, and the speeds of those whose passes end as they begin.
+pub fn repeat(layer: &PictureLayer, wrap: Wrap) -> Repeat {
+    let closing = layer.zones.iter().filter(|zone| closes(&zone.position, wrap));
+    let speeds = closing.map(|zone| zone.speed).collect();
+    let round = |s: f64| (s * 1000.0).round() / 1000.0;
+    let snaps = layer.zones.iter().enumerate().filter_map(|(i, zone)| {
+        let (time, (before, after)) = snap(zone, wrap)?;
+        Some(Snap {
+            path: format!("/zones/{i}"),
+            bounds: zone.outline.polygon().bounds(),
+            time,
+            what: format!("s jumps from {} to {}", round(before), round(after)),
+            cure: cure(zone, wrap),
+            needs_time_alone: closes(&zone.position, wrap),
+        })
+    });
+    Repeat { snaps: snaps.collect(), speeds }
 }
 
-/// The first jump of a zone while the timeline is played in a loop; `None` if every pass ends as it begins.
-pub fn snap(zone: &Zone, wrap: Wrap) -> Option<Snap> {
+/// The first jump of a zone while the timeline is played in a loop: its scene time, s before and after. `None` if every
+/// pass ends as it begins.
+fn snap(zone: &Zone, wrap: Wrap) -> Option<(f64, (f64, f64))> {
     let clock = Clock::of(zone, wrap);
     let still = |tool: &Tool| matches!(tool, Tool::StillBorder { .. });
     if wrap == Wrap::Once || zone.speed == 0.0 || zone.motion.iter().all(still) {
@@ -43,8 +50,7 @@ pub fn snap(zone: &Zone, wrap: Wrap) -> Option<Snap> {
         let inside = turn > first.min(last) && turn < first.max(last);
         if inside { jump(time, time - BESIDE, time + BESIDE) } else { None }
     };
-    let (time, s) = seam().or_else(within)?;
-    Some(Snap { time, s, cure: cure(zone, wrap) })
+    seam().or_else(within)
 }
 
 /// Whether every pass of the zone ends as it begins, so that whole passes are all that a loop needs.
@@ -64,17 +70,6 @@ fn cure(zone: &Zone, wrap: Wrap) -> String {
         }
         _ => "take a function that comes back, as cosine, or set the loop to ping-pong or once".into(),
     }
-}
-
-/// The least number of timelines after which all of these zones have made whole passes, where there is one up to a thousand.
-pub fn closing(zones: &[&Zone]) -> Option<u32> {
-    let whole = |speed: f64, n: f64| ((speed * n).round() - speed * n).abs() < 1e-6;
-    (1..=1000).find(|&n| zones.iter().all(|zone| whole(zone.speed, f64::from(n))))
-}
-
-/// Whether more timelines, and nothing else, would close the loop of a zone.
-pub fn needs_time_alone(zone: &Zone, wrap: Wrap) -> bool {
-    closes(&zone.position, wrap)
 }
 
 #[cfg(test)]
@@ -109,18 +104,8 @@ mod tests {
             (odd, Wrap::Repeat, 1.0, 0.0, Some(1.0)),
             (back, Wrap::Repeat, 1.0, 0.6, None),
         ] {
-            let found = snap(&zone(position, speed, shift), wrap).map(|snap| (snap.time * 1e9).round() / 1e9);
+            let found = snap(&zone(position, speed, shift), wrap).map(|(time, _)| (time * 1e9).round() / 1e9);
             assert_eq!(found, time, "{position} {wrap:?} {speed} {shift}");
-        }
-    }
-
-    #[test]
-    fn the_time_in_which_all_periods_close() {
-        for (speeds, n) in
-            [(&[1.5][..], Some(2)), (&[1.5, -0.4], Some(10)), (&[1.0, 2.0], Some(1)), (&[0.123_456], None)]
-        {
-            let zones: Vec<Zone> = speeds.iter().map(|&speed| zone(r#"{"function":"sine"}"#, speed, 0.0)).collect();
-            assert_eq!(closing(&zones.iter().collect::<Vec<_>>()), n, "{speeds:?}");
         }
     }
 }

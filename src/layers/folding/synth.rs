@@ -7,13 +7,18 @@ use kurbo::Vec2;
 
 use super::field::{Field, Inputs, Prepared};
 use super::fold::Fold;
+use super::frame::Frame;
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
 use super::position::Clock;
+use super::reduce;
 use crate::base::budget::Share;
 use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
+use crate::base::reduce::Reduced;
+use crate::layers::parts::moment::Moment;
+use crate::layers::ready::{self, Ready, Still};
 use crate::layers::{Materials, timeline::Wrap};
 
 /// What a frame of a picture layer needs except the time.
@@ -56,11 +61,32 @@ pub struct Source {
     pub over: bool,
 }
 
-/// The centre of a pixel, from its top-left corner.
-pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
+impl Ready for Synth {
+    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
+        Box::new(Frame::new(self, moment.t))
+    }
+
+    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
+        Arc::new(Synth { picture: self.picture.clone(), zones: Vec::new() })
+    }
+
+    fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
+        Arc::new(reduce::layer(self, pictures))
+    }
+
+    fn largest_texture(&self) -> usize {
+        let read = self.zones.iter().map(|zone| &zone.source.picture).chain([&self.picture]);
+        read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
+    }
+
+    fn keep_clear_color(&self, (x, y): (usize, usize), code: &mut [u8; 4]) {
+        let within = x < self.picture.width() && y < self.picture.height();
+        self.picture.keep_clear_color(within.then_some((x, y)), code);
+    }
+}
 
 /// Makes a layer ready to be shown at any time. Fields of `previous` whose inputs are equal are taken over. `place` is
-/// the place in each pixel that is looked at: [`CENTRE`], or another for supersampling.
+/// the place in each pixel that is looked at: its centre, or another for supersampling.
 ///
 /// # Errors
 /// A picture that the layer names is not among the materials; the problem's path is relative to the layer. Or nobody wants
@@ -102,8 +128,8 @@ pub fn synth(
     Ok(Synth { picture, zones })
 }
 
-/// A layer of which parts can be made ready, each without the rest: what one pixel costs, or a band of a large picture.
-pub struct Ready {
+/// A layer of which parts can be made ready, each without the rest.
+pub struct PreparedLayer {
     picture: Arc<Picture>,
     zones: Vec<(ZoneParts, Prepared)>,
 }
@@ -117,7 +143,7 @@ struct ZoneParts {
     inputs: Inputs,
 }
 
-impl Ready {
+impl PreparedLayer {
     /// Makes everything that all parts share.
     ///
     /// # Errors
@@ -133,21 +159,19 @@ impl Ready {
             Ok((ZoneParts { name: zone.name.clone(), index, source, clock: Clock::of(zone, wrap), inputs }, prepared))
         };
         let zones = layer.zones.iter().enumerate().map(ready).collect::<Result<_, _>>()?;
-        Ok(Ready { picture, zones })
+        Ok(PreparedLayer { picture, zones })
     }
+}
 
-    /// Width and height of the layer's picture.
-    pub fn size(&self) -> (usize, usize) {
-        (self.picture.width(), self.picture.height())
-    }
-
-    /// These columns and rows of the layer, ready to be shown; beyond them zones show nothing.
-    ///
-    /// # Errors
-    /// As [`synth`].
-    pub fn part(&self, columns: Range<usize>, rows: Range<usize>, materials: &Materials) -> Result<Synth, Problem> {
+impl ready::Prepared for PreparedLayer {
+    fn part(
+        &self,
+        columns: Range<usize>,
+        rows: Range<usize>,
+        materials: &Materials,
+    ) -> Result<Arc<dyn Ready>, Problem> {
         let within = |range: &Range<usize>, most: usize| range.start.min(most)..range.end.min(most);
-        let (width, height) = self.size();
+        let (width, height) = (self.picture.width(), self.picture.height());
         let zones = self.zones.iter().map(|(zone, prepared)| {
             let made = prepared.field((within(&columns, width), within(&rows, height)), materials);
             let made = made.map_err(|problem| problem.under(&format!("/zones/{}", zone.index)))?;
@@ -162,7 +186,7 @@ impl Ready {
             }))
         });
         let zones = zones.filter_map(Result::transpose).collect::<Result<_, Problem>>()?;
-        Ok(Synth { picture: self.picture.clone(), zones })
+        Ok(Arc::new(Synth { picture: self.picture.clone(), zones }))
     }
 }
 

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use kurbo::Vec2;
 
 use super::model::PictureLayer;
-use super::{frame, probe, synth};
+use super::{frame::Frame, probe, synth};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Grid, Rgba};
+use crate::layers::parts::moment::{CENTRE, Columns};
+use crate::layers::ready::Still;
 use crate::layers::{Materials, timeline::Wrap};
 
 /// A picture whose red tells the column and whose green the row.
@@ -39,9 +41,9 @@ fn zone(jump: &str, more: &str) -> String {
 }
 
 fn shown(layer: &PictureLayer, time: f64, (x, y): (usize, usize)) -> Rgba {
-    let synth = synth::synth(layer, Wrap::Once, &materials(), synth::CENTRE, None).unwrap();
+    let synth = synth::synth(layer, Wrap::Once, &materials(), CENTRE, None).unwrap();
     let mut row = vec![[0.0; 4]; 40];
-    frame::row(&synth, time, y, &mut row);
+    Frame::new(&synth, time).row(y, Columns::All, &mut row);
     row[x]
 }
 
@@ -95,7 +97,7 @@ fn a_probe_tells_what_the_frame_shows() {
 fn unchanged_zones_are_taken_over() {
     let make = |more: &str, before: Option<&synth::Synth>| {
         let both = format!("{},{}", zone("[8,0]", ""), zone("[4,0]", more));
-        synth::synth(&layer(&both), Wrap::Repeat, &materials(), synth::CENTRE, before).unwrap()
+        synth::synth(&layer(&both), Wrap::Repeat, &materials(), CENTRE, before).unwrap()
     };
     let before = make("", None);
     let after = make(r#","feather":3"#, Some(&before));
@@ -111,7 +113,7 @@ fn the_same_bytes_for_any_number_of_threads() {
         "fold":{"rule":"return","regions":[{"kind":"ellipse","center":[22,15],"radii":[6,5]}]}}"#;
     let field = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let synth = || synth::synth(&layer(zone), Wrap::Repeat, &materials(), synth::CENTRE, None).unwrap();
+        let synth = || synth::synth(&layer(zone), Wrap::Repeat, &materials(), CENTRE, None).unwrap();
         pool.install(synth).zones[0].field.clone()
     };
     assert_eq!(field(1), field(5));
@@ -120,7 +122,7 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn a_missing_picture_is_a_problem_with_its_place() {
     let zone = zone("[1,1]", r#","sampler":{"image":"gone"}"#);
-    let problem = synth::synth(&layer(&zone), Wrap::Repeat, &materials(), synth::CENTRE, None).unwrap_err();
+    let problem = synth::synth(&layer(&zone), Wrap::Repeat, &materials(), CENTRE, None).unwrap_err();
     assert_eq!(problem.path, "/zones/0/sampler/image");
 }
 
@@ -130,7 +132,26 @@ fn a_synthesis_that_nobody_wants_ends() {
     for stopped in [false, true] {
         let stop = Some(Arc::new(std::sync::atomic::AtomicBool::new(stopped)));
         let materials = Materials { stop, ..materials() };
-        let made = synth::synth(&layer, Wrap::Once, &materials, synth::CENTRE, None);
+        let made = synth::synth(&layer, Wrap::Once, &materials, CENTRE, None);
         assert_eq!(made.is_err(), stopped);
     }
+}
+
+#[test]
+fn a_frame_may_be_smaller_or_larger_than_the_picture() {
+    let layer = layer(&zone("[8,0]", ""));
+    let synth = synth::synth(&layer, Wrap::Once, &materials(), CENTRE, None).unwrap();
+    let frame = Frame::new(&synth, 0.5);
+    let row = |y: usize, columns: Columns, width: usize| {
+        let mut row = vec![[0.0; 4]; width];
+        frame.row(y, columns, &mut row);
+        row
+    };
+    let whole = row(10, Columns::All, 40);
+    for width in [3, 12, 24] {
+        assert_eq!(row(10, Columns::All, width), whole[..width], "{width}");
+    }
+    assert_eq!(row(10, Columns::All, 44), [&whole[..], &[[0.0; 4]; 4]].concat());
+    assert_eq!(row(10, Columns::Some(&[2, 7, 39, 41]), 4), [whole[2], whole[7], whole[39], [0.0; 4]]);
+    assert_eq!(row(30, Columns::All, 40), [[0.0; 4]; 40]);
 }

@@ -11,9 +11,9 @@ use super::state::State;
 use super::text::Letters;
 use super::{labels, marks};
 use crate::layers::{Layer, folding};
+use crate::render::Synth;
 use crate::render::overlay::{Samplers, View, field_scale, longest, overlay, samplers};
 use crate::render::reduce::reduced;
-use crate::render::{LayerSynth, Synth};
 use crate::scene::Scene;
 
 /// A scene, ready to be drawn.
@@ -32,7 +32,9 @@ impl Show {
     /// A scene on a GPU that holds pictures of at most `most` pixels a side; with it, what is to be said about that.
     pub fn new(scene: Arc<Scene>, synth: Synth, most: usize) -> (Show, Option<String>) {
         let (width, height) = synth.size;
-        let factor = largest_side(&synth).div_ceil(most.max(1)).max(1);
+        let read = synth.layers.iter().map(|layer| layer.largest_texture());
+        let largest = read.chain([width, height]).max().unwrap_or(1);
+        let factor = largest.div_ceil(most.max(1)).max(1);
         let frames = if factor > 1 { reduced(&synth, factor) } else { synth.clone() };
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
         (Show { scene, still: still(&frames), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
@@ -41,7 +43,8 @@ impl Show {
 
 /// The jump vector of the pixel at a place in the picture: that of the topmost zone there.
 pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
-    let zones = synth.layers.iter().rev().flat_map(|LayerSynth::Picture(layer)| layer.zones.iter().rev());
+    let layers = synth.layers.iter().rev().filter_map(|layer| layer.downcast::<folding::synth::Synth>());
+    let zones = layers.flat_map(|layer| layer.zones.iter().rev());
     zones.map(|zone| &zone.field).find_map(|field| {
         let inside = |x: f64, from: usize, n: usize| (x as usize).checked_sub(from).filter(|&i| x >= 0.0 && i < n);
         let i = inside(at.x, field.x0, field.inside.width())?;
@@ -49,15 +52,6 @@ pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
         let [dx, dy] = field.jumps.get(i, j).map(f64::from);
         field.inside.get(i, j).then_some(Vec2::new(dx, dy))
     })
-}
-
-/// The largest side of any picture that a frame reads.
-fn largest_side(synth: &Synth) -> usize {
-    let of_layer = |LayerSynth::Picture(layer): &LayerSynth| {
-        let read = layer.zones.iter().map(|zone| &zone.source.picture).chain([&layer.picture]);
-        read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
-    };
-    synth.layers.iter().map(of_layer).max().unwrap_or(1)
 }
 
 /// What a JSON pointer leads to, by the names of layer and zone: `face/left eye/motion/3`; none for the scene itself.
@@ -143,10 +137,7 @@ impl Cached {
 
 /// The same picture, nothing moving.
 fn still(synth: &Synth) -> Synth {
-    let layers = synth.layers.iter().map(|LayerSynth::Picture(layer)| {
-        LayerSynth::Picture(folding::synth::Synth { picture: layer.picture.clone(), zones: Vec::new() })
-    });
-    Synth { size: synth.size, layers: layers.collect() }
+    Synth { size: synth.size, layers: synth.layers.iter().map(|layer| layer.clone().unmoved()).collect() }
 }
 
 #[cfg(test)]

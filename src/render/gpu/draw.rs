@@ -10,7 +10,7 @@ use crate::base::pixels::Beyond;
 use crate::layers::folding;
 use crate::layers::folding::synth::ZoneSynth;
 use crate::layers::folding::texels::{SHADER, rule_number};
-use crate::render::{LayerSynth, Synth};
+use crate::render::Synth;
 
 /// The format of frames on the device.
 pub const FRAME: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -87,7 +87,7 @@ impl Painter {
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         clear(&mut encoder, &frame.create_view(&Default::default()));
         for (i, layer) in synth.layers.iter().enumerate() {
-            let LayerSynth::Picture(layer) = layer;
+            let Some(layer) = layer.downcast() else { continue };
             if i == 0 {
                 self.layer(device, textures, &mut encoder, &frame, layer, scene_time)?;
             } else {

@@ -5,9 +5,9 @@ use kurbo::{Point, Vec2};
 
 use super::style::wheel;
 use super::{Drawing, Kind, Mark, Samplers, Shape, zone_pointer};
-use crate::layers::folding::field::Field;
 use crate::layers::folding::synth::ZoneSynth;
-use crate::render::{LayerSynth, Synth};
+use crate::layers::folding::{self, field::Field};
+use crate::render::Synth;
 
 /// The longest jump vector of a scene, in pixels.
 pub fn longest(synth: &Synth) -> f64 {
@@ -24,7 +24,8 @@ pub fn field_scale(synth: &Synth, spacing: f64) -> f64 {
 /// Zones and the indices of their layers.
 fn zones(synth: &Synth) -> impl Iterator<Item = (usize, &ZoneSynth)> {
     let layers = synth.layers.iter().enumerate();
-    layers.flat_map(|(i, LayerSynth::Picture(layer))| layer.zones.iter().map(move |zone| (i, zone)))
+    let folding = layers.filter_map(|(i, layer)| Some((i, layer.downcast::<folding::synth::Synth>()?)));
+    folding.flat_map(|(i, layer)| layer.zones.iter().map(move |zone| (i, zone)))
 }
 
 /// One pixel of a field.

@@ -9,8 +9,7 @@ use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
 use crate::base::oklab;
-use crate::layers::folding::field::Field;
-use crate::render::LayerSynth;
+use crate::layers::folding::{self, field::Field};
 use crate::tui::app::State;
 use crate::tui::colour::{self, Depth};
 use crate::tui::numbers::{polar, short};
@@ -82,7 +81,7 @@ fn meets_fold(field: &Field, i: usize) -> bool {
 /// The field of the zone that is shown, and its longest vector.
 fn field(state: &State) -> Option<(&Field, f64)> {
     let (layer, zone) = tree::place(&state.node);
-    let LayerSynth::Picture(synth) = state.seen.synth.as_ref()?.layers.get(layer?)?;
+    let synth = state.seen.synth.as_ref()?.layers.get(layer?)?.downcast::<folding::synth::Synth>()?;
     let found = synth.zones.iter().find(|one| Some(one.index) == zone)?;
     let longest = state.seeing.longest.iter().find(|one| Some(one.0) == layer && Some(one.1) == zone);
     Some((&found.field, longest.map_or(0.0, |one| one.2)))

@@ -1,0 +1,64 @@
+//! Pictures made smaller: the mean of each block of pixels, in linear light.
+
+use std::sync::Arc;
+
+use super::picture::Picture;
+use super::pixels::Rgba;
+
+/// Pictures made smaller, each once.
+#[derive(Debug)]
+pub struct Reduced {
+    /// How many times smaller on each side; at least 1.
+    pub by: usize,
+    made: Vec<(Arc<Picture>, Arc<Picture>)>,
+}
+
+impl Reduced {
+    /// No picture yet.
+    pub fn new(by: usize) -> Self {
+        Reduced { by, made: Vec::new() }
+    }
+
+    /// The picture made smaller; the same one for the same `Arc`.
+    pub fn picture(&mut self, picture: &Arc<Picture>) -> Arc<Picture> {
+        if let Some((_, made)) = self.made.iter().find(|(large, _)| Arc::ptr_eq(large, picture)) {
+            return made.clone();
+        }
+        let made = Arc::new(means(picture, self.by));
+        self.made.push((picture.clone(), made.clone()));
+        made
+    }
+}
+
+/// The mean of every block of `by` x `by` pixels; blocks at the right and bottom edges may be smaller.
+pub fn means(picture: &Picture, by: usize) -> Picture {
+    let (width, height) = (picture.width().div_ceil(by), picture.height().div_ceil(by));
+    let block = |i: usize| {
+        let (x, y) = (i % width * by, i / width * by);
+        let (x1, y1) = ((x + by).min(picture.width()), (y + by).min(picture.height()));
+        let mut sum: Rgba = [0.0; 4];
+        let mut colors = vec![[0.0; 4]; x1 - x];
+        for row in y..y1 {
+            picture.row(x, row, &mut colors);
+            for color in &colors {
+                sum = std::array::from_fn(|c| sum[c] + color[c]);
+            }
+        }
+        sum.map(|s| s / ((x1 - x) * (y1 - y)) as f32)
+    };
+    Picture::from_cells(width, height, (0..width * height).map(block).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_at_the_edges_are_means_of_what_there_is() {
+        let picture = Arc::new(Picture::from_cells(3, 1, [1.0, 3.0, 8.0].map(|v| [v; 4]).to_vec()));
+        let mut reduced = Reduced::new(2);
+        let small = reduced.picture(&picture);
+        assert_eq!((small.texel(0, 0), small.texel(1, 0)), ([2.0; 4], [8.0; 4]));
+        assert!(Arc::ptr_eq(&small, &reduced.picture(&picture)));
+    }
+}

@@ -1,0 +1,4 @@
+//! What crosses the border of a technique: plain data. Names no technique and nothing of what shows or draws.
+
+pub mod moment;
+pub mod repeat;

@@ -1,0 +1,24 @@
+//! When a layer is shown, and which of its pixels.
+
+use kurbo::Vec2;
+
+/// The centre of a pixel, from its top-left corner.
+pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
+
+/// What a frame depends on beside the layers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Scene time, in [0, 1].
+    pub t: f64,
+    /// Width and height of the frame, in pixels.
+    pub size_px: (usize, usize),
+}
+
+/// Which columns of a row are wanted.
+#[derive(Clone, Copy, Debug)]
+pub enum Columns<'a> {
+    /// Every one of the frame.
+    All,
+    /// These, ascending and within the frame.
+    Some(&'a [usize]),
+}
