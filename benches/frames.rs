@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use divan::Bencher;
 use plica::base::picture::Picture;
+use plica::layers::Layer;
 use plica::layers::folding::model::PictureLayer;
+use plica::layers::parts::materials::Materials;
 use plica::layers::timeline::Wrap;
-use plica::layers::{Layer, Materials};
 use plica::render::{cpu, synth};
 use plica::scene::Scene;
 

@@ -4,9 +4,10 @@
 mod scenes;
 
 use divan::Bencher;
+use plica::base::geometry::Xy;
+use plica::layers::Layer;
 use plica::layers::folding::model::PictureLayer;
 use plica::layers::timeline::Timeline;
-use plica::layers::{Layer, Xy};
 use plica::scene::Scene;
 use plica::tui::Offscreen;
 

@@ -4,8 +4,8 @@
 mod scenes;
 
 use divan::Bencher;
-use plica::layers::Materials;
 use plica::layers::folding::field::{Field, Inputs};
+use plica::layers::parts::materials::Materials;
 use plica::layers::parts::moment::CENTRE;
 
 fn main() {

@@ -15,7 +15,7 @@ use plica::base::maths;
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, decode};
 use plica::files;
-use plica::layers::Materials;
+use plica::layers::parts::materials::Materials;
 use plica::render::{self, Synth, cpu, gpu::Gpu};
 use serde_json::{Value, json};
 

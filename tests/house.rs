@@ -29,6 +29,9 @@ const DOORS: &[(&[&str], &[&str])] = &[
 /// A technique's folder: deleting it must break `layers/mod.rs` and no other slice.
 const SLICES: &str = "layers/";
 
+/// What slices and the rest give one another.
+const SHARED: &str = "parts";
+
 const MOST_LINES: usize = 500;
 
 struct Source {
@@ -43,7 +46,8 @@ impl Source {
     }
 
     fn slice(&self) -> Option<&str> {
-        self.path.strip_prefix(SLICES)?.split_once('/').map(|(slice, _)| slice)
+        let slice = self.path.strip_prefix(SLICES)?.split_once('/').map(|(slice, _)| slice);
+        slice.filter(|slice| *slice != SHARED)
     }
 
     /// Every path that the program (not its tests) names, with its line.

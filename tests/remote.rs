@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use plica::files::cache::Cache;
 use plica::files::{Options, materials};
-use plica::layers::Materials;
+use plica::layers::parts::materials::Materials;
 use plica::preview::editor::{Event, Preview};
 use plica::preview::follow::client::Link;
 use plica::preview::remote::address::Address;

@@ -14,6 +14,9 @@ use super::chains::{Chains, Line, Part};
 /// chord, and a path that stays farther away skips all four at once.
 pub const FLATNESS_PX: f64 = 2e-5;
 
+/// A position or vector in image pixels, [x, y], as documents hold it.
+pub type Xy = [f64; 2];
+
 /// A closed polygon, even-odd; the closing side is implied. At least three vertices, all finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {

@@ -1,8 +1,13 @@
 //! How much a file may take, checked before memory is: one table of names, defaults and help, for the checks and for
 //! `--limit NAME=VALUE`.
 
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
 use crate::base::budget::Budget;
 use crate::base::error::{Error, Result};
+use crate::layers::KINDS;
+use crate::layers::technique::Counted;
 
 /// Limits on what is read. The defaults fit every sane file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,10 +22,8 @@ pub struct Limits {
     pub scene: u64,
     /// Depth of a scene's JSON.
     pub depth: u64,
-    /// Anchors of a scene.
-    pub anchors: u64,
-    /// Points of a scene's outlines.
-    pub points: u64,
+    /// What techniques count in a scene, by its name there.
+    pub counted: BTreeMap<&'static str, u64>,
     /// Bytes of an expression.
     pub expression: u64,
     /// Depth of an expression.
@@ -46,20 +49,47 @@ pub struct Limit {
     pub help: &'static str,
     /// What it is unless set.
     pub default: u64,
-    of: fn(&mut Limits) -> &mut u64,
+    of: Of,
+}
+
+/// Where a limit is kept.
+#[derive(Debug)]
+enum Of {
+    Field(fn(&mut Limits) -> &mut u64),
+    Counted,
+}
+
+impl Limit {
+    fn of<'a>(&self, limits: &'a mut Limits) -> &'a mut u64 {
+        match self.of {
+            Of::Field(field) => field(limits),
+            Of::Counted => limits.counted.entry(self.name).or_insert(self.default),
+        }
+    }
 }
 
 const MIB: u64 = 1 << 20;
 
 /// Every limit.
-pub const TABLE: [Limit; 14] = [
+pub static TABLE: LazyLock<Vec<Limit>> = LazyLock::new(|| {
+    let mut counted: Vec<Limit> = Vec::new();
+    for &Counted { name, help, most } in KINDS.iter().flat_map(|kind| kind.counted) {
+        if counted.iter().all(|row| row.name != name) {
+            counted.push(Limit { name, help, default: most, of: Of::Counted });
+        }
+    }
+    SCENE.into_iter().chain(counted).chain(REST).collect()
+});
+
+const SCENE: [Limit; 5] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
     limit("memory", "bytes that what is read and made may take, in sum", 4096 * MIB, |l| &mut l.memory),
     limit("scene", "bytes of a scene file", 64 * MIB, |l| &mut l.scene),
     limit("depth", "depth of a scene's JSON", 64, |l| &mut l.depth),
-    limit("anchors", "anchors of a scene", 1_000_000, |l| &mut l.anchors),
-    limit("points", "points of a scene's outlines", 1_000_000, |l| &mut l.points),
+];
+
+const REST: [Limit; 7] = [
     limit("expression", "bytes of an expression", 4096, |l| &mut l.expression),
     limit("expression-depth", "depth of an expression", 64, |l| &mut l.expression_depth),
     limit("frames", "frames of an animation", 100_000, |l| &mut l.frames),
@@ -70,7 +100,7 @@ pub const TABLE: [Limit; 14] = [
 ];
 
 const fn limit(name: &'static str, help: &'static str, default: u64, of: fn(&mut Limits) -> &mut u64) -> Limit {
-    Limit { name, help, default, of }
+    Limit { name, help, default, of: Of::Field(of) }
 }
 
 impl Default for Limits {
@@ -81,8 +111,7 @@ impl Default for Limits {
             memory: 0,
             scene: 0,
             depth: 0,
-            anchors: 0,
-            points: 0,
+            counted: BTreeMap::new(),
             expression: 0,
             expression_depth: 0,
             frames: 0,
@@ -91,8 +120,8 @@ impl Default for Limits {
             texture: 0,
             cache: 0,
         };
-        for row in &TABLE {
-            *(row.of)(&mut limits) = row.default;
+        for row in &*TABLE {
+            *row.of(&mut limits) = row.default;
         }
         limits
     }
@@ -108,7 +137,7 @@ impl Limits {
             .split_once('=')
             .ok_or_else(|| Error::Usage(format!("--limit {setting}: write it as NAME=VALUE, as pixels=1000000")))?;
         let row = TABLE.iter().find(|row| row.name == name).ok_or_else(|| unknown(name))?;
-        *(row.of)(self) = parse(value).ok_or_else(|| {
+        *row.of(self) = parse(value).ok_or_else(|| {
             Error::Usage(format!("--limit {setting}: a whole number was expected, as 1000000 or 64M, not \"{value}\""))
         })?;
         Ok(())
@@ -129,10 +158,15 @@ impl Limits {
         Budget::new(self.memory)
     }
 
+    /// Items that a list may get at once: as many as a scene may have of anything that is counted.
+    pub fn items(&self) -> u64 {
+        self.counted.values().copied().max().unwrap_or(u64::MAX)
+    }
+
     /// What sets these limits over the defaults, as `NAME=VALUE`.
     pub fn settings(&self) -> Vec<String> {
         let mut own = self.clone();
-        let values = TABLE.iter().map(|row| (row, *(row.of)(&mut own)));
+        let values = TABLE.iter().map(|row| (row, *row.of(&mut own)));
         values
             .filter(|(row, value)| *value != row.default)
             .map(|(row, value)| format!("{}={value}", row.name))
@@ -161,11 +195,11 @@ mod tests {
 
     #[test]
     fn every_limit_can_be_set_alone() {
-        for row in &TABLE {
+        for row in &*TABLE {
             let mut limits = Limits::from_settings(&[format!("{}=7", row.name)]).unwrap();
-            assert_eq!(*(row.of)(&mut limits), 7);
+            assert_eq!(*row.of(&mut limits), 7);
             assert_eq!(limits.settings(), [format!("{}=7", row.name)]);
-            *(row.of)(&mut limits) = row.default;
+            *row.of(&mut limits) = row.default;
             assert_eq!(limits, Limits::default(), "{}: two rows share a field", row.name);
             assert!(row.default > 0 && !row.help.is_empty());
         }

@@ -16,8 +16,9 @@ use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
+use crate::layers::Layer;
 use crate::layers::folding::{mask, tools::Tool};
-use crate::layers::{Layer, Materials};
+use crate::layers::parts::materials::Materials;
 use crate::scene::{Scene, check};
 
 /// What was loaded before, by path; for as long as a scene names it.
@@ -319,7 +320,7 @@ fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorFiel
 fn lay_masks(scene: &Scene, materials: &mut Materials, known: &mut Vec<Masked>, problems: &mut Vec<Problem>) {
     let mut kept: Vec<Masked> = Vec::new();
     for (l, layer) in scene.layers.iter().enumerate() {
-        for (at, name, own_name) in layer.masks() {
+        for (at, name, own_name) in layer.technique().masks() {
             let (Some(mask), Some(own)) = (materials.pictures.get(name), materials.pictures.get(own_name)) else {
                 continue;
             };

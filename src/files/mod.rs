@@ -50,8 +50,8 @@ pub struct Options {
 impl Options {
     /// What they mean for the check of a scene.
     pub fn rules(&self) -> Rules {
-        let Limits { anchors, points, frames, memory, .. } = self.limits;
-        Rules { allow_outside: self.allow_outside, anchors, points, frames, memory }
+        let Limits { frames, memory, ref counted, .. } = self.limits;
+        Rules { allow_outside: self.allow_outside, counted: counted.clone(), frames, memory }
     }
 
     /// The command line that means the same, for another process that opens the same scene.

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::Materials;
+use super::parts::materials::Materials;
 use super::parts::moment::{Columns, Moment};
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;

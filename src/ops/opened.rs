@@ -6,7 +6,7 @@ use super::{Context, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::{self, materials};
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth, bands::Bands};
 use crate::scene::Document;
 

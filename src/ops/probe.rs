@@ -56,11 +56,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 }
 
 fn find_layer<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a PictureLayer> {
-    let found = scene.layers.iter().find(|layer| name.is_none_or(|name| layer.name() == name));
+    let found = scene.layers.iter().find(|layer| name.is_none_or(|name| layer.technique().name() == name));
     match found {
         Some(Layer::Picture(layer)) => Ok(layer),
         None => {
-            let names: Vec<&str> = scene.layers.iter().map(Layer::name).collect();
+            let names: Vec<&str> = scene.layers.iter().map(|layer| layer.technique().name()).collect();
             let wanted = name.unwrap_or("the first");
             Err(Error::at("--layer", format!("there is no layer {wanted}; there are: {}", names.join(", "))))
         }

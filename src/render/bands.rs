@@ -9,9 +9,10 @@ use kurbo::Vec2;
 use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, encode};
 use crate::base::problem::Problem;
+use crate::layers::Layer;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
 use crate::layers::ready::Prepared;
-use crate::layers::{Layer, Materials};
 use crate::scene::Scene;
 
 /// Pixels of a band: enough for all cores, and small beside the picture.
@@ -34,7 +35,7 @@ impl<'a> Bands<'a> {
         let places = if n == 1 { vec![CENTRE] } else { super::places(n).collect() };
         let layers = |place: Vec2| {
             let prepare = |(i, layer): (usize, &Layer)| {
-                let prepared = layer.prepare(scene.timeline.wrap, materials, place);
+                let prepared = layer.technique().prepare(scene.timeline.wrap, materials, place);
                 prepared.map_err(|problem| problem.under(&format!("/layers/{i}")))
             };
             scene.layers.iter().enumerate().map(prepare).collect::<Result<Vec<_>, _>>()

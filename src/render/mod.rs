@@ -5,9 +5,10 @@ use std::sync::Arc;
 use kurbo::Vec2;
 
 use crate::base::problem::Problem;
+use crate::layers::Layer;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::{CENTRE, Moment};
 use crate::layers::ready::Ready;
-use crate::layers::{Layer, Materials};
 use crate::scene::Scene;
 
 pub mod bands;
@@ -65,7 +66,7 @@ fn no_layers() -> Problem {
 fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<&Synth>) -> Result<Synth, Problem> {
     let ready = |(i, layer): (usize, &Layer)| {
         let before = previous.and_then(|synth| synth.layers.get(i)).map(|before| &**before);
-        let ready = layer.synth(scene.timeline.wrap, materials, place, before);
+        let ready = layer.technique().synth(scene.timeline.wrap, materials, place, before);
         ready.map_err(|problem| problem.under(&format!("/layers/{i}")))
     };
     let layers = scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()?;
@@ -77,7 +78,7 @@ fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<
 
 /// Width and height of a frame: those of the first picture that a layer gives it, else 1280 x 720.
 pub fn frame_size(scene: &Scene, materials: &Materials) -> (usize, usize) {
-    let named = scene.layers.iter().find_map(Layer::frame_of);
+    let named = scene.layers.iter().find_map(|layer| layer.technique().frame_of());
     let picture = named.and_then(|name| materials.pictures.get(name));
     picture.map_or((1280, 720), |picture| (picture.width(), picture.height()))
 }

@@ -111,7 +111,7 @@ mod tests {
 
     use super::*;
     use crate::base::picture::Picture;
-    use crate::layers::Materials;
+    use crate::layers::parts::materials::Materials;
     use crate::render::synth;
 
     fn moving() -> Synth {

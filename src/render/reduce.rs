@@ -19,7 +19,7 @@ mod tests {
     use crate::base::picture::Picture;
     use crate::base::pixels::Rgba;
     use crate::base::reduce::means;
-    use crate::layers::Materials;
+    use crate::layers::parts::materials::Materials;
     use crate::render::{cpu, synth};
 
     #[test]

@@ -21,7 +21,7 @@ pub fn warnings<S: Borrow<Synth>>(scene: &Scene, synth: impl FnOnce() -> Option<
     if scene.timeline.frames() < 2 {
         return Vec::new();
     }
-    let layers: Vec<Repeat> = scene.layers.iter().map(|layer| layer.repeat(scene.timeline.wrap)).collect();
+    let layers: Vec<Repeat> = scene.layers.iter().map(|layer| layer.technique().repeat(scene.timeline.wrap)).collect();
     if layers.iter().all(|layer| layer.snaps.is_empty()) {
         return Vec::new();
     }
@@ -80,7 +80,7 @@ mod tests {
 
     use super::*;
     use crate::base::pixels::Frame;
-    use crate::layers::Materials;
+    use crate::layers::parts::materials::Materials;
 
     fn found(zone: serde_json::Value, wrap: &str) -> Vec<Problem> {
         let mut whole = json!({

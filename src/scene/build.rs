@@ -7,7 +7,8 @@ use serde_json::{Map, Value, json};
 use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
 use super::{Document, field, pointer, shape};
-use crate::layers::{self, Layer, Turned};
+use crate::layers::KINDS;
+use crate::layers::technique::{Kind, Technique, Turned};
 
 impl Edit {
     /// Writes `value` at `path`. Missing parents are made from their defaults; `null` takes away what need not be written,
@@ -71,7 +72,7 @@ impl Edit {
     pub fn rename_image(document: &Document, from: &str, to: &str) -> Edit {
         let layers = document.scene().layers.iter().enumerate();
         let named = layers.flat_map(|(i, layer)| {
-            let named = layer.images().into_iter().filter(|(_, image)| *image == from);
+            let named = layer.technique().images().into_iter().filter(|(_, image)| *image == from);
             named.map(move |(path, _)| Edit::replace(&format!("/layers/{i}{path}"), to.into()))
         });
         let images = |name| pointer::join("/images", name);
@@ -159,14 +160,15 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     let index = index.min(items.len());
     let (holder, name) = pointer::split(list)?;
     let variant = variant_of(Place::of(json, holder)?);
-    if let Some(between) = layers::item(variant, &name, items, index) {
+    let kind = Fresh::layer(document, list).map(|(layer, _)| layer.kind());
+    if let Some(between) = kind.and_then(|kind| (kind.item)(variant, &name, items, index)) {
         return Some(between);
     }
     let mut value = Fresh::at(document, &pointer::join(list, index)).value(item);
     if value.get("name").is_some() {
         value["name"] = unique(name.trim_end_matches('s'), items).into();
     }
-    if let Some((field, start)) = layers::beyond(&name) {
+    if let Some((field, start)) = kind.and_then(|kind| (kind.beyond)(variant, &name)) {
         value[field] = start;
     }
     Some((index, value))
@@ -193,23 +195,40 @@ pub fn unique_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
 }
 
 /// Makes new values from the schema, at one place of a document.
-struct Fresh<'a> {
+#[derive(Clone, Copy)]
+pub(super) struct Fresh<'a> {
     bounds: Rect,
     image: Option<&'a String>,
+    /// The technique of the layer that they belong to.
+    kind: Option<&'static Kind>,
+    /// Whether they are layers themselves, whose variant tells the technique.
+    layers: bool,
 }
 
 impl<'a> Fresh<'a> {
     fn at(document: &'a Document, path: &str) -> Self {
-        let bounds = Fresh::layer(document, path).map(|(layer, rest)| layer.bounds(&rest));
+        let layer = Fresh::layer(document, path);
+        let bounds = layer.as_ref().map(|(layer, rest)| layer.bounds(rest));
         let bounds = bounds.unwrap_or(Rect::new(0.0, 0.0, 100.0, 100.0));
-        Fresh { bounds, image: document.scene().images.keys().next() }
+        let inside = layer.filter(|(_, rest)| !rest.is_empty());
+        let layers = inside.is_none() && (path == "/layers" || path.starts_with("/layers/"));
+        let kind = inside.map(|(layer, _)| layer.kind());
+        Fresh { bounds, image: document.scene().images.keys().next(), kind, layers }
     }
 
     /// The layer that a place is in, and the place relative to it.
-    fn layer(document: &'a Document, path: &str) -> Option<(&'a Layer, String)> {
+    pub(super) fn layer(document: &'a Document, path: &str) -> Option<(&'a dyn Technique, String)> {
         let (layer, rest) = path.strip_prefix("/layers/")?.split_once('/').unwrap_or((&path[8..], ""));
         let layer = document.scene().layers.get(layer.parse::<usize>().ok()?)?;
-        Some((layer, if rest.is_empty() { String::new() } else { format!("/{rest}") }))
+        Some((layer.technique(), if rest.is_empty() { String::new() } else { format!("/{rest}") }))
+    }
+
+    /// What makes the fields of a new `variant`.
+    fn within(&self, variant: &str) -> Self {
+        match self.layers {
+            true => Fresh { kind: KINDS.iter().find(|kind| kind.name == variant).copied(), layers: false, ..*self },
+            false => *self,
+        }
     }
 
     /// A new value of a shape: what must be written, and no more.
@@ -227,7 +246,7 @@ impl<'a> Fresh<'a> {
             Body::Object => self.object(shape, ""),
             Body::Tagged(_) => {
                 let first = shape.choices().next().and_then(|(name, _)| Some((name, shape.variant(name)?)));
-                first.map_or(Value::Null, |(name, variant)| self.object(variant, name))
+                first.map_or(Value::Null, |(name, variant)| self.within(name).object(variant, name))
             }
         }
     }
@@ -236,7 +255,8 @@ impl<'a> Fresh<'a> {
     fn object(&self, shape: Shape, variant: &str) -> Value {
         let required = shape.required().filter_map(|name| {
             let field = shape.property(None, name)?;
-            let start = shape.constant(name).cloned().or_else(|| layers::start(variant, name, self.bounds));
+            let start = || (self.kind?.start)(variant, name, self.bounds);
+            let start = shape.constant(name).cloned().or_else(start);
             Some((name.to_owned(), start.unwrap_or_else(|| self.value(field))))
         });
         Value::Object(required.collect())
@@ -244,7 +264,7 @@ impl<'a> Fresh<'a> {
 
     /// `variant` made out of another one: what both have stays, where it may.
     fn converted(&self, variant: Shape, name: &str, old: Option<&Value>) -> Value {
-        let fresh = self.object(variant, name);
+        let fresh = self.within(name).object(variant, name);
         let mut map = Map::new();
         for name in variant.fields().into_iter().flat_map(Map::keys) {
             let kept = old.and_then(|old| old.get(name)).filter(|_| variant.constant(name).is_none());

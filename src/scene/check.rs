@@ -1,6 +1,7 @@
 //! Everything that can be said about a scene before it is synthesised: shape first (the schema), then names, references
 //! and what each technique says about its own layers. Facts about pictures come in as values.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Deserialize;
@@ -10,20 +11,20 @@ use super::{Scene, pointer, shape};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity, nearest, quoted};
-use crate::layers::{Checked, Materials, check as rules};
+use crate::layers::parts::materials::Materials;
+use crate::layers::technique::{Checked, Technique};
+use crate::layers::{KINDS, check as rules};
 
 /// So many unknown references of a layer are listed.
 const MAX_REFERENCES: usize = 100;
 
 /// What a person allows a scene to ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rules {
     /// Whether paths may leave the scene's folder.
     pub allow_outside: bool,
-    /// Anchors of the scene.
-    pub anchors: u64,
-    /// Points of its outlines, once they are flattened.
-    pub points: u64,
+    /// How many of each kind of thing that techniques count the scene may have; what is not listed has no limit.
+    pub counted: BTreeMap<&'static str, u64>,
     /// Frames of its timeline.
     pub frames: u64,
     /// Bytes of memory for the document, and for whatever one place of it asks for.
@@ -32,13 +33,13 @@ pub struct Rules {
 
 impl Rules {
     /// For a document that was checked before.
-    pub const NONE: Rules =
-        Rules { allow_outside: true, anchors: u64::MAX, points: u64::MAX, frames: u64::MAX, memory: u64::MAX };
+    pub const NONE: Rules = Rules { allow_outside: true, counted: BTreeMap::new(), frames: u64::MAX, memory: u64::MAX };
 }
 
 impl Default for Rules {
     fn default() -> Self {
-        Rules { allow_outside: false, anchors: 1_000_000, points: 1_000_000, frames: 100_000, memory: 4 << 30 }
+        let counted = KINDS.iter().flat_map(|kind| kind.counted).map(|row| (row.name, row.most)).collect();
+        Rules { allow_outside: false, counted, frames: 100_000, memory: 4 << 30 }
     }
 }
 
@@ -97,11 +98,12 @@ impl Scene {
 
 /// Checks a scene whose shape is right, and what is new in it since `before`.
 fn check(scene: Scene, before: Option<&Read>, rules: &Rules) -> Result<Read, Vec<Problem>> {
-    let before = |i: usize| before.and_then(|before| Some((before.scene.layers.get(i)?, before.layers.get(i)?)));
+    let before =
+        |i: usize| before.and_then(|before| Some((before.scene.layers.get(i)?.technique(), before.layers.get(i)?)));
     // What asks for too much is not even looked at more closely.
     let over = counts(&scene, rules);
     let layers = scene.layers.iter().enumerate().filter(|_| over.is_empty());
-    let layers: Vec<Checked> = layers.map(|(i, layer)| layer.check(before(i))).collect();
+    let layers: Vec<Checked> = layers.map(|(i, layer)| layer.technique().check(before(i))).collect();
     let warnings = problems(&scene, over, &layers, rules);
     if warnings.iter().any(|problem| problem.severity == Severity::Error) {
         return Err(warnings);
@@ -113,7 +115,9 @@ fn check(scene: Scene, before: Option<&Read>, rules: &Rules) -> Result<Read, Vec
 fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules) -> Vec<Problem> {
     let mut problems = over;
     for (i, (layer, checked)) in scene.layers.iter().zip(layers).enumerate() {
-        problems.extend(layer.problems(checked).into_iter().map(|problem| problem.under(&format!("/layers/{i}"))));
+        problems.extend(
+            layer.technique().problems(checked).into_iter().map(|problem| problem.under(&format!("/layers/{i}"))),
+        );
     }
     problems.extend(scene.images.keys().filter_map(|name| rules::plain_text(name, &pointer::join("/images", name))));
     if scene.layers.is_empty() {
@@ -133,18 +137,19 @@ pub fn check_materials(scene: &Scene, materials: &Materials) -> Vec<Problem> {
     below_layers(scene, |layer| layer.check_materials(materials))
 }
 
-fn below_layers(scene: &Scene, check: impl Fn(&crate::layers::Layer) -> Vec<Problem>) -> Vec<Problem> {
+fn below_layers(scene: &Scene, check: impl Fn(&dyn Technique) -> Vec<Problem>) -> Vec<Problem> {
     let layers = scene.layers.iter().enumerate();
-    let below = layers.map(|(i, layer)| (format!("/layers/{i}"), check(layer)));
+    let below = layers.map(|(i, layer)| (format!("/layers/{i}"), check(layer.technique())));
     below.flat_map(|(prefix, problems)| problems.into_iter().map(move |problem| problem.under(&prefix))).collect()
 }
 
 /// The first place of each kind where the scene asks for more than is allowed.
 fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
-    let mut sums = [("anchors", rules.anchors, 0.0, None), ("points", rules.points, 0.0, None)];
+    let mut sums: BTreeMap<&str, (u64, f64, Option<String>)> =
+        rules.counted.iter().map(|(what, most)| (*what, (*most, 0.0, None))).collect();
     for (i, layer) in scene.layers.iter().enumerate() {
-        layer.counts(&mut |count| {
-            for (_, most, sum, over) in sums.iter_mut().filter(|(what, ..)| *what == count.what) {
+        layer.technique().counts(&mut |count| {
+            if let Some((most, sum, over)) = sums.get_mut(count.what) {
                 *sum += count.count;
                 if *sum > *most as f64 && over.is_none() {
                     *over = Some(format!("/layers/{i}{}", (count.path)()));
@@ -152,11 +157,12 @@ fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
             }
         });
     }
-    let over = sums.into_iter().filter_map(|(what, most, _, over)| Some(too_many(over?, what, most)));
+    let over = sums.into_iter().filter_map(|(what, (most, _, over))| Some(too_many(over?, what, most)));
     let mut problems: Vec<Problem> = over.collect();
     let budget = Budget::new(rules.memory);
     for (i, layer) in scene.layers.iter().enumerate() {
-        let short = layer.memory().into_iter().filter_map(|(path, bytes)| Some((path, budget.try_take(bytes).err()?)));
+        let memory = layer.technique().memory().into_iter();
+        let short = memory.filter_map(|(path, bytes)| Some((path, budget.try_take(bytes).err()?)));
         problems.extend(short.map(|(path, short)| short.problem(format!("/layers/{i}{path}"))));
     }
     if scene.timeline.frames() > rules.frames {
@@ -172,15 +178,16 @@ fn too_many(path: String, what: &str, most: u64) -> Problem {
 
 fn names(scene: &Scene) -> Vec<Problem> {
     let layers = scene.layers.iter().enumerate();
-    rules::names(layers.map(|(i, layer)| (format!("/layers/{i}/name"), layer.name())))
+    rules::names(layers.map(|(i, layer)| (format!("/layers/{i}/name"), layer.technique().name())))
 }
 
 /// Paths of files, by their looks.
 fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     let images = scene.images.iter().map(|(name, image)| (pointer::join("/images", name) + "/path", &*image.path));
     let layers = scene.layers.iter().enumerate();
-    let files = layers
-        .flat_map(|(i, layer)| layer.files().into_iter().map(move |(path, file)| (format!("/layers/{i}{path}"), file)));
+    let files = layers.flat_map(|(i, layer)| {
+        layer.technique().files().into_iter().map(move |(path, file)| (format!("/layers/{i}{path}"), file))
+    });
     images.chain(files).filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside)).collect()
 }
 

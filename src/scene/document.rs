@@ -11,7 +11,7 @@ use super::{Scene, VERSION, check, json, migrate};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
-use crate::layers;
+use crate::layers::KINDS;
 
 /// A scene as written and as meant. A clone shares both.
 #[derive(Clone, Debug)]
@@ -48,21 +48,15 @@ impl Document {
         Ok(Document { json: Arc::new(json), read, rules })
     }
 
-    /// A scene of pictures, (name, path, width, height) each: a layer each, with one zone that covers it. Names are
-    /// unique.
+    /// A scene of pictures, (name, path, width, height) each: a layer each, as the first technique that begins with a
+    /// picture has it. Names are unique.
     pub fn new(pictures: &[(&str, &str, usize, usize)]) -> Result<Document, Vec<Problem>> {
+        let template = KINDS.iter().find_map(|kind| kind.template);
         let images: serde_json::Map<_, _> =
             pictures.iter().map(|(name, path, ..)| (name.to_string(), json!({ "path": path }))).collect();
         let layers: Vec<_> = pictures
             .iter()
-            .map(|(name, _, width, height)| {
-                let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": width, "height": height });
-                let mut zone = json!({ "name": "all", "outline": outline });
-                if let Some((field, start)) = layers::beyond("zones") {
-                    zone[field] = start;
-                }
-                json!({ "kind": "picture", "name": name, "image": name, "zones": [zone] })
-            })
+            .map(|&(name, _, width, height)| template.map(|template| template(name, (width, height))))
             .collect();
         Document::from_json(json!({ "plica": VERSION, "images": images, "layers": layers }))
     }
@@ -117,6 +111,6 @@ impl Document {
             let problem = Problem::error("/plica", "the version of the format is not for editing");
             return Err(vec![problem.hint("a newer plica brings a scene to its own version by itself")]);
         }
-        Ok(Some((Document { json: Arc::new(json), read, rules: self.rules }, inverse)))
+        Ok(Some((Document { json: Arc::new(json), read, rules: self.rules.clone() }, inverse)))
     }
 }

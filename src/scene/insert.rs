@@ -5,12 +5,12 @@ use std::collections::HashSet;
 
 use serde_json::{Map, Value};
 
-use super::build::{unique_name, variant_of, write};
+use super::build::{Fresh, unique_name, variant_of, write};
 use super::edit::Edit;
 use super::schema::{Body, Place};
 use super::{Document, field, pointer, shape};
 use crate::base::problem::Problem;
-use crate::layers;
+use crate::layers::technique::Kind;
 
 /// More items than this are written with their list as a whole: one operation, however many there are.
 const ONE_BY_ONE: usize = 100;
@@ -34,9 +34,10 @@ impl Edit {
         let (holder, name) = pointer::split(list)?;
         let variant = variant_of(Place::of(document.json(), holder)?);
         let (index, items) = (index.min(old.len()), named_apart(old, items));
-        if let Some(key) = layers::ascending(variant, &name) {
+        let kind = Fresh::layer(document, list).map(|(layer, _)| layer.kind());
+        if let Some((kind, key)) = kind.and_then(|kind| Some((kind, (kind.ascending)(variant, &name)?))) {
             let placed = match items.as_slice() {
-                [one] => placed_alone(variant, &name, key, old, one, index)?,
+                [one] => placed_alone(kind, (variant, &name), key, old, one, index)?,
                 _ => placed(key, old, items)?,
             };
             return Some((write(document, list, placed.0.into()), pointer::join(list, placed.1)));
@@ -89,8 +90,8 @@ fn key_of(item: &Value, key: &str) -> Option<f64> {
 
 /// One item in an ascending list: at its place, or where that is taken half way to the next, as a copy goes.
 fn placed_alone(
-    variant: &str,
-    list: &str,
+    kind: &Kind,
+    (variant, list): (&str, &str),
     key: &str,
     old: &[Value],
     item: &Value,
@@ -99,7 +100,7 @@ fn placed_alone(
     let mut to = old.partition_point(|one| key_of(one, key) < key_of(item, key));
     let mut item = item.clone();
     if old.get(to).is_some_and(|one| key_of(one, key) == key_of(&item, key)) {
-        let (near, between) = layers::item(variant, list, old, index)?;
+        let (near, between) = (kind.item)(variant, list, old, index)?;
         (*item.pointer_mut(key)?, to) = (between.pointer(key)?.clone(), near);
     }
     let mut all = old.to_vec();

@@ -448,7 +448,7 @@ fn begin_log(door: &Door, (width, height): (u16, u16), sender: mpsc::Sender<Even
 
 /// The size of the first layer's picture, from its header.
 fn picture_size(state: &State) -> Option<(usize, usize)> {
-    let crate::layers::Layer::Picture(layer) = state.document().scene().layers.first()?;
+    let image = state.document().scene().layers.first()?.technique().frame_of()?;
     let (sizes, _) = files::materials::sizes(state.door.path(), state.document().scene(), state.door.options());
-    sizes.get(&layer.image).copied()
+    sizes.get(image).copied()
 }

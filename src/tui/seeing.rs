@@ -11,11 +11,12 @@ use super::app::{Mode, State};
 use super::graphics::{Graphics, Marks, Protocol, Shown, Wanted};
 use super::{place, sight, tree, view};
 use crate::base::pixels::encode;
+use crate::layers::Layer;
 use crate::layers::folding::{
     self,
     probe::{Probe, probe},
 };
-use crate::layers::{Layer, Materials};
+use crate::layers::parts::materials::Materials;
 use crate::render::overlay::View;
 use crate::render::part::Part;
 use crate::render::{Synth, cpu};

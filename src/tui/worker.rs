@@ -12,7 +12,7 @@ use crate::base::error::Error;
 use crate::base::fault;
 use crate::base::problem::Severity;
 use crate::files::{self, temporary};
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use crate::ops;
 use crate::render::{self, Synth};
 use crate::scene::Scene;

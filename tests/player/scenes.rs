@@ -5,7 +5,7 @@ use std::sync::Arc;
 use plica::base::maths::sin;
 use plica::base::picture::Picture;
 use plica::base::pixels::Frame;
-use plica::layers::Materials;
+use plica::layers::parts::materials::Materials;
 use plica::scene::Scene;
 use serde_json::{Value, json};
 

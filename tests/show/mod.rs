@@ -7,8 +7,9 @@ use kurbo::Point;
 use plica::base::geometry::Polygon;
 use plica::base::pixels::Frame;
 use plica::files;
+use plica::layers::Layer;
 use plica::layers::folding::{self, model::PictureLayer};
-use plica::layers::{Layer, Materials};
+use plica::layers::parts::materials::Materials;
 use plica::render;
 use plica::scene::Document;
 

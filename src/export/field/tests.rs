@@ -1,7 +1,7 @@
 //! Plots and tables of a field that is known in every pixel.
 
 use super::*;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use crate::render;
 
 fn scene() -> (Scene, Synth) {

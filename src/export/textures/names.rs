@@ -32,7 +32,7 @@ impl Names {
         let several = scene.layers.len() > 1;
         let stems = scene.layers.iter().flat_map(|layer| {
             let Layer::Picture(picture) = layer;
-            picture.zones.iter().map(move |zone| stem(several.then_some(layer.name()), &zone.name))
+            picture.zones.iter().map(move |zone| stem(several.then_some(&*picture.name), &zone.name))
         });
         let extension = depth.extension();
         let fixed = vec![MANIFEST.to_owned(), COLOUR.to_owned(), LIGHT.to_owned(), format!("function.{extension}")];

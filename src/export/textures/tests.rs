@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::*;
 use crate::base::pixels::Frame;
 use crate::files::outputs::Guard;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use crate::render;
 
 fn materials() -> Materials {

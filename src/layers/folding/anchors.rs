@@ -10,7 +10,7 @@ use super::tools::{CurveFrame, Distribution, JumpAlong, LassoVertex, Tool};
 use crate::base::geometry::Polygon;
 use crate::base::maths;
 use crate::base::pixels::Grid;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 
 /// A place whose jump vector is given.
 #[derive(Clone, Copy, Debug, PartialEq)]

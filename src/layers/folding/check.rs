@@ -13,7 +13,9 @@ use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Problem, quoted};
-use crate::layers::{Checked, Count, Materials, check as rules};
+use crate::layers::check as rules;
+use crate::layers::parts::materials::Materials;
+use crate::layers::technique::{Checked, Count};
 
 /// In zones with more anchors than this, coincident ones are not looked for.
 const MAX_COMPARED: f64 = 20_000.0;

@@ -19,7 +19,7 @@ use crate::base::geometry::Polygon;
 use crate::base::maths::smoothstep;
 use crate::base::pixels::Grid;
 use crate::base::problem::Problem;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 
 /// The pixels of a zone: membership, jump vectors, thresholds. Covers the outline's bounding box within the picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -27,3 +27,105 @@ pub mod tools;
 
 #[cfg(test)]
 mod tests;
+
+use std::any::Any;
+use std::sync::Arc;
+
+use kurbo::{Rect, Vec2};
+use serde_json::Value;
+
+use self::model::PictureLayer;
+use super::parts::materials::Materials;
+use super::parts::repeat::Repeat;
+use super::ready::{Prepared, Ready};
+use super::technique::{Checked, Count, Counted, Kind, Technique, Turned};
+use super::timeline::Wrap;
+use crate::base::problem::Problem;
+
+/// What is known of folding without a layer of it.
+pub static KIND: Kind = Kind {
+    name: "picture",
+    counted: &[
+        Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },
+        Counted { name: "points", help: "points of a scene's outlines", most: 1_000_000 },
+    ],
+    template: Some(starts::template),
+    start: starts::start,
+    beyond: starts::beyond,
+    ascending: starts::ascending,
+    item: starts::item,
+};
+
+impl Technique for PictureLayer {
+    fn kind(&self) -> &'static Kind {
+        &KIND
+    }
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, before: Option<(&dyn Technique, &Checked)>) -> Checked {
+        let before = before.and_then(|(before, checked)| Some(((before as &dyn Any).downcast_ref()?, checked)));
+        check::check(self, before)
+    }
+
+    fn problems(&self, checked: &Checked) -> Vec<Problem> {
+        check::problems(checked)
+    }
+
+    fn counts(&self, each: &mut dyn FnMut(Count)) {
+        check::counts(self, each);
+    }
+
+    fn memory(&self) -> Vec<(String, u64)> {
+        check::memory(self)
+    }
+
+    fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
+        check::check_materials(self, materials)
+    }
+
+    fn masks(&self) -> Vec<(String, &str, &str)> {
+        check::masks(self)
+    }
+
+    fn images(&self) -> Vec<(String, &str)> {
+        check::images(self)
+    }
+
+    fn files(&self) -> Vec<(String, &str)> {
+        check::files(self)
+    }
+
+    fn frame_of(&self) -> Option<&str> {
+        Some(&self.image)
+    }
+
+    fn turned(&self, path: &str, old: &Value, to: &str) -> Option<Turned> {
+        kinds::turned(self, path, old, to)
+    }
+
+    fn bounds(&self, path: &str) -> Rect {
+        starts::bounds(self, path)
+    }
+
+    fn repeat(&self, wrap: Wrap) -> Repeat {
+        seam::repeat(self, wrap)
+    }
+
+    fn synth(
+        &self,
+        wrap: Wrap,
+        materials: &Materials,
+        place: Vec2,
+        previous: Option<&dyn Ready>,
+    ) -> Result<Arc<dyn Ready>, Problem> {
+        let previous = previous.and_then(|previous| previous.downcast());
+        Ok(Arc::new(synth::synth(self, wrap, materials, place, previous)?))
+    }
+
+    fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem> {
+        Ok(Box::new(synth::PreparedLayer::new(self, wrap, materials, place)?))
+    }
+}

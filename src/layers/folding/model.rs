@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{fold::Fold, interpolation::Interpolation, outline::Outline, position::Position, tools::Tool};
-use crate::layers::Xy;
+use crate::base::geometry::Xy;
 
 /// A still picture whose motion zones fold over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::base::geometry::Polygon;
-use crate::layers::Xy;
+use crate::base::geometry::Xy;
 
 /// A closed outline on the layer's image, even-odd where it crosses itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,8 +7,9 @@ use super::model::{PictureLayer, Zone};
 use super::position::Clock;
 use super::synth::source;
 use crate::base::problem::Problem;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
-use crate::layers::{Materials, timeline::Wrap};
+use crate::layers::timeline::Wrap;
 
 /// What one pixel of a zone does at one time.
 #[derive(Clone, Debug, PartialEq)]

@@ -72,9 +72,20 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     })
 }
 
+/// A layer that shows an image, with one zone that covers it.
+pub fn template(image: &str, (width, height): (usize, usize)) -> Value {
+    let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": width, "height": height });
+    let zone = json!({ "name": "all", "outline": outline, "position": comes_back() });
+    json!({ "kind": "picture", "name": image, "image": image, "zones": [zone] })
+}
+
 /// What a new item of a list has beyond what must be written: a new zone comes back, so that its loop closes.
-pub fn beyond(list: &str) -> Option<(&'static str, Value)> {
-    (list == "zones").then(|| ("position", json!({ "function": "cosine" })))
+pub fn beyond(variant: &str, list: &str) -> Option<(&'static str, Value)> {
+    ((variant, list) == ("picture", "zones")).then(|| ("position", comes_back()))
+}
+
+fn comes_back() -> Value {
+    json!({ "function": "cosine" })
 }
 
 /// Where in its items a list ascends: the numbers that must grow from one to the next.

@@ -17,9 +17,10 @@ use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Moment;
 use crate::layers::ready::{self, Ready, Still};
-use crate::layers::{Materials, timeline::Wrap};
+use crate::layers::timeline::Wrap;
 
 /// What a frame of a picture layer needs except the time.
 #[derive(Clone, Debug)]

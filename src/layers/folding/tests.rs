@@ -8,9 +8,10 @@ use super::model::PictureLayer;
 use super::{frame::Frame, probe, synth};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Grid, Rgba};
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::{CENTRE, Columns};
 use crate::layers::ready::Still;
-use crate::layers::{Materials, timeline::Wrap};
+use crate::layers::timeline::Wrap;
 
 /// A picture whose red tells the column and whose green the row.
 fn ramp(width: usize, height: usize) -> Grid<Rgba> {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::outline::Node;
-use crate::layers::Xy;
+use crate::base::geometry::Xy;
 
 /// One tool of a zone's motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

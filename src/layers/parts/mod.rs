@@ -1,4 +1,5 @@
 //! What crosses the border of a technique: plain data. Names no technique and nothing of what shows or draws.
 
+pub mod materials;
 pub mod moment;
 pub mod repeat;

@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn the_topmost_zone_under_the_pointer_gives_the_jump() {
         use crate::base::picture::Picture;
-        use crate::layers::Materials;
+        use crate::layers::parts::materials::Materials;
         let zone = |name: &str, x: u32, jump: u32| {
             format!(
                 r#"{{ "name": "{name}", "outline": {{"kind": "rectangle", "x": {x}, "y": 2, "width": 4, "height": 4}},

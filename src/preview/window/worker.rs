@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::text::Fonts;
 use crate::base::fault;
 use crate::base::problem::Problem;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use crate::preview::Update;
 use crate::render::{self, Synth};
 use crate::scene::Scene;

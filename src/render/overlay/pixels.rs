@@ -137,7 +137,7 @@ mod tests {
     use super::*;
     use crate::base::picture::Picture;
     use crate::base::pixels::Grid;
-    use crate::layers::Materials;
+    use crate::layers::parts::materials::Materials;
     use std::sync::Arc;
 
     #[test]

@@ -40,7 +40,7 @@ fn a_limit_is_told_at_the_outline_that_exceeds_it() {
             "fold": { "rule": "cover", "regions": [region(8.0), region(9.0), region(8.0)] }
         }] }]
     });
-    let rules = check::Rules { points: 2000, ..check::Rules::default() };
+    let rules = check::Rules { counted: [("points", 2000)].into(), ..check::Rules::default() };
     let problems = check::read(&json, &rules).unwrap_err();
     assert_eq!(problems[0].path, "/layers/0/zones/0/fold/regions/1", "{problems:?}");
 }

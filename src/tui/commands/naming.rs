@@ -43,7 +43,7 @@ pub fn unused(document: &Document, path: &str) -> Done {
     let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == IMAGES) else { return Ok(()) };
     let layers = document.scene().layers.iter().enumerate();
     let users = layers.flat_map(|(i, layer)| {
-        let own = layer.images().into_iter().filter(|(_, image)| *image == name);
+        let own = layer.technique().images().into_iter().filter(|(_, image)| *image == name);
         own.map(move |(path, _)| format!("/layers/{i}{path}"))
     });
     let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();

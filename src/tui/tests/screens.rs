@@ -8,7 +8,7 @@ use ratatui::backend::TestBackend;
 
 use super::support::{press, state};
 use crate::base::picture::Picture;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use crate::tui::app::State;
 use crate::tui::graphics::Shown;
 use crate::tui::seeing::{self, Probed};

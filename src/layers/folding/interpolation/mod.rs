@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::anchors::Anchor;
 use crate::base::problem::Problem;
-use crate::layers::Materials;
+use crate::layers::parts::materials::Materials;
 use thin_plate::NoPlate;
 
 mod cholesky;

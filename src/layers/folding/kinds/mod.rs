@@ -6,27 +6,13 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
-use crate::layers::Turned;
+use crate::layers::technique::Turned;
 
 mod outlines;
 mod positions;
 #[cfg(test)]
 mod tests;
 mod tools;
-
-impl Turned {
-    fn whole(item: Value) -> Turned {
-        Turned { items: vec![item], lost: None }
-    }
-
-    fn but(self, lost: impl Into<String>) -> Turned {
-        Turned { lost: Some(lost.into()), ..self }
-    }
-
-    fn but_if(self, lost: Option<String>) -> Turned {
-        Turned { lost, ..self }
-    }
-}
 
 /// What the `old` thing at `path` (relative to the layer) becomes as a `to`. `None` if fields of the same name are all
 /// that both kinds can have in common.

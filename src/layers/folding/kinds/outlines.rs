@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::{Turned, pair, px, told};
 use crate::base::crossings::self_crossing;
+use crate::base::geometry::Xy;
 use crate::base::geometry::{FLATNESS_PX, Polygon};
 use crate::base::maths::{self, TAU};
-use crate::layers::Xy;
 use crate::layers::folding::outline::{Outline, bezier, point};
 
 /// How far the straight sides may lie from the curve that they stand for.

@@ -1,0 +1,52 @@
+//! What a layer is made of, given to it as values.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::base::budget::Budget;
+use crate::base::picture::Picture;
+use crate::base::pixels::Grid;
+use crate::base::problem::Problem;
+
+/// What a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.
+#[derive(Clone, Debug, Default)]
+pub struct Materials {
+    /// Pictures by their name in the scene's images.
+    pub pictures: BTreeMap<String, Arc<Picture>>,
+    /// Masks without alpha laid on the pictures that they are for, by the names of both.
+    pub masks: BTreeMap<(String, String), Arc<Picture>>,
+    /// Sampled vector fields by their path in the scene, in pixels.
+    pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
+    /// Cancellation flag: once set, a synthesis under way ends with an error.
+    pub stop: Option<Arc<AtomicBool>>,
+    /// The memory that is left for what is made of them.
+    pub budget: Budget,
+}
+
+impl Materials {
+    /// Whether the synthesis has been cancelled.
+    pub fn stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
+    /// What samplers read through the mask `name` of the picture `own`.
+    ///
+    /// # Errors
+    /// It is not there; `path` tells where it is named.
+    pub fn mask(&self, name: &str, own: &str, path: &str) -> Result<Arc<Picture>, Problem> {
+        match self.masks.get(&(name.to_owned(), own.to_owned())) {
+            Some(laid) => Ok(laid.clone()),
+            None => self.picture(name, path),
+        }
+    }
+
+    /// The picture of that name.
+    ///
+    /// # Errors
+    /// It is not there; `path` tells where it is named.
+    pub fn picture(&self, name: &str, path: &str) -> Result<Arc<Picture>, Problem> {
+        let missing = || Problem::error(path, format!("the picture \"{name}\" is not there"));
+        self.pictures.get(name).cloned().ok_or_else(missing)
+    }
+}

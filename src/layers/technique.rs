@@ -1,0 +1,166 @@
+//! What every technique answers: of a layer ([`Technique`]), and without one ([`Kind`]). Paths are JSON pointers relative
+//! to the layer.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use kurbo::{Rect, Vec2};
+use serde_json::Value;
+
+use super::parts::materials::Materials;
+use super::parts::repeat::Repeat;
+use super::ready::{Prepared, Ready};
+use super::timeline::Wrap;
+use crate::base::problem::Problem;
+
+/// What a layer of the document can be asked.
+pub trait Technique: Any + Send + Sync {
+    /// What is known of its technique.
+    fn kind(&self) -> &'static Kind;
+
+    /// The layer's name, unique in its scene.
+    fn name(&self) -> &str;
+
+    /// Checks the layer by itself. Parts that are as in the layer `before`, if that is of the same technique, keep what was
+    /// found there.
+    fn check(&self, before: Option<(&dyn Technique, &Checked)>) -> Checked;
+
+    /// Every problem that a check has found.
+    fn problems(&self, checked: &Checked) -> Vec<Problem>;
+
+    /// Calls `each` with what the layer asks for, place by place, before any of it is made.
+    fn counts(&self, _each: &mut dyn FnMut(Count)) {}
+
+    /// Bytes of memory that places of the layer ask for while it is made ready, one place after the other.
+    fn memory(&self) -> Vec<(String, u64)> {
+        Vec::new()
+    }
+
+    /// What the pictures and fields that it names say about the layer.
+    fn check_materials(&self, _materials: &Materials) -> Vec<Problem> {
+        Vec::new()
+    }
+
+    /// The masks that the layer names: each with its pointer, and the picture that it is for.
+    fn masks(&self) -> Vec<(String, &str, &str)> {
+        Vec::new()
+    }
+
+    /// The images that the layer names, each with its pointer.
+    fn images(&self) -> Vec<(String, &str)> {
+        Vec::new()
+    }
+
+    /// The files that the layer names by their paths, each with its pointer.
+    fn files(&self) -> Vec<(String, &str)> {
+        Vec::new()
+    }
+
+    /// The image whose size a frame may take, if the layer has one.
+    fn frame_of(&self) -> Option<&str> {
+        None
+    }
+
+    /// What the `old` thing at `path` becomes as one of the variant `to`; `None` if fields of the same name are all that
+    /// both can have in common.
+    fn turned(&self, _path: &str, _old: &Value, _to: &str) -> Option<Turned> {
+        None
+    }
+
+    /// The place in the layer's picture that something new at `path` belongs to.
+    fn bounds(&self, path: &str) -> Rect;
+
+    /// What happens to the layer where time starts anew.
+    fn repeat(&self, wrap: Wrap) -> Repeat;
+
+    /// Makes the layer ready to be shown at any time. What `previous` has in common with it is taken over. `place` is the
+    /// place in each pixel that is looked at: its centre, or another for supersampling.
+    ///
+    /// # Errors
+    /// Something that the layer names is not among the materials, or nobody wants it any more.
+    fn synth(
+        &self,
+        wrap: Wrap,
+        materials: &Materials,
+        place: Vec2,
+        previous: Option<&dyn Ready>,
+    ) -> Result<Arc<dyn Ready>, Problem>;
+
+    /// Makes what all parts of the layer share.
+    ///
+    /// # Errors
+    /// As [`Technique::synth`].
+    fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem>;
+}
+
+/// What is known of a technique without a layer of it.
+#[derive(Debug)]
+pub struct Kind {
+    /// What the document's `kind` calls it.
+    pub name: &'static str,
+    /// What a scene may not have too much of.
+    pub counted: &'static [Counted],
+    /// A layer that shows the image of this name, of this width and height; `None` if the technique does not begin with
+    /// a picture.
+    pub template: Option<fn(image: &str, size: (usize, usize)) -> Value>,
+    /// What the field `field` of a new `variant` starts as, if the schema has no default and zeros will not do.
+    pub start: fn(variant: &str, field: &str, bounds: Rect) -> Option<Value>,
+    /// What a new item of the list `list` of a `variant` has beyond what must be written: a field and its value.
+    pub beyond: fn(variant: &str, list: &str) -> Option<(&'static str, Value)>,
+    /// Where in its items the list `list` of a `variant` ascends (a JSON pointer), if it does.
+    pub ascending: fn(variant: &str, list: &str) -> Option<&'static str>,
+    /// A new item of the list `list` of a `variant` before item `index`, and the index it gets; `None` if an item does
+    /// not depend on its neighbours.
+    pub item: fn(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)>,
+}
+
+/// A kind of thing that a scene may not have too much of: a row of `--limit`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// What it is called: "anchors".
+    pub name: &'static str,
+    /// What it limits, in words.
+    pub help: &'static str,
+    /// How many a scene may have unless more are allowed.
+    pub most: u64,
+}
+
+/// How many things a place of the document asks for.
+pub struct Count<'a> {
+    /// What is counted: the name of one of the technique's [`Counted`].
+    pub what: &'static str,
+    /// The place.
+    pub path: &'a dyn Fn() -> String,
+    /// How many, estimated from above.
+    pub count: f64,
+}
+
+/// A thing of another kind made out of an old one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// What stands in its place; more than one thing only in a list, where they follow one another.
+    pub items: Vec<Value>,
+    /// What could not be kept, in words.
+    pub lost: Option<String>,
+}
+
+impl Turned {
+    /// One thing that keeps all.
+    pub fn whole(item: Value) -> Turned {
+        Turned { items: vec![item], lost: None }
+    }
+
+    /// The same, and something is lost.
+    pub fn but(self, lost: impl Into<String>) -> Turned {
+        Turned { lost: Some(lost.into()), ..self }
+    }
+
+    /// The same, and something may be lost.
+    pub fn but_if(self, lost: Option<String>) -> Turned {
+        Turned { lost, ..self }
+    }
+}
+
+/// The problems of a layer, part by part, each relative to its part: what an edit leaves alone keeps them.
+#[derive(Clone, Debug, Default)]
+pub struct Checked(pub Vec<Arc<[Problem]>>);
