@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use super::parts::materials::Materials;
 use super::parts::moment::{Columns, Moment};
+use super::parts::passes::Plan;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
@@ -15,6 +16,9 @@ use crate::base::reduce::Reduced;
 pub trait Ready: Any + Debug + Send + Sync {
     /// The layer at one time, on the CPU: the reference. Asked once a frame.
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a>;
+
+    /// The layer at one time, for the GPU: shows what [`Ready::at`] shows.
+    fn plan(&self, moment: &Moment) -> Plan;
 
     /// The same layer with nothing that moves.
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready>;

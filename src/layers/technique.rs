@@ -8,6 +8,7 @@ use kurbo::{Rect, Vec2};
 use serde_json::Value;
 
 use super::parts::materials::Materials;
+use super::parts::passes::Program;
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready};
 use super::timeline::Wrap;
@@ -98,6 +99,8 @@ pub trait Technique: Any + Send + Sync {
 pub struct Kind {
     /// What the document's `kind` calls it.
     pub name: &'static str,
+    /// Every program that its layers are drawn with.
+    pub programs: &'static [&'static Program],
     /// What a scene may not have too much of.
     pub counted: &'static [Counted],
     /// A layer that shows the image of this name, of this width and height; `None` if the technique does not begin with

@@ -97,11 +97,6 @@ fn read(pixel: vec2i, d: vec2f) -> vec4f {
     return mix(top, bottom, part.y);
 }
 
-@vertex
-fn whole_frame(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // A pixel that shows nothing of the zone is discarded: what lies beneath stays. Blending lays the rest over it where
 // the sampler image is a named one or a mask.
 @fragment

@@ -14,6 +14,7 @@ pub mod kinds;
 pub mod mask;
 pub mod model;
 pub mod outline;
+pub mod passes;
 pub mod position;
 pub mod probe;
 pub mod reduce;
@@ -45,6 +46,7 @@ use crate::base::problem::Problem;
 /// What is known of folding without a layer of it.
 pub static KIND: Kind = Kind {
     name: "picture",
+    programs: passes::PROGRAMS,
     counted: &[
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },
         Counted { name: "points", help: "points of a scene's outlines", most: 1_000_000 },

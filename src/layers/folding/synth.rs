@@ -10,6 +10,7 @@ use super::fold::Fold;
 use super::frame::Frame;
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
+use super::passes;
 use super::position::Clock;
 use super::reduce;
 use crate::base::budget::Share;
@@ -19,6 +20,7 @@ use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Moment;
+use crate::layers::parts::passes::Plan;
 use crate::layers::ready::{self, Ready, Still};
 use crate::layers::timeline::Wrap;
 
@@ -65,6 +67,10 @@ pub struct Source {
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
         Box::new(Frame::new(self, moment.t))
+    }
+
+    fn plan(&self, moment: &Moment) -> Plan {
+        passes::plan(self, moment.t)
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {

@@ -4,9 +4,7 @@
 use super::field::{Field, Folds, Ragged};
 use super::fold::Rule;
 use crate::base::pixels::Grid;
-
-/// The shader of a zone.
-pub const SHADER: &str = include_str!("frame.wgsl");
+use crate::layers::parts::passes::{Format, Packed, Upload};
 
 /// Columns of [`Texels::crossings`].
 pub const COLUMNS: usize = 4096;
@@ -14,6 +12,14 @@ pub const COLUMNS: usize = 4096;
 const MEMBER: u32 = 1 << 31;
 const INSIDE: u32 = 1 << 30;
 const NO_CROSSING: f32 = f32::MAX;
+
+impl Upload for Field {
+    /// Two textures: [`Texels::pixels`] and [`Texels::crossings`].
+    fn pack(&self) -> Vec<Packed<'_>> {
+        let Texels { pixels, crossings } = Texels::pack(self);
+        vec![Packed::grid(pixels, Format::Rgba32Uint), Packed::grid(crossings, Format::R32Float)]
+    }
+}
 
 /// A field as textures.
 pub struct Texels {

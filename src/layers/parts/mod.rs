@@ -2,4 +2,5 @@
 
 pub mod materials;
 pub mod moment;
+pub mod passes;
 pub mod repeat;

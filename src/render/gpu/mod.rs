@@ -9,10 +9,11 @@ use crate::render::Synth;
 
 pub mod device;
 mod draw;
-mod textures;
+mod kept;
+mod run;
 
 use device::{Device, failed};
-pub use draw::FRAME;
+pub use draw::{FRAME, PROGRAMS};
 
 /// A GPU that draws frames.
 pub struct Gpu {
@@ -24,14 +25,11 @@ pub struct Gpu {
 struct Parts {
     device: Device,
     painter: draw::Painter,
-    textures: textures::Textures,
 }
 
 impl Parts {
     fn open(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Parts> {
-        let device = Device::open(instance, surface)?;
-        let painter = draw::Painter::new(&device)?;
-        Ok(Parts { device, painter, textures: Default::default() })
+        Ok(Parts { device: Device::open(instance, surface)?, painter: draw::Painter::default() })
     }
 }
 
@@ -68,10 +66,10 @@ impl Gpu {
         first: (&Synth, f64),
         second: Option<(&Synth, f64)>,
     ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
-        let Parts { device, painter, textures } = &mut self.parts;
-        let first = painter.frame(device, textures, 0, first)?;
-        let second = second.map(|second| painter.frame(device, textures, 1, second)).transpose()?;
-        textures.end_frame();
+        let Parts { device, painter } = &mut self.parts;
+        let first = painter.frame(device, 0, first)?;
+        let second = second.map(|second| painter.frame(device, 1, second)).transpose()?;
+        painter.end_frame();
         Ok((first, second))
     }
 

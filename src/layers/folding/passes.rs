@@ -1,0 +1,74 @@
+//! What the GPU draws of a picture layer: its picture, then its zones in order, each over its box.
+
+use super::synth::{Synth, ZoneSynth};
+use super::texels::rule_number;
+use crate::base::pixels::Beyond;
+use crate::layers::parts::passes::{Bind, Blend, COMMON, Draw, Plan, Program};
+
+/// The layer's own picture.
+static STILL: Program = Program {
+    name: "still.wgsl",
+    source: &[COMMON, include_str!("still.wgsl")],
+    vertex: "whole_frame",
+    fragment: "still",
+};
+
+/// A zone.
+static ZONE: Program = Program {
+    name: "frame.wgsl",
+    source: &[COMMON, include_str!("frame.wgsl")],
+    vertex: "whole_frame",
+    fragment: "shown",
+};
+
+/// Every program of the technique.
+pub static PROGRAMS: &[&Program] = &[&STILL, &ZONE];
+
+/// The uniform `Zone` of frame.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ZoneUniform {
+    offset: [f32; 2],
+    origin: [i32; 2],
+    s: f32,
+    padding: f32,
+}
+
+/// The layer at scene time `t`.
+pub fn plan(synth: &Synth, t: f64) -> Plan {
+    let still = Draw {
+        program: &STILL,
+        constants: Vec::new(),
+        binds: vec![Bind::Upload(synth.picture.clone(), 0)],
+        blend: Blend::Replace,
+        scissor_px: None,
+    };
+    Plan { draws: std::iter::once(still).chain(synth.zones.iter().map(|one| zone(one, t))).collect() }
+}
+
+fn zone(zone: &ZoneSynth, t: f64) -> Draw {
+    let (field, source) = (&zone.field, &zone.source);
+    let uniform = ZoneUniform {
+        offset: [source.offset.x as f32, source.offset.y as f32],
+        origin: [field.x0 as i32, field.y0 as i32],
+        s: zone.clock.s(t) as f32,
+        padding: 0.0,
+    };
+    let clamps = match source.beyond {
+        Beyond::Clamp => 1.0,
+        Beyond::Transparent => 0.0,
+    };
+    let size = [field.x0, field.y0, field.inside.width(), field.inside.height()];
+    Draw {
+        program: &ZONE,
+        constants: vec![("rule", f64::from(rule_number(field.folds.as_ref()))), ("clamps", clamps)],
+        binds: vec![
+            Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
+            Bind::Upload(field.clone(), 0),
+            Bind::Upload(field.clone(), 1),
+            Bind::Upload(source.picture.clone(), 0),
+        ],
+        blend: if source.over { Blend::Over } else { Blend::Replace },
+        scissor_px: Some(size.map(|n| n as u32)),
+    }
+}

@@ -1,0 +1,166 @@
+//! What is kept on the device between frames: pictures, fields and whatever else a plan uploads, known by the `Arc` they
+//! came in, so that an edit of one zone uploads only that zone. What a scene no longer uses is let go.
+
+use std::sync::Arc;
+
+use super::device::{Device, failed};
+use crate::base::error::Result;
+use crate::layers::parts::passes::{Format, Packed, Upload};
+
+/// At most so many bytes are handed over at a time.
+const BAND_BYTES: usize = 32 << 20;
+
+/// A texture on the device.
+#[derive(Clone)]
+pub struct Texture {
+    /// All of it.
+    pub view: wgpu::TextureView,
+    /// What a texel is.
+    pub format: Format,
+}
+
+/// Textures by what they were packed from.
+#[derive(Default)]
+pub struct Kept {
+    rows: Vec<Row>,
+}
+
+struct Row {
+    of: Arc<dyn Upload>,
+    textures: Vec<Texture>,
+    used: bool,
+}
+
+impl Kept {
+    /// One of the textures that something is packed into, uploaded if it is new.
+    pub fn get(&mut self, device: &Device, of: &Arc<dyn Upload>, part: usize) -> Result<Texture> {
+        let textures = self.all(of, |of| of.pack().iter().map(|packed| upload(device, packed)).collect())?;
+        textures.get(part).cloned().ok_or_else(|| failed(format!("a plan wants texture {part} of {}", textures.len())))
+    }
+
+    fn all(
+        &mut self,
+        of: &Arc<dyn Upload>,
+        make: impl FnOnce(&dyn Upload) -> Result<Vec<Texture>>,
+    ) -> Result<&[Texture]> {
+        // Addresses alone: the same thing may be known by several tables of functions.
+        let address = |of: &Arc<dyn Upload>| Arc::as_ptr(of).cast::<()>();
+        let known = self.rows.iter().position(|row| address(&row.of) == address(of));
+        let i = match known {
+            Some(i) => i,
+            None => {
+                self.rows.push(Row { of: of.clone(), textures: make(&**of)?, used: true });
+                self.rows.len() - 1
+            }
+        };
+        let row = &mut self.rows[i];
+        row.used = true;
+        Ok(&row.textures)
+    }
+
+    /// Lets go what was not asked for since the last call.
+    pub fn end_frame(&mut self) {
+        self.rows.retain(|row| row.used);
+        self.rows.iter_mut().for_each(|row| row.used = false);
+    }
+}
+
+/// The device's name of a format, and bytes a texel.
+pub fn format(format: Format) -> (wgpu::TextureFormat, usize) {
+    match format {
+        Format::Rgba32Float => (wgpu::TextureFormat::Rgba32Float, 16),
+        Format::R32Float => (wgpu::TextureFormat::R32Float, 4),
+        Format::Rgba32Uint => (wgpu::TextureFormat::Rgba32Uint, 16),
+    }
+}
+
+/// Makes a texture, band by band of its rows.
+fn upload(device: &Device, packed: &Packed<'_>) -> Result<Texture> {
+    let (width, height) = packed.size;
+    check_size(device, width, height)?;
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let (name, texel_bytes) = format(packed.format);
+    let texture = texture(device, packed.size, name, usage)?;
+    let row_bytes = width * texel_bytes;
+    let most = (BAND_BYTES / row_bytes).max(1);
+    for y in (0..height).step_by(most) {
+        let rows = most.min(height - y);
+        let mut send = |bytes: &[u8]| {
+            device.queue.write_texture(
+                wgpu::TexelCopyTextureInfo {
+                    origin: wgpu::Origin3d { x: 0, y: y as u32, z: 0 },
+                    ..texture.as_image_copy()
+                },
+                bytes,
+                wgpu::TexelCopyBufferLayout { bytes_per_row: Some(row_bytes as u32), ..Default::default() },
+                wgpu::Extent3d { width: width as u32, height: rows as u32, depth_or_array_layers: 1 },
+            );
+            device.queue.submit([]);
+        };
+        device.checked(|| (packed.rows)(y..y + rows, &mut send))?;
+    }
+    Ok(Texture { view: texture.create_view(&Default::default()), format: packed.format })
+}
+
+/// A texture of one level.
+pub fn texture(
+    device: &Device,
+    (width, height): (usize, usize),
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::Texture> {
+    device.checked(|| {
+        device.raw.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    })
+}
+
+/// Refuses what the device cannot hold as one texture.
+pub fn check_size(device: &Device, width: usize, height: usize) -> Result<()> {
+    let most = device.max_side();
+    if width == 0 || height == 0 {
+        return Err(failed("an empty picture"));
+    }
+    if width.max(height) > most {
+        return Err(failed(format!("{width} x {height} is more than {} can hold, {most} a side", device.name())));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::picture::Picture;
+
+    #[test]
+    fn what_is_shared_is_made_once_and_what_is_unused_goes() {
+        let mut kept = Kept::default();
+        let picture = || -> Arc<dyn Upload> { Arc::new(Picture::filled(1, 1, [0.0; 4])) };
+        let (a, b) = (picture(), picture());
+        let mut made = 0;
+        let mut get = |kept: &mut Kept, key: &Arc<dyn Upload>| {
+            let make = |_: &dyn Upload| {
+                made += 1;
+                Ok(Vec::new())
+            };
+            kept.all(key, make).map(drop).unwrap();
+        };
+        get(&mut kept, &a);
+        get(&mut kept, &a);
+        get(&mut kept, &b);
+        kept.end_frame();
+        get(&mut kept, &b);
+        kept.end_frame();
+        assert_eq!(kept.rows.len(), 1);
+        get(&mut kept, &a);
+        assert_eq!(made, 3);
+    }
+}
