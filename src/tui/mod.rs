@@ -40,7 +40,7 @@ mod update;
 mod view;
 mod worker;
 
-pub use keys::manual;
+pub use keys::{Keymap, manual};
 pub use offscreen::Offscreen;
 pub use runner::{Options, run};
 pub use update::Change;

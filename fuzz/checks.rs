@@ -1,0 +1,128 @@
+//! What holds for any bytes, reader by reader: no panic, no endless work, and what is read once reads the same again. The
+//! fuzz targets beside this file call these with bytes that are bred, `tests/fuzz.rs` with a few at random.
+
+use std::fs::File;
+use std::io::{Cursor, Seek, Write};
+
+use plica::base::budget::Budget;
+use plica::base::expression::{Variables, evaluate};
+use plica::files::journal::{self, Contents};
+use plica::files::{Limits, fields, picture, recovery};
+use plica::preview::wire::frame;
+use plica::preview::wire::message::{FromEditor, Message, ToEditor};
+use plica::scene::Document;
+
+/// A check, by the name of what it reads.
+pub const CHECKS: &[(&str, fn(&[u8]))] = &[
+    ("scene", scene),
+    ("journal", journal),
+    ("message", message),
+    ("picture", picture),
+    ("flo", flo),
+    ("expression", expression),
+    #[cfg(feature = "tui")]
+    ("keymap", keymap),
+    #[cfg(feature = "tui")]
+    ("script", script),
+];
+
+/// A scene that is read is written, and that reads as the same.
+pub fn scene(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(document) = Document::parse(text) else { return };
+    let written = document.to_text();
+    let again = Document::parse(&written).unwrap_or_else(|problems| panic!("{written}\n{problems:?}"));
+    assert_eq!(document.scene(), again.scene(), "{written}");
+    assert_eq!(written, again.to_text());
+}
+
+/// As the bytes of a journal, and as its header and records in JSON, a line each, whose checksums are right.
+pub fn journal(bytes: &[u8]) {
+    if let Ok(contents) = journal::read(bytes) {
+        assert!(contents.end() <= bytes.len());
+        assert_eq!(journal::read(&bytes[..contents.end()]).as_ref(), Ok(&contents), "only what is whole counts");
+        recovery::replay(&contents);
+    }
+    let mut lines = bytes.split(|&byte| byte == b'\n');
+    let Some(Ok(header)) = lines.next().map(serde_json::from_slice) else { return };
+    let records = lines.map_while(|line| serde_json::from_slice(line).ok()).zip(1..).collect();
+    recovery::replay(&Contents { header, records, header_end: 0 });
+}
+
+/// As the bytes of a message, and as its JSON: it is sent and comes out the same.
+pub fn message(bytes: &[u8]) {
+    fn one<T: Message + PartialEq + std::fmt::Debug + serde::de::DeserializeOwned>(bytes: &[u8]) {
+        let most = Limits::default().message;
+        let _ = frame::read::<T>(&mut Cursor::new(bytes), most);
+        let Ok(said) = serde_json::from_slice::<T>(bytes) else { return };
+        let mut sent = Vec::new();
+        frame::write(&mut sent, &said).expect("memory takes it");
+        let heard = frame::read::<T>(&mut Cursor::new(&sent), most);
+        assert_eq!(heard.expect("what was sent").as_ref(), Some(&said));
+    }
+    one::<FromEditor>(bytes);
+    one::<ToEditor>(bytes);
+}
+
+/// A picture has the size that its header tells.
+pub fn picture(bytes: &[u8]) {
+    let limits = Limits { pixels: 1 << 16, side: 1 << 10, memory: 64 << 20, ..Limits::default() };
+    let header = picture::header(file(bytes), "a picture", &limits);
+    if let Ok((found, share)) = picture::decode(file(bytes), "a picture", &limits, &limits.budget()) {
+        let size = (found.picture.width(), found.picture.height());
+        assert_eq!(header.expect("a picture that can be read has a size"), size);
+        drop(share);
+    }
+}
+
+/// A vector field has finite vectors.
+pub fn flo(bytes: &[u8]) {
+    let limits = Limits { pixels: 1 << 16, side: 1 << 10, memory: 64 << 20, ..Limits::default() };
+    if let Ok((field, _)) = fields::decode(file(bytes), "a field", &limits, &Budget::new(limits.memory)) {
+        assert!(field.cells().iter().flatten().all(|value| value.is_finite()));
+    }
+}
+
+/// A value is finite, and the same each time.
+pub fn expression(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let value = || evaluate(text, &Variables(&[("v", 2.5), ("w", 640.0), ("i", 3.0)]));
+    if let Ok(found) = value() {
+        assert!(found.is_finite(), "{text} is {found}");
+    }
+    assert_eq!(value().map(f64::to_bits), value().map(f64::to_bits), "{text}");
+}
+
+/// The keys of a person's own file: what is wrong is told with its line.
+#[cfg(feature = "tui")]
+pub fn keymap(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let keymap = plica::tui::Keymap::with("keys.toml", text);
+    assert!(keymap.mistakes().iter().all(|mistake| mistake.starts_with("keys.toml:")), "{:?}", keymap.mistakes());
+    assert!(!keymap.rows().is_empty());
+}
+
+/// Lines of a script, typed in the editor: they are done or refused, and the screen is drawn.
+#[cfg(feature = "tui")]
+pub fn script(bytes: &[u8]) {
+    const SCENE: &str = include_str!("seeds/scene/zone.json");
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let folder = tempfile::tempdir().expect("a folder for the scene");
+    let path = folder.path().join("a.plica.json");
+    std::fs::write(&path, SCENE).expect("a scene");
+    let mut editor = plica::tui::Offscreen::open(&path, (100, 30)).expect("an editor");
+    // Nothing is to be written but the scene: no line names another file.
+    let allowed = |line: &&str| !line.contains(['/', '~']) && !line.trim_start_matches([':', ' ']).starts_with('w');
+    for line in text.lines().filter(allowed).take(20) {
+        editor.take(":");
+        line.chars().for_each(|c| drop(editor.take(&if c == ' ' { "Space".to_owned() } else { c.to_string() })));
+        editor.press("Enter").expect("a screen");
+        editor.take("Esc");
+    }
+}
+
+fn file(bytes: &[u8]) -> File {
+    let mut file = tempfile::tempfile().expect("a file without a name");
+    file.write_all(bytes).and_then(|()| file.rewind()).expect("it takes a few bytes");
+    file
+}
