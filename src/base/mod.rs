@@ -9,6 +9,7 @@ pub mod expression;
 pub mod fault;
 pub mod geometry;
 pub mod keys;
+pub mod mask;
 pub mod maths;
 pub mod oklab;
 pub mod picture;

@@ -14,12 +14,11 @@ use super::fields::{self, VectorField};
 use super::{Limits, Options, paths, picture};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
+use crate::base::mask;
 use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
-use crate::layers::Layer;
-use crate::layers::folding::{mask, tools::Tool};
-use crate::layers::parts::materials::Materials;
-use crate::scene::{Scene, check};
+use crate::layers::parts::materials::{Materials, Of, Use, What};
+use crate::scene::{Scene, check, pointer};
 
 /// What was loaded before, by path; for as long as a scene names it.
 #[derive(Debug, Default)]
@@ -163,24 +162,16 @@ struct Named<'a> {
 }
 
 fn named_pictures(scene: &Scene) -> Vec<Named<'_>> {
-    let escaped = |name: &str| name.replace('~', "~0").replace('/', "~1");
-    let named = scene.images.iter();
-    named.map(|(key, image)| Named { key, path: &image.path, at: format!("/images/{}/path", escaped(key)) }).collect()
+    let at = |key: &str| pointer::join("/images", key) + "/path";
+    scene.images.iter().map(|(key, image)| Named { key, path: &image.path, at: at(key) }).collect()
 }
 
 fn named_fields(scene: &Scene) -> Vec<Named<'_>> {
-    let mut found = Vec::new();
-    for (l, layer) in scene.layers.iter().enumerate() {
-        let Layer::Picture(layer) = layer;
-        for (z, zone) in layer.zones.iter().enumerate() {
-            for (m, tool) in zone.motion.iter().enumerate() {
-                if let Tool::Field { path, .. } = tool {
-                    found.push(Named { key: path, path, at: format!("/layers/{l}/zones/{z}/motion/{m}/path") });
-                }
-            }
-        }
-    }
-    found
+    let fields = scene.uses().filter_map(|Use { at, of, what }| match (of, what) {
+        (Of::Path(path), What::Vectors) => Some(Named { key: path, path, at }),
+        (Of::Image(_), _) | (Of::Path(_), What::Picture | What::Mask { .. }) => None,
+    });
+    fields.collect()
 }
 
 /// Where the files are.
@@ -319,31 +310,28 @@ fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorFiel
 /// Masks without alpha are laid on their pictures once, not whenever they are read.
 fn lay_masks(scene: &Scene, materials: &mut Materials, known: &mut Vec<Masked>, problems: &mut Vec<Problem>) {
     let mut kept: Vec<Masked> = Vec::new();
-    for (l, layer) in scene.layers.iter().enumerate() {
-        for (at, name, own_name) in layer.technique().masks() {
-            let (Some(mask), Some(own)) = (materials.pictures.get(name), materials.pictures.get(own_name)) else {
-                continue;
-            };
-            if mask.channels().have_alpha() || !mask::fits(own, mask) {
-                continue;
-            }
-            let same = |m: &&Masked| Arc::ptr_eq(&m.mask, mask) && Arc::ptr_eq(&m.own, own);
-            let masked = match known.iter().chain(&kept).find(same) {
-                Some(masked) => masked.clone(),
-                None => match materials.budget.try_take(mask::bytes(own, mask)) {
-                    Ok(share) => {
-                        let made = Arc::new(mask::by_brightness(own, mask));
-                        Masked { mask: mask.clone(), own: own.clone(), made, _share: Arc::new(share) }
-                    }
-                    Err(short) => {
-                        problems.push(short.problem(format!("/layers/{l}{at}")));
-                        continue;
-                    }
-                },
-            };
-            materials.masks.insert((name.to_owned(), own_name.to_owned()), masked.made.clone());
-            kept.push(masked);
+    for Use { at, of, what } in scene.uses() {
+        let (Of::Image(name), What::Mask { on }) = (of, what) else { continue };
+        let (Some(mask), Some(own)) = (materials.pictures.get(name), materials.pictures.get(on)) else { continue };
+        if mask.channels().have_alpha() || !mask::fits(own, mask) {
+            continue;
         }
+        let same = |m: &&Masked| Arc::ptr_eq(&m.mask, mask) && Arc::ptr_eq(&m.own, own);
+        let masked = match known.iter().chain(&kept).find(same) {
+            Some(masked) => masked.clone(),
+            None => match materials.budget.try_take(mask::bytes(own, mask)) {
+                Ok(share) => {
+                    let made = Arc::new(mask::by_brightness(own, mask));
+                    Masked { mask: mask.clone(), own: own.clone(), made, _share: Arc::new(share) }
+                }
+                Err(short) => {
+                    problems.push(short.problem(at));
+                    continue;
+                }
+            },
+        };
+        materials.masks.insert((name.to_owned(), on.to_owned()), masked.made.clone());
+        kept.push(masked);
     }
     *known = kept;
 }

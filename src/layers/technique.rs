@@ -7,7 +7,7 @@ use std::sync::Arc;
 use kurbo::{Rect, Vec2};
 use serde_json::Value;
 
-use super::parts::materials::Materials;
+use super::parts::materials::{Materials, Use};
 use super::parts::passes::Program;
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready};
@@ -42,18 +42,8 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
-    /// The masks that the layer names: each with its pointer, and the picture that it is for.
-    fn masks(&self) -> Vec<(String, &str, &str)> {
-        Vec::new()
-    }
-
-    /// The images that the layer names, each with its pointer.
-    fn images(&self) -> Vec<(String, &str)> {
-        Vec::new()
-    }
-
-    /// The files that the layer names by their paths, each with its pointer.
-    fn files(&self) -> Vec<(String, &str)> {
+    /// What the layer names, each thing as often as it is named.
+    fn uses(&self) -> Vec<Use<'_>> {
         Vec::new()
     }
 

@@ -70,11 +70,7 @@ impl Edit {
 
     /// Gives an image of the scene another name, everywhere.
     pub fn rename_image(document: &Document, from: &str, to: &str) -> Edit {
-        let layers = document.scene().layers.iter().enumerate();
-        let named = layers.flat_map(|(i, layer)| {
-            let named = layer.technique().images().into_iter().filter(|(_, image)| *image == from);
-            named.map(move |(path, _)| Edit::replace(&format!("/layers/{i}{path}"), to.into()))
-        });
+        let named = document.scene().users_of_image(from).map(|path| Edit::replace(&path, to.into()));
         let images = |name| pointer::join("/images", name);
         Edit::all(std::iter::once(Edit::moved(&images(from), &images(to))).chain(named))
     }

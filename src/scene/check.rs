@@ -11,7 +11,7 @@ use super::{Scene, pointer, shape};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity, nearest, quoted};
-use crate::layers::parts::materials::Materials;
+use crate::layers::parts::materials::{Materials, Of};
 use crate::layers::technique::{Checked, Technique};
 use crate::layers::{KINDS, check as rules};
 
@@ -184,9 +184,9 @@ fn names(scene: &Scene) -> Vec<Problem> {
 /// Paths of files, by their looks.
 fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     let images = scene.images.iter().map(|(name, image)| (pointer::join("/images", name) + "/path", &*image.path));
-    let layers = scene.layers.iter().enumerate();
-    let files = layers.flat_map(|(i, layer)| {
-        layer.technique().files().into_iter().map(move |(path, file)| (format!("/layers/{i}{path}"), file))
+    let files = scene.uses().filter_map(|used| match used.of {
+        Of::Path(file) => Some((used.at, file)),
+        Of::Image(_) => None,
     });
     images.chain(files).filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside)).collect()
 }
@@ -194,8 +194,12 @@ fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
 /// Every image that a layer names is one of the scene's.
 fn references(scene: &Scene) -> Vec<Problem> {
     below_layers(scene, |layer| {
-        let unknown = layer.images().into_iter().filter(|(_, image)| !scene.images.contains_key(*image));
-        let problem = |(path, image): (String, &str)| {
+        let uses = layer.uses();
+        let unknown = uses.iter().filter_map(|used| match used.of {
+            Of::Image(image) if !scene.images.contains_key(image) => Some((used.at.as_str(), image)),
+            Of::Image(_) | Of::Path(_) => None,
+        });
+        let problem = |(path, image): (&str, &str)| {
             let hint = nearest(image, scene.images.keys().map(String::as_str));
             let hint = hint.unwrap_or_else(|| "add it to the scene's images".into());
             Problem::error(path, format!("there is no image {}", quoted(image))).hint(hint)

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::layers::parts::materials::{Of, Use};
 use crate::layers::{Layer, timeline::Timeline};
 
 pub mod address;
@@ -52,6 +53,21 @@ pub struct Scene {
     /// The layers, composed in this order: later over earlier.
     #[serde(default)]
     pub layers: Vec<Layer>,
+}
+
+impl Scene {
+    /// Everything that layers name, each with its pointer.
+    pub fn uses(&self) -> impl Iterator<Item = Use<'_>> {
+        self.layers.iter().enumerate().flat_map(|(i, layer)| {
+            let uses = layer.technique().uses().into_iter();
+            uses.map(move |used| Use { at: format!("/layers/{i}{}", used.at), ..used })
+        })
+    }
+
+    /// Pointers to where layers name the image `name`.
+    pub fn users_of_image<'a>(&'a self, name: &'a str) -> impl Iterator<Item = String> + 'a {
+        self.uses().filter(move |used| used.of == Of::Image(name)).map(|used| used.at)
+    }
 }
 
 /// A picture of a scene.

@@ -14,7 +14,7 @@ use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Problem, quoted};
 use crate::layers::check as rules;
-use crate::layers::parts::materials::Materials;
+use crate::layers::parts::materials::{Materials, Of, Use, What};
 use crate::layers::technique::{Checked, Count};
 
 /// In zones with more anchors than this, coincident ones are not looked for.
@@ -59,30 +59,23 @@ pub fn problems(checked: &Checked) -> Vec<Problem> {
     all
 }
 
-/// The images that the layer names, each with its pointer.
-pub fn images(layer: &PictureLayer) -> Vec<(String, &str)> {
-    let mut images = vec![("/image".to_owned(), layer.image.as_str())];
+/// The pictures and files that the layer names: its own, then zone by zone.
+pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
+    let picture = |at, image| Use { at, of: Of::Image(image), what: What::Picture };
+    let mut uses = vec![picture("/image".to_owned(), &layer.image)];
     for (i, zone) in layer.zones.iter().enumerate() {
         if let Some(Fold::Mask { image }) = &zone.fold {
-            images.push((format!("/zones/{i}/fold/image"), image));
+            let at = format!("/zones/{i}/fold/image");
+            uses.push(Use { at, of: Of::Image(image), what: What::Mask { on: &layer.image } });
         }
-        if let Some(sampler) = &zone.sampler {
-            images.push((format!("/zones/{i}/sampler/image"), &sampler.image));
+        uses.extend(zone.sampler.iter().map(|sampler| picture(format!("/zones/{i}/sampler/image"), &sampler.image)));
+        for (j, tool) in zone.motion.iter().enumerate() {
+            if let Tool::Field { path, .. } = tool {
+                uses.push(Use { at: format!("/zones/{i}/motion/{j}/path"), of: Of::Path(path), what: What::Vectors });
+            }
         }
     }
-    images
-}
-
-/// The files that the layer names by their paths, each with its pointer.
-pub fn files(layer: &PictureLayer) -> Vec<(String, &str)> {
-    let tools = layer.zones.iter().enumerate();
-    let tools = tools.flat_map(|(i, zone)| zone.motion.iter().enumerate().map(move |(j, tool)| (i, j, tool)));
-    tools
-        .filter_map(|(i, j, tool)| match tool {
-            Tool::Field { path, .. } => Some((format!("/zones/{i}/motion/{j}/path"), path.as_str())),
-            _ => None,
-        })
-        .collect()
+    uses
 }
 
 /// The anchors and outline points that the layer asks for, place by place, told before they are made.
@@ -109,15 +102,6 @@ pub fn memory(layer: &PictureLayer) -> Vec<(String, u64)> {
     plates.map(|(i, count)| (format!("/zones/{i}/interpolation"), thin_plate_bytes(count as u64))).collect()
 }
 
-/// The masks that the layer names: each with its pointer, and the picture that it is for.
-pub fn masks(layer: &PictureLayer) -> Vec<(String, &str, &str)> {
-    let masks = layer.zones.iter().enumerate().filter_map(|(i, zone)| match &zone.fold {
-        Some(Fold::Mask { image }) => Some((format!("/zones/{i}/fold/image"), image.as_str(), layer.image.as_str())),
-        _ => None,
-    });
-    masks.collect()
-}
-
 /// What pictures and fields say: an outline outside its picture, a mask or a field of another size, a mask without alpha.
 pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Problem> {
     let Some(own) = materials.pictures.get(&layer.image) else { return Vec::new() };
@@ -140,7 +124,8 @@ pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Probl
             }
         }
     }
-    for (path, name, _) in masks(layer) {
+    for Use { at: path, of, what } in uses(layer) {
+        let (What::Mask { .. }, Of::Image(name)) = (what, of) else { continue };
         let Some(mask) = materials.pictures.get(name) else { continue };
         let (w, h) = (mask.width(), mask.height());
         if (w, h) != (width, height) {

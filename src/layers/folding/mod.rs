@@ -11,7 +11,6 @@ pub mod fold;
 pub mod frame;
 pub mod interpolation;
 pub mod kinds;
-pub mod mask;
 pub mod model;
 pub mod outline;
 pub mod passes;
@@ -36,7 +35,7 @@ use kurbo::{Rect, Vec2};
 use serde_json::Value;
 
 use self::model::PictureLayer;
-use super::parts::materials::Materials;
+use super::parts::materials::{Materials, Use};
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready};
 use super::technique::{Checked, Count, Counted, Kind, Technique, Turned};
@@ -88,16 +87,8 @@ impl Technique for PictureLayer {
         check::check_materials(self, materials)
     }
 
-    fn masks(&self) -> Vec<(String, &str, &str)> {
-        check::masks(self)
-    }
-
-    fn images(&self) -> Vec<(String, &str)> {
-        check::images(self)
-    }
-
-    fn files(&self) -> Vec<(String, &str)> {
-        check::files(self)
+    fn uses(&self) -> Vec<Use<'_>> {
+        check::uses(self)
     }
 
     fn frame_of(&self) -> Option<&str> {

@@ -1,4 +1,4 @@
-//! What a layer is made of, given to it as values.
+//! What a layer is made of: what it names, and the values that stand for it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,6 +8,40 @@ use crate::base::budget::Budget;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
 use crate::base::problem::Problem;
+
+/// Something that a layer names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use<'a> {
+    /// Where it is named: a JSON pointer relative to the layer.
+    pub at: String,
+    /// How it is named.
+    pub of: Of<'a>,
+    /// What it is taken for.
+    pub what: What<'a>,
+}
+
+/// How a layer names something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of<'a> {
+    /// By its name in the scene's images.
+    Image(&'a str),
+    /// A file by its path.
+    Path(&'a str),
+}
+
+/// What a layer takes something for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What<'a> {
+    /// A picture.
+    Picture,
+    /// A mask; without alpha it is laid on the image `on`.
+    Mask {
+        /// The name of the image in the scene.
+        on: &'a str,
+    },
+    /// A field of vectors.
+    Vectors,
+}
 
 /// What a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.
 #[derive(Clone, Debug, Default)]

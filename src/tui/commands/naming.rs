@@ -41,11 +41,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
 /// Whether nothing names what is to go; else who does. Only pictures are named.
 pub fn unused(document: &Document, path: &str) -> Done {
     let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == IMAGES) else { return Ok(()) };
-    let layers = document.scene().layers.iter().enumerate();
-    let users = layers.flat_map(|(i, layer)| {
-        let own = layer.technique().images().into_iter().filter(|(_, image)| *image == name);
-        own.map(move |(path, _)| format!("/layers/{i}{path}"))
-    });
+    let users = document.scene().users_of_image(&name);
     let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();
     match users.as_slice() {
         [] => Ok(()),

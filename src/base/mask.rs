@@ -1,7 +1,7 @@
 //! A mask that was painted without alpha, black on white: its brightness is the alpha of a copy of the picture.
 
-use crate::base::picture::{Channels, Picture, Samples};
-use crate::base::pixels::{Rgba, encode};
+use super::picture::{Channels, Picture, Samples};
+use super::pixels::{Rgba, encode};
 
 /// Whether the mask has the size of the picture; one that has not is told of, and taken as it is.
 pub fn fits(own: &Picture, mask: &Picture) -> bool {
