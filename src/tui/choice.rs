@@ -32,8 +32,22 @@ pub enum Then {
 }
 
 impl Choice {
-    /// Moves the cursor, from the last to the first.
+    /// Moves the cursor as far as the list goes.
     pub fn step(&mut self, by: i64) {
+        let last = self.options.len().saturating_sub(1) as i64;
+        self.at = (self.at as i64).saturating_add(by).clamp(0, last) as usize;
+    }
+
+    /// Moves the cursor to the next word that begins with a letter, after the last from the first on; false if none does.
+    pub fn seek(&mut self, letter: char) -> bool {
+        let begins = |i: &usize| self.options[*i].0.to_lowercase().starts_with(letter.to_ascii_lowercase());
+        let found = (self.at + 1..self.options.len()).chain(0..=self.at).find(|i| *i < self.options.len() && begins(i));
+        self.at = found.unwrap_or(self.at);
+        found.is_some()
+    }
+
+    /// Moves the cursor, from the last to the first.
+    pub fn turn(&mut self, by: i64) {
         let n = self.options.len().max(1) as i64;
         self.at = (self.at as i64 + by).rem_euclid(n) as usize;
     }

@@ -83,6 +83,11 @@ impl Finding {
         Some(spot)
     }
 
+    /// The places that jumps have left, by pointer, the latest first.
+    pub fn jumps(&self) -> impl Iterator<Item = &str> {
+        self.older.iter().rev().map(|spot| spot.row.as_str())
+    }
+
     /// The scene has changed: places go along with their items; those of items that are gone stay with their lists.
     pub fn follow(&mut self, change: &Change) {
         self.older.iter_mut().chain(&mut self.newer).chain(self.marks.values_mut()).for_each(|spot| {

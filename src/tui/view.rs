@@ -1,4 +1,4 @@
-//! The screen: where the panes stand, at every size from 80 x 20 on. Draws the state and changes nothing.
+//! The screen: where the panes stand, at every size from 60 x 20 on. Draws the state and changes nothing.
 
 use ratatui::Frame;
 use ratatui::layout::{Alignment, Constraint, Layout, Margin, Position, Rect, Spacing};
@@ -10,8 +10,8 @@ use super::app::{Mode, Pane, State};
 use super::colour;
 use super::panes;
 
-/// The least terminal that the editor draws on: one of 80 x 24 less the lines that a multiplexer takes.
-pub const LEAST: (u16, u16) = (80, 20);
+/// The least terminal that the editor draws on: a split of a window, less the lines that a multiplexer takes.
+pub const LEAST: (u16, u16) = (60, 20);
 /// The terminal that is meant where there is none.
 pub const USUAL: (u16, u16) = (80, 24);
 /// From this width on there are panes at the right.
@@ -48,7 +48,7 @@ pub fn areas(screen: Rect, probing: bool) -> Areas {
     let [body, status, line] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
     let right = if screen.width >= WIDE { screen.width * 2 / 5 } else { 0 };
-    let tree = (screen.width / 5).clamp(24, 30);
+    let tree = (screen.width / 5).clamp(24, 30).min(screen.width / 3);
     let columns = [Constraint::Length(tree), Constraint::Fill(1), Constraint::Length(right)];
     let columns = &columns[..if right > 0 { 3 } else { 2 }];
     let columns = Layout::horizontal(columns).spacing(Spacing::Overlap(1)).split(body);

@@ -127,7 +127,7 @@ fn help_comes_from_the_table_and_small_terminals_are_waited_for() {
     editor.wait_for("no command");
     let size = |rows, cols| PtySize { rows, cols, pixel_width: 0, pixel_height: 0 };
     editor.master.as_ref().unwrap().resize(size(10, 40)).unwrap();
-    editor.wait_for("Plica needs 80 x 20");
+    editor.wait_for("Plica needs 60 x 20");
     editor.master.as_ref().unwrap().resize(size(24, 80)).unwrap();
     editor.wait_for("zones.all");
     editor.press(":q\r");

@@ -19,11 +19,19 @@ pub const COMMANDS: &[Command] = &[
     command("enter", "[clear]", "Edit the cell, or go into the node", enter),
     command("put", "EXPRESSION", "Put a value into the cell, or into every selected row", put).change(),
     command("commit", "[next]", "Take the value being typed", commit).inside(),
-    command("digit", "BY", "Step the digit under the cursor", digit).inside(),
-    command("choice", "next|previous|take", "Move in the list of choices, or take one", choice).inside(),
+    command("digit", "BY", "Step the digit under the cursor", digit).inside().counted(),
+    command(
+        "choice",
+        "next|previous|to LETTER|take",
+        "Move in the list of choices, also to the next word that begins so, or take one",
+        choice,
+    )
+    .inside()
+    .counted_with(&["next", "previous", "to"]),
     command("choose", "WORD", "Take a word of the list of choices", choose).answer(),
-    command("step", "BY", "Step the number by the step", step).change(),
-    command("step-size", "smaller|larger|POWER", "Change the step tenfold", step_size),
+    command("step", "BY", "Step the number by the step", step).change().counted(),
+    command("step-size", "smaller|larger|POWER", "Change the step tenfold", step_size)
+        .counted_with(&["smaller", "larger"]),
 ];
 
 pub fn current(state: &State) -> Option<(Row, Cell)> {
@@ -36,7 +44,8 @@ fn enter(state: &mut State, call: &Call) -> Done {
     let (row, cell) = current(state).ok_or("there is nothing to edit here: o adds an item")?;
     let missing = field::value(state.document(), &cell.pointer).is_none_or(|value| value.is_null());
     if cell.is_node() && missing {
-        return add_here(state);
+        state.door.writable()?;
+        return add_here(state, 1);
     }
     // The kind of an item with an inside of its own stands for the item; its form has the kind again.
     let into = row.item && state.column == 0 && row.cells.iter().any(Cell::is_node);
@@ -44,6 +53,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
         state.show(if into { row.pointer } else { cell.pointer });
         return Ok(());
     }
+    state.door.writable()?;
     let sheet = state.sheet();
     let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
     if is_typed(&cell) {
@@ -98,7 +108,7 @@ fn commit(state: &mut State, call: &Call) -> Done {
 }
 
 fn digit(state: &mut State, call: &Call) -> Done {
-    let by = call.text.parse().unwrap_or(1);
+    let by = number(call, "digit")?.saturating_mul(call.times());
     let Mode::Entry(entry) = &mut state.mode else { return Ok(()) };
     if entry.text.step_digit(by) { Ok(()) } else { Err("there is no digit under the cursor".into()) }
 }
@@ -108,7 +118,7 @@ fn choice(state: &mut State, call: &Call) -> Done {
     match call.text {
         "next" => choice.step(call.times()),
         "previous" => choice.step(-call.times()),
-        _ => match (choice.taken().map(str::to_owned), &choice.then) {
+        "take" => match (choice.taken().map(str::to_owned), &choice.then) {
             (Some(word), Then::Answer(_)) => {
                 // Elsewhere, where a log is run again, nothing of the kind has happened.
                 let choice = choice.clone();
@@ -123,8 +133,27 @@ fn choice(state: &mut State, call: &Call) -> Done {
             (Some(word), _) => return obey(state, &format!("choose {}", quoted(&word)), None),
             (None, _) => state.mode = Mode::Normal,
         },
+        text => {
+            let letter = text.strip_prefix("to ").and_then(|text| text.chars().next());
+            let letter = letter.ok_or_else(|| unknown(call, "choice takes next, previous, to LETTER or take"))?;
+            for _ in call.steps() {
+                if !choice.seek(letter) {
+                    return Err(format!("nothing here begins with {letter}"));
+                }
+            }
+        }
     }
     Ok(())
+}
+
+/// The whole number that a command is told.
+pub fn number(call: &Call, name: &str) -> Result<i64, String> {
+    call.text.parse().map_err(|_| unknown(call, &format!("{name} takes a whole number")))
+}
+
+/// What a command takes, and what it was told instead.
+fn unknown(call: &Call, takes: &str) -> String {
+    format!("{takes}, not {}", problem::quoted(call.text))
 }
 
 fn choose(state: &mut State, call: &Call) -> Done {
@@ -174,13 +203,13 @@ fn take(state: &mut State, choice: Choice, word: &str) -> Done {
 
 /// Steps every selected cell from its own value: numbers by the step, choices by one.
 fn step(state: &mut State, call: &Call) -> Done {
-    let by = call.text.parse::<i64>().unwrap_or(1).saturating_mul(call.times());
+    let by = number(call, "step")?.saturating_mul(call.times());
     let sheet = state.sheet();
     let (_, cell) = current(state).ok_or("there is nothing to step here")?;
     if !cell.is_number() {
         let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
         let mut choice: Choice = choice::of_cell(state, &cell, others).ok_or("only numbers and choices step")?;
-        choice.step(by);
+        choice.turn(by);
         let word = choice.taken().unwrap_or_default().to_string();
         return take(state, choice, &word);
     }
@@ -204,7 +233,7 @@ fn step_size(state: &mut State, call: &Call) -> Done {
     let power = match call.text {
         "smaller" => state.step - times,
         "larger" => state.step + times,
-        text => text.parse().map_err(|_| "step-size takes smaller, larger or a power of ten")?,
+        _ => call.text.parse().map_err(|_| unknown(call, "step-size takes smaller, larger or a power of ten"))?,
     };
     state.step = power.clamp(-3, 3);
     state.say(format!("step {}", step_of(state.step)));

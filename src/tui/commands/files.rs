@@ -1,6 +1,7 @@
 //! Files, leaving, and what is outside the editor.
 
 use super::{Call, Command, Done, command};
+use crate::base::problem::quoted;
 use crate::files::paths;
 use crate::preview::keys as window;
 use crate::tui::app::State;
@@ -23,7 +24,7 @@ pub const COMMANDS: &[Command] = &[
         open(state, call)
     }),
     command("e!", "[PATH]", "Open another scene, or take this one as its file has it", open),
-    command("view", "[COMMAND]", "Open the preview window, or change what it shows", view),
+    command("view", "[COMMAND]", "Open the preview window, or change what it shows", view).counted(),
     command("image", "edit [NAME]", "Open a picture of the scene in another program", image).inside(),
     command("redraw", "", "Draw the screen anew", |state, _| {
         state.ask(Effect::Redraw);
@@ -72,9 +73,12 @@ fn open(state: &mut State, call: &Call) -> Done {
 fn view(state: &mut State, call: &Call) -> Done {
     let known = |name: &str| window::KEYS.iter().any(|row| row.context == window::VIEW && row.command == name);
     match call.text {
+        "" if call.count.is_some() => return Err("view takes no count".into()),
         "" => state.ask(Effect::View(None)),
-        name if known(name) => state.ask(Effect::View(Some(name.to_owned()))),
-        name => return Err(format!("the window knows no {name}")),
+        name if known(name) => {
+            call.steps().for_each(|_| state.ask(Effect::View(Some(name.to_owned()))));
+        }
+        name => return Err(format!("the window has no command {}", quoted(name))),
     }
     Ok(())
 }

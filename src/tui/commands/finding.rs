@@ -4,18 +4,21 @@ use super::{Call, Command, Done, command, unquoted};
 use crate::scene::schema::{Body, Place};
 use crate::scene::{address, field, pointer};
 use crate::tui::app::{Mode, Pane, State};
+use crate::tui::choice::{Choice, Then};
 use crate::tui::places::Sought;
-use crate::tui::sheet::{Part, is_node};
+use crate::tui::sheet::{Part, is_node, summary};
 use crate::tui::terminal::plain;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
-    command("search", "next|previous|TEXT", "Go to the next place of that name or value", search),
+    command("search", "next|previous|TEXT", "Go to the next place of that name or value", search).counted(),
     command("go", "PATH", "Go to the node or the field at a path; without one, to the scene", go),
     command("mark", "a..z", "Set a mark here", mark),
     command("jump-mark", "a..z", "Go to a mark", jump_mark),
-    command("jumps", "older|newer", "Go back and on along the jumps", jumps),
-    command("sibling", "next|previous", "Go to the same place of the next zone or tool like this one", sibling),
+    command("jumps", "[older|newer]", "Go back and on along the jumps, or list them", jumps)
+        .counted_with(&["older", "newer"]),
+    command("sibling", "next|previous", "Go to the same place of the next zone or tool like this one", sibling)
+        .counted(),
 ];
 
 /// The letter that a command is given.
@@ -44,6 +47,9 @@ fn jump_mark(state: &mut State, call: &Call) -> Done {
 }
 
 fn jumps(state: &mut State, call: &Call) -> Done {
+    if call.text.is_empty() {
+        return list_jumps(state);
+    }
     let way = if call.text == "newer" { "newer" } else { "older" };
     for done in 0..call.times() {
         let here = state.spot();
@@ -53,6 +59,28 @@ fn jumps(state: &mut State, call: &Call) -> Done {
             None => return Err(format!("there is no {way} jump")),
         }
     }
+    Ok(())
+}
+
+/// Lists the places that jumps have left, the latest first.
+fn list_jumps(state: &mut State) -> Done {
+    let document = state.document();
+    let mut options: Vec<(String, String)> = Vec::new();
+    for place in state.finding.jumps().filter(|place| field::is_there(document, place)) {
+        let address = match address::told(document, place) {
+            whole if whole.is_empty() => "scene".to_owned(),
+            address => address,
+        };
+        let value = field::field(document, place).zip(field::value(document, place));
+        let says = value.map(|(field, value)| summary(&field, &value)).unwrap_or_default();
+        if options.iter().all(|(known, _)| *known != address) {
+            options.push((address, says));
+        }
+    }
+    if options.is_empty() {
+        return Err("there were no jumps yet".into());
+    }
+    state.mode = Mode::Choice(Choice { title: "jumps".into(), options, at: 0, then: Then::Go });
     Ok(())
 }
 
@@ -69,6 +97,10 @@ fn go(state: &mut State, call: &Call) -> Done {
     };
     let before = state.spot();
     reveal(state, &pointer);
+    // Whoever names a list means its rows.
+    if state.focus == Pane::Tree && state.sheet().table {
+        state.focus = Pane::Table;
+    }
     if before.node != state.node {
         state.finding.left(before);
     }

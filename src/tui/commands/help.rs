@@ -1,6 +1,7 @@
 //! The help: first what is under the cursor, then the keys of this pane, then everything; all of it from the tables and
 //! from the schema.
 
+use super::cells::number;
 use super::{Call, Command, Done, all, command};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{address, pointer};
@@ -13,7 +14,7 @@ use crate::tui::terminal::plain;
 
 pub const COMMANDS: &[Command] = &[
     command("help", "[COMMAND]", "Show what is under the cursor, then keys and commands", help).inside(),
-    command("scroll", "LINES", "Scroll the pages", scroll).inside(),
+    command("scroll", "LINES", "Scroll the pages", scroll).inside().counted(),
 ];
 
 /// Columns of the text on the pages.
@@ -169,7 +170,7 @@ pub fn entries() -> Vec<String> {
 }
 
 fn scroll(state: &mut State, call: &Call) -> Done {
-    let by = call.text.parse::<i64>().unwrap_or(1).saturating_mul(call.times());
+    let by = number(call, "scroll")?.saturating_mul(call.times());
     if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.mode {
         *scroll = (*scroll as i64).saturating_add(by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
     }

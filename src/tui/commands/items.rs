@@ -1,6 +1,6 @@
 //! Rows and nodes as a whole: added, taken away, doubled and moved.
 
-use serde_json::{Value, json as value};
+use serde_json::{Map, Value, json as value};
 
 use super::naming::unused;
 use super::yanking::stem;
@@ -8,17 +8,20 @@ use super::{Call, Command, Done, command, unquoted};
 use crate::base::budget;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
-use crate::tui::app::{Mode, Pane, State};
+use crate::tui::app::{Mode, Pane, State, first};
 use crate::tui::choice::{self, Choice, Then};
 use crate::tui::entry;
 use crate::tui::line::Line;
+use crate::tui::recorder::Work;
 use crate::tui::sheet::Cell;
 
 pub const COMMANDS: &[Command] = &[
-    command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add).change(),
-    command("delete", "", "Delete the row, the selection or the node", delete).change(),
-    command("duplicate", "", "Duplicate the row or the node", duplicate).change(),
-    command("reorder", "down|up", "Move the row or the node among its siblings", reorder).change(),
+    command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add)
+        .change()
+        .counted_with(&[""]),
+    command("delete", "", "Delete the row, the selection or the node", delete).change().counted(),
+    command("duplicate", "", "Duplicate the row or the node", duplicate).change().counted(),
+    command("reorder", "down|up", "Move the row or the node among its siblings", reorder).change().counted(),
 ];
 
 /// What the node or the row under the cursor is: its pointer.
@@ -36,8 +39,59 @@ fn split_item(state: &State, pointer: &str) -> Option<(String, usize)> {
     is_list.then(|| (list.to_string(), index))
 }
 
+/// The nodes or rows that a command applies to as a whole, in their order: the selection, else as many as the count says
+/// from the one under the cursor on, as far as its list goes.
+pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
+    let sheet = state.sheet();
+    if state.focus != Pane::Tree {
+        return Ok(rows(state, call)?.filter_map(|i| sheet.pointer(i)).collect());
+    }
+    let node = target(state)?;
+    match (call.count, split_item(state, &node)) {
+        (None | Some(1), _) => Ok(vec![node]),
+        (Some(_), None) => Err("only items of a list are counted: go to one".into()),
+        (Some(count), Some((list, index))) => {
+            let items = state.document().json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
+            Ok((index..items.min(index + count.max(1))).map(|i| pointer::join(&list, i)).collect())
+        }
+    }
+}
+
+/// The rows that a command applies to as a whole: the selection, else as many as the count says from the cursor on, as far
+/// as there are rows like the one under it.
+pub fn rows(state: &State, call: &Call) -> Result<std::ops::RangeInclusive<usize>, String> {
+    match call.count {
+        None => Ok(entry::rows(state)),
+        Some(_) if state.selected_from.is_some() => Err("the selection says which rows, not a count".into()),
+        Some(count) => {
+            Ok(state.row..=(state.row + count.max(1) - 1).min(alike(state).map_or(state.row, |(_, last)| last)))
+        }
+    }
+}
+
+/// The first and the last of the rows around the cursor that are like the one under it: all rows of a table; in a form the
+/// items of one list, else fields.
+pub fn alike(state: &State) -> Option<(usize, usize)> {
+    let sheet = state.sheet();
+    if sheet.table {
+        return Some((0, sheet.len().checked_sub(1)?));
+    }
+    let row = sheet.row(state.row)?;
+    let list = |row: &crate::tui::sheet::Row| {
+        row.item.then(|| row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned())).flatten()
+    };
+    let own = list(&row);
+    let like = |i: &usize| sheet.row(*i).is_some_and(|row| list(&row) == own);
+    let first = (0..=state.row).rev().take_while(like).last()?;
+    let last = (state.row..sheet.len()).take_while(like).last()?;
+    Some((first, last))
+}
+
 fn add(state: &mut State, call: &Call) -> Done {
-    if call.text.is_empty() { add_here(state) } else { add_picture(state, &unquoted(call.text)) }
+    match call.text {
+        "" => add_here(state, call.times_of("add")?),
+        path => add_picture(state, &unquoted(path)),
+    }
 }
 
 /// A picture by its file, as written relative to the scene, under the file's name.
@@ -50,11 +104,19 @@ fn add_picture(state: &mut State, path: &str) -> Done {
     Ok(())
 }
 
-/// Adds where the cursor is; what is asked for is typed or chosen then.
-pub fn add_here(state: &mut State) -> Done {
+/// Adds so many items where the cursor is; what is asked for is typed or chosen then.
+pub fn add_here(state: &mut State, times: usize) -> Done {
     let pointer = target(state).unwrap_or(state.node.clone());
     let field = field::field(state.document(), &pointer).ok_or("nothing can be added here")?;
     let there = field::is_there(state.document(), &pointer);
+    let in_list = match (&field.kind, there) {
+        (Kind::List(_), _) => true,
+        (Kind::Map(_), _) | (Kind::Object | Kind::Tagged { .. }, false) => false,
+        _ => split_item(state, &pointer).or_else(|| split_item(state, &state.node)).is_some(),
+    };
+    if times > 1 && !in_list {
+        return Err("only items of a list are added several at a time".into());
+    }
     let end = || state.document().json().pointer(&pointer).and_then(Value::as_array).map_or(0, Vec::len);
     match (&field.kind, there) {
         (Kind::Tagged { .. }, false) => {
@@ -63,14 +125,14 @@ pub fn add_here(state: &mut State) -> Done {
             Ok(())
         }
         (Kind::Object, false) => add_object(state, &pointer),
-        (Kind::List(_), _) => insert(state, &pointer.clone(), end()),
+        (Kind::List(_), _) => insert(state, &pointer.clone(), end(), times),
         (Kind::Map(_), _) => ask_for_path(state),
         _ => match split_item(state, &pointer) {
-            Some((list, index)) => insert(state, &list, index + 1),
+            Some((list, index)) => insert(state, &list, index + 1, times),
             None if pointer.starts_with("/images/") => ask_for_path(state),
             None if state.focus == Pane::Tree => Err("o adds to lists: go to a list or to one of its items".into()),
             None => match split_item(state, &state.node.clone()) {
-                Some((list, index)) => insert(state, &list, index + 1),
+                Some((list, index)) => insert(state, &list, index + 1, times),
                 None => Err("nothing can be added here".into()),
             },
         },
@@ -92,8 +154,15 @@ fn add_object(state: &mut State, pointer: &str) -> Done {
     state.edit(edit, false)
 }
 
-fn insert(state: &mut State, list: &str, index: usize) -> Done {
-    let (edit, pointer) = Edit::insert_new(state.document(), list, index).ok_or("nothing can be added here")?;
+fn insert(state: &mut State, list: &str, index: usize, times: usize) -> Done {
+    let nothing = "nothing can be added here";
+    let (mut edit, mut pointer) = Edit::insert_new(state.document(), list, index).ok_or(nothing)?;
+    if times > 1 {
+        let with = state.document().apply(&edit).map_err(|problems| first(&problems))?;
+        let item = field::value(&with, &pointer).ok_or(nothing)?;
+        bearable(state, json::bytes(&item).saturating_mul(times as u64))?;
+        (edit, pointer) = Edit::insert_all(state.document(), list, index, vec![item; times]).ok_or(nothing)?;
+    }
     state.edit(edit, false)?;
     go_to(state, &pointer);
     let row = state.sheet().row(state.row).filter(|_| state.focus == Pane::Table);
@@ -117,22 +186,18 @@ pub fn go_to(state: &mut State, pointer: &str) {
 }
 
 /// Items go from their lists, the last first, as one edit; a field goes back to its default.
-fn delete(state: &mut State, _: &Call) -> Done {
-    let sheet = state.sheet();
-    let pointers: Vec<String> = match state.focus {
-        Pane::Tree => vec![state.node.clone()],
-        _ => entry::rows(state).rev().filter_map(|i| sheet.pointer(i)).collect(),
-    };
+fn delete(state: &mut State, call: &Call) -> Done {
+    let pointers: Vec<String> = targets(state, call)?.into_iter().rev().collect();
     let written = |pointer: &&String| !pointer.is_empty() && state.document().json().pointer(pointer).is_some();
     let edits: Vec<Edit> = pointers.iter().filter(written).map(|pointer| Edit::remove(pointer)).collect();
     if edits.is_empty() {
         return Err("there is nothing to delete here".into());
     }
     pointers.iter().try_for_each(|pointer| unused(state.document(), pointer))?;
-    let first = *entry::rows(state).start();
+    let top = *entry::rows(state).start();
     state.edit(Edit::all(edits), false)?;
     if state.selected_from.take().is_some() {
-        state.row = first;
+        state.row = top;
         state.settle();
     }
     Ok(())
@@ -181,14 +246,33 @@ pub fn bearable(state: &State, bytes: u64) -> Done {
     ))
 }
 
+/// The edit that adds entries to a map so many times, each time under other names; with it, the pointer of the first.
+pub fn insert_entries(
+    state: &State,
+    map: &str,
+    entries: &Map<String, Value>,
+    times: usize,
+) -> Result<Option<(Edit, String)>, String> {
+    let (mut document, mut work) = (state.document().clone(), Work::default());
+    let (mut edits, mut first_path) = (Vec::new(), None);
+    for _ in 0..times {
+        work.spend(&document)?;
+        let Some((edit, path)) = Edit::insert_entries(&document, map, entries.clone()) else { return Ok(None) };
+        document = document.apply(&edit).map_err(|problems| first(&problems))?;
+        edits.push(edit);
+        first_path.get_or_insert(path);
+    }
+    Ok(first_path.map(|path| (Edit::all(edits), path)))
+}
+
 /// Copies follow the last of what they are copies of, and take over the selection.
 fn duplicate(state: &mut State, call: &Call) -> Done {
     let times = call.times_of("duplicate")?;
     let path = target(state)?;
     if let Some((map, name)) = pointer::split(&path).filter(|(map, _)| *map == "/images") {
         let value = field::value(state.document(), &path).unwrap_or(Value::Null);
-        let added = Edit::insert_entries(state.document(), map, [(name, value)].into_iter().collect());
-        let (edit, path) = added.ok_or("there is nothing to duplicate here")?;
+        let entry = [(name, value)].into_iter().collect();
+        let (edit, path) = insert_entries(state, map, &entry, times)?.ok_or("there is nothing to duplicate here")?;
         state.edit(edit, false)?;
         go_to(state, &path);
         return Ok(());

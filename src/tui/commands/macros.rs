@@ -6,8 +6,8 @@ use crate::tui::app::{Mode, State};
 
 pub const COMMANDS: &[Command] = &[
     command("record", "[LETTER]", "Record a macro, or end the recording", record).inside(),
-    command("play-macro", "LETTER|last", "Play a macro", play).played(),
-    command("again", "", "Repeat the last change here", again).played(),
+    command("play-macro", "LETTER|last", "Play a macro", play).played().counted(),
+    command("again", "", "Repeat the last change here", again).played().counted(),
 ];
 
 fn record(state: &mut State, call: &Call) -> Done {

@@ -11,7 +11,7 @@ use crate::tui::terminal::plain;
 pub const COMMANDS: &[Command] = &[
     command("messages", "", "Show what was said before, to its end", messages).inside(),
     command("problems", "", "List what is wrong in the scene; Enter goes there", problems).inside(),
-    command("problem", "next|previous", "Go to the next place where something is wrong", problem),
+    command("problem", "[next|previous]", "Go to the next place where something is wrong", problem).counted(),
 ];
 
 /// Columns of the text on the page.
@@ -66,8 +66,7 @@ fn problem(state: &mut State, call: &Call) -> Done {
     let at = here.iter().find_map(|here| found.iter().rposition(|(path, _)| path == here));
     let by = match call.text {
         "" | "next" => call.times(),
-        "previous" => -call.times(),
-        _ => return Err("problem takes next or previous".into()),
+        _ => -call.times(),
     };
     let from = at.map_or(if by > 0 { -1 } else { 0 }, |at| at as i64);
     let to = (from + by).rem_euclid(n) as usize;

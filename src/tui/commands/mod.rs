@@ -56,6 +56,11 @@ impl Call<'_> {
         self.count.unwrap_or(1) as i64
     }
 
+    /// The steps of a command that goes so far; no way is longer.
+    pub fn steps(&self) -> std::ops::Range<usize> {
+        0..self.count.unwrap_or(1).min(1000)
+    }
+
     /// The count of a command that makes something each time.
     ///
     /// # Errors
@@ -78,14 +83,75 @@ pub struct Command {
     pub help: &'static str,
     /// What is kept of it: in the log of the session, in macros, for `.`.
     pub kept: Kept,
+    /// Whether it takes a count.
+    pub counts: Counts,
     /// Does it.
     pub run: fn(&mut State, &Call) -> Done,
+}
+
+/// Where a command does something with a count: repeats itself, or goes so far. Elsewhere the door refuses one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counts {
+    /// Nowhere.
+    Never,
+    /// Whatever it is told.
+    Always,
+    /// Where its text begins with one of these words; an empty one stands for no text.
+    With(&'static [&'static str]),
 }
 
 impl Command {
     /// One that changes the scene, which `.` repeats.
     const fn change(self) -> Command {
         Command { kept: Kept::Change, ..self }
+    }
+
+    /// One that takes a count.
+    pub const fn counted(self) -> Command {
+        Command { counts: Counts::Always, ..self }
+    }
+
+    /// One that takes a count with these words.
+    pub const fn counted_with(self, words: &'static [&'static str]) -> Command {
+        Command { counts: Counts::With(words), ..self }
+    }
+
+    /// The words that may stand after its name, where there are no others, and whether it can do without.
+    pub fn words(&self) -> Option<(Vec<&'static str>, bool)> {
+        let inside = self.args.strip_prefix('[').and_then(|args| args.strip_suffix(']'));
+        let words: Vec<&str> = inside.unwrap_or(self.args).split('|').filter(|word| !word.is_empty()).collect();
+        let plain = |word: &&str| word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+        words.iter().all(plain).then(|| (words, inside.is_some() || self.args.is_empty()))
+    }
+
+    /// Refuses what the table says that the command does not take: another word, a count.
+    fn takes(&self, said: &Said) -> Done {
+        if let Some((words, optional)) = self.words()
+            && !words.contains(&said.text)
+            && !(optional && said.text.is_empty())
+        {
+            let found = if said.text.is_empty() { "nothing".into() } else { problem::quoted(said.text) };
+            return Err(match words.as_slice() {
+                [] => format!("{} takes nothing after it, not {found}", self.name),
+                words => format!("{} takes {}, not {found}", self.name, one_of(words)),
+            });
+        }
+        let first = said.text.split(' ').next().unwrap_or_default();
+        let counts = match self.counts {
+            Counts::Never => false,
+            Counts::Always => true,
+            Counts::With(words) => words.contains(&first),
+        };
+        match said.count {
+            Some(_) if !counts => Err(format!("{} takes no count", format!("{} {first}", self.name).trim_end())),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether it would change the scene.
+    fn edits(&self, said: &Said) -> bool {
+        // `place next` and `place previous` only go to points.
+        self.kept == Kept::Change && !matches!(said.text, "next" | "previous")
     }
 
     /// One that answers a list of choices.
@@ -111,7 +177,16 @@ pub const fn command(
     help: &'static str,
     run: fn(&mut State, &Call) -> Done,
 ) -> Command {
-    Command { name, args, help, kept: Kept::Line, run }
+    Command { name, args, help, kept: Kept::Line, counts: Counts::Never, run }
+}
+
+/// Words as alternatives: `a, b or c`.
+fn one_of(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [all @ .., last] => format!("{} or {last}", all.join(", ")),
+    }
 }
 
 const TABLES: &[&[Command]] = &[
@@ -225,7 +300,13 @@ pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
     let (revision, asked) = (state.door.revision(), asks(state));
     state.recorder.begin(kept);
     let done = match command {
-        Some(command) => (command.run)(state, &Call { text: said.text, count: said.count }),
+        Some(command) => command.takes(&said).and_then(|()| {
+            // Nothing is typed or chosen that would be refused at its end.
+            if command.edits(&said) {
+                state.door.writable()?;
+            }
+            (command.run)(state, &Call { text: said.text, count: said.count })
+        }),
         None => subcommand(state, &said),
     };
     let asks = asks(state) && !asked;
@@ -254,6 +335,9 @@ fn subcommand(state: &mut State, said: &Said) -> Done {
     let name = said.name;
     if !ops::names().any(|known| known == name) {
         return Err(unknown(name));
+    }
+    if said.count.is_some() {
+        return Err(format!("{name} takes no count"));
     }
     let words = words(&format!("{name} {}", said.text))?;
     state.ask(Effect::Run(words));

@@ -7,13 +7,14 @@ use crate::tui::tree;
 use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
-    command("move", "down|up|left|right|first|last|start|end|page-down|page-up|next", "Move the cursor", go),
-    command("pane", "next|previous|tree|table|picture", "Go to another pane", pane),
-    command("fold", "", "Fold the node of the tree, else go to its parent", fold),
-    command("open", "", "Unfold the node of the tree, else edit it", open),
-    command("up", "", "Go to the node that holds this one", up),
-    command("back", "", "End the selection, else running work", back),
-    command("leave", "", "As back, and say how to leave", leave),
+    command("move", "down|up|left|right|first|last|start|end|page-down|page-up|next", "Move the cursor", go)
+        .counted_with(&["down", "up", "left", "right", "first", "last", "page-down", "page-up", "next"]),
+    command("pane", "next|previous|tree|table|picture", "Go to another pane", pane).counted_with(&["next", "previous"]),
+    command("fold", "", "Fold the node of the tree, else go to its parent", fold).counted(),
+    command("open", "", "Unfold the node of the tree, else edit it", open).counted(),
+    command("up", "", "Go to the node that holds this one", up).counted(),
+    command("back", "", "End the selection, else running work", back).counted(),
+    command("leave", "", "As back, and say how to leave", leave).counted(),
 ];
 
 /// Rows that a page holds, about.
@@ -33,7 +34,10 @@ fn go(state: &mut State, call: &Call) -> Done {
         "page-up" => by(-page(state) * call.times()),
         "first" => call.count.unwrap_or(0).min(count.saturating_sub(1)),
         "last" => call.count.unwrap_or(usize::MAX).min(count.saturating_sub(1)),
-        "next" => return move_on(state),
+        "next" => {
+            call.steps().for_each(|_| move_on(state));
+            return Ok(());
+        }
         sideways => return move_sideways(state, sideways, call.times()),
     };
     if matches!(call.text, "first" | "last") && to != at {
@@ -66,14 +70,13 @@ fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
 }
 
 /// Goes to the next cell, after the last of a row to the first of the row below.
-fn move_on(state: &mut State) -> Done {
+fn move_on(state: &mut State) {
     let cells = state.sheet().row(state.row).map_or(0, |row| row.cells.len());
     (state.row, state.column) = match state.column + 1 < cells {
         true => (state.row, state.column + 1),
         false => (state.row + 1, 0),
     };
     state.settle();
-    Ok(())
 }
 
 fn pane(state: &mut State, call: &Call) -> Done {
@@ -83,45 +86,58 @@ fn pane(state: &mut State, call: &Call) -> Done {
         "tree" => Pane::Tree,
         "table" => Pane::Table,
         "picture" => Pane::Picture,
-        "previous" => PANES[(at + 2) % 3],
-        _ => PANES[(at + 1) % 3],
+        way => {
+            let by = if way == "previous" { -call.times() } else { call.times() };
+            PANES[(at as i64 + by).rem_euclid(3) as usize]
+        }
     };
     state.settle();
     Ok(())
 }
 
-fn fold(state: &mut State, _: &Call) -> Done {
+fn fold(state: &mut State, call: &Call) -> Done {
+    call.steps().for_each(|_| fold_once(state));
+    Ok(())
+}
+
+fn fold_once(state: &mut State) {
     let rows = tree::rows(state.document(), &state.folded);
     let at = tree::row_of(&rows, &state.node);
     if rows[at].folded == Some(false) {
         state.folded.insert(rows[at].pointer.clone());
-        return Ok(());
+        return;
     }
     let parent = rows[..at].iter().rposition(|row| row.depth < rows[at].depth).unwrap_or(0);
     state.show(rows[parent].pointer.clone());
-    Ok(())
 }
 
 fn open(state: &mut State, call: &Call) -> Done {
+    call.steps().try_for_each(|_| open_once(state))
+}
+
+fn open_once(state: &mut State) -> Done {
     let rows = tree::rows(state.document(), &state.folded);
     let at = tree::row_of(&rows, &state.node);
     if rows[at].folded == Some(true) {
         state.folded.remove(&rows[at].pointer);
         return Ok(());
     }
-    pane(state, &Call { text: "table", count: call.count })
+    pane(state, &Call { text: "table", count: None })
 }
 
-fn up(state: &mut State, _: &Call) -> Done {
-    let Some((parent, _)) = state.node.rsplit_once('/') else { return Ok(()) };
-    let (parent, child) = (parent.to_string(), state.node.clone());
-    state.show(parent);
-    state.row = state.sheet().position(&child).unwrap_or(0);
+fn up(state: &mut State, call: &Call) -> Done {
+    for _ in call.steps() {
+        let Some((parent, _)) = state.node.rsplit_once('/') else { break };
+        let (parent, child) = (parent.to_string(), state.node.clone());
+        state.show(parent);
+        state.row = state.sheet().position(&child).unwrap_or(0);
+    }
     Ok(())
 }
 
-fn back(state: &mut State, _: &Call) -> Done {
-    if !state.unselect() && state.seen.work.is_some() {
+/// Ends one thing: a count, the selection, running work.
+fn back(state: &mut State, call: &Call) -> Done {
+    if call.count.is_none() && !state.unselect() && state.seen.work.is_some() {
         state.ask(Effect::Cancel);
     }
     Ok(())

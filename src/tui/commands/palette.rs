@@ -6,7 +6,8 @@ use crate::tui::palette::Palette;
 
 pub const COMMANDS: &[Command] = &[
     command("palette", "[next|previous|take]", "Find commands, nodes and fields by a few of their letters", palette)
-        .inside(),
+        .inside()
+        .counted_with(&["next", "previous"]),
     command("leader", "[menu]", "Show the keys of the leader menu", |state, _| {
         state.pressed = "Space".into();
         Ok(())

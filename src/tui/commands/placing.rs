@@ -4,6 +4,7 @@ use kurbo::{Point, Vec2};
 
 use super::items::go_to;
 use super::{Call, Command, Done, command, obey};
+use crate::base::problem::quoted;
 use crate::render::overlay;
 use crate::tui::app::{Mode, Pane, State};
 use crate::tui::numbers::short;
@@ -11,8 +12,10 @@ use crate::tui::update::Effect;
 use crate::tui::{entry, place, seeing};
 
 pub const COMMANDS: &[Command] = &[
-    command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor),
-    command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed).change(),
+    command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor).counted(),
+    command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed)
+        .change()
+        .counted_with(&["next", "previous"]),
     command(
         "pointer",
         "[mark|select]",
@@ -28,7 +31,12 @@ const PICK_REACH: f64 = 0.02;
 fn cursor(state: &mut State, call: &Call) -> Done {
     let (place, text) = call.text.strip_prefix("at ").map_or((false, call.text), |text| (true, text));
     let numbers: Vec<f64> = text.split(' ').filter_map(|number| number.parse().ok()).collect();
-    let [x, y] = numbers[..] else { return Err("cursor takes X Y, or at X Y".into()) };
+    let [x, y] = numbers[..] else {
+        return Err(format!("cursor takes X Y, or at X Y, not {}", quoted(call.text)));
+    };
+    if place && call.count.is_some() {
+        return Err("cursor at takes no count".into());
+    }
     let to =
         if place { Vec2::new(x, y) - state.placing.cursor.to_vec2() } else { Vec2::new(x, y) * call.times() as f64 };
     state.placing.step(to, state.picture_size);

@@ -7,8 +7,9 @@ use crate::tui::update::Effect;
 
 pub const COMMANDS: &[Command] = &[
     command("play", "", "Play or pause", play).inside(),
-    command("frame", "next|previous|first|last|NUMBER", "Go to a frame", frame),
-    command("speed", "slower|faster|NUMBER", "Play slower or faster, 0.1 to 4 times", speed),
+    command("frame", "next|previous|first|last|NUMBER", "Go to a frame", frame).counted_with(&["next", "previous"]),
+    command("speed", "slower|faster|NUMBER", "Play slower or faster, 0.1 to 4 times", speed)
+        .counted_with(&["slower", "faster"]),
     command("time", "T", "Go to a scene time t, 0 to 1", time),
 ];
 
@@ -38,10 +39,12 @@ fn frame(state: &mut State, call: &Call) -> Done {
 }
 
 fn speed(state: &mut State, call: &Call) -> Done {
-    let here = state.speed;
+    let times = call.steps();
+    let slower = |here: f64| SPEEDS.iter().rfind(|&&speed| speed < here).copied().unwrap_or(here);
+    let faster = |here: f64| SPEEDS.iter().find(|&&speed| speed > here).copied().unwrap_or(here);
     let to = match call.text {
-        "slower" => SPEEDS.iter().rfind(|&&speed| speed < here).copied().unwrap_or(here),
-        "faster" => SPEEDS.iter().find(|&&speed| speed > here).copied().unwrap_or(here),
+        "slower" => times.fold(state.speed, |here, _| slower(here)),
+        "faster" => times.fold(state.speed, |here, _| faster(here)),
         number => {
             let speed = number.parse().ok().filter(|speed| (SPEEDS[0]..=SPEEDS[SPEEDS.len() - 1]).contains(speed));
             speed.ok_or("speed takes slower, faster or a number from 0.1 to 4")?

@@ -11,8 +11,9 @@ use crate::tui::update::Effect;
 use crate::tui::{seeing, sight};
 
 pub const COMMANDS: &[Command] = &[
-    command("zoom", "in|out|fit|one", "Zoom the picture, here and in the window", zoom),
-    command("pan", "left|right|up|down|cursor", "Show another part of the picture", pan),
+    command("zoom", "in|out|fit|one", "Zoom the picture, here and in the window", zoom).counted_with(&["in", "out"]),
+    command("pan", "left|right|up|down|cursor", "Show another part of the picture", pan)
+        .counted_with(&["left", "right", "up", "down"]),
     command("graphics", "[auto|kitty|iterm2|sixel|blocks|bytes N]", "Say or set how the picture is shown", graphics),
     command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
 ];
@@ -20,10 +21,10 @@ pub const COMMANDS: &[Command] = &[
 fn zoom(state: &mut State, call: &Call) -> Done {
     let known = [("in", "zoom-in"), ("out", "zoom-out"), ("fit", "zoom-fit"), ("one", "zoom-one")];
     let (_, same) = known.iter().find(|(way, _)| *way == call.text).ok_or("zoom takes in, out, fit or one")?;
-    state.ask(Effect::View(Some((*same).to_string())));
+    let steps = call.steps();
+    steps.clone().for_each(|_| state.ask(Effect::View(Some((*same).to_string()))));
     let (Some(before), Some(size)) = (seeing::part(state), state.picture_size) else { return Ok(()) };
     let fit = sight::fit(size, before.dots);
-    let steps = 0..call.times().min(100);
     state.placing.zoom = match call.text {
         "fit" => None,
         "one" => (fit > 1.0).then_some(1.0),
@@ -48,7 +49,7 @@ fn pan(state: &mut State, call: &Call) -> Done {
         }
         _ => return Err("pan takes left, right, up, down or cursor".into()),
     };
-    for _ in 0..call.times().min(1000) {
+    for _ in call.steps() {
         if let (Some(part), Some(size)) = (seeing::part(state), state.picture_size) {
             sight::pan(&mut state.placing, &part, size, Vec2::new(x, y));
         }

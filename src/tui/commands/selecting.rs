@@ -1,18 +1,23 @@
 //! Rows that an edit applies to together.
 
+use super::items::rows;
 use super::{Call, Command, Done, command};
 use crate::tui::app::State;
 
 pub const COMMANDS: &[Command] =
-    &[command("select", "[all|again]", "Begin or end a selection of rows; take all, or the last one again", select)];
+    &[command("select", "[all|again]", "Begin or end a selection of rows; take all, or the last one again", select)
+        .counted_with(&[""])];
 
 fn select(state: &mut State, call: &Call) -> Done {
     match call.text {
+        "" if call.count.is_some() => {
+            let rows = rows(state, call)?;
+            (state.selected_from, state.selected_to, state.row) = (Some(*rows.start()), None, *rows.end());
+        }
         "" if state.unselect() => {}
         "" => (state.selected_from, state.selected_to) = (Some(state.row), None),
         "all" => all(state)?,
-        "again" => again(state)?,
-        other => return Err(format!("select takes all or again, not {other}")),
+        _ => again(state)?,
     }
     Ok(())
 }

@@ -32,13 +32,18 @@ pub const COMMANDS: &[Command] = &[
         text,
     )
     .inside(),
-    command("cancel", "", "Leave what is being done as it was", |state, _| {
+    command("cancel", "", "Leave what is being done as it was", |state, call| {
+        // The first thing that Esc ends is a count.
+        if call.count.is_some() {
+            return Ok(());
+        }
         let under = state.kept.entry.take().filter(|_| matches!(state.mode, Mode::Pages(_)));
         state.mode = under.map_or(Mode::Normal, Mode::Entry);
         search_left(state);
         Ok(())
     })
-    .inside(),
+    .inside()
+    .counted(),
 ];
 
 /// Quotes, as JSON has them, keep spaces at the ends.

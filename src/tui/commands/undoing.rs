@@ -14,20 +14,23 @@ pub const COMMANDS: &[Command] = &[
             Some(number) => go_to(state, number),
             None => steps(state, call, UNDO),
         }
-    }),
-    command("redo", "[STEPS]", "Redo", |state, call| steps(state, call, REDO)),
+    })
+    .counted_with(&[""]),
+    command("redo", "[STEPS]", "Redo", |state, call| steps(state, call, REDO)).counted_with(&[""]),
     command(
         "earlier",
         "STEPS|30s|3m|2h|1d",
         "Go back in time, through all branches: by states, or to the scene as it was so long ago",
         |state, call| travel(state, call, UNDO, Door::earlier),
-    ),
+    )
+    .counted_with(&[""]),
     command(
         "later",
         "STEPS|30s|3m|2h|1d",
         "Go on in time, through all branches: by states, or by so long a time",
         |state, call| travel(state, call, REDO, Door::later),
-    ),
+    )
+    .counted_with(&[""]),
     command("history", "", "List what can be undone and redone, and the other branches", history).inside(),
 ];
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::items::{bearable, go_to, target};
+use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, targets};
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
@@ -10,24 +10,25 @@ use crate::scene::insert::misfit;
 use crate::scene::{Document, Edit, address, json, pointer};
 use crate::tui::app::{Pane, State};
 use crate::tui::clipboard::{MOST_BYTES, Yanked};
-use crate::tui::recorder::Work;
 use crate::tui::sheet::Sheet;
 use crate::tui::update::Effect;
 use crate::tui::{entry, numbers, rows, terminal};
 
 pub const COMMANDS: &[Command] = &[
-    command("yank", "[json|csv]", "Yank the row, the selection or the node", yank),
-    command("paste", "[JSON]", "Paste what was yanked, or a value, after the cursor or into the list", paste).change(),
+    command("yank", "[json|csv]", "Yank the row, the selection or the node", yank).counted(),
+    command("paste", "[JSON]", "Paste what was yanked, or a value, after the cursor or into the list", paste)
+        .change()
+        .counted(),
 ];
 
 fn yank(state: &mut State, call: &Call) -> Done {
     let (text, said) = match call.text {
         "csv" => {
-            let (sheet, rows) = table(state)?;
+            let (sheet, rows) = table(state, call)?;
             (rows::write(state.document(), &sheet, rows.clone()), format!("{} as CSV", counted(rows.count(), "row")))
         }
         "" | "json" => {
-            let (yanked, said) = yanked(state)?;
+            let (yanked, said) = yanked(state, call)?;
             let text = json::to_text(&yanked.value).trim_end().to_owned();
             state.kept.yanked = Some(yanked);
             (text, said)
@@ -54,11 +55,11 @@ fn counted(count: usize, name: &str) -> String {
 }
 
 /// The rows that are yanked as CSV: those of the selection, or all of the list in focus.
-fn table(state: &State) -> Result<(Sheet, std::ops::RangeInclusive<usize>), String> {
+fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<usize>), String> {
     let sheet = state.sheet();
     let rows = match state.focus {
-        Pane::Table => entry::rows(state),
-        _ => 0..=sheet.len().saturating_sub(1),
+        Pane::Table => rows_of(state, call)?,
+        _ => 0..=call.count.unwrap_or(usize::MAX).clamp(1, sheet.len().max(1)) - 1,
     };
     if sheet.is_empty() || !sheet.table && !rows.clone().all(|i| sheet.row(i).is_some_and(|row| row.item)) {
         return Err("rows of a list are yanked as CSV; y yanks this as JSON".into());
@@ -67,12 +68,9 @@ fn table(state: &State) -> Result<(Sheet, std::ops::RangeInclusive<usize>), Stri
 }
 
 /// What `y` takes, and what it is called.
-fn yanked(state: &State) -> Result<(Yanked, String), String> {
-    let sheet = state.sheet();
-    let pointers: Vec<String> = match state.focus {
-        Pane::Table if state.selected_from.is_some() => entry::rows(state).filter_map(|i| sheet.pointer(i)).collect(),
-        _ => Vec::new(),
-    };
+fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
+    let several = call.count.is_some() || state.focus == Pane::Table && state.selected_from.is_some();
+    let pointers = if several { targets(state, call)? } else { Vec::new() };
     let there = |pointer: &str| field::value(state.document(), pointer).filter(|value| !value.is_null());
     let nothing = "there is nothing to yank here";
     let one = match pointers.as_slice() {
@@ -113,21 +111,16 @@ fn paste(state: &mut State, call: &Call) -> Done {
     };
     let times = call.times_of("paste")?;
     bearable(state, json::bytes(&yanked.value).saturating_mul(times as u64))?;
-    let mut work = Work::default();
-    (0..times).try_for_each(|_| {
-        work.spend(state.document())?;
-        paste_value(state, &yanked)
-    })
+    paste_value(state, &yanked, times)
 }
 
 /// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, over a
-/// field. Of several ways the first counts that the scene bears.
-fn paste_value(state: &mut State, yanked: &Yanked) -> Done {
+/// field. Of several ways the first counts that the scene bears. What goes into a list goes there so many times.
+fn paste_value(state: &mut State, yanked: &Yanked, times: usize) -> Done {
     let mut why = None;
     for fit in fits(state) {
-        let Some(Way { edit, pointer, count }) = way(state, yanked, &fit).filter(|way| !way.edit.is_empty()) else {
-            continue;
-        };
+        let way = way(state, yanked, &fit, times)?.filter(|way| !way.edit.is_empty());
+        let Some(Way { edit, pointer, count }) = way else { continue };
         match state.edit(edit, false) {
             Ok(()) => {
                 go_to_pasted(state, &pointer, count);
@@ -227,19 +220,19 @@ fn fits(state: &State) -> Vec<Fit> {
     fits
 }
 
-/// How a value fits there, if it does.
-fn way(state: &State, yanked: &Yanked, fit: &Fit) -> Option<Way> {
+/// How a value fits there so many times; `None` if it does not.
+fn way(state: &State, yanked: &Yanked, fit: &Fit, times: usize) -> Result<Option<Way>, String> {
     let (document, value) = (state.document(), &yanked.value);
-    match fit {
+    Ok(match fit {
         Fit::Cells => over_cells(state, value),
-        Fit::List(list, index) => into_list(document, list, *index, value),
-        Fit::Map(map) => into_map(document, map, yanked),
+        Fit::List(list, index) => into_list(document, list, *index, value, times),
+        Fit::Map(map) => into_map(state, map, yanked, times)?,
         Fit::Over(path) if misfit(document, path, value).is_some() => None,
         Fit::Over(path) => {
             Some(Way { edit: Edit::set(document, path, value.clone()), pointer: path.clone(), count: 1 })
         }
         Fit::Fields => fields(document, &state.node, value),
-    }
+    })
 }
 
 /// A number over a number, a text over a text: in every selected row, as if it were typed.
@@ -255,7 +248,7 @@ fn over_cells(state: &State, value: &Value) -> Option<Way> {
 }
 
 /// A value as one item of a list, or its parts as several.
-fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Option<Way> {
+fn into_list(document: &Document, list: &str, index: usize, value: &Value, times: usize) -> Option<Way> {
     let item = pointer::join(list, "-");
     let fits = |value: &Value| misfit(document, &item, value).is_none();
     let items = match value {
@@ -264,13 +257,15 @@ fn into_list(document: &Document, list: &str, index: usize, value: &Value) -> Op
         Value::Array(items) if items.first().is_some_and(fits) => items.clone(),
         _ => return None,
     };
-    let count = items.len();
+    let count = items.len() * times;
+    let items = items.into_iter().cycle().take(count).collect();
     let (edit, pointer) = Edit::insert_all(document, list, index, items)?;
     Some(Way { edit, pointer, count })
 }
 
 /// A value as one entry of a map, under the name it had or that of its file; or an object of such entries.
-fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<Way> {
+fn into_map(state: &State, map: &str, yanked: &Yanked, times: usize) -> Result<Option<Way>, String> {
+    let document = state.document();
     let fits = |value: &Value| misfit(document, &pointer::join(map, "new"), value).is_none();
     let entries = match &yanked.value {
         value if fits(value) => {
@@ -279,11 +274,11 @@ fn into_map(document: &Document, map: &str, yanked: &Yanked) -> Option<Way> {
             Map::from_iter([(name, value.clone())])
         }
         Value::Object(entries) if entries.values().all(fits) => entries.clone(),
-        _ => return None,
+        _ => return Ok(None),
     };
-    let count = entries.len();
-    let (edit, pointer) = Edit::insert_entries(document, map, entries)?;
-    Some(Way { edit, pointer, count })
+    let count = entries.len() * times;
+    let inserted = insert_entries(state, map, &entries, times)?;
+    Ok(inserted.map(|(edit, pointer)| Way { edit, pointer, count }))
 }
 
 /// The name of a file without its folder and its ending.

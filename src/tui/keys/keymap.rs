@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use toml::de::{DeTable, DeValue};
 
 use super::table::{ENTRY, HELP, KEYS, LINE, LIST, TYPING};
-use super::{Found, LETTER, continues, line_of};
+use super::{Found, LETTERS, continues, line_of, stands_for};
 use crate::base::problem;
 use crate::tui::commands::{self, Said};
 
@@ -209,8 +209,7 @@ pub fn contexts() -> Vec<&'static str> {
 /// Whether the keys `short` are the beginning of the longer `long`.
 fn begins(short: &str, long: &str) -> bool {
     let (short, long): (Vec<_>, Vec<_>) = (short.split(' ').collect(), long.split(' ').collect());
-    let letter = |key: &str| key.len() == 1 && key.starts_with(|c: char| c.is_ascii_lowercase());
-    let same = |(a, b): (&&str, &&str)| a == b || (*a == LETTER && letter(b)) || (*b == LETTER && letter(a));
+    let same = |(a, b): (&&str, &&str)| a == b || stands_for(a, b) || stands_for(b, a);
     short.len() < long.len() && short.iter().zip(&long).all(same)
 }
 
@@ -259,7 +258,8 @@ fn sequence(context: &str, written: &str) -> Result<String, String> {
     let keys: Vec<&str> = written.split_whitespace().collect();
     let first = keys.first().ok_or("there is no key between the quotes: the space bar is Space")?;
     for (at, key) in keys.iter().enumerate() {
-        if *key != LETTER || at == 0 || at + 1 < keys.len() {
+        // Alone it takes every letter of its context, which only a list can spare.
+        if !LETTERS.contains(key) || (at == 0 && context != LIST) || at + 1 < keys.len() {
             check(key)?;
         }
     }

@@ -16,8 +16,8 @@ pub use table::{
 /// Where the person's own keys stand.
 pub const OWN_FILE: &str = "$XDG_CONFIG_HOME/plica/keys.toml (else ~/.config/plica/keys.toml)";
 
-/// Stands in a row for any letter from a to z.
-const LETTER: &str = "{a-z}";
+/// Stand in a row for any small and for any capital letter.
+const LETTERS: [&str; 2] = ["{a-z}", "{A-Z}"];
 
 /// What the keys pressed so far mean.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,15 +30,21 @@ pub enum Found {
     Nothing,
 }
 
-/// The line that a row runs where the keys pressed are its own. A key `{a-z}` at the end stands for any letter, and in the
-/// line for the one that was pressed.
+/// The line that a row runs where the keys pressed are its own. A key of [`LETTERS`] at the end stands for any letter, and in
+/// the line for the one that was pressed.
 fn line_of(key: &str, command: &str, pressed: &str) -> Option<String> {
     if key == pressed {
         return Some(command.to_owned());
     }
-    let letter = pressed.strip_prefix(key.strip_suffix(LETTER)?)?;
-    let one = letter.len() == 1 && letter.starts_with(|c: char| c.is_ascii_lowercase());
-    one.then(|| command.replace(LETTER, letter))
+    let any = LETTERS.into_iter().find(|any| key.ends_with(any))?;
+    let letter = pressed.strip_prefix(key.strip_suffix(any)?)?;
+    stands_for(any, letter).then(|| command.replace(any, letter))
+}
+
+/// Whether a key of a row is one of [`LETTERS`] and stands for this key.
+fn stands_for(any: &str, key: &str) -> bool {
+    let fits = |c: char| (any == LETTERS[0] && c.is_ascii_lowercase()) || (any == LETTERS[1] && c.is_ascii_uppercase());
+    key.len() == 1 && key.starts_with(fits)
 }
 
 /// Whether the keys of a row go on from those pressed.

@@ -224,6 +224,8 @@ pub const KEYS: &[KeyRow] = &[
     row(LIST, "Esc", "cancel", "Take nothing"),
     row(LIST, "q", "cancel", "Take nothing"),
     row(LIST, "Ctrl-c", "cancel", "Take nothing"),
+    row(LIST, "{a-z}", "choice to {a-z}", "Go to the next word that begins so"),
+    row(LIST, "{A-Z}", "choice to {A-Z}", "The same, also for the letters of other keys"),
     row(PALETTE, "Down", "palette next", "Go down"),
     row(PALETTE, "Ctrl-n", "palette next", "Go down"),
     row(PALETTE, "Tab", "palette next", "Go down"),

@@ -5,25 +5,63 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 
-use super::{width, write};
+use super::{width, wrapped, write};
 use crate::tui::app::State;
 use crate::tui::colour;
 use crate::tui::keys::Keymap;
 use crate::tui::tutor::Tutor;
 use crate::tui::tutor::lessons::LESSONS;
 
-/// Rows that a lesson takes, its frame included: three lines of text and the keys.
-const ROWS: u16 = 6;
+/// Columns that the lines of a lesson have at most as they are; on less they are wrapped.
+const WIDE: u16 = 76;
+/// Rows of the text where it is not wrapped, so that nothing moves from lesson to lesson.
+const ROWS: usize = 3;
 
 /// What is left of the screen for everything else.
 pub fn above(state: &State, screen: Rect) -> Rect {
-    let rows = if state.tutor.is_some() { ROWS.min(screen.height) } else { 0 };
+    let rows = state.tutor.as_ref().map_or(0, |tutor| rows(tutor, &state.keymap, screen));
     Rect { height: screen.height - rows, ..screen }
 }
 
+/// Rows that a lesson takes: its text, its keys and the frame.
+fn rows(tutor: &Tutor, keymap: &Keymap, screen: Rect) -> u16 {
+    let lines = text(tutor, screen.width).len() + keys(tutor, keymap, screen.width).len() + 2;
+    (lines as u16).min(screen.height)
+}
+
+/// The lines of the lesson.
+fn text(tutor: &Tutor, width: u16) -> Vec<String> {
+    let room = width.saturating_sub(4);
+    let lines = tutor.lesson().text.iter();
+    if room >= WIDE {
+        let mut lines: Vec<String> = lines.map(|line| (*line).to_owned()).collect();
+        lines.resize(ROWS.max(lines.len()), String::new());
+        return lines;
+    }
+    wrapped(&lines.copied().collect::<Vec<_>>().join(" "), room)
+}
+
+/// The keys of the lesson in rows that fit.
+fn keys(tutor: &Tutor, keymap: &Keymap, wide: u16) -> Vec<Vec<String>> {
+    let mut rows = vec![Vec::new()];
+    let mut x = LABELS;
+    for label in tutor.lesson().keys.iter().map(|press| press.label(keymap)) {
+        if x + width(&label) > wide.saturating_sub(2) && x > LABELS {
+            rows.push(Vec::new());
+            x = LABELS;
+        }
+        x += width(&label) + 2;
+        rows.last_mut().into_iter().for_each(|row| row.push(label.clone()));
+    }
+    rows
+}
+
+/// Where the keys begin.
+const LABELS: u16 = 8;
+
 /// Draws it.
 pub fn draw(tutor: &Tutor, keymap: &Keymap, screen: Rect, buffer: &mut Buffer) {
-    let rows = ROWS.min(screen.height);
+    let rows = rows(tutor, keymap, screen);
     let area = Rect { y: screen.bottom() - rows, height: rows, ..screen };
     Clear.render(area, buffer);
     let lesson = tutor.lesson();
@@ -32,15 +70,17 @@ pub fn draw(tutor: &Tutor, keymap: &Keymap, screen: Rect, buffer: &mut Buffer) {
         Block::bordered().title(title).title_bottom(" :tutor next | back | quit ").title_style(colour::strong());
     let inner = block.inner(area);
     block.render(area, buffer);
-    for (y, line) in lesson.text.iter().enumerate() {
+    for (y, line) in text(tutor, screen.width).iter().enumerate() {
         write(buffer, inner, 1, y as u16, line, Style::new());
     }
-    let mut x = 1;
-    let y = inner.height.saturating_sub(1);
-    write(buffer, inner, x, y, "press", colour::faint());
-    x += 7;
-    for label in lesson.keys.iter().map(|press| press.label(keymap)) {
-        write(buffer, inner, x, y, &label, colour::strong());
-        x += i32::from(width(&label)) + 2;
+    let keys = keys(tutor, keymap, screen.width);
+    let top = inner.height.saturating_sub(keys.len() as u16);
+    write(buffer, inner, 1, top, "press", colour::faint());
+    for (y, row) in keys.iter().enumerate() {
+        let mut x = i32::from(LABELS);
+        for label in row {
+            write(buffer, inner, x, top + y as u16, label, colour::strong());
+            x += i32::from(width(label)) + 2;
+        }
     }
 }

@@ -21,6 +21,7 @@ const TABLES: &[fn()] = &[
     super::escape_ends_one_thing_after_the_other,
     super::macros::macros_play_what_was_asked_for,
     super::macros::the_last_change_is_repeated_here,
+    super::counts::every_command_repeats_by_its_count_or_uses_it_or_refuses_it,
     super::told::tables_are_pasted_over_a_selection,
     super::told::what_was_said_and_what_is_wrong_can_be_read_again,
     super::images::a_picture_of_the_scene_is_opened_and_nothing_else,

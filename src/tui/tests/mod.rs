@@ -6,6 +6,7 @@ use self::support::{press, replayed, state};
 use super::app::Mode;
 use super::update::Effect;
 
+mod counts;
 pub mod coverage;
 mod data;
 pub mod finding;
@@ -241,7 +242,7 @@ fn an_alt_key_that_is_not_bound_is_escape_and_that_key() {
 fn nothing_is_edited_on_a_terminal_that_is_too_small() {
     use super::update::{Event, update};
     let keys = ["d", "o", "+", "D", "p", "P", "u", "Enter", "5", "Alt-d", "Space w", "v", ".", "q a", "Tab", "y"];
-    for small in [(79, 24), (80, 19), (1, 1), (0, 0)] {
+    for small in [(59, 24), (60, 19), (1, 1), (0, 0)] {
         let mut state = state();
         press(&mut state, &motion("l"));
         update(&mut state, Event::Resize(small.0, small.1));
@@ -259,7 +260,7 @@ fn nothing_is_edited_on_a_terminal_that_is_too_small() {
         let after = (state.document().json().clone(), state.row, state.column, state.focus);
         assert_eq!(after, before, "{small:?}");
         assert!(matches!(press(&mut state, ": \"quit\" Enter")[..], [Effect::Quit]));
-        update(&mut state, Event::Resize(80, 20));
+        update(&mut state, Event::Resize(60, 20));
         press(&mut state, "+");
         assert_ne!(state.document().json(), &before.0);
     }

@@ -101,7 +101,7 @@ pub fn changed(name: &str, state: &State) -> Option<String> {
 #[test]
 fn screens_are_as_kept() {
     let mut old = Vec::new();
-    for size in [(80, 24), (160, 48)] {
+    for size in [(60, 20), (80, 24), (160, 48)] {
         for (name, keys) in STATES {
             let mut state = opened(size);
             press(&mut state, keys);
@@ -114,16 +114,27 @@ fn screens_are_as_kept() {
 
 #[test]
 fn every_size_is_drawn_and_small_ones_say_so() {
-    for (width, height) in
-        [(1, 1), (20, 5), (79, 24), (80, 19), (80, 20), (80, 23), (80, 24), (111, 24), (112, 30), (200, 50), (400, 120)]
-    {
+    for (width, height) in [
+        (1, 1),
+        (20, 5),
+        (59, 24),
+        (60, 19),
+        (60, 20),
+        (79, 24),
+        (80, 23),
+        (80, 24),
+        (111, 24),
+        (112, 30),
+        (200, 50),
+        (400, 120),
+    ] {
         for (_, keys) in STATES {
             let mut state = opened((width, height));
             press(&mut state, keys);
             see(&mut state);
-            let small = width < 80 || height < 20;
+            let small = width < 60 || height < 20;
             let text = screen(&state);
-            assert!(!small || width < 20 || text.contains("Plica needs 80 x 20"), "{width} x {height}:\n{text}");
+            assert!(!small || width < 20 || text.contains("Plica needs 60 x 20"), "{width} x {height}:\n{text}");
         }
     }
 }

@@ -115,7 +115,7 @@ fn long_messages_are_shown_whole() {
     assert!(!screen(&state)[22].contains('x'));
 }
 
-const TWO_PROBLEMS: &str = r#"{ "plica": 1, "images": { "cat": { "path": "cat.png" } }, "layers": [
+pub const TWO_PROBLEMS: &str = r#"{ "plica": 1, "images": { "cat": { "path": "cat.png" } }, "layers": [
     { "kind": "picture", "name": "face", "image": "cat", "zones": [
         { "name": "a", "outline": { "kind": "rectangle", "x": 1, "y": 1, "width": 9, "height": 9 } },
         { "name": "b", "outline": { "kind": "polygon", "points": [[0, 0], [9, 9], [9, 0], [0, 9]] } } ] } ] }"#;
