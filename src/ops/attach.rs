@@ -1,5 +1,5 @@
-//! `plica attach --stdio`: the far end of a window on another machine. It is started there by `plica view ssh://...`, through
-//! the person's own ssh, and serves the scene over standard input and output until that ends.
+//! `plica attach --stdio`: the far end of a window on another machine. It is started there by `plica view ssh://...`,
+//! through the person's own ssh, and serves the scene over standard input and output until that ends.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -11,7 +11,7 @@ use crate::base::error::{Error, Result};
 use crate::preview::remote::attach;
 use crate::preview::wire::connection::{HangUp, Wire};
 
-/// How often a signal is looked for.
+/// How often to check for a signal.
 const LOOK: Duration = Duration::from_millis(250);
 
 /// Serve a scene to a window on another machine (plica view ssh://... starts this)
@@ -29,7 +29,7 @@ pub struct Args {
 /// Serves the scene until the pipe ends.
 ///
 /// # Errors
-/// There is no such scene, or no window of this version at the other end.
+/// If there is no such scene, or no window of this version at the other end.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     if !args.stdio || context.open.is_some() {
         return Err(Error::Usage(
@@ -42,7 +42,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let wire = Wire {
         reader: Box::new(std::io::stdin()),
         writer: Box::new(std::io::stdout()),
-        // Standard input cannot be woken: the end of this process ends what waits for it.
+        // A blocked read of standard input cannot be interrupted: it ends with this process.
         hang_up: HangUp::new(move || drop(hung_up.send(Ok(())))),
     };
     std::thread::spawn(move || drop(sender.send(attach::serve(&args.scene, &options, wire))));

@@ -1,4 +1,4 @@
-//! `plica check`: every problem of a scene, with its path.
+//! `plica check`: every problem in a scene, with its path.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
 use crate::render;
 
-/// Find every problem of a scene. A loop that snaps is told too, and no failure: it may be meant.
+/// Find every problem in a scene. A loop that snaps is reported too, but is no failure: it may be meant.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
@@ -17,14 +17,14 @@ pub struct Args {
     /// Print one list of JSON objects: severity, path, message, hint
     #[arg(long)]
     json: bool,
-    /// Let warnings alone be no failure
+    /// Do not fail if there are only warnings
     #[arg(long)]
     lenient: bool,
     #[command(flatten)]
     reading: SceneOptions,
 }
 
-/// Prints the problems; fails when there are any (with `--lenient`, when one of them is an error).
+/// Prints the problems; fails if there are any (with `--lenient`, if one of them is an error).
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let (mut problems, loops) = problems(&args, context)?;
     let failing = problems.len();
@@ -51,7 +51,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// The problems, and the loops that snap.
+/// The problems, and the warnings about loops that snap.
 fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem>)> {
     let options = args.reading.options()?;
     let document = match context.document(&args.scene, &options) {
@@ -60,7 +60,7 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
         Err(error) => return Err(error),
     };
     let scene = document.scene();
-    // All of each file is read, not only its header: a picture that is cut short is a problem too.
+    // Each file is read completely, not only its header: a truncated picture is a problem too.
     let mut cache = Cache::until(context.cancel.clone());
     let (materials, found) = files::materials::gather(&args.scene, scene, &options, &mut cache);
     context.check_cancelled()?;

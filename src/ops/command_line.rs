@@ -17,7 +17,7 @@ pub struct CommandLine {
     /// Write the log here instead of to the state folder
     #[arg(long, global = true, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// What to do; none: the short help.
+    /// What to do; `None` prints the short help.
     #[command(subcommand)]
     pub command: Option<Command>,
 }

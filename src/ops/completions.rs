@@ -7,14 +7,14 @@ use super::Context;
 use super::command_line::CommandLine;
 use crate::base::error::Result;
 
-/// Print a shell's completions.
+/// Print the completions for a shell
 #[derive(clap::Args)]
 pub struct Args {
     /// The shell
     shell: Shell,
 }
 
-/// Prints them.
+/// Prints the completions.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut CommandLine::command(), "plica", &mut script);

@@ -1,5 +1,5 @@
-//! `plica demo`: a scene that ships with the program, unpacked into a folder that stays. The command line opens it in the
-//! editor where there is a terminal for it.
+//! `plica demo`: a scene that ships with the program, unpacked into a folder that is kept. The command line opens it in
+//! the editor if there is a terminal for it.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ impl Args {
     /// Unpacks the scene and returns its path.
     ///
     /// # Errors
-    /// An unknown name; a folder that cannot be written.
+    /// If the name is unknown or the folder cannot be written.
     pub fn unpack(&self) -> Result<PathBuf> {
         let profile = profiles::find(&self.name)?;
         profile.unpack(&self.output.clone().unwrap_or_else(|| profile.scratch()))
@@ -49,7 +49,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// A path as it is typed into a shell.
+/// A path as it is typed in a shell.
 pub(super) fn quoted(path: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+@%".contains(c);
     if path.chars().all(plain) { path.to_owned() } else { format!("'{}'", path.replace('\'', r"'\''")) }

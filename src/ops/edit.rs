@@ -1,5 +1,5 @@
-//! `plica edit`: the arguments of the terminal editor. It stands above the subcommands, since it runs them itself: what is
-//! here is for the command line, completions and the manual.
+//! `plica edit`: the arguments of the terminal editor. The editor itself is a layer above the subcommands, since it
+//! runs them; what is here is for the command line, completions and the manual.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use super::scene_options::{RecoveryOptions, SceneOptions};
 /// Edit a scene, or a picture, in the terminal.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A scene, or a picture whose scene lies beside it (it is made where it is not there)
+    /// A scene, or a picture: its scene is the one beside it, which is made if missing
     #[arg(value_name = "SCENE | PICTURE")]
     pub path: PathBuf,
     /// Do not open the preview window
@@ -17,10 +17,10 @@ pub struct Args {
     /// Only look: no lock, no journal, nothing is changed
     #[arg(long)]
     pub read_only: bool,
-    /// Run the lines of a file at first, as `:source` does; where the output is no terminal or TERM is dumb, nothing else
+    /// First run the lines of a file, as `:source` does; if the output is no terminal or TERM is dumb, do nothing else
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
-    /// How the picture is shown in the terminal: auto asks it
+    /// How the picture is shown in the terminal: auto asks the terminal
     #[arg(long, value_name = "PROTOCOL", default_value = "auto", value_parser = ["auto", "kitty", "iterm2", "sixel", "blocks"])]
     pub graphics: String,
     /// Unsaved edits that a session left behind.

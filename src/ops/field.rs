@@ -14,12 +14,12 @@ use crate::layers::Layer;
 use crate::render;
 use crate::scene::Scene;
 
-/// Plot the jump vectors, or write them as a table.
+/// Plot the jump vectors, or write them as a table
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
     scene: PathBuf,
-    /// Only this zone: its name, or LAYER.ZONE where the name is not unique
+    /// Only this zone: its name, or LAYER.ZONE if the name is not unique
     #[arg(long, value_name = "ZONE")]
     zone: Option<String>,
     /// An arrow or a row every N pixels; without it as many arrows as fit, and a row for every pixel
@@ -37,7 +37,7 @@ pub struct Args {
     options: SceneOptions,
 }
 
-/// Writes it.
+/// Writes the plot or the table.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     let kind = kind(&args.output)?;
@@ -54,7 +54,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let synth = render::synth(&scene, &opened.materials, None).map_err(|problem| opened.failed(problem))?;
     context.check_cancelled()?;
     let step = args.step.map(|step| step as usize);
-    // A row of a table, as a number and as text.
+    // Bytes per row of the table, as numbers and as text.
     const ROW: u64 = 160;
     let every = if matches!(kind, Kind::Csv) { step.unwrap_or(1) as u64 } else { u64::MAX };
     let rows = (synth.size.0 as u64).div_ceil(every) * (synth.size.1 as u64).div_ceil(every);

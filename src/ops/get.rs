@@ -9,7 +9,7 @@ use crate::files;
 use crate::preview::editor::script;
 use crate::scene::{address, field};
 
-/// Print a value of a scene, or its default, as JSON.
+/// Print a value of a scene, or its default, as JSON
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
@@ -20,7 +20,7 @@ pub struct Args {
     reading: SceneOptions,
 }
 
-/// Prints it.
+/// Prints the value.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let document = match script::document(&args.scene) {
         Some(document) => document?,

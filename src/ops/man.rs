@@ -9,11 +9,11 @@ use super::Context;
 use super::command_line::CommandLine;
 use crate::base::error::{Error, Result};
 
-/// Print the manual.
+/// Print the manual
 #[derive(clap::Args)]
 pub struct Args {}
 
-/// Prints it in roff, for `man -l -`.
+/// Prints the manual in roff, for `man -l -`.
 pub fn run(_: Args, context: &mut Context) -> Result<()> {
     let text = page().map_err(|e| Error::at("the manual", e))?;
     context.print(text.trim_end())
@@ -37,19 +37,19 @@ fn page() -> io::Result<String> {
     whole.render_extra_section(&mut end)?;
     whole.render_version_section(&mut end)?;
     page.push_str(&String::from_utf8_lossy(&end));
-    // Every part brings the same two lines of definitions; the first are enough.
+    // Every part has the same two lines of definitions; the first two are enough.
     let definitions: Vec<String> = page.lines().take(2).map(str::to_owned).collect();
     let lines = page.lines().enumerate().filter(|(i, line)| *i < 2 || !definitions.iter().any(|one| one == line));
     Ok(lines.map(|(_, line)| format!("{line}\n")).collect())
 }
 
-/// Tables and lines to copy: nothing in them is filled, and nothing is a command of roff.
+/// Tables and lines to copy: not filled, and nothing in them is a roff command.
 fn as_it_stands(text: &str) -> String {
     let escape = |line: &str| format!("\\&{}\n", line.replace('\\', "\\e").replace('-', "\\-"));
     format!(".SH OUTPUTS\n.nf\n{}.fi\n", text.lines().map(escape).collect::<String>())
 }
 
-/// The section of one subcommand; what would be sections of a page of its own are parts of it.
+/// The section of one subcommand; what would be sections of a separate page become subsections.
 fn section(command: &clap::Command) -> io::Result<String> {
     let mut parts = Vec::new();
     let man = Man::new(command.clone());

@@ -1,4 +1,4 @@
-//! One file a subcommand: its arguments and its function, used by the command line and by the editor's `:`.
+//! One file per subcommand: its arguments and its function, used by the command line and by the editor's `:`.
 //! [`Command`] is the only list of them.
 
 use std::io::{IsTerminal, Write};
@@ -41,7 +41,7 @@ mod writing;
 pub enum Command {
     /// Open a built-in demo scene
     Demo(demo::Args),
-    /// Make a scene of pictures
+    /// Make a scene from pictures
     New(new::Args),
     /// Edit a scene, or a picture, in the terminal
     Edit(edit::Args),
@@ -51,9 +51,9 @@ pub enum Command {
     Set(set::Args),
     /// Print a value of a scene
     Get(get::Args),
-    /// Find every problem of a scene
+    /// Find every problem in a scene
     Check(check::Args),
-    /// Tell what a pixel does at a time, and why
+    /// Show what a pixel does at a time, and why
     Probe(probe::Args),
     /// Render frames to numbered files, an animation or a stream
     Render(render::Args),
@@ -68,14 +68,14 @@ pub enum Command {
     Field(field::Args),
     /// Print the JSON Schema of a scene
     Schema(schema::Args),
-    /// Print a shell's completions
+    /// Print the completions for a shell
     Completions(completions::Args),
     /// Print the manual
     Man(man::Args),
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the subcommand.
     pub fn run(self, context: &mut Context) -> Result<()> {
         match self {
             Command::Demo(args) => demo::run(args, context),
@@ -105,10 +105,10 @@ pub fn names() -> impl Iterator<Item = String> {
     table.get_subcommands().map(|one| one.get_name().to_owned()).collect::<Vec<_>>().into_iter()
 }
 
-/// The subcommand that `words` say, its name first, as on the command line.
+/// Parses `words`, the subcommand's name first, as on the command line.
 ///
 /// # Errors
-/// The words are wrong; the message says how.
+/// If the words are wrong; the message says how.
 pub fn parse(words: &[String]) -> Result<Command> {
     let table = Command::augment_subcommands(clap::Command::new("plica").no_binary_name(true));
     let usage = |error: clap::Error| {
@@ -120,14 +120,15 @@ pub fn parse(words: &[String]) -> Result<Command> {
     table.try_get_matches_from(words).and_then(|found| Command::from_arg_matches(&found)).map_err(usage)
 }
 
-/// What `--help` says of a subcommand; `None` if there is no such one.
+/// What `--help` prints about a subcommand; `None` if there is no such subcommand.
 pub fn help(name: &str) -> Option<String> {
     let mut table = Command::augment_subcommands(clap::Command::new("plica"));
     table.build();
     Some(table.find_subcommand_mut(name)?.render_long_help().to_string())
 }
 
-/// A scene that an editor has open: a subcommand that reads this file takes the scene as it is there, unsaved edits too.
+/// A scene that an editor has open: a subcommand that reads this file gets the scene as it is in the editor, with
+/// unsaved edits.
 #[derive(Clone)]
 pub struct Open {
     /// Its file.
@@ -136,7 +137,7 @@ pub struct Open {
     pub document: Document,
 }
 
-/// What a subcommand is given besides its arguments: where data and messages go, and the wish to stop.
+/// What a subcommand gets besides its arguments: where data and messages go, and the flag that cancels it.
 pub struct Context {
     /// Data: standard output, or a buffer in the editor and in tests.
     pub out: Box<dyn Write + Send>,
@@ -144,26 +145,26 @@ pub struct Context {
     pub messages: Box<dyn Progress>,
     /// Set by a signal or by Esc; long work looks at it between frames and files and ends with [`Error::Interrupted`].
     pub cancel: Arc<AtomicBool>,
-    /// The scene that the editor has open; none on the command line.
+    /// The scene that the editor has open; `None` on the command line.
     pub open: Option<Open>,
 }
 
 /// Where messages and the progress of long work go.
 pub trait Progress: Send {
-    /// One line for the person.
+    /// Shows one line.
     fn say(&mut self, line: &str);
-    /// `done` of `total` steps of `what`; called often, shown as often as it makes sense.
+    /// Shows that `done` of `total` steps of `what` are done; called often, shown as often as makes sense.
     fn step(&mut self, what: &str, done: u64, total: u64);
 }
 
 impl Context {
-    /// The command line's own: standard output and standard error.
+    /// That of the command line: standard output and standard error.
     pub fn process(cancel: Arc<AtomicBool>) -> Self {
         let messages = Box::new(Stderr { tty: std::io::stderr().is_terminal(), begun: None, shown: None });
         Context { out: Box::new(std::io::stdout()), messages, cancel, open: None }
     }
 
-    /// The scene at `path`: as the editor has it, where it is the one that is open there; else from the file.
+    /// The scene at `path`: as the editor has it if it is open there, otherwise from the file.
     ///
     /// # Errors
     /// As [`files::scene::open`].
@@ -179,25 +180,25 @@ impl Context {
         if self.cancel.load(Ordering::Relaxed) { Err(Error::Interrupted) } else { Ok(()) }
     }
 
-    /// Writes `text` and a line end to where data goes.
+    /// Writes `text` and a line end to the data output.
     pub fn print(&mut self, text: impl std::fmt::Display) -> Result<()> {
         writeln!(self.out, "{text}").map_err(|e| Error::at("standard output", e))
     }
 }
 
-/// Messages on standard error; progress there only where a person looks.
+/// Messages on standard error; progress only if it is a terminal.
 struct Stderr {
     tty: bool,
     /// When the work in progress began.
     begun: Option<Instant>,
-    /// When its line was last written; none while there is no such line.
+    /// When its line was last written; `None` while there is no such line.
     shown: Option<Instant>,
 }
 
 impl Progress for Stderr {
     fn say(&mut self, line: &str) {
         let clear = if self.shown.take().is_some() { "\r\x1b[K" } else { "" };
-        // A terminal that went away is no reason to fail.
+        // A terminal that has gone away is no reason to fail.
         let _ = writeln!(std::io::stderr(), "{clear}{}", printable(line));
     }
 
@@ -216,7 +217,7 @@ impl Progress for Stderr {
     }
 }
 
-/// How long the rest will take, as text, once that can be told.
+/// How long the rest will take, as text, once that can be estimated.
 pub fn left(spent: Duration, done: u64, total: u64) -> String {
     if done == 0 || done >= total || spent.as_millis() < 500 {
         return String::new();

@@ -1,4 +1,4 @@
-//! `plica new`: a scene with pictures, each a layer with one zone that covers it.
+//! `plica new`: a scene made from pictures; each becomes a layer with one zone that covers it.
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,10 @@ use crate::base::error::{Error, Result};
 use crate::files::{self, disk, picture, write};
 use crate::scene::{Document, build::unique_name};
 
-/// Make a scene of pictures, one layer each, with one zone that covers it.
+/// Make a scene from pictures, one layer each, with one zone that covers it
 #[derive(clap::Args)]
 pub struct Args {
-    /// The pictures, the lowest first; one from another folder is copied beside the scene
+    /// The pictures, lowest layer first; those in other folders are copied beside the scene
     #[arg(required = true)]
     images: Vec<PathBuf>,
     /// The scene file [default: beside the first picture, PICTURE.plica.json]
@@ -30,17 +30,17 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     context.print(path.display())
 }
 
-/// The scene file that belongs to a picture: beside it, under its name.
+/// The scene file that belongs to a picture: beside it, with its name.
 pub fn beside(picture: &Path) -> PathBuf {
     let stem = picture.file_stem().unwrap_or_default().to_string_lossy();
     picture.with_file_name(format!("{stem}.plica.json"))
 }
 
-/// Writes a scene of `images` at `path`, which must not be there yet. The pictures are read as a whole: one that is broken
-/// is no start. With the scene comes what of them could not be followed.
+/// Writes a scene of `images` at `path`, which must not exist yet. The pictures are read completely, so that no scene
+/// starts with a broken one. Returns the scene, and notes on what in the pictures could not be honoured.
 ///
 /// # Errors
-/// When the scene, or another file with a picture's name, is there; when a picture cannot be read or copied.
+/// If the scene, or another file with a picture's name, exists already; if a picture cannot be read or copied.
 pub fn create(path: &Path, images: &[PathBuf], options: &files::Options) -> Result<(Document, Vec<String>)> {
     if path.symlink_metadata().is_ok() {
         let cure = format!("edit it (plica edit {}), or choose another name with -o", path.display());

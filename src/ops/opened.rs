@@ -1,4 +1,4 @@
-//! A scene opened for a command: its document and everything it names. Used by every command that looks at pixels.
+//! A scene opened for a command: its document and every file it refers to. Used by every command that looks at pixels.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,9 @@ use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth, bands::Bands};
 use crate::scene::Document;
 
-/// A scene and what it names.
+/// A scene and the files it refers to.
 pub struct Opened {
-    /// Where it lies.
+    /// Its file.
     pub path: PathBuf,
     /// The scene.
     pub document: Document,
@@ -20,7 +20,7 @@ pub struct Opened {
     pub materials: Materials,
 }
 
-/// A scene of which nothing is loaded yet, so that what is wrong with a command is told before that.
+/// A scene whose pictures are not loaded yet: a wrong command is reported before that.
 pub struct Unloaded {
     path: PathBuf,
     options: files::Options,
@@ -29,10 +29,10 @@ pub struct Unloaded {
 }
 
 impl Unloaded {
-    /// Reads the scene at `path`; warnings are said.
+    /// Reads the scene at `path` and prints its warnings.
     ///
     /// # Errors
-    /// It cannot be read; every problem of the scene.
+    /// If it cannot be read, or the scene has problems: all of them.
     pub fn read(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
         let options = options.options()?;
         let document = context.document(path, &options)?;
@@ -42,10 +42,10 @@ impl Unloaded {
         Ok(Unloaded { path: path.to_path_buf(), options, document })
     }
 
-    /// Loads what it names.
+    /// Loads the files that the scene refers to.
     ///
     /// # Errors
-    /// What cannot be read.
+    /// If some cannot be read: all of them.
     pub fn load(self, context: &mut Context) -> Result<Opened> {
         let Unloaded { path, options, document } = self;
         let mut cache = materials::Cache::until(context.cancel.clone());
@@ -61,7 +61,7 @@ impl Unloaded {
 }
 
 impl Opened {
-    /// Opens the scene at `path` and loads what it names; warnings are said.
+    /// Opens the scene at `path`, loads the files it refers to, and prints the warnings.
     ///
     /// # Errors
     /// As [`Unloaded::read`] and [`Unloaded::load`].
@@ -69,7 +69,7 @@ impl Opened {
         Unloaded::read(path, options, context)?.load(context)
     }
 
-    /// The scene made ready for frames at any time.
+    /// Prepares the scene for rendering frames at any time.
     ///
     /// # Errors
     /// As [`render::synth`].
@@ -77,7 +77,7 @@ impl Opened {
         render::synth(self.document.scene(), &self.materials, None).map_err(|problem| self.failed(problem))
     }
 
-    /// The same band by band, for n x n samples a pixel.
+    /// The same band by band, for n x n samples per pixel.
     ///
     /// # Errors
     /// As [`Bands::new`].
@@ -85,7 +85,7 @@ impl Opened {
         Bands::new(self.document.scene(), &self.materials, n).map_err(|problem| self.failed(problem))
     }
 
-    /// The same for n x n samples a pixel.
+    /// The same for n x n samples per pixel.
     ///
     /// # Errors
     /// As [`render::samples`].

@@ -1,4 +1,4 @@
-//! `plica probe`: what pixels do, and why: zone, jump vector, thresholds, time, place, what they read and show.
+//! `plica probe`: what pixels do, and why: zone, jump vector, thresholds, time, place, and what they read and show.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::layers::folding::model::PictureLayer;
 use crate::layers::folding::probe::{Probe, probe};
 use crate::scene::Scene;
 
-/// Tell what a pixel does at a time.
+/// Show what a pixel does at a time, and why
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
@@ -23,22 +23,22 @@ pub struct Args {
     /// Scene time, 0 to 1
     #[arg(long, value_name = "T", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_time)]
     time: f64,
-    /// Name of the layer; the first without it
+    /// Name of the layer [default: the first]
     #[arg(long, value_name = "LAYER")]
     layer: Option<String>,
-    /// One JSON object a line
+    /// Print one JSON object per line
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     options: SceneOptions,
 }
 
-/// Tells one answer for each `--at`, in order.
+/// Prints one answer per `--at`, in order.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let opened = Opened::new(&args.scene, &args.options, context)?;
     let scene = opened.document.scene();
     let layer = find_layer(scene, args.layer.as_deref())?;
-    // A pixel costs what it takes, not what the frame would.
+    // Only what the pixel needs is computed, not the whole frame.
     let shown = opened.bands(1)?;
     let picture = opened.materials.picture(&layer.image, "/image").map_err(|e| Error::at(args.scene.display(), e))?;
     let size = (picture.width(), picture.height());

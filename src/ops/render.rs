@@ -23,7 +23,7 @@ use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
 
-/// Render frames to numbered files, an animation, a video or a stream.
+/// Render frames to numbered files, an animation, a video or a stream
 #[derive(clap::Args)]
 #[command(after_help = outputs_help())]
 pub struct Args {
@@ -32,28 +32,28 @@ pub struct Args {
     /// Where to: the extension names the format, %04d numbers files, - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Which frames, as 0,5,10-20:2 or 20-10; all without it
+    /// Which frames, for example 0,5,10-20:2 or 20-10 [default: all]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     frames: Option<String>,
     /// Number the files N, N+1, ... in the order of the frames, not as the scene numbers them
     #[arg(long, value_name = "N")]
     start_number: Option<u32>,
-    /// Leave out the numbered files that are there already, whole and of the right size
+    /// Skip numbered files that exist already, complete and of the right size
     #[arg(long)]
     skip_existing: bool,
     /// Scale finished frames; a 0 keeps the ratio
     #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     size: Option<String>,
-    /// N x N samples a pixel: smooth edges of folds
+    /// N x N samples per pixel: smooth edges of folds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     samples: u32,
-    /// Draw with the GPU instead of the reference
+    /// Draw with the GPU instead of the reference renderer
     #[arg(long)]
     gpu: bool,
     /// Format on standard output: y4m or rgba
     #[arg(long)]
     format: Option<String>,
-    /// Matrix of y4m and video [default: bt709 from 720 lines on, bt601 below, as players take it]
+    /// Matrix of y4m and video [default: bt709 from 720 lines up, bt601 below, as players assume]
     #[arg(long, value_name = "NAME", value_parser = Matrix::NAMES)]
     matrix: Option<String>,
     #[command(flatten)]
@@ -79,7 +79,7 @@ const LINE: &str = "Video by a line of your own (from 720 lines on; below them s
 /// A frame of the scene, and the number of its file.
 type Numbered = (u64, u64);
 
-/// Renders.
+/// Renders the frames.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     let read = Unloaded::read(&args.scene, &args.options, context)?;
@@ -115,7 +115,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// Makes the frames and hands them over; `done` counts them.
+/// Renders the frames and passes them to the target; `done` counts them.
 fn write(
     args: &Args,
     (target, show): (Target, Show),
@@ -197,7 +197,7 @@ fn frame_size(args: &Args, opened: &Opened) -> Result<(usize, usize)> {
     args.size.as_ref().map_or(Ok(own), |text| scale::parse(text, own))
 }
 
-/// What is done, in words.
+/// What was written, in words.
 fn what(place: &str, files: &[Place], todo: &[Numbered], skipped: usize) -> String {
     let skipped = if skipped > 0 { format!(" ({skipped} were there already)") } else { String::new() };
     let frames = if todo.len() == 1 { "1 frame".to_owned() } else { format!("{} frames", todo.len()) };
@@ -207,7 +207,7 @@ fn what(place: &str, files: &[Place], todo: &[Numbered], skipped: usize) -> Stri
     }
 }
 
-/// Frames with an even step keep the speed of the scene; others follow one another at its rate.
+/// Frames with an even step keep the speed of the scene; others are shown at its frame rate.
 fn show(
     args: &Args,
     place: String,
@@ -234,22 +234,22 @@ fn command(args: &Args) -> String {
     words.chain(args.gpu.then(|| " --gpu".to_owned())).collect()
 }
 
-/// Bytes that a frame of `own` size takes while it is made, and scaled to `size`: as light and as colours.
+/// Bytes that a frame of `own` size takes while it is rendered and scaled to `size`: as light and as color codes.
 fn frame_bytes(own: (usize, usize), size: (usize, usize)) -> u64 {
     const LIGHT: u64 = size_of::<Rgba>() as u64;
     const COLORS: u64 = size_of::<[u8; 4]>() as u64;
     let pixels = |(width, height): (usize, usize)| width as u64 * height as u64;
-    // Scaling has copies of both.
+    // Scaling needs copies of both.
     let scaled = if own == size { 0 } else { pixels(own) * 2 * LIGHT + pixels(size) * (2 * LIGHT + COLORS) };
     pixels(own) * (LIGHT + COLORS) + scaled
 }
 
-/// What turns a time into a finished frame.
+/// Turns a time into a finished frame.
 struct Renderer<'a> {
     opened: &'a Opened,
-    /// One synthesis a sample of each pixel.
+    /// One synthesis per sample of a pixel.
     samples: Vec<Synth>,
-    /// In their place, where a single frame is wanted as it is: nothing is kept for another.
+    /// Instead of `samples`, for a single frame that is not scaled: nothing is kept for another frame.
     bands: Option<Bands<'a>>,
     /// Width and height of the finished frame.
     size: (usize, usize),
@@ -270,7 +270,7 @@ impl<'a> Renderer<'a> {
             (None, 1) => vec![opened.synth()?],
             (None, n) => opened.samples(n)?,
         };
-        // In bands a frame is there as colours alone.
+        // In bands, only the color codes of a frame are in memory.
         let colors = (size.0 * size.1 * size_of::<[u8; 4]>()) as u64;
         let bytes = samples.first().map_or(colors, |synth| frame_bytes(synth.size, size));
         let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));

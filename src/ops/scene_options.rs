@@ -1,9 +1,9 @@
-//! Options that every command which opens a scene has.
+//! Options of every command that opens a scene.
 
 use crate::base::error::Result;
 use crate::files::{self, Limits, limits};
 
-/// What a scene may take and name.
+/// What a scene may consume, and which files it may refer to.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct SceneOptions {
     /// Raise or lower a limit; may be given again
@@ -15,25 +15,26 @@ pub struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// What they mean.
+    /// As options for reading files.
     ///
     /// # Errors
-    /// A wrong limit is a wrong command line.
+    /// [`Error::Usage`](crate::base::error::Error::Usage) if a limit is wrong.
     pub fn options(&self) -> Result<files::Options> {
         Ok(files::Options { limits: Limits::from_settings(&self.limits)?, allow_outside: self.allow_outside })
     }
 }
 
-/// What to do about unsaved edits that a session left behind, where nobody can be asked.
+/// What to do about unsaved edits that a session left behind, when nobody can be asked.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct RecoveryOptions {
-    /// Take unsaved edits that a session left behind (keep), or leave the file as it is; undo has them then (drop)
+    /// Take over unsaved edits that a session left behind (keep), or leave the file as it is, with the edits in undo
+    /// (drop)
     #[arg(long, value_name = "keep | drop", value_parser = ["keep", "drop"])]
     pub after_recovery: Option<String>,
 }
 
 impl RecoveryOptions {
-    /// Whether they are taken; `None` if that was not said.
+    /// Whether they are taken over; `None` if the option is not given.
     pub fn keep(&self) -> Option<bool> {
         self.after_recovery.as_ref().map(|word| word == "keep")
     }

@@ -3,11 +3,11 @@
 use super::Context;
 use crate::base::error::Result;
 
-/// Print the JSON Schema of a scene.
+/// Print the JSON Schema of a scene
 #[derive(clap::Args)]
 pub struct Args {}
 
-/// Prints it.
+/// Prints the schema.
 pub fn run(_: Args, context: &mut Context) -> Result<()> {
     context.print(format_args!("{:#}", crate::scene::schema::json_schema()))
 }

@@ -1,4 +1,4 @@
-//! `plica set`: scripted edits, by the same patches as the editor's.
+//! `plica set`: scripted edits, by the same patches as in the editor.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ use crate::preview::editor::script;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, address};
 
-/// Set values in a scene, all of them or none.
+/// Set values in a scene, all of them or none
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene
     scene: PathBuf,
-    /// What to set to what: layers.face.zones."left eye".feather=4; a value is JSON, else text; null takes an optional
-    /// thing away
+    /// What to set, for example layers.face.zones."left eye".feather=4; a value that is not JSON is text; null removes
+    /// something optional
     #[arg(required = true, value_name = "PATH=VALUE")]
     settings: Vec<String>,
     #[command(flatten)]
@@ -30,14 +30,14 @@ pub struct Args {
     reading: SceneOptions,
 }
 
-/// How long somebody else who changes the scene is waited for, where that is no editor that can be asked to set it.
+/// How long to wait for another process that is changing the scene and is not an editor that can do the setting for us.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How often it is looked whether they are done.
+/// How often to check whether it is done.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// Who has had the scene for so long is no `plica set`.
+/// A process that has had the scene for longer than this is not another `plica set`.
 const BRIEF_MS: u64 = 5_000;
 
-/// Sets them: in the editor that has the scene open, else in the file.
+/// Sets the values: in the editor that has the scene open, otherwise in the file.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let lost = RefCell::default();
     let make = |document: &Document| {
@@ -68,14 +68,14 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     session.refuse_protected().map_err(|error| error.cure("allow to write it first: chmod u+w"))?;
     let applied = session.apply(edit, false).map_err(|problems| refused(&args.scene, problems))?;
     session.save(Overwrite::No).inspect_err(|_| {
-        // What could not be saved is not left behind either.
+        // An edit that could not be saved is not left behind for recovery either.
         applied.and_then(|_| session.undo());
     })?;
     lost.take().iter().for_each(|line| context.messages.say(line));
     Ok(())
 }
 
-/// Takes or leaves unsaved edits that a session left behind; nothing is done about them unasked.
+/// Takes over or discards unsaved edits that a session left behind; without the option that says which, it is an error.
 fn settle(session: &mut Session, args: &Args) -> Result<()> {
     let Some(offer) = session.recovery() else { return Ok(()) };
     let place = args.scene.display();
@@ -101,8 +101,8 @@ fn settle(session: &mut Session, args: &Args) -> Result<()> {
     }
 }
 
-/// The edit that puts all of `settings` (`PATH=VALUE`) in force, each seen after the ones before it; and what a change of
-/// kind could not keep, a line each.
+/// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it; and what a change of
+/// kind could not keep, one line each.
 pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<(Edit, Vec<String>)> {
     let mut document = document.clone();
     let (mut edits, mut told) = (Vec::new(), Vec::new());
@@ -119,7 +119,7 @@ pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<(E
     Ok((Edit::all(edits), told))
 }
 
-/// The problem with its place in the form in which the path was asked for, which led to `pointer`.
+/// The problem with its place written as in `path`, the form in which the person gave `pointer`.
 fn as_asked(document: &Document, problem: Problem, path: &str, pointer: &str) -> Problem {
     if path.starts_with('/') {
         return problem;
@@ -128,8 +128,8 @@ fn as_asked(document: &Document, problem: Problem, path: &str, pointer: &str) ->
     Problem { path: if own { path.to_owned() } else { address::told(document, &problem.path) }, ..problem }
 }
 
-/// Takes a line of settings apart: a space ends one where `PATH=` of another follows. So a text with spaces needs no
-/// quotes, unless what follows looks like a path.
+/// Splits a line of settings: a space ends a setting if the `PATH=` of another follows. So a text with spaces needs no
+/// quotes unless a word in it looks like that.
 pub fn settings(document: &Document, line: &str) -> Vec<String> {
     let mut all = vec![String::new()];
     let (mut quoted, mut depth) = (false, 0i32);
@@ -151,7 +151,7 @@ pub fn settings(document: &Document, line: &str) -> Vec<String> {
     all.into_iter().map(|one| one.trim().to_owned()).filter(|one| !one.is_empty()).collect()
 }
 
-/// Whether a setting begins here: with a path of the scene, or what looks like one.
+/// Whether a setting begins here: with a path of the scene, or with something that looks like one.
 fn begins(document: &Document, text: &str) -> bool {
     let mut quoted = false;
     let end = text.find(|c: char| {
@@ -162,7 +162,7 @@ fn begins(document: &Document, text: &str) -> bool {
     path.contains(['.', '/']) || !path.is_empty() && address::resolve(document, path).is_ok()
 }
 
-/// What looks like another JSON value is text where only text fits (`title=2024`).
+/// A value that looks like other JSON is text if only text fits (`title=2024`).
 fn meant(document: &Document, pointer: &str, value: Value, setting: &str, path: &str) -> Value {
     let text = field::field(document, pointer).is_some_and(|field| field.kind == Kind::Text);
     if text && !value.is_string() && !value.is_null() { Value::from(&setting[path.len() + 1..]) } else { value }
@@ -172,7 +172,7 @@ fn refused(scene: &Path, problems: Vec<Problem>) -> Error {
     Error::Scene { file: scene.display().to_string(), problems }
 }
 
-/// Splits at the first `=` outside quotes; the value is JSON where it can be read as JSON, else text.
+/// Splits at the first `=` outside quotes; the value is JSON if it can be read as JSON, otherwise text.
 pub fn parse(setting: &str) -> Result<(&str, Value)> {
     let mut inside = false;
     let split = setting.char_indices().find(|&(_, c)| {

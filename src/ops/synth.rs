@@ -9,12 +9,12 @@ use crate::base::error::Result;
 use crate::export::textures::{self, Depth, Names};
 use crate::files::outputs;
 
-/// Write a scene's textures and their manifest for other engines.
+/// Write a scene's textures and their manifest for other engines
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
     scene: PathBuf,
-    /// The folder for colour, init, jump, function and thresholds textures and manifest.json; made where missing
+    /// The folder for colour, init, jump, function and thresholds textures and manifest.json; created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Bits per number: 32 is exact (EXR); 16 and 8 are PNG, their error in the manifest
@@ -26,7 +26,7 @@ pub struct Args {
     options: SceneOptions,
 }
 
-/// Writes them.
+/// Writes the textures.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     let depth = match args.depth.as_str() {

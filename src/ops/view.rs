@@ -1,5 +1,5 @@
-//! `plica view`: the preview window alone. It joins the editor that has the scene open, else follows the file; on another
-//! machine through ssh.
+//! `plica view`: the preview window alone. It joins the editor that has the scene open, otherwise follows the file; a
+//! scene on another machine is reached through ssh.
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub struct Args {
     /// The scene, here or on another machine
     #[arg(value_name = "SCENE | ssh://[USER@]HOST[:PORT]/PATH")]
     pub scene: PathBuf,
-    /// What plica is called on the other machine, where it is not found by itself [env: PLICA_REMOTE]
+    /// The plica program on the other machine, if it is not found by itself [env: PLICA_REMOTE]
     #[arg(long, value_name = "PATH")]
     pub remote_plica: Option<String>,
     /// Close with the editor that opened the window
@@ -35,8 +35,8 @@ pub struct Args {
 /// Runs the window until it is closed.
 ///
 /// # Errors
-/// There is no display, or nothing that can draw on it; another machine cannot be reached. A broken scene is no error: the
-/// window says what is wrong and waits until it is mended.
+/// If there is no display, nothing that can draw on it, or the other machine cannot be reached. A broken scene is no
+/// error: the window says what is wrong and waits until it is repaired.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let options = args.options.options()?;
     let most = usize::try_from(options.limits.texture).unwrap_or(usize::MAX);
@@ -46,7 +46,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     context.check_cancelled()?;
     window::run(window::Setup {
-        // The editor tells what is wrong by itself.
+        // The editor reports problems itself.
         manner: window::Manner { name, most, takes_keyboard: !args.joined, complains: !args.joined },
         updates: link.updates,
         replies: link.replies,
@@ -72,9 +72,9 @@ fn there(way: Way, context: &Context) -> Result<Source> {
     let kept = Cache::of_user(&way.options.limits)?;
     let name = format!("{} on {}", way.address.file_name(), way.address.host);
     let (copies, options) = (fetch::Shared::default(), way.options.clone());
-    // Ctrl-C at a question of ssh's ends ssh first.
+    // Ctrl-C at a prompt of ssh ends ssh first.
     if std::io::stderr().is_terminal() {
-        // Nobody may read it.
+        // It is no failure if nobody reads it.
         drop(writeln!(std::io::stderr(), "connecting to {} (Ctrl-C gives up)", way.address.host));
     }
     let connected = way.connect(drop).or_else(|error| context.check_cancelled().and(Err(error)))?;

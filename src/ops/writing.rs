@@ -1,4 +1,4 @@
-//! What the commands that write have in common: what they may replace, and what they say when they are done.
+//! What commands that write files have in common: what they may replace, and what they print when done.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -21,8 +21,8 @@ pub struct Replacing {
 }
 
 impl Replacing {
-    /// The guard of an output made of the scene at `path`: that scene is kept, and the one that the editor has open, as it is
-    /// there and as its file has it.
+    /// The guard of an output made from the scene at `path`. It protects the files of that scene, and those of the
+    /// scene that the editor has open, both as edited and as saved.
     pub fn guard(&self, path: &Path, scene: &Scene, context: &Context) -> Guard {
         let mut guard = Guard::new(self.force);
         guard.protect(path, scene);
@@ -36,13 +36,13 @@ impl Replacing {
 }
 
 impl Context {
-    /// Says that `what` is done: how large it is and how long it took.
+    /// Prints that `what` is done, how large it is and how long it took.
     pub fn done(&mut self, what: &str, bytes: u64, begun: Instant) {
         let took = u64::try_from(begun.elapsed().as_millis()).unwrap_or(u64::MAX);
         self.messages.say(&format!("done: {what}, {}, {}", text::bytes(bytes), text::took(took)));
     }
 
-    /// Says some lines.
+    /// Prints some lines.
     pub fn say_all(&mut self, lines: &[String]) {
         lines.iter().for_each(|line| self.messages.say(line));
     }
@@ -52,7 +52,7 @@ impl Context {
 pub struct Counting {
     /// Where it goes.
     pub out: Box<dyn Write + Send>,
-    /// How many bytes went.
+    /// How many bytes went through.
     pub count: Arc<AtomicU64>,
 }
 
