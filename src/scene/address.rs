@@ -1,5 +1,6 @@
 //! Addresses for people: `layers.face.zones."left eye".interpolation.radius`, with names, quotes and indices from 0; or
-//! a JSON pointer. Both ways, along the schema, so that what is not written yet has its address too.
+//! a JSON pointer. Conversion in both directions follows the schema, so that fields that are not written yet have an
+//! address too.
 
 use serde_json::Value;
 
@@ -9,7 +10,10 @@ use super::{Document, pointer};
 use crate::base::error::{Error, Result};
 use crate::base::problem::{nearest, quoted};
 
-/// The JSON pointer of an address. Errors name what is unknown, and the nearest that is known.
+/// The JSON pointer of an address.
+///
+/// # Errors
+/// If a part of it is unknown; the message names it, and the nearest known one.
 pub fn resolve(document: &Document, address: &str) -> Result<String> {
     if address.is_empty() || address.starts_with('/') {
         let tokens = pointer::tokens(address).map(|text| Token { text, quoted: false });
@@ -18,7 +22,7 @@ pub fn resolve(document: &Document, address: &str) -> Result<String> {
     follow(document, address, split(address)?)
 }
 
-/// The address of a JSON pointer: names where there are any. What leads nowhere stays as it is.
+/// The address of a JSON pointer, with names where there are any. A pointer that leads nowhere is returned as it is.
 pub fn address(document: &Document, pointer: &str) -> String {
     let mut place = Place::root(document.json());
     let mut address = String::new();
@@ -30,7 +34,7 @@ pub fn address(document: &Document, pointer: &str) -> String {
     address
 }
 
-/// The address of a JSON pointer, also where it leads on to what is not there: the rest then as it is spelled.
+/// The address of a JSON pointer, even if only its beginning leads anywhere: the rest is then written token by token.
 pub fn told(document: &Document, pointer: &str) -> String {
     let tokens: Vec<String> = pointer::tokens(pointer).collect();
     let known = (0..=tokens.len())
@@ -43,7 +47,7 @@ pub fn told(document: &Document, pointer: &str) -> String {
     std::iter::once(address).filter(|address| !address.is_empty()).chain(rest).collect::<Vec<_>>().join(".")
 }
 
-/// The address of `below`, which is one token below the place of that shape and address.
+/// The address of `below`, which is `token` below the place with that address and shape.
 pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Place) -> String {
     let step = match body {
         Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
@@ -54,7 +58,7 @@ pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Pl
     if address.is_empty() { step } else { format!("{address}.{step}") }
 }
 
-/// A name as it stands in an address: in quotes where it must be.
+/// A name as it is written in an address: in quotes if it needs them.
 fn spelled(name: &str, in_list: bool) -> String {
     let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_+".contains(c));
     if plain && !(in_list && name.starts_with(|c: char| c.is_ascii_digit())) {
@@ -106,7 +110,7 @@ fn follow(document: &Document, address: &str, tokens: Vec<Token>) -> Result<Stri
     Ok(path)
 }
 
-/// The token of the pointer that a step of an address means.
+/// The pointer token for a step of an address.
 fn key(place: Place, token: &Token) -> Option<String> {
     match place.shape.body() {
         Body::List(..) => {
@@ -117,7 +121,7 @@ fn key(place: Place, token: &Token) -> Option<String> {
             index.or_else(|| named().map(|index| index.to_string()))
         }
         Body::Numbers(count) => {
-            // x and y are understood also where the columns have other names (dx, dy).
+            // x and y are understood even if the columns have other names (dx, dy).
             let named = (0..count).find(|&i| place.shape.column(i) == Some(&token.text));
             let named = named.or_else(|| ["x", "y"].iter().position(|axis| *axis == token.text && count == 2));
             Some(named.map_or_else(|| token.text.clone(), |index| index.to_string()))
@@ -146,7 +150,7 @@ fn unknown(document: &Document, address: &str, path: &str, place: Place, token: 
     }
 }
 
-/// What could have been meant below a place.
+/// The names that could have been meant below a place.
 fn names_below(place: Place) -> Vec<String> {
     match place.shape.body() {
         Body::List(..) => {

@@ -1,5 +1,5 @@
-//! Everything that can be said about a scene before it is synthesised: shape first (the schema), then names, references
-//! and what each technique says about its own layers. Facts about pictures come in as values.
+//! Everything that can be checked in a scene before it is synthesised: shape first (the schema), then names, references
+//! and what each technique checks in its own layers. Facts about pictures are passed in as values.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,24 +15,24 @@ use crate::layers::parts::materials::{Materials, Of};
 use crate::layers::technique::{Checked, Technique};
 use crate::layers::{KINDS, check as rules};
 
-/// So many unknown references of a layer are listed.
+/// At most this many unknown references of a layer are listed.
 const MAX_REFERENCES: usize = 100;
 
-/// What a person allows a scene to ask for.
+/// What a scene is allowed to ask for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rules {
     /// Whether paths may leave the scene's folder.
     pub allow_outside: bool,
-    /// How many of each kind of thing that techniques count the scene may have; what is not listed has no limit.
+    /// The most that the scene may have of each kind of thing that techniques count; kinds not listed have no limit.
     pub counted: BTreeMap<&'static str, u64>,
-    /// Frames of its timeline.
+    /// The most frames in its timeline.
     pub frames: u64,
-    /// Bytes of memory for the document, and for whatever one place of it asks for.
+    /// Bytes of memory for the document, and for whatever one place in it asks for.
     pub memory: u64,
 }
 
 impl Rules {
-    /// For a document that was checked before.
+    /// No limits, for a document that has been checked before.
     pub const NONE: Rules = Rules { allow_outside: true, counted: BTreeMap::new(), frames: u64::MAX, memory: u64::MAX };
 }
 
@@ -43,31 +43,33 @@ impl Default for Rules {
     }
 }
 
-/// What JSON means, once it has passed every check.
+/// What JSON means, after it has passed every check.
 #[derive(Clone, Debug)]
 pub struct Read {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What deserves a word.
+    /// Its warnings.
     pub warnings: Arc<[Problem]>,
-    /// What was found in each layer by itself.
+    /// What was found in each layer on its own.
     layers: Arc<[Checked]>,
 }
 
-/// The scene that `json` means, with its warnings; or every problem: of shape, and, where the shape is right, of names,
-/// ranges and references.
+/// The scene that `json` means, with its warnings.
+///
+/// # Errors
+/// Every problem: of shape, or, if the shape is right, of names, ranges and references.
 pub fn read(json: &Value, rules: &Rules) -> Result<Read, Vec<Problem>> {
     let problems = shape::check(json);
     if !problems.is_empty() {
         return Err(problems);
     }
-    // The walk above says the same as the types and more; where they ever differ the types have the last word.
+    // The check above covers what the types demand, and more; if they ever differ, the types decide.
     let scene = Scene::deserialize(json).map_err(|e| vec![Problem::error("", e.to_string())])?;
     check(scene, None, rules)
 }
 
-/// The same, where `change` is how `json` differs from what `before` was read from: only that is looked at. What does not
-/// come through is read as a whole, so that problems are told as ever.
+/// Like [`read`], if `change` is how `json` differs from what `before` was read from: only that is looked at. JSON that
+/// does not pass is read as a whole, so that the problems are the same as from [`read`].
 pub fn reread(json: &Value, change: &Change, before: &Read, rules: &Rules) -> Result<Read, Vec<Problem>> {
     let fits = shape::still_fits(json, change);
     match if fits { before.scene.reread(json, change) } else { None } {
@@ -96,11 +98,11 @@ impl Scene {
     }
 }
 
-/// Checks a scene whose shape is right, and what is new in it since `before`.
+/// Checks a scene whose shape is right; in layers, only what is new since `before`.
 fn check(scene: Scene, before: Option<&Read>, rules: &Rules) -> Result<Read, Vec<Problem>> {
     let before =
         |i: usize| before.and_then(|before| Some((before.scene.layers.get(i)?.technique(), before.layers.get(i)?)));
-    // What asks for too much is not even looked at more closely.
+    // A scene that asks for too much is not checked further.
     let over = counts(&scene, rules);
     let layers = scene.layers.iter().enumerate().filter(|_| over.is_empty());
     let layers: Vec<Checked> = layers.map(|(i, layer)| layer.technique().check(before(i))).collect();
@@ -131,8 +133,8 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems
 }
 
-/// What pictures and fields say about a scene: outlines outside their picture, masks and fields of another size. What
-/// could not be loaded is left out.
+/// The problems that only show with the pictures and fields: outlines outside their picture, masks and fields of
+/// another size. Those that could not be loaded are skipped.
 pub fn check_materials(scene: &Scene, materials: &Materials) -> Vec<Problem> {
     below_layers(scene, |layer| layer.check_materials(materials))
 }
@@ -143,7 +145,7 @@ fn below_layers(scene: &Scene, check: impl Fn(&dyn Technique) -> Vec<Problem>) -
     below.flat_map(|(prefix, problems)| problems.into_iter().map(move |problem| problem.under(&prefix))).collect()
 }
 
-/// The first place of each kind where the scene asks for more than is allowed.
+/// For each kind of thing, the first place where the scene asks for more than is allowed.
 fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     let mut sums: BTreeMap<&str, (u64, f64, Option<String>)> =
         rules.counted.iter().map(|(what, most)| (*what, (*most, 0.0, None))).collect();
@@ -181,7 +183,7 @@ fn names(scene: &Scene) -> Vec<Problem> {
     rules::names(layers.map(|(i, layer)| (format!("/layers/{i}/name"), layer.technique().name())))
 }
 
-/// Paths of files, by their looks.
+/// Problems with paths of files, judged by the text alone.
 fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     let images = scene.images.iter().map(|(name, image)| (pointer::join("/images", name) + "/path", &*image.path));
     let files = scene.uses().filter_map(|used| match used.of {
@@ -191,7 +193,7 @@ fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     images.chain(files).filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside)).collect()
 }
 
-/// Every image that a layer names is one of the scene's.
+/// Problems with images that a layer names and the scene does not have.
 fn references(scene: &Scene) -> Vec<Problem> {
     below_layers(scene, |layer| {
         let uses = layer.uses();

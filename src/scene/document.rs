@@ -1,5 +1,5 @@
-//! A document: the JSON as written, its order and its numbers kept, together with the scene it means. There is no
-//! document with an error in it: what cannot be rendered is refused with all its problems.
+//! A document: the JSON as written, with its order and the spelling of its numbers, together with the scene it means. A
+//! document never contains errors: what cannot be rendered is refused, with all its problems.
 
 use std::sync::Arc;
 
@@ -22,12 +22,15 @@ pub struct Document {
 }
 
 impl Document {
-    /// Reads the text of a scene file. The errors are all that could be found at once.
+    /// Reads the text of a scene file.
+    ///
+    /// # Errors
+    /// All problems that can be found at once.
     pub fn parse(text: &str) -> Result<Document, Vec<Problem>> {
         Document::parse_under(text, Rules::default())
     }
 
-    /// The same under other rules than the default ones; they hold for what edits make of it too.
+    /// The same under other rules than the default ones; later edits are checked by them too.
     pub fn parse_under(text: &str, rules: Rules) -> Result<Document, Vec<Problem>> {
         let budget = Budget::new(rules.memory);
         let needed = budget.try_take(json::bytes_of_text(text.as_bytes()));
@@ -37,7 +40,7 @@ impl Document {
         Document::from_json_under(json, rules)
     }
 
-    /// The document that `json`, of the present version, means.
+    /// The document that `json` means; it must be of the current version.
     pub fn from_json(json: Value) -> Result<Document, Vec<Problem>> {
         Document::from_json_under(json, Rules::default())
     }
@@ -48,8 +51,8 @@ impl Document {
         Ok(Document { json: Arc::new(json), read, rules })
     }
 
-    /// A scene of pictures, (name, path, width, height) each: a layer each, as the first technique that begins with a
-    /// picture has it. Names are unique.
+    /// A scene of pictures, (name, path, width, height) each, with one layer per picture, made by the first technique
+    /// that can start from a picture. The names must be unique.
     pub fn new(pictures: &[(&str, &str, usize, usize)]) -> Result<Document, Vec<Problem>> {
         let template = KINDS.iter().find_map(|kind| kind.template);
         let images: serde_json::Map<_, _> =
@@ -66,12 +69,12 @@ impl Document {
         self.rules = rules;
     }
 
-    /// What the document means.
+    /// The scene that the document means.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.read.scene
     }
 
-    /// What is written.
+    /// The JSON as written.
     pub fn json(&self) -> &Value {
         &self.json
     }
@@ -81,18 +84,21 @@ impl Document {
         json::to_text(&self.json)
     }
 
-    /// What deserves a word; the scene renders.
+    /// Its warnings; the scene renders all the same.
     pub fn warnings(&self) -> &[Problem] {
         &self.read.warnings
     }
 
-    /// The document after an edit, or the errors that it would bring.
+    /// The document after an edit.
+    ///
+    /// # Errors
+    /// The problems that the edit would cause.
     pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
         Ok(self.change(edit)?.map_or_else(|| self.clone(), |(document, _)| document))
     }
 
-    /// The same, with what takes the edit back; `None` if it changes nothing. Only what the edit changes is read and
-    /// checked again; it comes to what the whole check says.
+    /// The same, with the inverse of the edit; `None` if it changes nothing. Only what the edit changes is read and
+    /// checked again, with the same result as a check of the whole.
     pub(super) fn change(&self, edit: &Edit) -> Result<Option<(Document, Edit)>, Vec<Problem>> {
         let mut json = Value::clone(&self.json);
         let inverse = edit.patch(&mut json).map_err(|problem| vec![problem])?;

@@ -1,8 +1,8 @@
-//! An edit: a JSON Patch (RFC 6902), the one way in which a scene changes. An edit is a value; it is checked where it is
-//! applied ([`super::Document::apply`]).
+//! An edit: a JSON Patch (RFC 6902), the only way in which a scene changes. An edit is a value; it is checked when it
+//! is applied ([`super::Document::apply`]).
 //!
 //! The patch is applied here and not by json-patch, because keys keep their order: a new one goes to its place in the
-//! schema, and taking one away does not shuffle the others. So undo gives back the very text.
+//! schema, and removing one does not reorder the others. So undo restores the text exactly.
 
 use json_patch::jsonptr::PointerBuf;
 use json_patch::{AddOperation, MoveOperation, Patch, PatchOperation, RemoveOperation, ReplaceOperation};
@@ -39,7 +39,7 @@ impl Edit {
         Edit::one(PatchOperation::Add(AddOperation { path: parsed(path), value }))
     }
 
-    /// Takes away what is written at `path`.
+    /// Removes what is written at `path`.
     pub fn remove(path: &str) -> Edit {
         Edit::one(PatchOperation::Remove(RemoveOperation { path: parsed(path) }))
     }
@@ -52,7 +52,8 @@ impl Edit {
         Edit(Patch(vec![operation]))
     }
 
-    /// Takes in an edit that follows and only replaces what this one wrote; else gives it back.
+    /// Merges the next edit into this one if it only replaces what this one wrote; otherwise gives it back as the
+    /// error.
     pub fn absorb(&mut self, next: Edit) -> Result<(), Edit> {
         let mut own = self.clone();
         let taken = !own.is_empty() && next.0.iter().all(|operation| own.take(operation));
@@ -80,12 +81,12 @@ impl Edit {
         place.map(|place| place.clone_from(&replace.value)).is_some()
     }
 
-    /// Changes `json`, without looking at what comes out. Gives what takes the edit back, to the letter.
+    /// Changes `json` without checking the result. Returns the inverse, which restores the text exactly.
     pub(super) fn patch(&self, json: &mut Value) -> Result<Edit, Problem> {
         self.patch_within(json, &mut Copies::default())
     }
 
-    /// The same as one of several edits, which share what may be copied.
+    /// The same as one of several edits, which share one limit on what may be copied.
     pub(super) fn patch_within(&self, json: &mut Value, copies: &mut Copies) -> Result<Edit, Problem> {
         let mut undo = Vec::with_capacity(self.0.len());
         for operation in self.0.iter() {
@@ -96,13 +97,12 @@ impl Edit {
         Ok(Edit::all(undo))
     }
 
-    /// What takes the edit back: applied after it, it gives back `document` to the letter. Empty where the edit cannot be
-    /// applied.
+    /// The inverse: applied after the edit, it restores `document` exactly. Empty if the edit cannot be applied.
     pub fn inverse(&self, document: &Document) -> Edit {
         self.patch(&mut document.json().clone()).unwrap_or_default()
     }
 
-    /// The edit that makes `to` out of `from`, to the letter.
+    /// The edit that turns `from` into exactly `to`.
     pub fn between(from: &Document, to: &Document) -> Edit {
         let mut edits = Vec::new();
         difference(from.json(), from.json(), to.json(), "", &mut edits);
@@ -113,15 +113,15 @@ impl Edit {
     }
 }
 
-/// What `copy` has made so far. It alone makes much of little: each one may double the scene, while whatever else an edit
-/// writes is no longer than the edit. Plica never writes one.
+/// The bytes that `copy` operations have made so far. Only `copy` can make much out of little: each one may double the
+/// scene, while what other operations write is no longer than the edit. Plica itself never writes one.
 #[derive(Debug, Default)]
 pub(super) struct Copies(u64);
 
 impl Copies {
     const MOST_BYTES: u64 = 64 << 20;
 
-    /// Refuses an operation that makes too much, or nests it deeper than a scene may be.
+    /// Refuses an operation that copies too much, or nests deeper than a scene may.
     fn bear(&mut self, json: &Value, operation: &PatchOperation) -> Result<(), Problem> {
         let there = |from: &str| json.pointer(from).ok_or_else(|| missing(from));
         let value = match operation {
@@ -149,12 +149,12 @@ impl Copies {
     }
 }
 
-/// A pointer of ours as json-patch's type; one that is none leads nowhere.
+/// A pointer of ours as json-patch's type; text that is no pointer leads nowhere.
 fn parsed(path: &str) -> PointerBuf {
     PointerBuf::parse(path).unwrap_or_else(|_| PointerBuf::from_tokens([path]))
 }
 
-/// Does one operation and gives its inverse.
+/// Applies one operation and returns its inverse.
 fn step(json: &mut Value, operation: &PatchOperation) -> Result<Edit, Problem> {
     let path = operation.path().as_str();
     match operation {
@@ -210,8 +210,8 @@ fn add(json: &mut Value, path: &str, value: Value) -> Result<Edit, Problem> {
     }
 }
 
-/// RFC 6902 `remove`, with what was there. The inverse is an `add` where that brings the key back to its old place, else
-/// the object as it was.
+/// RFC 6902 `remove`; also returns what was there. The inverse is an `add` if that restores the key to its old place,
+/// otherwise the whole object as it was.
 fn remove(json: &mut Value, path: &str) -> Result<(Value, Edit), Problem> {
     let (parent, last) =
         pointer::split(path).ok_or_else(|| Problem::error("", "the whole scene cannot be taken away"))?;
@@ -232,8 +232,8 @@ fn remove(json: &mut Value, path: &str) -> Result<(Value, Edit), Problem> {
     Ok((value, inverse))
 }
 
-/// Where a new key of the object at `parent` goes: after the last of those that precede it in the schema; at the end
-/// where the schema does not know it.
+/// Where a new key of the object at `parent` goes: after the last of those that precede it in the schema; at the end if
+/// the schema does not know it.
 fn key_place(json: &Value, parent: &str, key: &str) -> usize {
     let Some(map) = json.pointer(parent).and_then(Value::as_object) else { return 0 };
     let keys: Vec<&str> = map.keys().map(String::as_str).collect();
@@ -251,7 +251,7 @@ fn place_among(written: &[&str], known: &[&str], key: &str) -> usize {
     written.iter().rposition(|name| known[..rank].contains(name)).map_or(0, |last| last + 1)
 }
 
-/// Adds the edits that make `to` of `from`, both at `path` of `json`.
+/// Adds the edits that turn `from` into `to`, both at `path` in `json`.
 fn difference(json: &Value, from: &Value, to: &Value, path: &str, edits: &mut Vec<Edit>) {
     match (from, to) {
         _ if json::same(from, to) => {}
@@ -281,7 +281,7 @@ fn difference(json: &Value, from: &Value, to: &Value, path: &str, edits: &mut Ve
     }
 }
 
-/// Whether taking keys away and adding others one by one leaves them in the order of `to`.
+/// Whether removing keys and adding others one by one leaves them in the order of `to`.
 fn reachable(json: &Value, from: &Map<String, Value>, to: &Map<String, Value>, path: &str) -> bool {
     let known = known_keys(json, path);
     let mut keys: Vec<&str> = from.keys().filter(|&key| to.contains_key(key)).map(String::as_str).collect();

@@ -1,4 +1,5 @@
-//! Where a place is after an edit: what points into a document goes along when items come, go and move before it.
+//! Where a place is after an edit: pointers into a document are adjusted when items before them are added, removed or
+//! moved.
 
 use json_patch::PatchOperation;
 use serde_json::Value;
@@ -6,7 +7,7 @@ use serde_json::Value;
 use super::{Document, Edit, pointer};
 
 impl Edit {
-    /// Where the place at `pointer` is after this edit, which led to `after`; `None` if it was taken away.
+    /// Where the place at `pointer` is after this edit, which led to `after`; `None` if it was removed.
     pub fn follow(&self, after: &Document, pointer: &str) -> Option<String> {
         let item = |path: &str| {
             let (list, last) = pointer::split(path)?;
@@ -44,7 +45,7 @@ fn is_within(place: &str, path: &str) -> bool {
     place.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
-/// `place` with its index in `list` changed, where it is in that list.
+/// `place` with its index in `list` changed, if it is in that list.
 fn shifted(place: &str, list: &str, index: impl Fn(usize) -> usize) -> String {
     let below = place.strip_prefix(list).and_then(|rest| rest.strip_prefix('/'));
     let Some(below) = below else { return place.to_owned() };

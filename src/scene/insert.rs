@@ -1,5 +1,5 @@
-//! Values that come from elsewhere (the clipboard, a pasted table) into a scene: whether they fit, and the edit that brings
-//! them in under names of their own and, in an ascending list, to their places.
+//! Values that come into a scene from elsewhere (the clipboard, a pasted table): whether they fit, and the edit that
+//! inserts them with unique names and, in an ascending list, in order.
 
 use std::collections::HashSet;
 
@@ -12,10 +12,11 @@ use super::{Document, field, pointer, shape};
 use crate::base::problem::Problem;
 use crate::layers::technique::Kind;
 
-/// More items than this are written with their list as a whole: one operation, however many there are.
+/// More items than this are inserted by replacing the whole list: a single operation, however many there are.
 const ONE_BY_ONE: usize = 100;
 
-/// Why `value` cannot stand at `path`, by the schema alone; `None` if it can. Paths of the problem are relative to it.
+/// Why `value` cannot be put at `path`, by the schema alone; `None` if it can. The problem's path is relative to
+/// `path`.
 pub fn misfit(document: &Document, path: &str, value: &Value) -> Option<Problem> {
     match Place::of(document.json(), path) {
         Some(place) => shape::problems(place.shape, value).into_iter().next(),
@@ -24,9 +25,10 @@ pub fn misfit(document: &Document, path: &str, value: &Value) -> Option<Problem>
 }
 
 impl Edit {
-    /// Adds `items` to the list at `list`, before the one at `index`: names become unique, and in a list that ascends each
-    /// goes to its place (where that is taken, one item goes half way to the next, many replace what is there). With it,
-    /// the pointer of the first. `None` if there is no such list, or nothing to add.
+    /// Adds `items` to the list at `list`, before the one at `index`: names become unique, and in an ascending list
+    /// each item goes to its place (if that is taken, a single item goes half way to the next, and several replace what
+    /// is there). Returns the edit and the pointer to the first item; `None` if there is no such list, or nothing to
+    /// add.
     pub fn insert_all(document: &Document, list: &str, index: usize, items: Vec<Value>) -> Option<(Edit, String)> {
         let place = Place::of(document.json(), list)?;
         let Body::List(..) = place.shape.body() else { return None };
@@ -55,8 +57,8 @@ impl Edit {
         Some((write(document, list, all.into()), first))
     }
 
-    /// Adds entries to the map at `map`, under names of their own; with it, the pointer of the first. `None` if there is
-    /// no such map, or nothing to add.
+    /// Adds entries to the map at `map` under unique names. Returns the edit and the pointer to the first entry; `None`
+    /// if there is no such map, or nothing to add.
     pub fn insert_entries(document: &Document, map: &str, entries: Map<String, Value>) -> Option<(Edit, String)> {
         let place = Place::of(document.json(), map)?;
         let Body::Map(_) = place.shape.body() else { return None };
@@ -71,7 +73,7 @@ impl Edit {
     }
 }
 
-/// The items under names that none of `old` has, nor another of them.
+/// The items with names that differ from those in `old` and from each other.
 fn named_apart(old: &[Value], mut items: Vec<Value>) -> Vec<Value> {
     let mut taken: HashSet<String> = old.iter().filter_map(|item| field::name_of(Some(item))).collect();
     for item in &mut items {
@@ -88,7 +90,7 @@ fn key_of(item: &Value, key: &str) -> Option<f64> {
     item.pointer(key).and_then(Value::as_f64)
 }
 
-/// One item in an ascending list: at its place, or where that is taken half way to the next, as a copy goes.
+/// One item in an ascending list: at its place, or if that is taken half way to the next, as for a duplicate.
 fn placed_alone(
     kind: &Kind,
     (variant, list): (&str, &str),
@@ -108,7 +110,7 @@ fn placed_alone(
     Some((all, to))
 }
 
-/// Many items in an ascending list, each at its place, instead of what stands there.
+/// Several items in an ascending list, each at its place, replacing what is there.
 fn placed(key: &str, old: &[Value], items: Vec<Value>) -> Option<(Vec<Value>, usize)> {
     let least = items.iter().filter_map(|item| key_of(item, key)).fold(f64::INFINITY, f64::min);
     let mut all = items;

@@ -1,5 +1,5 @@
-//! Text to JSON and back. serde_json reads, but through a visitor of our own: it refuses a key that stands twice (serde_json
-//! would silently keep the last) and text nested too deep, each with its line and column. Writing keeps what changes
+//! Text to JSON and back. serde_json reads, but through a visitor of our own: it refuses duplicate keys (serde_json
+//! would silently keep the last) and text nested too deep, each with its line and column. The writer keeps what changes
 //! together on one line, so that diffs are small.
 
 use std::fmt;
@@ -11,15 +11,15 @@ use serde_json::{Map, Value};
 pub use crate::base::change::same;
 use crate::base::problem::Problem;
 
-/// Objects and lists may be nested this deep.
+/// How deep objects and lists may be nested.
 pub const MAX_DEPTH: usize = 64;
 
-/// What stands on one line ends before this column.
+/// What is put on one line ends before this column.
 const MAX_COLUMN: usize = 110;
-/// So many spaces a level.
+/// Spaces per level.
 pub(super) const INDENT: usize = 2;
 
-/// Bytes of memory that `value` takes, a little more than it does.
+/// Bytes of memory that `value` takes, slightly overestimated.
 pub fn bytes(value: &Value) -> u64 {
     let key = |key: &String| (key.len() + size_of::<String>() + 2 * size_of::<usize>()) as u64;
     size_of::<Value>() as u64
@@ -40,13 +40,13 @@ pub fn depth(value: &Value) -> usize {
     }
 }
 
-/// Bytes of memory that the value of a JSON text takes at most, told from its punctuation before any of it is made.
+/// The most bytes of memory that the value of a JSON text can take, estimated from its punctuation without parsing it.
 pub fn bytes_of_text(text: &[u8]) -> u64 {
     let parts = text.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{' | b':')).count() as u64;
     (parts + 1) * size_of::<Value>() as u64 + text.len() as u64
 }
 
-/// Parses `text`; the problem says the line and the column.
+/// Parses `text`; the problem names the line and the column.
 pub fn parse(text: &str) -> Result<Value, Problem> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut deserializer = serde_json::Deserializer::from_str(text);
@@ -54,7 +54,7 @@ pub fn parse(text: &str) -> Result<Value, Problem> {
     value.and_then(|value| deserializer.end().map(|()| value)).map_err(|error| place(&error))
 }
 
-/// What serde_json says, and the same in plain words.
+/// Messages of serde_json, and the same in plainer words.
 const PLAINER: [(&str, &str); 6] = [
     ("EOF while parsing a value", "the text ends where a value was expected"),
     ("EOF while parsing an object", "the text ends within an object: a } is missing"),
@@ -72,7 +72,7 @@ fn place(error: &serde_json::Error) -> Problem {
     Problem::error("", format!("line {line}, column {column}: {plainer}"))
 }
 
-/// Reads one value at a depth.
+/// Reads one value at a given depth.
 #[derive(Clone, Copy)]
 struct Seed {
     depth: usize,
@@ -150,8 +150,8 @@ impl<'de> Visitor<'de> for Seed {
     }
 }
 
-/// The text of a document: two spaces a level, lists of numbers and short objects of plain values on one line, a line end
-/// at the end. `parse` of it gives the value back, and the text of that is the same text.
+/// The text of a document: two spaces per level, lists of numbers and short objects of plain values on one line, a line
+/// end at the end. `parse` returns the same value, and that gives the same text.
 pub fn to_text(value: &Value) -> String {
     let mut out = String::new();
     write(value, 0, 0, &mut out);
@@ -222,7 +222,7 @@ fn lines<T>(
     out.push(close);
 }
 
-/// Whether `value` may stand on one line: a plain value, numbers, or an object of those.
+/// Whether `value` may be on one line: a plain value, numbers, or an object of those.
 fn is_flat(value: &Value) -> bool {
     match value {
         Value::Object(map) => map.values().all(|value| is_scalar(value) || is_numbers(value)),
@@ -231,12 +231,12 @@ fn is_flat(value: &Value) -> bool {
     }
 }
 
-/// A list of numbers, or of such lists.
+/// Whether it is a list of numbers, or of such lists.
 fn is_numbers(value: &Value) -> bool {
     value.as_array().is_some_and(|items| items.iter().all(|item| item.is_number() || is_numbers(item)))
 }
 
-/// A list of plain numbers stays on its line however long it is, and so does a plain value.
+/// Whether it stays on its line however long it is: a list of plain numbers, or a plain value.
 fn is_row(value: &Value) -> bool {
     is_scalar(value) || value.as_array().is_some_and(|items| items.iter().all(Value::is_number))
 }
@@ -268,7 +268,7 @@ fn inline(value: &Value, out: &mut String) {
     }
 }
 
-/// A plain value, or an empty object, as serde_json writes it: numbers at their shortest, integers as integers.
+/// Writes a plain value or an empty object as serde_json does: numbers at their shortest, integers as integers.
 fn scalar(value: &Value, out: &mut String) {
     use std::fmt::Write;
     write!(out, "{value}").expect("writing to a string does not fail");

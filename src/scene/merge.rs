@@ -1,5 +1,6 @@
-//! Two versions of a scene that come from one: what only one of them changed is taken from it, what both changed is a
-//! conflict. Values, not patches, are compared: an item added to a list does not move what the other side did behind it.
+//! Merges two versions of a scene that come from the same one: what only one of them changed is taken from it, what
+//! both changed is a conflict. Values are compared, not patches: an item added to a list does not shift the other
+//! side's changes after it.
 
 use serde_json::{Map, Value};
 
@@ -9,9 +10,9 @@ use super::{json, pointer};
 /// One of the two versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// What is here.
+    /// The version that is here.
     Mine,
-    /// What somebody else made.
+    /// The version that somebody else made.
     Theirs,
 }
 
@@ -20,22 +21,22 @@ pub enum Side {
 pub struct Conflict {
     /// Where it is in the version that is here.
     pub pointer: String,
-    /// What stands there here; `None` if it was taken away.
+    /// The value in the version that is here; `None` if it was removed.
     pub mine: Option<Value>,
-    /// What stands there on the other side.
+    /// The value on the other side; `None` if it was removed.
     pub theirs: Option<Value>,
 }
 
-/// What two versions make together.
+/// The result of merging two versions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
-    /// The JSON; nothing is said about errors in it.
+    /// The JSON; it may contain errors.
     pub json: Value,
-    /// Where one side had to give way.
+    /// Where one side was overruled.
     pub conflicts: Vec<Conflict>,
 }
 
-/// Merges what came of `base`; without one, all that differs is in conflict. There `prefer` wins.
+/// Merges two versions of `base`; without a base, every difference is a conflict. In conflicts `prefer` wins.
 pub fn merge(base: Option<&Value>, mine: &Value, theirs: &Value, prefer: Side) -> Merged {
     let mut merger = Merger { prefer, conflicts: Vec::new() };
     let json = merger.value(base, Some(mine), Some(theirs), "").unwrap_or(Value::Null);
@@ -80,7 +81,7 @@ impl Merger {
         }
     }
 
-    /// Keys in the order of mine; those that only theirs has at the end.
+    /// Merges objects: keys in the order of `mine`, those only in `theirs` at the end.
     fn object(
         &mut self,
         base: Option<&Map<String, Value>>,
@@ -98,9 +99,9 @@ impl Merger {
         merged
     }
 
-    /// `None` if the lists cannot be brought together.
+    /// Merges lists; `None` if they cannot be merged.
     fn list(&mut self, lists: &Lists, at: &str) -> Option<Vec<Value>> {
-        // Coordinates belong together.
+        // Coordinates are changed together.
         if lists.mine.iter().chain(lists.theirs).any(Value::is_number) {
             return None;
         }
@@ -110,7 +111,7 @@ impl Merger {
         self.named(lists, at).or_else(|| beside(lists))
     }
 
-    /// Lists of one length: item by item.
+    /// Merges lists of the same length item by item.
     fn items(&mut self, lists: &Lists, at: &str) -> Vec<Value> {
         let triples = lists.base.iter().zip(lists.mine).zip(lists.theirs).enumerate();
         triples
@@ -120,7 +121,8 @@ impl Merger {
             .collect()
     }
 
-    /// Lists of things with names: by name, in the order of mine, what theirs added after what it stands after there.
+    /// Merges lists of named things by name, in the order of `mine`; what `theirs` added goes after the same item as
+    /// there.
     fn named(&mut self, lists: &Lists, at: &str) -> Option<Vec<Value>> {
         let (base, mine, theirs) = (names(lists.base)?, names(lists.mine)?, names(lists.theirs)?);
         let find = |names: &[String], items: &[Value], name: &String| {
@@ -142,7 +144,7 @@ impl Merger {
     }
 }
 
-/// Lists that each side changed in one stretch, apart from each other. `None` if the stretches meet.
+/// Merges lists that each side changed in one stretch, apart from the other's. `None` if the stretches meet.
 fn beside(lists: &Lists) -> Option<Vec<Value>> {
     let (mine, theirs) = (Stretch::of(lists.base, lists.mine), Stretch::of(lists.base, lists.theirs));
     let apart = |a: &Stretch, b: &Stretch| a.end < b.start || (a.end == b.start && a.start < b.end);
@@ -158,7 +160,7 @@ fn beside(lists: &Lists) -> Option<Vec<Value>> {
     Some(parts.concat())
 }
 
-/// The stretch of a list that a version changed, and what stands there now.
+/// The stretch of a list that a version changed, and what is there now.
 struct Stretch<'a> {
     start: usize,
     end: usize,
@@ -175,7 +177,7 @@ impl<'a> Stretch<'a> {
     }
 }
 
-/// The names of all items; `None` if one has none or two have the same.
+/// The names of all items; `None` if one has no name or two have the same.
 fn names(items: &[Value]) -> Option<Vec<String>> {
     let names: Vec<String> = items.iter().map(|item| name_of(Some(item))).collect::<Option<_>>()?;
     let unique = names.iter().enumerate().all(|(i, name)| !names[..i].contains(name));

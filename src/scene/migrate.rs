@@ -1,14 +1,16 @@
-//! Versions of the document. A newer one is refused; an older one is brought up to date in memory, one step a version.
+//! Versions of the document. A newer one is refused; an older one is brought up to date in memory, one step per
+//! version.
 
 use serde_json::Value;
 
 use super::VERSION;
 use crate::base::problem::Problem;
 
-/// What turns a document of version i + 1 into one of version i + 2, by index i. Empty while there is one version.
+/// The function at index i turns a document of version i + 1 into one of version i + 2. Empty while there is one
+/// version.
 const STEPS: &[fn(&mut Value)] = &[];
 
-/// Brings `json` to [`VERSION`]. What is not an object or says no version is left for the check of shape.
+/// Brings `json` to [`VERSION`]. JSON that is no object or has no version is left to the check of shape.
 pub fn migrate(json: &mut Value) -> Result<(), Problem> {
     let Some(written) = json.get("plica") else { return Ok(()) };
     let Some(version) = written.as_u64().filter(|&version| version >= 1) else {

@@ -12,7 +12,7 @@ pub fn join(pointer: &str, token: impl std::fmt::Display) -> String {
     joined
 }
 
-/// Adds a token to a pointer.
+/// Appends a token to a pointer.
 pub fn push(pointer: &mut String, token: &str) {
     pointer.push('/');
     if token.contains(['~', '/']) {
@@ -22,13 +22,13 @@ pub fn push(pointer: &mut String, token: &str) {
     }
 }
 
-/// The pointer to what holds this one, and the last token; none for the whole document.
+/// The pointer to the parent, and the last token; `None` for the whole document.
 pub fn split(pointer: &str) -> Option<(&str, String)> {
     let (parent, last) = pointer.rsplit_once('/')?;
     Some((parent, last.replace("~1", "/").replace("~0", "~")))
 }
 
-/// An index of a list, as a token spells it: digits, no leading zero.
+/// A token as an index of a list: digits, no leading zero.
 pub fn index(token: &str) -> Option<usize> {
     let plain = token.bytes().all(|b| b.is_ascii_digit()) && (token == "0" || !token.starts_with('0'));
     plain.then(|| token.parse().ok()).flatten()

@@ -1,5 +1,5 @@
-//! An edit in words, for people who ask what was done: `left eye · radius 60 → 80`. Made from the schema, so that a new
-//! field needs nothing here.
+//! An edit in words, for people who want to know what was done: `left eye · radius 60 → 80`. Made from the schema, so
+//! that a new field needs nothing here.
 
 use json_patch::PatchOperation;
 use serde_json::Value;
@@ -10,11 +10,11 @@ use super::merge::Conflict;
 use super::pointer;
 use super::schema::{Body, Place, Shape};
 
-/// A value in words is no longer than this, in characters.
+/// The most characters of a value in words.
 const LONGEST: usize = 40;
 
-/// What `edit` does to the document `before`, a line an operation: where, what, the old value and the new one. Names in it
-/// are as in the document, control characters and all.
+/// What `edit` does to the document `before`, one line per operation: where, what, the old value and the new one. Names
+/// are as in the document, including control characters.
 pub fn describe(before: &Value, edit: &Edit) -> Vec<String> {
     let operations = &edit.0.0;
     let mut now = (operations.len() > 1).then(|| before.clone());
@@ -30,7 +30,7 @@ pub fn describe(before: &Value, edit: &Edit) -> Vec<String> {
     lines
 }
 
-/// The same on one line: the first, and how many more there are.
+/// The same in one line: the first operation, and how many more there are.
 pub fn in_short(before: &Value, edit: &Edit) -> String {
     let lines = describe(before, edit);
     match lines.as_slice() {
@@ -54,7 +54,7 @@ pub fn conflict(mine: &Value, conflict: &Conflict) -> String {
     format!("{place} {} here, {} in the file", said(&conflict.mine), said(&conflict.theirs))
 }
 
-/// One operation; none for a test.
+/// One operation in words; `None` for a test.
 fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
     let path = operation.path().as_str();
     Some(match operation {
@@ -92,7 +92,7 @@ fn end_of(json: &Value, path: &str) -> String {
     pointer::join(parent, json.pointer(parent).and_then(Value::as_array).map_or(0, Vec::len))
 }
 
-/// A value that becomes another, or that counts instead of its default.
+/// A value that changes, or that replaces its default.
 fn change(json: &Value, path: &str, new: &Value) -> String {
     let found = Place::of(json, path);
     let old = found.and_then(|place| place.value).filter(|value| !value.is_null());
@@ -119,7 +119,7 @@ fn removal(json: &Value, path: &str) -> String {
     }
 }
 
-/// The place that a pointer leads to: the innermost thing with a name, and what it is there. `new` is what will stand there.
+/// The place that a pointer leads to: the innermost thing with a name, and the field in it. `new` is the value to come.
 fn place(json: &Value, path: &str, new: Option<&Value>) -> String {
     let mut here = Some(Place::root(json));
     let mut owner = "scene".to_owned();
@@ -151,14 +151,14 @@ fn place(json: &Value, path: &str, new: Option<&Value>) -> String {
     if steps.is_empty() { owner } else { format!("{owner} · {}", spoken(&steps)) }
 }
 
-/// The steps below the named thing; an object that is only passed through needs no word.
+/// The steps below the named thing; objects that are only passed through are left out.
 fn spoken(steps: &[(String, bool)]) -> String {
     let needed = |i: usize| i + 1 >= steps.len() || steps[i].1 || steps[i + 1].1;
     let kept: Vec<&str> = (0..steps.len()).filter(|&i| needed(i)).map(|i| steps[i].0.as_str()).collect();
     kept.join(" ")
 }
 
-/// The kind of a new item, in brackets, where it has one.
+/// The kind of a new item, in parentheses, if it has one.
 fn kind(json: &Value, path: &str, value: &Value) -> String {
     let words = words(Place::of(json, path).map(|place| place.shape), value);
     if words.is_empty() || name_of(Some(value)).is_some() { String::new() } else { format!(" ({words})") }

@@ -1,5 +1,5 @@
-//! Undo and redo, without end: the present document, and every edit that was ever made with its inverse. A value: no files,
-//! no clock; times come in.
+//! Unlimited undo and redo: the current document, and every edit that was ever made, with its inverse. A plain value:
+//! no files, no clock; times are passed in.
 
 use serde_json::Value;
 
@@ -19,57 +19,57 @@ pub use tree::{Route, Step};
 pub struct Stamp {
     /// Milliseconds since the epoch.
     pub time_ms: u64,
-    /// By a key held down: it joins the edit before it where it only replaces what that one wrote, into one step.
+    /// Whether by a key held down: if it only replaces what the edit before it wrote, the two become one step.
     pub held: bool,
 }
 
-/// What a change of the history did, as the journal and the link want it.
+/// What a change of the history did, for the journal and the link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Applied {
-    /// The revision it led to; every change has one of its own, undo and redo too.
+    /// The revision it led to; every change has its own, including undo and redo.
     pub revision: u64,
-    /// The step it belongs to: edits that share it are undone as one.
+    /// The step it belongs to: edits with the same step are undone together.
     pub step: u64,
-    /// What was applied.
+    /// The edit that was applied.
     pub edit: Edit,
-    /// What takes it back.
+    /// Its inverse.
     pub inverse: Edit,
 }
 
-/// Which way a step was gone.
+/// In which direction a step was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// It was undone.
+    /// Undone.
     Back,
-    /// It was done again.
+    /// Redone.
     On,
 }
 
 /// A step of another branch, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
-    /// The state that it leads to.
+    /// The state that the step leads to.
     pub state: usize,
     /// The state before it.
     pub before: usize,
-    /// When it was made, in milliseconds since the epoch.
+    /// When the step was made, in milliseconds since the epoch.
     pub time_ms: u64,
     /// What it did.
     pub words: String,
 }
 
-/// A document with its past and with every other way it went.
+/// A document with its past and all other branches.
 #[derive(Clone, Debug)]
 pub struct History {
     document: Document,
     revision: u64,
-    /// The state that the file holds.
+    /// The state that is in the file.
     saved: Option<usize>,
     tree: Tree,
 }
 
 impl History {
-    /// The history of a document that was just read from its file.
+    /// The history of a document that has just been read from its file.
     pub fn new(document: Document) -> History {
         History { document, revision: 0, saved: Some(0), tree: Tree::default() }
     }
@@ -84,12 +84,12 @@ impl History {
         self.document.govern(rules);
     }
 
-    /// How many changes there were, undo and redo included.
+    /// How many changes there have been, including undo and redo.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Applies an edit; what was undone stays, as another branch. `None` if the edit changes nothing.
+    /// Applies an edit; what was undone stays as another branch. `None` if the edit changes nothing.
     pub fn apply(&mut self, edit: Edit, stamp: Stamp) -> Result<Option<Applied>, Vec<Problem>> {
         let Some((document, inverse)) = self.document.change(&edit)? else { return Ok(None) };
         self.document = document;
@@ -98,17 +98,17 @@ impl History {
         Ok(Some(Applied { revision: self.revision, step, edit, inverse }))
     }
 
-    /// Ends the step: a held key that follows begins another.
+    /// Ends the step: a held key that follows begins a new one.
     pub fn close_step(&mut self) {
         self.tree.close();
     }
 
-    /// The name of a step that is in no history, for what is recorded all the same.
+    /// The number of a step that is not in the history, for changes that are recorded all the same.
     pub fn reserve_step(&mut self) -> u64 {
         self.tree.reserve_next()
     }
 
-    /// Takes the last step back; `None` if there is none.
+    /// Undoes the last step; `None` if there is none.
     pub fn undo(&mut self) -> Option<Applied> {
         let step = self.tree.step(self.tree.here())?;
         let (id, edit, inverse) = (step.id, step.inverse.clone(), step.edit.clone());
@@ -117,7 +117,7 @@ impl History {
         Some(applied)
     }
 
-    /// Does again what was undone last; `None` if there is nothing.
+    /// Redoes what was undone last; `None` if there is nothing to redo.
     pub fn redo(&mut self) -> Option<Applied> {
         self.on_to(self.tree.next(self.tree.here())?)
     }
@@ -136,7 +136,7 @@ impl History {
         Some(Applied { revision: self.revision, step, edit, inverse })
     }
 
-    /// Goes to a state, wherever it is: back to where its branch begins, and on.
+    /// Goes to a state, wherever it is: back to where its branch begins, then forward.
     pub fn go_to(&mut self, state: usize) -> Vec<(Way, Applied)> {
         let Some(route) = self.tree.route(state) else { return Vec::new() };
         let mut all = Vec::new();
@@ -151,7 +151,7 @@ impl History {
         all
     }
 
-    /// Back to the document as it was at a time, in milliseconds since the epoch, in whatever branch it was then.
+    /// Goes back to the document as it was at a time, in milliseconds since the epoch, on whatever branch it was then.
     pub fn earlier(&mut self, time_ms: u64) -> Vec<(Way, Applied)> {
         let mut state = self.tree.here();
         while self.tree.step(state).is_some_and(|step| step.time_ms > time_ms) {
@@ -160,7 +160,7 @@ impl History {
         self.go_to(state)
     }
 
-    /// On to the document as it was at a time.
+    /// Goes forward to the document as it was at a time.
     pub fn later(&mut self, time_ms: u64) -> Vec<(Way, Applied)> {
         let mut state = self.tree.here();
         while self.tree.step(state + 1).is_some_and(|step| step.time_ms <= time_ms) {
@@ -169,42 +169,42 @@ impl History {
         self.go_to(state)
     }
 
-    /// The present state. States are numbered in the order in which they came to be, from 0.
+    /// The current state. States are numbered from 0 in the order in which they were created.
     pub fn state(&self) -> usize {
         self.tree.here()
     }
 
-    /// The state that came to be last.
+    /// The state that was created last.
     pub fn newest(&self) -> usize {
         self.tree.newest()
     }
 
-    /// The state before another; of the first one itself.
+    /// The state before another; for the first state, itself.
     pub fn before(&self, state: usize) -> usize {
         self.tree.before(state).unwrap_or(0)
     }
 
-    /// The way from the present state to another; `None` if there is no such state.
+    /// The way from the current state to another; `None` if there is no such state.
     pub fn route(&self, to: usize) -> Option<Route> {
         self.tree.route(to)
     }
 
-    /// When the present state came to be, in milliseconds since the epoch; where it is the first one, when it was left.
+    /// When the current state was created, in milliseconds since the epoch; for the first state, when it was left.
     pub fn time_ms(&self) -> u64 {
         self.tree.step(self.tree.here().max(1)).map_or(0, |step| step.time_ms)
     }
 
-    /// The steps that can be undone, with the states that they lead to, the last one first.
+    /// The steps that can be undone, with the states that they lead to, last first.
     pub fn done(&self) -> impl Iterator<Item = (usize, &Step)> {
         self.tree.behind().filter_map(|state| Some((state, self.tree.step(state)?)))
     }
 
-    /// The steps that can be done again, with the states that they lead to, the next one first.
+    /// The steps that can be redone, with the states that they lead to, next first.
     pub fn undone(&self) -> impl Iterator<Item = (usize, &Step)> {
         self.tree.ahead().filter_map(|state| Some((state, self.tree.step(state)?)))
     }
 
-    /// What the last `most` steps did, in words, the last one first.
+    /// What the last `most` steps did, in words, last first.
     pub fn told(&self, most: usize) -> Vec<String> {
         let mut json = self.document.json().clone();
         let back = self.done().take(most).map_while(|(_, step)| {
@@ -214,7 +214,7 @@ impl History {
         back.collect()
     }
 
-    /// What the next `most` steps to be done again will do, in words, the next one first.
+    /// What the next `most` steps to redo will do, in words, next first.
     pub fn told_ahead(&self, most: usize) -> Vec<String> {
         let mut json = self.document.json().clone();
         let ahead = self.undone().take(most).map_while(|(_, step)| {
@@ -224,7 +224,7 @@ impl History {
         ahead.collect()
     }
 
-    /// The steps of other branches, those that begin near the present state first, at most so many.
+    /// At most `most` steps of other branches, those that begin near the current state first.
     pub fn told_aside(&self, most: usize) -> Vec<Told> {
         let after = self.tree.after_each();
         let mut json = self.document.json().clone();
@@ -235,7 +235,7 @@ impl History {
         let mut told = Vec::new();
         let mut from = None;
         for at in ahead.iter().rev().copied().chain(self.tree.behind()).chain([0]) {
-            // What was just come from is this branch itself.
+            // The state that the walk came from is on this branch.
             if after[at].iter().any(|state| Some(*state) != from) {
                 self.tell_branches(&after, (at, from), &json, most, &mut told);
             }
@@ -247,7 +247,7 @@ impl History {
         told
     }
 
-    /// Adds what follows the state `at` but for the branch at `from`; `json` is what it holds.
+    /// Adds the steps that follow the state `at`, except for the branch at `from`; `json` is the document at `at`.
     fn tell_branches(
         &self,
         after: &[Vec<usize>],
@@ -257,7 +257,7 @@ impl History {
         told: &mut Vec<Told>,
     ) {
         let mut json = json.clone();
-        // States to be reached; a state without its step is left again.
+        // (state, true) enters a state, (state, false) leaves it again.
         let mut open: Vec<(usize, bool)> =
             after[at].iter().filter(|state| Some(**state) != from).map(|state| (*state, true)).collect();
         while let Some((state, on)) = open.pop() {
@@ -281,7 +281,7 @@ impl History {
         }
     }
 
-    /// How many steps lie between the present and the last save: back by so many, or on. `None` if neither leads there.
+    /// How many steps the last save is away from the current state, as (back, forward); `None` if neither leads there.
     pub fn since_saved(&self) -> Option<(usize, usize)> {
         let saved = self.saved?;
         let route = self.tree.route(saved)?;
@@ -292,7 +292,7 @@ impl History {
         }
     }
 
-    /// The state that the file holds; `None` if it is not known.
+    /// The state that is in the file; `None` if it is not known.
     pub fn saved(&self) -> Option<usize> {
         self.saved
     }
@@ -302,18 +302,18 @@ impl History {
         (self.tree.behind().count(), self.tree.ahead().count())
     }
 
-    /// The document as it is now was written to its file.
+    /// Notes that the document as it is now was written to its file.
     pub fn mark_saved(&mut self) {
         self.saved = Some(self.tree.here());
         self.tree.close();
     }
 
-    /// The file is not what any state was (it was recovered, or another program wrote it).
+    /// Notes that the file is not any known state (it was recovered, or another program wrote it).
     pub fn mark_unsaved(&mut self) {
         self.saved = None;
     }
 
-    /// Whether the document is what was last written; undo comes back to it.
+    /// Whether the document is what was last written; undo can lead back to it.
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.tree.here())
     }

@@ -1,6 +1,6 @@
-//! A history made again from what a journal recorded. The changes were checked when they were made: only the document they
-//! lead to is checked again, once, so that thousands of them cost no more than a moment. It is also only then brought to the
-//! present version of the format, since the changes fit the version they were made in.
+//! A history rebuilt from what a journal recorded. The changes were checked when they were made: only the resulting
+//! document is checked again, once, so that thousands of changes take no more than a moment. Only then is it also
+//! brought to the current version of the format, since the changes fit the version they were made in.
 
 use serde_json::Value;
 
@@ -10,7 +10,7 @@ use crate::scene::check::Rules;
 use crate::scene::edit::Copies;
 use crate::scene::{Document, Edit};
 
-/// A history being made again.
+/// A history being rebuilt.
 #[derive(Debug)]
 pub struct Replay {
     json: Value,
@@ -20,25 +20,26 @@ pub struct Replay {
     copies: Copies,
 }
 
-/// A history that was made again.
+/// A history that was rebuilt.
 #[derive(Debug)]
 pub struct Remade {
-    /// It, its last step closed.
+    /// The history, with its last step closed.
     pub history: History,
-    /// What brought the document to the present version of the format, and what takes that back; it is no step.
+    /// The edit that brought the document to the current version of the format, and its inverse; it is not a step.
     pub migration: Option<(Edit, Edit)>,
 }
 
 impl Replay {
-    /// Begins with the document before the first change; whether a file holds it is not known.
+    /// Begins with the document before the first change; whether it is in a file is not known.
     pub fn new(json: Value) -> Replay {
         Replay { json, tree: Tree::default(), revision: 0, saved: None, copies: Copies::default() }
     }
 
-    /// An edit and its inverse, of the step `id`. One to another version of the format begins the history anew.
+    /// Replays an edit, with its inverse, of the step `id`. An edit to another version of the format restarts the
+    /// history.
     ///
     /// # Errors
-    /// When it cannot be applied; the replay is of no use any more.
+    /// If it cannot be applied; the replay must not be used any more.
     pub fn edit(&mut self, edit: &Edit, inverse: &Edit, stamp: Stamp, id: u64) -> Result<(), Problem> {
         let version = self.json.get("plica").cloned();
         edit.patch_within(&mut self.json, &mut self.copies)?;
@@ -53,7 +54,7 @@ impl Replay {
         Ok(())
     }
 
-    /// The undo that `edit` records. Where it takes back no step that is known, it is an edit like others.
+    /// Replays the undo that `edit` records. If it undoes no known step, it counts as an ordinary edit.
     ///
     /// # Errors
     /// As [`Replay::edit`].
@@ -67,7 +68,7 @@ impl Replay {
         Ok(())
     }
 
-    /// The redo that `edit` records; as [`Replay::undo`].
+    /// Replays the redo that `edit` records, as [`Replay::undo`] does.
     ///
     /// # Errors
     /// As [`Replay::edit`].
@@ -84,16 +85,17 @@ impl Replay {
         &self.json
     }
 
-    /// The document was written to its file.
+    /// Notes that the document was written to its file.
     pub fn saved(&mut self) {
         self.saved = Some(self.tree.here());
         self.tree.close();
     }
 
-    /// The history, its last step closed. `migrate` brings the document to the present version; undo begins anew there.
+    /// The history, with its last step closed. `migrate` brings the document to the current version; if it changes
+    /// anything, undo starts from there.
     ///
     /// # Errors
-    /// What is wrong with the document that the changes lead to.
+    /// The problems of the resulting document.
     pub fn finish(
         self,
         rules: Rules,

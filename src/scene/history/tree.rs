@@ -1,57 +1,57 @@
 //! The states that a document has been in, as a tree: an edit after an undo begins another branch, and no state is ever
-//! forgotten. States are numbered in the order in which they came to be, from 0, the one at the beginning.
+//! forgotten. States are numbered in the order in which they were created; the first is 0.
 
 use super::Stamp;
 use crate::scene::Edit;
 
-/// One step: what leads to the state that has its number from the state before.
+/// One step: it leads from the state `before` to the state with the step's number.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// Its name in the journal.
+    /// Its number in the journal.
     pub(super) id: u64,
     pub(super) edit: Edit,
     pub(super) inverse: Edit,
-    /// The last time it grew, in milliseconds since the epoch.
+    /// When it last grew, in milliseconds since the epoch.
     pub time_ms: u64,
-    /// Whether it may still take in a held key.
+    /// Whether the next edit by a held key may still join it.
     open: bool,
     /// The state before it.
     pub(super) before: usize,
-    /// The state after it that was left last: redo goes there.
+    /// Of the states after it, the one that was left last: redo goes there.
     next: Option<usize>,
 }
 
-/// A way from one state to another: back by undoing so many steps, then on to these states.
+/// A way from one state to another: back by undoing steps, then forward to other states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Route {
-    /// Steps to be undone.
+    /// The number of steps to undo.
     pub back: usize,
-    /// States to be reached one after another.
+    /// The states to reach, in order.
     pub on: Vec<usize>,
 }
 
-/// All states and the present one.
+/// All states, and which one is current.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     steps: Vec<Step>,
     here: usize,
-    /// The state after the first one that was left last.
+    /// Of the states after the first state, the one that was left last.
     first: Option<usize>,
     next_id: u64,
 }
 
 impl Tree {
-    /// The present state.
+    /// The current state.
     pub fn here(&self) -> usize {
         self.here
     }
 
-    /// The state that came to be last.
+    /// The state that was created last.
     pub fn newest(&self) -> usize {
         self.steps.len()
     }
 
-    /// The step that leads to a state; none leads to the first one.
+    /// The step that leads to a state; `None` for the first state.
     pub fn step(&self, state: usize) -> Option<&Step> {
         self.steps.get(state.checked_sub(1)?)
     }
@@ -70,17 +70,18 @@ impl Tree {
         if state == 0 { self.first } else { self.step(state)?.next }
     }
 
-    /// The present state and those before it, the present one first and without the one at the beginning.
+    /// The current state and those before it, current first, without the first state.
     pub fn behind(&self) -> impl Iterator<Item = usize> {
         std::iter::successors(Some(self.here), |state| self.before(*state)).filter(|state| *state > 0)
     }
 
-    /// The states that redo leads to, one after another.
+    /// The states that redo leads to, in order.
     pub fn ahead(&self) -> impl Iterator<Item = usize> {
         std::iter::successors(self.next(self.here), |state| self.next(*state))
     }
 
-    /// Notes an edit that was made: a new state, or the present one grown. Gives the step's name.
+    /// Records an edit that was made: as a new state, or as part of the step to the current one. Returns the step's
+    /// number.
     pub fn note(&mut self, edit: Edit, inverse: Edit, stamp: Stamp, id: Option<u64>) -> u64 {
         let open = self.step_mut(self.here).filter(|last| stamp.held && last.open);
         let joined = match open {
@@ -103,30 +104,30 @@ impl Tree {
         }
     }
 
-    /// No states but the present one; names that were taken stay so.
+    /// A tree with only the current state; numbers that are in use stay reserved.
     pub fn begun_anew(self) -> Tree {
         Tree { next_id: self.next_id, ..Tree::default() }
     }
 
-    /// A name in the journal that is taken.
+    /// Marks a step number as used.
     pub fn reserve(&mut self, id: u64) {
         self.next_id = self.next_id.max(id + 1);
     }
 
-    /// A name in the journal that was not taken.
+    /// Marks an unused step number as used and returns it.
     pub fn reserve_next(&mut self) -> u64 {
         self.next_id += 1;
         self.next_id - 1
     }
 
-    /// Ends the present step: a held key that follows begins another.
+    /// Ends the current step: a held key that follows begins a new one.
     pub fn close(&mut self) {
         if let Some(last) = self.step_mut(self.here) {
             last.open = false;
         }
     }
 
-    /// The state before becomes the present one.
+    /// Makes the state before the current one.
     pub fn go_back(&mut self) {
         self.close();
         if let Some(before) = self.before(self.here) {
@@ -136,7 +137,7 @@ impl Tree {
         }
     }
 
-    /// A state right after the present one becomes the present one.
+    /// Makes a state right after the current one the current one.
     pub fn arrive(&mut self, state: usize) {
         self.set_next(self.here, state);
         self.here = state;
@@ -149,10 +150,10 @@ impl Tree {
         }
     }
 
-    /// The state right after the present one that `edit` leads to: the one called `id`, or else the newest.
+    /// The state right after the current one that `edit` leads to: the one whose step is `id`, otherwise the newest.
     pub fn after_by(&self, edit: &Edit, id: u64) -> Option<usize> {
         let fits = |state: &usize| self.step(*state).is_some_and(|step| step.before == self.here && step.edit == *edit);
-        // The one that was left last is it nearly always.
+        // It is nearly always the one that was left last.
         let likely = self.next(self.here).filter(|next| fits(next) && self.step(*next).is_some_and(|s| s.id == id));
         likely.or_else(|| {
             let mut all = (1..=self.steps.len()).rev().filter(fits);
@@ -162,19 +163,19 @@ impl Tree {
         })
     }
 
-    /// The states right after each state, by its number.
+    /// For each state, by its number: the states right after it.
     pub fn after_each(&self) -> Vec<Vec<usize>> {
         let mut after = vec![Vec::new(); self.steps.len() + 1];
         self.steps.iter().zip(1..).for_each(|(step, state)| after[step.before].push(state));
         after
     }
 
-    /// The way from the present state to another. `None` if there is no such state.
+    /// The way from the current state to another; `None` if there is no such state.
     pub fn route(&self, to: usize) -> Option<Route> {
         if to > self.steps.len() {
             return None;
         }
-        // A state's number is greater than that of every state before it.
+        // A state's number is greater than those of all states before it.
         let (mut back, mut on) = (0, Vec::new());
         let (mut from, mut at) = (self.here, to);
         while from != at {

@@ -1,5 +1,5 @@
-//! Which old item each new one comes from. Items that are equal and occur once hold the two lists together, as in the diffs
-//! that people find easiest to read; between them the most similar are paired.
+//! Which old item each new one comes from. Equal items that occur once in each list are matched first, as in patience
+//! diff; between them the most similar items are paired.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use crate::scene::json::same;
 
-/// Stretches of more pairs than this are paired in order.
+/// Stretches with more possible pairs than this are simply paired in order.
 const MOST_PAIRS: usize = 10_000;
 
 /// Where a new item comes from.
@@ -17,14 +17,14 @@ const MOST_PAIRS: usize = 10_000;
 pub enum Origin {
     /// It is new.
     New,
-    /// The old item at this place, among its old neighbors.
+    /// The old item at this index, among its old neighbors.
     Stays(usize),
-    /// The old item at this place, elsewhere.
+    /// The old item at this index, moved elsewhere.
     Moved(usize),
 }
 
 impl Origin {
-    /// The old item, where there is one.
+    /// The index of the old item, if there is one.
     pub fn from(self) -> Option<usize> {
         match self {
             Origin::New => None,
@@ -32,13 +32,13 @@ impl Origin {
         }
     }
 
-    /// The old item, where it stands among its old neighbors.
+    /// The index of the old item, if it is still among its old neighbors.
     pub fn stays(self) -> Option<usize> {
         if let Origin::Stays(at) = self { Some(at) } else { None }
     }
 }
 
-/// The fields of an object by their keys; one under a new key by its value.
+/// Matches the fields of an object by key; one under a new key by its value.
 pub fn align_keys(old: &Map<String, Value>, new: &Map<String, Value>) -> Vec<Origin> {
     let places: HashMap<&str, usize> = old.keys().enumerate().map(|(at, key)| (key.as_str(), at)).collect();
     let known: Vec<(usize, usize)> =
@@ -60,7 +60,7 @@ pub fn align_keys(old: &Map<String, Value>, new: &Map<String, Value>) -> Vec<Ori
     origins
 }
 
-/// The items of a list by what they are.
+/// Matches the items of a list by value.
 pub fn align_values(old: &[Value], new: &[Value]) -> Vec<Origin> {
     let lists = Lists { old, new, old_hashes: hashes(old), new_hashes: hashes(new) };
     let mut pairs = Vec::new();
@@ -126,7 +126,7 @@ impl Lists<'_> {
         self.stretch(old, new, pairs);
     }
 
-    /// The items that occur just once in each of the stretches, as pairs (new, old) in the order of the new ones.
+    /// The items that occur exactly once in each of the stretches, as pairs (new, old) in the order of the new ones.
     fn once_in_both(&self, old: &Range<usize>, new: &Range<usize>) -> Vec<(usize, usize)> {
         let once = |hashes: &[u64], range: &Range<usize>| {
             let mut places: HashMap<u64, Option<usize>> = HashMap::new();
@@ -144,14 +144,14 @@ impl Lists<'_> {
         new.clone().filter_map(pair).collect()
     }
 
-    /// Pairs what is left, in order, so that the pairs have as much in common as can be.
+    /// Pairs what is left, in order, so that the pairs have as much in common as possible.
     fn pair_similar(&self, old: Range<usize>, new: Range<usize>, pairs: &mut Vec<(usize, usize)>) {
         let (rows, columns) = (old.len(), new.len());
         if rows == columns || rows * columns > MOST_PAIRS {
             pairs.extend(new.zip(old));
             return;
         }
-        // The best sum of the first so many of both.
+        // best[i][j]: the best sum for the first i of one and the first j of the other.
         let mut best = vec![vec![0_usize; columns + 1]; rows + 1];
         for row in 0..rows {
             for column in 0..columns {
@@ -174,7 +174,7 @@ impl Lists<'_> {
     }
 }
 
-/// How much two values have in common; 0 where they are of different kinds.
+/// How much two values have in common; 0 if they are of different kinds.
 fn common(old: &Value, new: &Value) -> usize {
     match (old, new) {
         (Value::Object(old), Value::Object(new)) => {
@@ -190,9 +190,9 @@ fn common(old: &Value, new: &Value) -> usize {
     }
 }
 
-/// The longest run of pairs in which the second numbers rise as the first ones do.
+/// The longest subsequence of pairs in which the second numbers rise with the first.
 fn rising(pairs: &[(usize, usize)]) -> Vec<(usize, usize)> {
-    // For each length the pair that ends the best run so long, and for each pair the one before it.
+    // For each length, the pair that ends the best run of that length; for each pair, the one before it.
     let mut ends: Vec<usize> = Vec::new();
     let mut before = vec![None; pairs.len()];
     for (index, (_, at)) in pairs.iter().enumerate() {

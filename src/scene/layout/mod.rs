@@ -1,6 +1,6 @@
-//! The text of a scene after an edit, laid out as its author did: what has not changed keeps its bytes, from the spelling of
-//! numbers to line ends and blank lines, and what is new follows its neighbors. The new text is made from the old text and
-//! the new value alone, so it does not matter how one became the other: edits, undo, a merge, a migration.
+//! The text of a scene after an edit, in its author's layout: what has not changed keeps its bytes, from the spelling
+//! of numbers to line ends and blank lines, and what is new looks like its neighbors. The new text depends only on the
+//! old text and the new value, so it does not matter how one became the other: by edits, undo, a merge or a migration.
 
 use std::iter::repeat_n;
 
@@ -14,8 +14,8 @@ mod spans;
 use align::{Origin, align_keys, align_values};
 use spans::Element;
 
-/// The text for `value` where `source` is what the file holds. A text that this program laid out itself keeps its rules
-/// ([`json::to_text`]); so does one that cannot be read.
+/// The text for `value` if `source` is in the file. If this program laid out `source` itself, or it cannot be read, the
+/// layout is that of [`json::to_text`].
 pub fn rewrite(source: &str, value: &Value) -> String {
     let laid_out = || json::to_text(value);
     let Ok(old) = json::parse(source) else { return laid_out() };
@@ -30,7 +30,7 @@ pub fn rewrite(source: &str, value: &Value) -> String {
     if json::parse(&text).is_ok_and(|made| json::same(&made, value)) { text } else { laid_out() }
 }
 
-/// One text being written from another.
+/// Writes the new text from the old one.
 struct Rewrite<'a> {
     source: &'a str,
     out: String,
@@ -38,7 +38,7 @@ struct Rewrite<'a> {
     line_end: &'static str,
     /// What one more level of nesting adds to the beginning of a line.
     unit: &'a str,
-    /// Whether all of it stands on one line.
+    /// Whether the whole text is on one line.
     one_line: bool,
 }
 
@@ -63,7 +63,7 @@ impl<'a> Rewrite<'a> {
         Some(self.out)
     }
 
-    /// Writes `new` in place of `old`, which stands between `start` and `end`; what is new about it on one line if `flat`.
+    /// Writes `new` in place of `old`, which is between `start` and `end`; new values go on one line if `flat`.
     fn value(&mut self, start: usize, end: usize, old: &Value, new: &Value, flat: bool) -> Option<()> {
         let origins = match (old, new) {
             _ if json::same(old, new) => {
@@ -85,12 +85,12 @@ impl<'a> Rewrite<'a> {
         self.list(&list, &origins)
     }
 
-    /// Writes the items of an object or a list, with what stands between them.
+    /// Writes the items of an object or a list, with the text between them.
     fn list(&mut self, list: &List, origins: &[Origin]) -> Option<()> {
         let last = list.elements.len() - 1;
         let flat = !self.source[list.start..list.end].contains('\n');
         self.out.push_str(&self.source[list.start..=list.start]);
-        // The old item that was met last in its own place.
+        // The last old item so far that stayed in its place.
         let mut before = None;
         for (i, origin) in origins.iter().enumerate() {
             let stays = origin.stays();
@@ -117,7 +117,7 @@ impl<'a> Rewrite<'a> {
         Some(())
     }
 
-    /// One item, with its key.
+    /// Writes one item, with its key.
     fn item(&mut self, list: &List, i: usize, origin: &Origin, flat: bool) -> Option<()> {
         let (key, new) = *list.new.get(i)?;
         let from = origin.from().map(|at| (&list.elements[at], list.old_item(at)));
@@ -139,18 +139,18 @@ impl<'a> Rewrite<'a> {
         Some(())
     }
 
-    /// What stands before an old item, from the bracket or the comma before it.
+    /// The text before an old item, from the bracket or comma before it.
     fn lead(&self, list: &List, at: usize) -> &'a str {
         let begin = if at == 0 { list.start + 1 } else { list.elements[at - 1].comma + 1 };
         &self.source[begin..list.elements[at].start]
     }
 
-    /// What stands after an old item, up to its comma or the closing bracket.
+    /// The text after an old item, up to its comma or the closing bracket.
     fn trail(&self, list: &List, at: usize) -> &'a str {
         &self.source[list.elements[at].end..list.elements[at].comma]
     }
 
-    /// What stands before an item that is new behind the old one at `before`: the same as before its neighbors.
+    /// The text before a new item that follows the old one at `before`: the same as before its neighbors.
     fn lead_of_new(&self, list: &List, before: Option<usize>) -> &'a str {
         let last = list.elements.len() - 1;
         match before.map_or(1, |before| before + 1).min(last) {
@@ -161,7 +161,7 @@ impl<'a> Rewrite<'a> {
         }
     }
 
-    /// A value that the source does not hold, on one line or as this program lays it out.
+    /// Writes a value that is not in the source, on one line or in this program's layout.
     fn fresh(&mut self, value: &Value, flat: bool) {
         if flat {
             let compact = self.one_line && !self.source.contains(": ");
@@ -183,13 +183,13 @@ impl<'a> Rewrite<'a> {
     }
 }
 
-/// An object or a list of the source, and what becomes of it. Neither is empty.
+/// An object or a list in the source, and what it becomes. Neither is empty.
 struct List<'a> {
     elements: Vec<Element>,
     start: usize,
     end: usize,
     old: &'a Value,
-    /// The items that it has now, with their keys.
+    /// The new items, with their keys.
     new: Vec<(Option<&'a str>, &'a Value)>,
 }
 

@@ -1,20 +1,20 @@
-//! Where the parts of a JSON text stand. One object or list is looked at at a time, so that a large text costs memory only
-//! for what changes in it. The text was read before: what does not look like JSON here gives `None`.
+//! Where the parts of a JSON text are. Only one object or list is scanned at a time, so that a large text costs memory
+//! only for what changes in it. The text has been parsed before: what does not look like JSON here gives `None`.
 
-/// An item of an object or a list: places in the text, in bytes.
+/// An item of an object or a list: byte offsets in the text.
 #[derive(Debug)]
 pub struct Element {
-    /// Where it begins: its key, where it has one.
+    /// Where it begins: at its key, if it has one.
     pub start: usize,
     /// Its key.
     pub key: Option<String>,
-    /// Where the key ends; the value's start where there is none.
+    /// Where the key ends; the start of the value if there is none.
     pub key_end: usize,
     /// Where its value begins.
     pub value: usize,
     /// Where its value ends.
     pub end: usize,
-    /// Where the comma behind it stands, or the bracket that closes.
+    /// Where the comma after it is, or the closing bracket.
     pub comma: usize,
 }
 
@@ -43,7 +43,7 @@ pub fn end(text: &str, at: usize) -> Option<usize> {
     }
 }
 
-/// The items of the object or the list that begins at `at`; none of a plain value.
+/// The items of the object or list that begins at `at`; empty for a plain value.
 pub fn elements(text: &str, at: usize) -> Option<Vec<Element>> {
     let bytes = text.as_bytes();
     let close = match bytes.get(at)? {
@@ -76,13 +76,13 @@ pub fn elements(text: &str, at: usize) -> Option<Vec<Element>> {
     }
 }
 
-/// Where something else than a blank stands, from `at` on.
+/// The first offset from `at` that is not white space.
 fn blank(bytes: &[u8], at: usize) -> usize {
     let blanks = bytes.iter().skip(at).take_while(|byte| matches!(byte, b' ' | b'\t' | b'\r' | b'\n'));
     at + blanks.count()
 }
 
-/// Behind the string that begins at `at`.
+/// The offset after the string that begins at `at`.
 fn string_end(bytes: &[u8], at: usize) -> Option<usize> {
     let mut at = (bytes.get(at) == Some(&b'"')).then_some(at + 1)?;
     loop {
@@ -94,7 +94,7 @@ fn string_end(bytes: &[u8], at: usize) -> Option<usize> {
     }
 }
 
-/// Behind the number or the word that begins at `at`.
+/// The offset after the number or word that begins at `at`.
 fn plain_end(bytes: &[u8], at: usize) -> usize {
     let ends =
         |byte: &u8| matches!(byte, b',' | b':' | b'[' | b']' | b'{' | b'}' | b'"' | b' ' | b'\t' | b'\r' | b'\n');

@@ -1,4 +1,4 @@
-//! The layout of a text under edits: by examples, and by any text under any edit.
+//! The layout of a text under edits: with examples, and with any text under any edit.
 
 use proptest::prelude::*;
 use serde_json::json;
@@ -57,7 +57,7 @@ fn what_is_not_touched_keeps_its_bytes() {
     for (edit, old, expected) in cases {
         let (from, to) = (BY_HAND.to_owned(), BY_HAND.replacen(old, &expected, 1));
         assert_ne!(from, to, "{old}");
-        // A blank line or an indentation may go with what stood behind it, nothing else.
+        // A blank line or an indentation may go with what was after it, nothing else.
         let text = edited(BY_HAND, edit);
         let squeezed = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(squeezed(&text), squeezed(&to), "{old}");
@@ -113,7 +113,7 @@ fn a_text_of_our_own_is_laid_out_as_ever() {
     assert_eq!(rewrite("{\"b\":1}", &json!({ "b": 1 })), "{\"b\":1}");
 }
 
-/// A value, not deep.
+/// Values that are not deeply nested.
 fn values() -> impl Strategy<Value = Value> {
     let plain = prop_oneof![
         Just(Value::Null),
@@ -131,7 +131,7 @@ fn values() -> impl Strategy<Value = Value> {
     })
 }
 
-/// `value` as somebody might write it: any blanks, by the bits of `whim`.
+/// `value` as somebody might write it: with any white space, by the bits of `whim`.
 fn by_hand(value: &Value, whim: &mut u64, out: &mut String) {
     let mut blank = |out: &mut String| {
         *whim = whim.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -176,7 +176,7 @@ fn all_of(value: &Value, pointer: String, found: &mut Vec<String>) {
     }
 }
 
-/// The value without spelling: `1e0` reads as `1.0`.
+/// The value whatever its spelling: `1e0` reads as `1.0`.
 fn plainly(text: &str) -> Value {
     json::parse(text).unwrap()
 }
@@ -194,7 +194,7 @@ proptest! {
     fn one_value_changes_and_all_other_bytes_stay(old in values(), new in values(), whim: u64, at: prop::sample::Index) {
         let mut source = String::new();
         by_hand(&old, &mut whim.clone(), &mut source);
-        // As it is read: numbers as the text spells them.
+        // Parsed as scenes are: numbers as spelled in the text.
         let old = plainly(&source);
         let mut pointers = Vec::new();
         all_of(&old, String::new(), &mut pointers);

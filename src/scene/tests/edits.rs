@@ -1,4 +1,4 @@
-//! Edits: what they make, what takes them back, and that every tag, list and field can be edited.
+//! Edits: what they do, their inverses, and that every tag, list and field can be edited.
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -67,7 +67,7 @@ fn set_makes_parents_and_keeps_what_fits() {
     assert_eq!(changed.json()["layers"][0]["zones"][0]["fold"], json!({ "rule": "mask", "image": "cat" }));
 }
 
-/// Applies `edit` and takes it back.
+/// Applies `edit` and undoes it.
 fn there_and_back(document: &Document, edit: &Edit) -> Result<Document, Vec<Problem>> {
     let changed = document.apply(edit)?;
     let back = changed.apply(&edit.inverse(document)).unwrap();
@@ -146,7 +146,7 @@ fn items_are_duplicated_moved_and_taken_away() {
     assert!(duplicated > 60, "{duplicated}");
     let changed = there_and_back(&document, &Edit::remove("/layers/0/zones/0")).unwrap();
     assert_eq!(names(&changed).len(), 9);
-    // Keys come back to where they were, also from before others and also where the schema has another order.
+    // Keys return to where they were, even before others and even if the schema has another order.
     for path in ["/title", "/images/mask", "/layers/0/zones/0/position", "/layers/0/zones/1/speed"] {
         let mut json = document.json().clone();
         let undo = Edit::remove(path);
@@ -202,7 +202,7 @@ fn a_patch_of_somebody_else_is_applied_as_rfc_6902_says() {
     }
 }
 
-/// Anything that may be tried on a document: a value set somewhere, an item added, copied, moved or taken away.
+/// Anything that may be tried on a document: a value set somewhere; an item added, copied, moved or removed.
 fn tried(document: &Document, (action, place, index, value): &(u8, prop::sample::Index, usize, Value)) -> Option<Edit> {
     let places = places(document);
     let (path, _) = place.get(&places);

@@ -1,4 +1,4 @@
-//! Tests of the room as a whole, on two scenes: a small one, and one that holds every kind of thing.
+//! Tests of this room as a whole, on two scenes: a small one, and one with every kind of thing.
 
 mod edits;
 mod fields;
@@ -17,7 +17,7 @@ fn everything() -> Document {
     Document::parse(include_str!("../../../tests/scenes/good/everything.json")).unwrap()
 }
 
-/// Every place of a document below the whole, also those that are not written.
+/// Every place in a document below the root, including those that are not written.
 fn places(document: &Document) -> Vec<(String, Field)> {
     let mut found = Vec::new();
     let mut open = vec![String::new()];

@@ -1,4 +1,4 @@
-//! What an edit changes is checked and read by itself: that must come to what the whole check says.
+//! Only what an edit changes is checked and read again: the result must be that of checking the whole.
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::*;
 use crate::base::problem::{Problem, Severity};
 
-/// Every place of a value.
+/// Every place in a value.
 fn places(value: &Value, path: &str, all: &mut Vec<String>) {
     all.push(path.to_owned());
     match value {
@@ -18,7 +18,7 @@ fn places(value: &Value, path: &str, all: &mut Vec<String>) {
     }
 }
 
-/// One operation made of numbers drawn by chance: what is done, where, and with which value.
+/// One operation made from random numbers: what is done, where, and with which value.
 fn operation(json: &Value, (what, at, from): (usize, usize, usize)) -> Edit {
     let mut all = Vec::new();
     places(json, "", &mut all);
@@ -37,7 +37,7 @@ fn operation(json: &Value, (what, at, from): (usize, usize, usize)) -> Edit {
     }
 }
 
-/// What the whole check says of the document after an edit.
+/// The result of checking the whole document after an edit.
 fn whole(document: &Document, edit: &Edit) -> Result<Document, Vec<Problem>> {
     let mut json = document.json().clone();
     edit.patch(&mut json).map_err(|problem| vec![problem])?;
@@ -66,7 +66,7 @@ proptest! {
                     document = found;
                 }
                 (Err(found), Err(expected)) => prop_assert_eq!(found, expected, "{:?}", edit),
-                // The one thing that may be read and not be edited.
+                // The only thing that can be read but not edited.
                 (Err(found), Ok(expected)) if expected.json()["plica"] != document.json()["plica"] => {
                     prop_assert_eq!(&found[0].path, "/plica");
                 }

@@ -21,7 +21,7 @@ fn a_held_key_is_one_step() {
         assert_eq!(feather(&mut history, value, 2 + i as u64, true).step, 0);
     }
     assert_eq!((history.revision(), history.depth()), (25, (1, 0)));
-    // Another field, or a key that was let go, begins another step.
+    // Another field, or a key that was released, begins another step.
     let edit = Edit::set(history.document(), "/layers/0/zones/0/speed", json!(2));
     assert_eq!(history.apply(edit, Stamp { time_ms: 40, held: true }).unwrap().unwrap().step, 1);
     feather(&mut history, 40, 41, true);
@@ -35,7 +35,7 @@ fn a_held_key_is_one_step() {
     assert_eq!(history.document().to_text(), squint().to_text());
     history.redo().unwrap();
     assert_eq!(now(&history), 29.0);
-    // What was undone and done again is closed.
+    // What was undone and redone is closed.
     assert_ne!(feather(&mut history, 50, 60, true).step, 0);
 }
 
@@ -79,7 +79,7 @@ fn earlier_and_later_go_by_time() {
 #[test]
 fn undo_is_a_tree_and_time_goes_through_all_of_it() {
     let mut history = History::new(squint());
-    // As in vim's manual: three edits, three times undo, three other edits.
+    // As in vim's manual: three edits, three undos, three other edits.
     for value in [10, 20, 30] {
         feather(&mut history, value, value as u64, false);
     }
@@ -99,7 +99,7 @@ fn undo_is_a_tree_and_time_goes_through_all_of_it() {
     (0..3).for_each(|_| drop(history.undo().unwrap()));
     history.redo().unwrap();
     assert_eq!(now(&history), 40.0);
-    // By time, from one branch into the other.
+    // By time, from one branch to the other.
     assert_eq!((history.earlier(35).len(), now(&history)), (4, 30.0));
     assert_eq!((history.later(55).len(), now(&history)), (5, 50.0));
     assert!(history.go_to(7).is_empty() && history.state() == 5);
