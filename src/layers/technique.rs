@@ -61,6 +61,11 @@ pub trait Technique: Any + Send + Sync {
     /// The place in the layer's picture that something new at `path` belongs to.
     fn bounds(&self, path: &str) -> Rect;
 
+    /// The name of the item at `path` of a list whose items have names; `None` if there is none.
+    fn item_name(&self, _path: &str) -> Option<&str> {
+        None
+    }
+
     /// What happens to the layer where time starts anew.
     fn repeat(&self, wrap: Wrap) -> Repeat;
 

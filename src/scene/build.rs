@@ -194,7 +194,7 @@ pub fn unique_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
 #[derive(Clone, Copy)]
 pub(super) struct Fresh<'a> {
     bounds: Rect,
-    image: Option<&'a String>,
+    document: &'a Document,
     /// The technique of the layer that they belong to.
     kind: Option<&'static Kind>,
     /// Whether they are layers themselves, whose variant tells the technique.
@@ -209,7 +209,7 @@ impl<'a> Fresh<'a> {
         let inside = layer.filter(|(_, rest)| !rest.is_empty());
         let layers = inside.is_none() && (path == "/layers" || path.starts_with("/layers/"));
         let kind = inside.map(|(layer, _)| layer.kind());
-        Fresh { bounds, image: document.scene().images.keys().next(), kind, layers }
+        Fresh { bounds, document, kind, layers }
     }
 
     /// The layer that a place is in, and the place relative to it.
@@ -227,13 +227,18 @@ impl<'a> Fresh<'a> {
         }
     }
 
+    /// The first name, by the alphabet, in a list of the scene.
+    fn first(&self, list: &str) -> Option<&'a str> {
+        let names = self.document.json().get(list)?.as_object()?.keys();
+        names.map(String::as_str).min()
+    }
+
     /// A new value of a shape: what must be written, and no more.
     fn value(&self, shape: Shape) -> Value {
         let least = |(min, max): (f64, f64)| if (min..=max).contains(&0.0) { json!(0) } else { json!(min) };
         match shape.body() {
             Body::Number { .. } => shape.range().map_or(json!(0), least),
-            Body::Text if shape.reference().is_some() => self.image.map_or(json!(""), |name| json!(name)),
-            Body::Text => json!(""),
+            Body::Text => json!(shape.reference().and_then(|list| self.first(list)).unwrap_or_default()),
             Body::Bool => json!(false),
             Body::Choice => shape.choices().next().map_or(Value::Null, |(name, _)| json!(name)),
             Body::Numbers(count) => Value::from(vec![shape.range().map_or(json!(0), least); count]),

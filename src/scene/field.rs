@@ -20,6 +20,8 @@ pub struct Field {
     pub range: Option<(f64, f64)>,
     /// The unit of its numbers.
     pub unit: Option<&'static str>,
+    /// The letter that formulae have for its vector: J for a jump.
+    pub symbol: Option<&'static str>,
     /// What counts where nothing is written.
     pub default: Option<Value>,
     /// Whether it may be taken away.
@@ -179,6 +181,7 @@ impl Field {
             kind: kind(shape),
             range: shape.range(),
             unit: shape.unit(),
+            symbol: shape.symbol(),
             default: shape.default().cloned(),
             optional: !place.required,
         }

@@ -38,7 +38,7 @@ pub const VERSION: u32 = 1;
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Version of the document format.
-    #[schemars(extend("readOnly" = true))]
+    #[schemars(extend("unit" = "1", "readOnly" = true))]
     pub plica: u32,
     /// What the scene is called.
     #[serde(default, skip_serializing_if = "String::is_empty")]

@@ -11,8 +11,30 @@ use super::pointer;
 /// of them stays finite.
 const LARGEST: f64 = 1e9;
 
-/// The ranges of numbers that have none of their own; messages about other things leave them out.
-pub const WIDEST: [(f64, f64); 2] = [(-LARGEST, LARGEST), (0.0, u32::MAX as f64)];
+/// What numbers are measured in, and the widest range of those that have none of their own; `None` if they may be any
+/// finite number. The schema tells the unit of every number.
+const UNITS: [(&str, Option<(f64, f64)>); 8] = [
+    (PLAIN, Some((-LARGEST, LARGEST))),
+    ("px", Some((-LARGEST, LARGEST))),
+    ("degrees", Some((-LARGEST, LARGEST))),
+    ("cycles", Some((-LARGEST, LARGEST))),
+    ("s", Some((-LARGEST, LARGEST))),
+    ("fps", Some((-LARGEST, LARGEST))),
+    ("passes", None),
+    ("timelines", None),
+];
+
+/// The unit of a fraction, a factor, a count: forms need no word for it.
+const PLAIN: &str = "1";
+
+/// The range of whole numbers that have none of their own.
+const WHOLE: (f64, f64) = (0.0, u32::MAX as f64);
+
+/// Whether a range is one of those that numbers have which have none of their own; messages about other things leave it
+/// out.
+pub fn is_widest(range: (f64, f64)) -> bool {
+    range == WHOLE || UNITS.iter().any(|(_, widest)| *widest == Some(range))
+}
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
     let mut schema = Value::from(schemars::schema_for!(super::Scene));
@@ -25,7 +47,7 @@ pub fn json_schema() -> &'static Value {
     &SCHEMA
 }
 
-/// Writes a range at every number of the schema that has none, except speeds and shifts, which may be any finite number.
+/// Writes a range at every number of the schema that has none.
 fn bound(node: &mut Value, unit: Option<&str>) {
     let own = node.get("unit").and_then(Value::as_str).map(str::to_owned);
     let unit = own.as_deref().or(unit);
@@ -45,9 +67,12 @@ fn bound(node: &mut Value, unit: Option<&str>) {
 }
 
 fn widest(kind: &str, unit: Option<&str>) -> Option<[Value; 2]> {
-    match (kind, unit) {
-        ("integer", _) => Some([0.into(), u32::MAX.into()]),
-        ("number", None | Some("px")) => Some([(-LARGEST).into(), LARGEST.into()]),
+    match kind {
+        "integer" => Some([0.into(), u32::MAX.into()]),
+        "number" => {
+            let (least, most) = UNITS.iter().find(|(name, _)| Some(*name) == unit)?.1?;
+            Some([least.into(), most.into()])
+        }
         _ => None,
     }
 }
@@ -185,9 +210,20 @@ impl Shape {
         self.text("formula")
     }
 
-    /// The unit of its numbers.
+    /// The unit of its numbers; `None` if they have none.
     pub fn unit(self) -> Option<&'static str> {
-        self.text("unit")
+        self.text("unit").filter(|unit| *unit != PLAIN)
+    }
+
+    /// Whether the schema says what its numbers are measured in, be it nothing.
+    #[cfg(test)]
+    pub fn has_known_unit(self) -> bool {
+        self.text("unit").is_some_and(|unit| UNITS.iter().any(|(name, _)| *name == unit))
+    }
+
+    /// The letter that formulae have for its vector.
+    pub fn symbol(self) -> Option<&'static str> {
+        self.text("symbol")
     }
 
     /// What its text names: the key of one of the scene's lists ("images").
@@ -269,6 +305,18 @@ impl Shape {
             names.push(tag);
         }
         names.into_iter().filter_map(|name| Some((name, self.property(value, name)?))).collect()
+    }
+
+    /// What may stand one token deeper, whatever the tag of a tagged type.
+    pub fn below(self, token: &str) -> Vec<Shape> {
+        match self.body() {
+            Body::List(item, ..) => pointer::index(token).map(|_| item).into_iter().collect(),
+            Body::Tagged(_) => {
+                let branches = self.choices().filter_map(|(name, _)| self.variant(name));
+                branches.filter_map(|branch| branch.property(None, token)).collect()
+            }
+            _ => self.property(None, token).into_iter().collect(),
+        }
     }
 
     /// The only value that a field may have: the tag of a branch.

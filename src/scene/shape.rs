@@ -6,7 +6,7 @@ use serde_json::{Map, Number, Value};
 
 use super::field::range_text;
 use super::pointer;
-use super::schema::{Body, Shape, WIDEST};
+use super::schema::{Body, Shape, is_widest};
 use crate::base::change::Change;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 
@@ -187,13 +187,12 @@ impl Walk {
 
 /// What a shape wants, in words.
 pub fn expected(shape: Shape) -> String {
-    let range = shape.range().filter(|range| !WIDEST.contains(range));
+    let range = shape.range().filter(|&range| !is_widest(range));
     let range = range_text(range, shape.unit()).map(|range| format!(", {range}")).unwrap_or_default();
     match shape.body() {
         Body::Number { integer: false } => format!("a number{range}"),
         Body::Number { integer: true } => format!("a whole number{range}"),
-        Body::Text if shape.reference().is_some() => "a name of the scene's images".into(),
-        Body::Text => "text".into(),
+        Body::Text => shape.reference().map_or("text".into(), |list| format!("a name of the scene's {list}")),
         Body::Bool => "true or false".into(),
         Body::Choice => {
             shape.choices().map(|(name, _)| quoted(name)).collect::<Vec<_>>().join(", ").replace(", ", " or ")

@@ -54,6 +54,29 @@ pub fn conflict(mine: &Value, conflict: &Conflict) -> String {
     format!("{place} {} here, {} in the file", said(&conflict.mine), said(&conflict.theirs))
 }
 
+/// The thing with a name that a place of a layer belongs to: the outermost item below the layer, of a list whose items have
+/// names (a zone), as a part of `pointer`. `None` if the place is in none.
+pub fn item_of(pointer: &str) -> Option<&str> {
+    let mut lengths = pointer.match_indices('/').map(|(at, _)| at).skip(1).chain([pointer.len()]);
+    let (list, layer) = (lengths.next()?, lengths.next()?);
+    let mut here = vec![Shape::root().property(None, pointer.get(1..list)?).filter(|_| &pointer[..list] == LAYERS)?];
+    here = here.into_iter().flat_map(|shape| shape.below("0")).collect();
+    let mut begin = layer;
+    for end in lengths {
+        let token = &pointer[begin + 1..end];
+        let of_list = here.iter().any(|shape| matches!(shape.body(), Body::List(..)));
+        here = here.into_iter().flat_map(|shape| shape.below(token)).collect();
+        if of_list && here.iter().any(|shape| shape.property(None, "name").is_some()) {
+            return Some(&pointer[..end]);
+        }
+        begin = end;
+    }
+    None
+}
+
+/// The list of layers.
+const LAYERS: &str = "/layers";
+
 /// One operation in words; `None` for a test.
 fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
     let path = operation.path().as_str();
@@ -235,6 +258,24 @@ mod tests {
             (Edit::rename_image(&document, "cat", "dog"), "scene · images cat renamed to dog (and 1 more)"),
         ] {
             assert_eq!(in_short(document.json(), &edit), expected);
+        }
+    }
+
+    #[test]
+    fn the_named_thing_that_a_place_belongs_to() {
+        for (pointer, item) in [
+            ("/layers/0/zones/2", Some("/layers/0/zones/2")),
+            ("/layers/0/zones/12/motion/1/jumps/0", Some("/layers/0/zones/12")),
+            ("/layers/0/zones/7/position/segments/0", Some("/layers/0/zones/7")),
+            ("/layers/0/zones", None),
+            ("/layers/0/name", None),
+            ("/layers/0", None),
+            ("/layers", None),
+            ("/timeline/fps", None),
+            ("/images/zones/path", None),
+            ("", None),
+        ] {
+            assert_eq!(item_of(pointer), item, "{pointer}");
         }
     }
 

@@ -302,22 +302,25 @@ fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: boo
         return vec![cell(Part::Whole, head, summary(field, value))];
     };
     let number = |i: usize| value.get(i).and_then(Value::as_f64).unwrap_or(0.0);
-    // Of the vectors of a row only the jump goes without its name; handles and the like say which one they are.
-    let jump = field.name == JUMP;
-    let head = |own: &str| if jump || !table || !is_vector(names) { own.to_owned() } else { format!("{name} {own}") };
+    // Of the vectors of a row only one with a symbol goes without its name; handles and the like say which one they are.
+    let symbol = field.symbol;
+    let head = |own: &str| {
+        if symbol.is_some() || !table || !is_vector(names) { own.to_owned() } else { format!("{name} {own}") }
+    };
     let shown = |i: usize| numbers::shown(number(i));
     let mut all: Vec<Cell> =
         names.iter().enumerate().map(|(i, name)| cell(Part::Number(i), head(name), shown(i))).collect();
     if is_vector(names) {
         let (length, degrees) = numbers::polar(Vec2::new(number(0), number(1)));
-        all.push(cell(Part::Length, head(if jump { "|J|" } else { "r" }), numbers::short(length)));
+        all.push(cell(
+            Part::Length,
+            head(&symbol.map_or("r".into(), |symbol| format!("|{symbol}|"))),
+            numbers::short(length),
+        ));
         all.push(cell(Part::Degrees, head("°"), numbers::short(degrees)));
     }
     all
 }
-
-/// The field whose length is |J|.
-const JUMP: &str = "jump";
 
 /// Whether numbers of these names are a vector, which also has a length and a direction.
 fn is_vector(names: &[String]) -> bool {

@@ -103,6 +103,11 @@ impl Technique for PictureLayer {
         starts::bounds(self, path)
     }
 
+    fn item_name(&self, path: &str) -> Option<&str> {
+        let zone = path.strip_prefix("/zones/")?.parse::<usize>().ok()?;
+        self.zones.get(zone).map(|zone| zone.name.as_str())
+    }
+
     fn repeat(&self, wrap: Wrap) -> Repeat {
         seam::repeat(self, wrap)
     }

@@ -20,7 +20,7 @@ pub enum Position {
     Exponential {
         /// k, not 0; a negative k swaps slow and fast.
         #[serde(default = "three")]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         rate: f64,
     },
     /// s = (1 - e^(-kτ)) / (1 - e^(-k)): fast, then slow.
@@ -28,7 +28,7 @@ pub enum Position {
     ExponentialInverse {
         /// k, not 0; a negative k swaps slow and fast.
         #[serde(default = "three")]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         rate: f64,
     },
     /// The logistic curve through (0, 0) and (1, 1): slow at both ends.
@@ -36,7 +36,7 @@ pub enum Position {
     Sigmoid {
         /// k; larger is steeper in the middle.
         #[serde(default = "ten")]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         rate: f64,
     },
     /// s = offset + amplitude sin(2π (cycles τ + phase)).
@@ -44,7 +44,7 @@ pub enum Position {
     Sine {
         /// Cycles in one pass.
         #[serde(default = "half")]
-        #[schemars(range(min = -10000.0, max = 10000.0))]
+        #[schemars(range(min = -10000.0, max = 10000.0), extend("unit" = "1"))]
         cycles: f64,
         /// Phase.
         #[serde(default)]
@@ -52,11 +52,11 @@ pub enum Position {
         phase: f64,
         /// Amplitude, as a share of the path.
         #[serde(default = "one")]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         amplitude: f64,
         /// Middle, as a share of the path.
         #[serde(default)]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         offset: f64,
     },
     /// s = offset + amplitude (1 - cos(2π (cycles τ + phase))) / 2: from 0 to 1 and back.
@@ -64,7 +64,7 @@ pub enum Position {
     Cosine {
         /// Cycles in one pass.
         #[serde(default = "one")]
-        #[schemars(range(min = -10000.0, max = 10000.0))]
+        #[schemars(range(min = -10000.0, max = 10000.0), extend("unit" = "1"))]
         cycles: f64,
         /// Phase.
         #[serde(default)]
@@ -72,34 +72,34 @@ pub enum Position {
         phase: f64,
         /// Height, as a share of the path.
         #[serde(default = "one")]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         amplitude: f64,
         /// Lowest place, as a share of the path.
         #[serde(default)]
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         offset: f64,
     },
     /// CSS easing: a cubic Bezier from (0, 0) to (1, 1) with two handles.
     #[schemars(extend("formula" = "s = 3(1-u)²u y1 + 3(1-u)u² y2 + u³ at the u where τ is the same of x1 and x2"))]
     CubicBezier {
         /// First handle, τ.
-        #[schemars(range(min = 0.0, max = 1.0))]
+        #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
         x1: f64,
         /// First handle, s.
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         y1: f64,
         /// Second handle, τ.
-        #[schemars(range(min = 0.0, max = 1.0))]
+        #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
         x2: f64,
         /// Second handle, s.
-        #[schemars(range(min = -1e6, max = 1e6))]
+        #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
         y2: f64,
     },
     /// Through given points; constant before the first and after the last.
     #[schemars(extend("formula" = "s = s0 + (s1 - s0) f((τ - τ0) / (τ1 - τ0)) between points 0 and 1; f by between"))]
     Keyframes {
         /// [τ, s] with ascending τ.
-        #[schemars(length(min = 1), extend("columns" = ["τ", "s"]))]
+        #[schemars(length(min = 1), extend("unit" = "1", "columns" = ["τ", "s"]))]
         points: Vec<[f64; 2]>,
         /// What happens between two points.
         #[serde(default)]
@@ -132,13 +132,13 @@ pub enum Between {
 #[serde(deny_unknown_fields)]
 pub struct Segment {
     /// Local time τ at which the segment ends; it begins where the one before ends.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
     pub until: f64,
     /// s at its beginning.
-    #[schemars(range(min = -1e6, max = 1e6))]
+    #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
     pub from: f64,
     /// s at its end.
-    #[schemars(range(min = -1e6, max = 1e6))]
+    #[schemars(range(min = -1e6, max = 1e6), extend("unit" = "1"))]
     pub to: f64,
     /// How it gets there: any function but piecewise.
     #[serde(default)]
@@ -343,6 +343,7 @@ fn piecewise(segments: &[Segment], tau: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layers::folding::tests::variants;
 
     fn parse(json: &str) -> Position {
         serde_json::from_str(json).unwrap()
@@ -377,6 +378,14 @@ mod tests {
         .into_iter()
         .map(parse)
         .collect()
+    }
+
+    #[test]
+    fn every_function_of_the_schema_is_looked_at() {
+        for function in variants::<Position>("function") {
+            let listed = |position: &Position| serde_json::to_value(position).unwrap()["function"] == *function;
+            assert!(all().iter().any(listed), "all() has no {function}");
+        }
     }
 
     #[test]

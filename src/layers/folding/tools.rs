@@ -17,7 +17,7 @@ pub enum Tool {
         at: Xy,
         /// Jump vector: where the sampler goes. The picture is seen to move the opposite way.
         #[serde(default)]
-        #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
+        #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"], "symbol" = "J"))]
         jump: Xy,
     },
     /// Anchors along a cubic Bezier spline, evenly by arc length, with jump vectors given at a few places along it.
@@ -26,7 +26,7 @@ pub enum Tool {
         #[serde(default)]
         frame: CurveFrame,
         /// Number of anchors, both ends included; one stands in the middle.
-        #[schemars(range(min = 1, max = 1000000))]
+        #[schemars(range(min = 1, max = 1000000), extend("unit" = "1"))]
         samples: u32,
         /// How vectors change between two places.
         #[serde(default)]
@@ -43,7 +43,7 @@ pub enum Tool {
     Lasso {
         /// Further anchors on every side, evenly.
         #[serde(default)]
-        #[schemars(range(min = 0, max = 1000000))]
+        #[schemars(range(min = 0, max = 1000000), extend("unit" = "1"))]
         samples: u32,
         /// The vertices, at least three.
         #[schemars(length(min = 3))]
@@ -63,7 +63,7 @@ pub enum Tool {
         center: Xy,
         /// Factors along x and y: where the samplers go, so that 2 shows the picture half as large. 1 changes nothing; the
         /// jump vector of 3 is twice the distance to the centre.
-        #[schemars(extend("columns" = ["x", "y"]))]
+        #[schemars(extend("unit" = "1", "columns" = ["x", "y"]))]
         factor: Xy,
     },
     /// Dense: the samplers' places turned about a centre. The picture is seen to turn the opposite way.
@@ -82,13 +82,14 @@ pub enum Tool {
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// [a, b]: a times y is added to a sampler's x, and b times x to its y. The picture is seen to move the opposite way.
-        #[schemars(extend("columns" = ["a", "b"]))]
+        #[schemars(extend("unit" = "1", "columns" = ["a", "b"]))]
         factor: Xy,
     },
     /// Dense: an affine map of the samplers' places about the image's origin. The picture is seen to move the opposite way.
     Affine {
         /// [[a, b, tx], [c, d, ty]]: x' = a x + b y + tx, y' = c x + d y + ty is where a sampler goes. The picture is seen
         /// to move the opposite way.
+        #[schemars(extend("unit" = "1"))]
         matrix: [[f64; 3]; 2],
     },
     /// Still anchors along the zone's outline.
@@ -104,6 +105,7 @@ pub enum Tool {
         path: String,
         /// Multiplies every vector.
         #[serde(default = "one")]
+        #[schemars(extend("unit" = "1"))]
         scale: f64,
     },
 }
@@ -137,10 +139,10 @@ pub enum Distribution {
 #[serde(deny_unknown_fields)]
 pub struct JumpAlong {
     /// The place, as a fraction of the arc length.
-    #[schemars(range(min = 0.0, max = 1.0))]
+    #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
     pub along: f64,
     /// Jump vector, in the curve's `frame`: where the sampler goes. The picture is seen to move the opposite way.
-    #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
+    #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"], "symbol" = "J"))]
     pub jump: Xy,
 }
 

@@ -10,11 +10,11 @@ use super::canvas::Canvas;
 use super::state::State;
 use super::text::Letters;
 use super::{labels, marks};
-use crate::layers::{Layer, folding};
+use crate::layers::folding;
 use crate::render::Synth;
 use crate::render::overlay::{Samplers, View, field_scale, longest, overlay, samplers};
 use crate::render::reduce::reduced;
-use crate::scene::Scene;
+use crate::scene::{Scene, words::item_of};
 
 /// A scene, ready to be drawn.
 pub struct Show {
@@ -54,21 +54,17 @@ pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
     })
 }
 
-/// What a JSON pointer leads to, by the names of layer and zone: `face/left eye/motion/3`; none for the scene itself.
+/// What a JSON pointer leads to, by the names of the layer and of the item in it: `face/left eye/motion/3`; none for the scene itself.
 pub fn name(scene: &Scene, pointer: &str) -> Option<String> {
     let mut tokens = pointer.split('/').skip(1);
     let (list, Ok(layer)) = (tokens.next()?, tokens.next().unwrap_or_default().parse::<usize>()) else {
         return Some(pointer.trim_start_matches('/').to_owned());
     };
-    let Some(Layer::Picture(layer)) = scene.layers.get(layer).filter(|_| list == "layers") else { return None };
-    let rest: Vec<&str> = tokens.collect();
-    let zone = match rest[..] {
-        ["zones", zone, ..] => zone.parse::<usize>().ok().and_then(|zone| layer.zones.get(zone)),
-        _ => None,
-    };
-    let rest = zone.map_or(&rest[..], |_| &rest[2..]);
-    let names = std::iter::once(layer.name.as_str()).chain(zone.map(|zone| zone.name.as_str()));
-    Some(names.chain(rest.iter().copied()).collect::<Vec<_>>().join("/"))
+    let of_layer = format!("/layers/{layer}").len();
+    let layer = scene.layers.get(layer).filter(|_| list == "layers")?.technique();
+    let item = item_of(pointer).and_then(|item| Some((item.len(), layer.item_name(&item[of_layer..])?)));
+    let rest = &pointer[item.map_or(of_layer, |(length, _)| length)..];
+    Some([layer.name(), item.map_or("", |_| "/"), item.map_or("", |(_, name)| name), rest].concat())
 }
 
 /// The overlay's strokes, and what they were made for.

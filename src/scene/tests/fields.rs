@@ -5,32 +5,6 @@ use serde_json::{Value, json};
 use super::*;
 use crate::scene::schema::{Body, Shape};
 
-/// Numbers without a unit, by intent: they are fractions, factors, exponents, counts.
-const DIMENSIONLESS: [&str; 22] = [
-    "plica",
-    "samples",
-    "factor",
-    "matrix",
-    "scale",
-    "along",
-    "power",
-    "seed",
-    "smoothing",
-    "rate",
-    "cycles",
-    "amplitude",
-    "offset",
-    "x1",
-    "y1",
-    "x2",
-    "y2",
-    "points",
-    "until",
-    "from",
-    "to",
-    "phase",
-];
-
 /// Calls `each` with every field of the schema, by its name and once a type.
 fn walk(shape: Shape, name: &str, depth: usize, each: &mut impl FnMut(&str, Shape)) {
     each(name, shape);
@@ -66,13 +40,35 @@ fn every_field_has_help_and_every_number_a_meaning() {
             shape.choices().for_each(|(word, help)| assert!(!help.is_empty(), "{name}: {word} has no help"));
         }
         if let Body::Number { .. } | Body::Numbers(_) = shape.body() {
-            let known = shape.unit().is_some() || DIMENSIONLESS.contains(&name);
-            assert!(known, "{name} has no unit and is not known to need none");
+            assert!(shape.has_known_unit(), "{name}: its unit is none of the table's (1 is that of a plain number)");
             let free = ["speed", "shift"].contains(&name);
             assert_eq!(shape.range().is_none(), free, "{name}: a range");
         }
     });
     assert!(seen > 150, "{seen}");
+}
+
+#[test]
+fn every_variant_stands_in_a_good_scene() {
+    let mut missing = std::collections::BTreeSet::new();
+    walk(Shape::root(), "scene", 0, &mut |_, shape| {
+        if let Body::Tagged(tag) = shape.body() {
+            missing.extend(shape.choices().map(|(variant, _)| (tag, variant)));
+        }
+    });
+    assert!(missing.len() > 30, "{missing:?}");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/good");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let Ok(document) = Document::parse(&std::fs::read_to_string(entry.unwrap().path()).unwrap()) else { continue };
+        for (pointer, _) in places(&document) {
+            let place = schema::Place::of(document.json(), &pointer).unwrap();
+            if let Body::Tagged(tag) = place.shape.body() {
+                let variant = place.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default();
+                missing.retain(|known| *known != (tag, variant));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "in no scene of {folder}: {missing:?}");
 }
 
 #[test]

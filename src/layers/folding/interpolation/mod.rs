@@ -28,7 +28,7 @@ pub enum Interpolation {
     Shepard {
         /// The power; larger makes flat plateaus around the anchors.
         #[serde(default = "two")]
-        #[schemars(range(min = 0.01, max = 100.0))]
+        #[schemars(range(min = 0.01, max = 100.0), extend("unit" = "1"))]
         power: f64,
     },
     /// Only anchors within a radius count.
@@ -49,6 +49,7 @@ pub enum Interpolation {
         ring: f64,
         /// Another seed is another random choice.
         #[serde(default)]
+        #[schemars(extend("unit" = "1"))]
         seed: u32,
     },
     /// A thin plate bent through the anchors: smooth everywhere, and beyond them.
@@ -56,7 +57,7 @@ pub enum Interpolation {
     ThinPlate {
         /// 0 passes through every anchor; larger is stiffer.
         #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1e12))]
+        #[schemars(range(min = 0.0, max = 1e12), extend("unit" = "1"))]
         smoothing: f64,
     },
     /// Moving least squares by rigid motions (Schaefer et al. 2006): it turns without changing sizes.

@@ -7,6 +7,7 @@ use kurbo::{Point, Vec2};
 
 use super::*;
 use crate::base::budget::Budget;
+use crate::layers::folding::tests::variants;
 
 const METHODS: [&str; 9] = [
     r#"{"method":"shepard"}"#,
@@ -37,6 +38,14 @@ fn make(anchors: &[[f64; 4]]) -> Vec<Anchor> {
 #[track_caller]
 fn assert_near(found: Vec2, expected: (f64, f64), tolerance: f64) {
     assert!((found - Vec2::from(expected)).hypot2().sqrt() <= tolerance, "{found:?}, not {expected:?}");
+}
+
+#[test]
+fn every_method_of_the_schema_is_looked_at() {
+    for method in variants::<Interpolation>("method") {
+        let listed = METHODS.iter().any(|json| json.contains(&format!(r#""method":"{method}""#)));
+        assert!(listed, "METHODS has no {method}");
+    }
 }
 
 #[test]
