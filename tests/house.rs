@@ -1,6 +1,7 @@
 //! Holds the rules of the house (docs/architecture.md): who may name whom, one door an outside crate, sizes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +35,14 @@ const SHARED: &str = "parts";
 
 const MOST_LINES: usize = 500;
 
+/// Folders that still hold circles of files.
+const CIRCLES_LEFT: &[&str] = &["files/", "preview/", "tui/"];
+
+const MOST_LINES_OF_A_FUNCTION: usize = 60;
+
+/// Folders that still hold longer functions.
+const LONG_LEFT: &[&str] = &["tui/"];
+
 struct Source {
     /// Relative to `src`, with `/`.
     path: String,
@@ -50,10 +59,15 @@ impl Source {
         slice.filter(|slice| *slice != SHARED)
     }
 
+    /// Whether it is of the program, not of its tests nor a shader.
+    fn is_program(&self) -> bool {
+        let tests = self.path.ends_with("tests.rs") || self.path.contains("/tests/");
+        self.path.ends_with(".rs") && !tests
+    }
+
     /// Every path that the program (not its tests) names, with its line.
     fn paths(&self) -> Vec<(usize, String)> {
-        let tests = self.path.ends_with("tests.rs") || self.path.contains("/tests/") || !self.path.ends_with(".rs");
-        if tests { Vec::new() } else { paths(&self.text) }
+        if self.is_program() { paths(&self.text) } else { Vec::new() }
     }
 }
 
@@ -83,8 +97,12 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// The paths in `text` up to its tests, which come last in a file. Braces of `use` are spread out.
 fn paths(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
-    let mut lines = text.lines().enumerate().take_while(|(_, line)| line.trim() != "#[cfg(test)]");
+    let mut lines = text.lines().enumerate();
     while let Some((at, line)) = lines.next() {
+        if line.trim() == "#[cfg(test)]" {
+            // Tests in a file of their own are one line; else they are the rest.
+            if lines.next().is_some_and(|(_, line)| line.ends_with(';')) { continue } else { break }
+        }
         let code = uncommented(line);
         let mut words = code.split_whitespace().skip_while(|word| word.starts_with("pub"));
         if words.next() != Some("use") {
@@ -97,6 +115,31 @@ fn paths(text: &str) -> Vec<(usize, String)> {
             tree.push_str(uncommented(line));
         }
         spread("", tree.trim().trim_end_matches(';'), at + 1, &mut found);
+    }
+    found
+}
+
+/// The functions in `text`, as rustfmt lays them out: first line, name, number of lines.
+fn functions(text: &str) -> Vec<(usize, &str, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let code = line.trim_start();
+        let indent = &line[..line.len() - code.len()];
+        let mut words = code.split(' ').skip_while(|word| word.starts_with("pub") || ["const", "async"].contains(word));
+        let (Some("fn"), Some(name)) = (words.next(), words.next()) else { continue };
+        if line.ends_with(';') {
+            continue;
+        }
+        // It ends with the first line that goes back to where it began: the brace, or what ends one without a body.
+        let back = |line: &str| {
+            line.strip_prefix(indent).is_some_and(|rest| rest.starts_with(['}', ')']) && !rest.ends_with('{'))
+        };
+        let length =
+            if line.ends_with('}') { 1 } else { lines[i..].iter().position(|line| back(line)).unwrap_or(0) + 1 };
+        if !lines[i + length - 1].ends_with(';') {
+            found.push((i + 1, name.split(['(', '<']).next().unwrap_or_default(), length));
+        }
     }
     found
 }
@@ -133,6 +176,80 @@ fn spread(prefix: &str, tree: &str, line: usize, found: &mut Vec<(usize, String)
             None => found.push((line, format!("{prefix}{part}"))),
         }
     }
+}
+
+/// The modules of a file: `layers/folding/mod.rs` is `layers::folding`.
+fn module(file: &str) -> Vec<&str> {
+    let stem = file.trim_end_matches(".rs");
+    stem.strip_suffix("/mod").unwrap_or(stem).split('/').collect()
+}
+
+/// The file, of `known` modules, that a path in a file leads to; `None` if it leads out of the program.
+fn leads_to<'a>(file: &str, path: &str, known: &BTreeMap<Vec<&str>, &'a str>) -> Option<&'a str> {
+    let own = module(file);
+    let mut parts = path.split("::").map(|part| part.split(' ').next().unwrap_or_default()).peekable();
+    let mut at: Vec<&str> = match *parts.peek()? {
+        "crate" => {
+            parts.next();
+            Vec::new()
+        }
+        "self" | "super" => own.clone(),
+        // A module inside this one.
+        name => known.contains_key(&[&own[..], &[name]].concat()).then(|| own.clone())?,
+    };
+    for part in parts {
+        match part {
+            "self" => {}
+            "super" => drop(at.pop()),
+            part => at.push(part),
+        }
+    }
+    // What is no module is something in one.
+    while !at.is_empty() && !known.contains_key(&at) {
+        at.pop();
+    }
+    known.get(&at).copied().filter(|&found| found != file)
+}
+
+/// Groups of files of which each leads to each other, by way of others of the group (Tarjan 1972).
+fn circles(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<Vec<String>> {
+    #[derive(Default)]
+    struct Walk<'a> {
+        number: BTreeMap<&'a str, usize>,
+        low: BTreeMap<&'a str, usize>,
+        path: Vec<&'a str>,
+        found: Vec<Vec<String>>,
+    }
+    fn visit<'a>(at: &'a str, arrows: &BTreeMap<&'a str, BTreeSet<&'a str>>, walk: &mut Walk<'a>) {
+        let number = walk.number.len();
+        walk.number.insert(at, number);
+        walk.low.insert(at, number);
+        walk.path.push(at);
+        for &to in arrows.get(at).into_iter().flatten() {
+            if !walk.number.contains_key(to) {
+                visit(to, arrows, walk);
+            }
+            // What is no longer on the path belongs to a group that was found.
+            if walk.path.contains(&to) {
+                let low = walk.low[at].min(walk.low[to]);
+                walk.low.insert(at, low);
+            }
+        }
+        if walk.low[at] == number {
+            let from = walk.path.iter().position(|&file| file == at).unwrap_or_default();
+            let group: Vec<String> = walk.path.drain(from..).map(str::to_owned).collect();
+            if group.len() > 1 {
+                walk.found.push(group);
+            }
+        }
+    }
+    let mut walk = Walk::default();
+    for &file in arrows.keys() {
+        if !walk.number.contains_key(file) {
+            visit(file, arrows, &mut walk);
+        }
+    }
+    walk.found
 }
 
 /// Whether `path` is `name` or something in it.
@@ -201,6 +318,29 @@ fn slices_never_name_one_another() {
 }
 
 #[test]
+fn no_file_names_one_that_names_it() {
+    let sources = sources();
+    let program = || sources.iter().filter(|source| source.path.ends_with(".rs"));
+    let known: BTreeMap<Vec<&str>, &str> =
+        program().map(|source| (module(&source.path), source.path.as_str())).collect();
+    let mut arrows: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for source in program() {
+        let to = source.paths().into_iter().filter_map(|(_, path)| leads_to(&source.path, &path, &known));
+        // A folder's `mod.rs` is made of its files: they may use what it declares.
+        let above = |file: &&str| file.strip_suffix("mod.rs").is_some_and(|folder| source.path.starts_with(folder));
+        arrows.insert(&source.path, to.filter(|file| !above(file)).collect());
+    }
+    let broken = circles(&arrows)
+        .into_iter()
+        .filter(|circle| circle.iter().any(|file| !CIRCLES_LEFT.iter().any(|folder| file.starts_with(folder))));
+    report("no circle of files", &broken.map(|circle| circle.join(" <- ")).collect::<Vec<_>>());
+    let mended = CIRCLES_LEFT
+        .iter()
+        .filter(|folder| !circles(&arrows).iter().any(|circle| circle.iter().any(|file| file.starts_with(**folder))));
+    report("CIRCLES_LEFT names what holds none", &mended.map(|folder| (*folder).to_owned()).collect::<Vec<_>>());
+}
+
+#[test]
 fn files_stay_short_and_say_what_they_are() {
     let mut broken = Vec::new();
     for Source { path, text } in sources() {
@@ -213,6 +353,46 @@ fn files_stay_short_and_say_what_they_are() {
         }
     }
     report("files", &broken);
+}
+
+#[test]
+fn functions_stay_short() {
+    let mut broken = Vec::new();
+    let sources = sources();
+    let left = |source: &&Source| source.is_program() && !LONG_LEFT.iter().any(|left| source.path.starts_with(left));
+    for source in sources.iter().filter(left) {
+        let text = source.text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        let long = functions(text).into_iter().filter(|&(.., lines)| lines > MOST_LINES_OF_A_FUNCTION);
+        broken.extend(long.map(|(at, name, lines)| format!("src/{}:{at} {name}: {lines} lines", source.path)));
+    }
+    report(&format!("{MOST_LINES_OF_A_FUNCTION} lines a function"), &broken);
+}
+
+#[test]
+fn functions_and_circles_are_found() {
+    let text = "impl A {\n    pub fn a<T>(\n        b: T,\n    ) -> T {\n        let b = b;\n        b\n    }\n\n    fn c();\n}\nconst fn d() {}\n\
+                trait B {\n    fn e(\n        f: u8,\n    ) -> u8;\n}\n";
+    assert_eq!(functions(text), [(2, "a", 6), (11, "d", 1)]);
+    let arrows = |all: &[(&'static str, &[&'static str])]| -> BTreeMap<&str, BTreeSet<&str>> {
+        all.iter().map(|(from, to)| (*from, to.iter().copied().collect())).collect()
+    };
+    assert!(circles(&arrows(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])])).is_empty());
+    let found = circles(&arrows(&[("a", &["b"]), ("b", &["c", "d"]), ("c", &["a"]), ("d", &["e"]), ("e", &["d"])]));
+    let mut found: Vec<BTreeSet<String>> = found.into_iter().map(|circle| circle.into_iter().collect()).collect();
+    found.sort();
+    assert_eq!(found, [["a", "b", "c"].map(str::to_owned).into(), ["d", "e"].map(str::to_owned).into()]);
+    let files = ["layers/mod.rs", "layers/folding/mod.rs", "layers/folding/frame.rs", "base/maths.rs"];
+    let known: BTreeMap<Vec<&str>, &str> = files.iter().map(|&file| (module(file), file)).collect();
+    for (file, path, to) in [
+        ("layers/folding/frame.rs", "super::super::Layer", Some("layers/mod.rs")),
+        ("layers/folding/frame.rs", "super::self", Some("layers/folding/mod.rs")),
+        ("layers/folding/mod.rs", "frame::Frame as F", Some("layers/folding/frame.rs")),
+        ("layers/folding/frame.rs", "crate::base::maths::sin", Some("base/maths.rs")),
+        ("layers/folding/frame.rs", "Vec::new", None),
+        ("layers/folding/frame.rs", "self::own", None),
+    ] {
+        assert_eq!(leads_to(file, path, &known), to, "{file} {path}");
+    }
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub fn by_brightness(own: &Picture, mask: &Picture) -> Picture {
             });
             Picture::new(width, height, Channels::Rgba, Samples::Bytes(cells.collect(), light.clone()))
         }
-        _ => {
+        Samples::Words(..) | Samples::Halves(_) | Samples::Floats(_) => {
             let cells = codes.iter().enumerate().map(|(i, &code)| {
                 let alpha = f32::from(code) / 255.0;
                 own.texel(i % width, i / width).map(|v| v * alpha)

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
 
+use super::anchor::Anchor;
 use super::model::Zone;
 use super::outline::{Node, bezier, point, vector};
 use super::tools::{CurveFrame, Distribution, JumpAlong, LassoVertex, Tool};
@@ -11,17 +12,6 @@ use crate::base::geometry::Polygon;
 use crate::base::maths;
 use crate::base::pixels::Grid;
 use crate::layers::parts::materials::Materials;
-
-/// A place whose jump vector is given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Anchor {
-    /// Position in image pixels.
-    pub at: Point,
-    /// Jump vector in pixels.
-    pub jump: Vec2,
-    /// Index of the tool that gives it, in the zone's motion.
-    pub tool: usize,
-}
 
 /// A field given everywhere, in pixels.
 #[derive(Clone, Debug)]
@@ -54,7 +44,12 @@ pub fn given(tool: &Tool, zone: &Zone) -> Vec<(Point, Vec2)> {
         }
         Tool::Lasso { samples, vertices } => lasso(vertices, *samples),
         Tool::StillBorder { spacing } => still_border(&zone.outline.polygon(), *spacing),
-        _ => Vec::new(),
+        Tool::Translate { .. }
+        | Tool::Scale { .. }
+        | Tool::Rotate { .. }
+        | Tool::Shear { .. }
+        | Tool::Affine { .. }
+        | Tool::Field { .. } => Vec::new(),
     }
 }
 
@@ -87,7 +82,11 @@ pub fn transform(tool: &Tool) -> Option<Affine> {
         }
         Tool::Shear { center, factor: [a, b] } => about(center, [1.0, *b, *a, 1.0]),
         Tool::Affine { matrix: [[a, b, tx], [c, d, ty]] } => Affine::new([*a, *c, *b, *d, *tx, *ty]),
-        _ => return None,
+        Tool::Point { .. }
+        | Tool::Curve { .. }
+        | Tool::Lasso { .. }
+        | Tool::StillBorder { .. }
+        | Tool::Field { .. } => return None,
     })
 }
 

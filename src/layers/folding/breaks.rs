@@ -32,7 +32,14 @@ impl Position {
                 jumps.map(|pair| Break { tau: pair[1][0], holds: Side::After }).collect()
             }
             Position::Piecewise { segments } => piecewise_breaks(segments),
-            _ => Vec::new(),
+            Position::Keyframes { between: Between::Linear | Between::Smooth, .. }
+            | Position::Linear
+            | Position::Exponential { .. }
+            | Position::ExponentialInverse { .. }
+            | Position::Sigmoid { .. }
+            | Position::Sine { .. }
+            | Position::Cosine { .. }
+            | Position::CubicBezier { .. } => Vec::new(),
         }
     }
 
@@ -50,7 +57,13 @@ impl Position {
                 }
                 corners
             }
-            _ => Vec::new(),
+            Position::Linear
+            | Position::Exponential { .. }
+            | Position::ExponentialInverse { .. }
+            | Position::Sigmoid { .. }
+            | Position::Sine { .. }
+            | Position::Cosine { .. }
+            | Position::CubicBezier { .. } => Vec::new(),
         }
     }
 }

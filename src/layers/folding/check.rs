@@ -5,8 +5,9 @@ use std::collections::hash_map::Entry;
 
 use kurbo::{Point, Rect, Vec2};
 
-use super::anchors::{self, Anchor};
-use super::interpolation::{Interpolation, thin_plate_bytes};
+use super::anchor::Anchor;
+use super::anchors;
+use super::interpolation::Interpolation;
 use super::position::Position;
 use super::{counts, fold::Fold, outline::Outline};
 use super::{model::PictureLayer, model::Zone, tools::Tool};
@@ -64,13 +65,13 @@ pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
     let picture = |at, image| Use { at, of: Of::Image(image), what: What::Picture };
     let mut uses = vec![picture("/image".to_owned(), &layer.image)];
     for (i, zone) in layer.zones.iter().enumerate() {
-        if let Some(Fold::Mask { image }) = &zone.fold {
+        if let Some(image) = zone.fold.as_ref().and_then(|fold| fold.mask()) {
             let at = format!("/zones/{i}/fold/image");
             uses.push(Use { at, of: Of::Image(image), what: What::Mask { on: &layer.image } });
         }
         uses.extend(zone.sampler.iter().map(|sampler| picture(format!("/zones/{i}/sampler/image"), &sampler.image)));
         for (j, tool) in zone.motion.iter().enumerate() {
-            if let Tool::Field { path, .. } = tool {
+            if let Some(path) = tool.file() {
                 uses.push(Use { at: format!("/zones/{i}/motion/{j}/path"), of: Of::Path(path), what: What::Vectors });
             }
         }
@@ -94,12 +95,13 @@ pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     }
 }
 
-/// Bytes that the equations of thin plates take, told before they are made.
+/// Bytes that the equations of interpolations take, told before they are made.
 pub fn memory(layer: &PictureLayer) -> Vec<(String, u64)> {
-    let zones = layer.zones.iter().enumerate();
-    let plates = zones.filter(|(_, zone)| matches!(zone.interpolation, Interpolation::ThinPlate { .. }));
-    let plates = plates.map(|(i, zone)| (i, counts::all_anchors(zone)));
-    plates.map(|(i, count)| (format!("/zones/{i}/interpolation"), thin_plate_bytes(count as u64))).collect()
+    let bytes = |(i, zone): (usize, &Zone)| {
+        let bytes = zone.interpolation.bytes(counts::all_anchors(zone) as u64);
+        (bytes > 0).then(|| (format!("/zones/{i}/interpolation"), bytes))
+    };
+    layer.zones.iter().enumerate().filter_map(bytes).collect()
 }
 
 /// What pictures and fields say: an outline outside its picture, a mask or a field of another size, a mask without alpha.
@@ -269,7 +271,13 @@ fn telling(position: &Position) -> Vec<f64> {
     let inner: Vec<f64> = match position {
         Position::Keyframes { points, .. } => points.iter().map(|point| point[0]).collect(),
         Position::Piecewise { segments } => segments.iter().map(|segment| segment.until).collect(),
-        _ => Vec::new(),
+        Position::Linear
+        | Position::Exponential { .. }
+        | Position::ExponentialInverse { .. }
+        | Position::Sigmoid { .. }
+        | Position::Sine { .. }
+        | Position::Cosine { .. }
+        | Position::CubicBezier { .. } => Vec::new(),
     };
     taus.extend(inner.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
     taus.extend(inner);
@@ -305,6 +313,12 @@ fn position(position: &Position) -> Vec<Problem> {
             }
             problems
         }
-        _ => Vec::new(),
+        Position::Linear
+        | Position::Exponential { .. }
+        | Position::ExponentialInverse { .. }
+        | Position::Sigmoid { .. }
+        | Position::Sine { .. }
+        | Position::Cosine { .. }
+        | Position::CubicBezier { .. } => Vec::new(),
     }
 }

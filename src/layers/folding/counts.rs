@@ -16,7 +16,12 @@ pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
         Tool::Curve { samples, .. } => f64::from(*samples),
         Tool::Lasso { samples, vertices } => vertices.len() as f64 * (1.0 + f64::from(*samples)),
         Tool::StillBorder { spacing } => perimeter(outline) / spacing + 1.0,
-        _ => 0.0,
+        Tool::Translate { .. }
+        | Tool::Scale { .. }
+        | Tool::Rotate { .. }
+        | Tool::Shear { .. }
+        | Tool::Affine { .. }
+        | Tool::Field { .. } => 0.0,
     }
 }
 

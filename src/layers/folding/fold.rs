@@ -40,6 +40,14 @@ pub enum Fold {
 }
 
 impl Fold {
+    /// The name of the mask, if it is one.
+    pub fn mask(&self) -> Option<&str> {
+        match self {
+            Fold::Mask { image } => Some(image),
+            Fold::Cover { .. } | Fold::Return { .. } | Fold::FlyOver { .. } => None,
+        }
+    }
+
     /// The fold regions; none under a mask.
     pub fn regions(&self) -> &[Outline] {
         match self {

@@ -1,6 +1,7 @@
 //! Folding textures (Thorben 2012; Ren, TU Delft 2023): every pixel of a zone owns a sampler that moves along a jump path
 //! through the picture as time passes; thresholds along the path let one part slide over another.
 
+pub mod anchor;
 pub mod anchors;
 pub mod atlas;
 pub mod breaks;
@@ -16,6 +17,7 @@ pub mod outline;
 pub mod passes;
 pub mod position;
 pub mod probe;
+mod ready;
 pub mod reduce;
 pub mod regions;
 pub mod reread;

@@ -3,8 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{fold::Fold, interpolation::Interpolation, outline::Outline, position::Position, tools::Tool};
+use super::position::{Clock, Position};
+use super::{fold::Fold, interpolation::Interpolation, outline::Outline, tools::Tool};
 use crate::base::geometry::Xy;
+use crate::layers::timeline::Wrap;
 
 /// A still picture whose motion zones fold over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -57,6 +59,13 @@ pub struct Zone {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1000000.0), extend("unit" = "px"))]
     pub feather: f64,
+}
+
+impl Zone {
+    /// When its samplers are where.
+    pub fn clock(&self, wrap: Wrap) -> Clock {
+        Clock { position: self.position.clone(), speed: self.speed, shift: self.shift, wrap }
+    }
 }
 
 /// The picture that samplers read instead of the layer's own; transparent beyond its edge.

@@ -3,7 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::model::Zone;
 use crate::base::maths::{TAU, cos, exp, expm1, sin, tanh};
 use crate::layers::timeline::Wrap;
 
@@ -172,11 +171,6 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// The clock of a zone.
-    pub fn of(zone: &Zone, wrap: Wrap) -> Self {
-        Clock { position: zone.position.clone(), speed: zone.speed, shift: zone.shift, wrap }
-    }
-
     /// Local time τ in [0, 1] at `scene_time`.
     pub fn tau(&self, scene_time: f64) -> f64 {
         self.wrap.wrap(self.speed * (scene_time + self.shift))

@@ -60,7 +60,7 @@ pub fn probe(
             .unwrap_or_default();
         if pixel.inside {
             let source = source(layer, index, &own, materials)?;
-            let clock = Clock::of(zone, wrap);
+            let clock = zone.clock(wrap);
             return Ok(Some(at(zone, &pixel, &clock, centre + source.offset, time)));
         }
     }

@@ -2,7 +2,7 @@
 //! within a position function are meant; these often are not.
 
 use super::model::{PictureLayer, Zone};
-use super::position::{Clock, Position};
+use super::position::Position;
 use super::tools::Tool;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::layers::timeline::Wrap;
@@ -32,7 +32,7 @@ pub fn repeat(layer: &PictureLayer, wrap: Wrap) -> Repeat {
 /// The first jump of a zone while the timeline is played in a loop: its scene time, s before and after. `None` if every
 /// pass ends as it begins.
 fn snap(zone: &Zone, wrap: Wrap) -> Option<(f64, (f64, f64))> {
-    let clock = Clock::of(zone, wrap);
+    let clock = zone.clock(wrap);
     let still = |tool: &Tool| matches!(tool, Tool::StillBorder { .. });
     if wrap == Wrap::Once || zone.speed == 0.0 || zone.motion.iter().all(still) {
         return None;
@@ -68,7 +68,13 @@ fn cure(zone: &Zone, wrap: Wrap) -> String {
         Position::Keyframes { .. } | Position::Piecewise { .. } => {
             "let its last s be its first, or set the loop to ping-pong".into()
         }
-        _ => "take a function that comes back, as cosine, or set the loop to ping-pong or once".into(),
+        Position::Linear
+        | Position::Exponential { .. }
+        | Position::ExponentialInverse { .. }
+        | Position::Sigmoid { .. }
+        | Position::CubicBezier { .. } => {
+            "take a function that comes back, as cosine, or set the loop to ping-pong or once".into()
+        }
     }
 }
 

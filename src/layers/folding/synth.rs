@@ -6,22 +6,15 @@ use std::sync::Arc;
 use kurbo::Vec2;
 
 use super::field::{Field, Inputs, Prepared};
-use super::fold::Fold;
-use super::frame::Frame;
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
-use super::passes;
 use super::position::Clock;
-use super::reduce;
 use crate::base::budget::Share;
 use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
-use crate::base::reduce::Reduced;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::moment::Moment;
-use crate::layers::parts::passes::Plan;
-use crate::layers::ready::{self, Ready, Still};
+use crate::layers::ready::{self, Ready};
 use crate::layers::timeline::Wrap;
 
 /// What a frame of a picture layer needs except the time.
@@ -64,34 +57,6 @@ pub struct Source {
     pub over: bool,
 }
 
-impl Ready for Synth {
-    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
-        Box::new(Frame::new(self, moment.t))
-    }
-
-    fn plan(&self, moment: &Moment) -> Plan {
-        passes::plan(self, moment.t)
-    }
-
-    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
-        Arc::new(Synth { picture: self.picture.clone(), zones: Vec::new() })
-    }
-
-    fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
-        Arc::new(reduce::layer(self, pictures))
-    }
-
-    fn largest_texture(&self) -> usize {
-        let read = self.zones.iter().map(|zone| &zone.source.picture).chain([&self.picture]);
-        read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
-    }
-
-    fn keep_clear_color(&self, (x, y): (usize, usize), code: &mut [u8; 4]) {
-        let within = x < self.picture.width() && y < self.picture.height();
-        self.picture.keep_clear_color(within.then_some((x, y)), code);
-    }
-}
-
 /// Makes a layer ready to be shown at any time. Fields of `previous` whose inputs are equal are taken over. `place` is
 /// the place in each pixel that is looked at: its centre, or another for supersampling.
 ///
@@ -127,7 +92,7 @@ pub fn synth(
             index,
             field,
             source,
-            clock: Clock::of(zone, wrap),
+            clock: zone.clock(wrap),
             inputs,
             share,
         }));
@@ -163,7 +128,7 @@ impl PreparedLayer {
             let inputs = Inputs::new(zone, size, place);
             let prepared = Prepared::new(zone, &inputs, materials);
             let prepared = prepared.map_err(|problem| problem.under(&format!("/zones/{index}")))?;
-            Ok((ZoneParts { name: zone.name.clone(), index, source, clock: Clock::of(zone, wrap), inputs }, prepared))
+            Ok((ZoneParts { name: zone.name.clone(), index, source, clock: zone.clock(wrap), inputs }, prepared))
         };
         let zones = layer.zones.iter().enumerate().map(ready).collect::<Result<_, _>>()?;
         Ok(PreparedLayer { picture, zones })
@@ -199,7 +164,7 @@ impl ready::Prepared for PreparedLayer {
 
 /// Whether the zone's field depends on more than its inputs: the content of a file.
 fn reads_file(zone: &Zone) -> bool {
-    zone.motion.iter().any(|tool| matches!(tool, super::tools::Tool::Field { .. }))
+    zone.motion.iter().any(|tool| tool.file().is_some())
 }
 
 /// What the samplers of zone `index` read; `own` is the layer's picture.
@@ -213,7 +178,7 @@ pub fn source(
     materials: &Materials,
 ) -> Result<Source, Problem> {
     let zone = &layer.zones[index];
-    if let Some(Fold::Mask { image }) = &zone.fold {
+    if let Some(image) = zone.fold.as_ref().and_then(|fold| fold.mask()) {
         let picture = materials.mask(image, &layer.image, &format!("/zones/{index}/fold/image"))?;
         return Ok(Source { picture, offset: Vec2::ZERO, beyond: Beyond::Clamp, over: true });
     }

@@ -161,3 +161,21 @@ pub struct LassoVertex {
 fn one() -> f64 {
     1.0
 }
+
+impl Tool {
+    /// The file that it reads, if it reads one: its field depends on more than the document.
+    pub fn file(&self) -> Option<&str> {
+        match self {
+            Tool::Field { path, .. } => Some(path),
+            Tool::Point { .. }
+            | Tool::Curve { .. }
+            | Tool::Lasso { .. }
+            | Tool::Translate { .. }
+            | Tool::Scale { .. }
+            | Tool::Rotate { .. }
+            | Tool::Shear { .. }
+            | Tool::Affine { .. }
+            | Tool::StillBorder { .. } => None,
+        }
+    }
+}

@@ -59,7 +59,7 @@ fn curves(state: &State) -> Vec<Curve> {
         Curve {
             name: terminal::plain(&zone.name),
             letter: char::from(b'a' + (i % 26) as u8),
-            clock: Clock::of(zone, scene.timeline.wrap),
+            clock: zone.clock(scene.timeline.wrap),
             selected,
             style: if selected { style.patch(colour::strong()) } else { style },
         }

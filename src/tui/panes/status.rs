@@ -108,7 +108,7 @@ pub fn clock(state: &State) -> Option<Clock> {
     let (layer, zone) = tree::place(&state.node);
     let scene = state.document().scene();
     let Layer::Picture(layer) = scene.layers.get(layer?)?;
-    Some(Clock::of(layer.zones.get(zone?)?, scene.timeline.wrap))
+    Some(layer.zones.get(zone?)?.clock(scene.timeline.wrap))
 }
 
 fn place_on_path(state: &State) -> Option<f64> {

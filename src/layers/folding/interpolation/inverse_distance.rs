@@ -1,8 +1,8 @@
 //! Shepard's inverse distance weighting and its modified forms (equations 4.1 to 4.3).
 
-use super::{Jumps, RUN, Run};
+use super::{Jumps, Method, RUN, Run};
 use crate::base::maths;
-use crate::layers::folding::anchors::Anchor;
+use crate::layers::folding::anchor::Anchor;
 
 /// Weighted sums over the places of a run.
 struct Sums {
@@ -43,27 +43,38 @@ impl Sums {
     }
 }
 
-/// Every anchor counts with d^-power. Places at an anchor come out odd and are mended by the caller.
-pub fn shepard(anchors: &[Anchor], power: f64, run: &Run, out: &mut Jumps) {
-    let mut sums = Sums::new(run);
-    if power == 2.0 {
-        anchors.iter().for_each(|anchor| sums.add(anchor, |_, d2| 1.0 / d2));
-    } else {
-        // Relative to the nearest anchor, so that no power overflows or vanishes.
-        let mut nearest2 = [f64::INFINITY; RUN];
-        for anchor in anchors {
-            let dy = run.y() - anchor.at.y;
-            for (nearest, x) in nearest2.iter_mut().zip(sums.xs) {
-                let dx = x - anchor.at.x;
-                *nearest = nearest.min(dx * dx + dy * dy);
+/// Every anchor counts with d^-power.
+pub struct Shepard {
+    /// The power.
+    pub power: f64,
+}
+
+impl Method for Shepard {
+    /// Places at an anchor come out odd.
+    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
+        let mut sums = Sums::new(run);
+        if self.power == 2.0 {
+            anchors.iter().for_each(|anchor| sums.add(anchor, |_, d2| 1.0 / d2));
+        } else {
+            // Relative to the nearest anchor, so that no power overflows or vanishes.
+            let mut nearest2 = [f64::INFINITY; RUN];
+            for anchor in anchors {
+                let dy = run.y() - anchor.at.y;
+                for (nearest, x) in nearest2.iter_mut().zip(sums.xs) {
+                    let dx = x - anchor.at.x;
+                    *nearest = nearest.min(dx * dx + dy * dy);
+                }
             }
+            let half = self.power / 2.0;
+            anchors.iter().for_each(|anchor| {
+                sums.add(
+                    anchor,
+                    |k, d2| if k < run.len && d2 > 0.0 { maths::pow(nearest2[k] / d2, half) } else { 0.0 },
+                );
+            });
         }
-        let half = power / 2.0;
-        anchors.iter().for_each(|anchor| {
-            sums.add(anchor, |k, d2| if k < run.len && d2 > 0.0 { maths::pow(nearest2[k] / d2, half) } else { 0.0 });
-        });
+        sums.write(out);
     }
-    sums.write(out);
 }
 
 /// Only anchors within `radius` pixels count; in the outer ring, by chance.
@@ -74,9 +85,9 @@ pub struct Modified {
     pub ring: Option<(f64, u32)>,
 }
 
-impl Modified {
-    /// Looks only at the anchors that reach the run.
-    pub fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
+impl Method for Modified {
+    /// Looks only at the anchors that reach the run. Places at an anchor come out odd.
+    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
         let mut sums = Sums::new(run);
         let radius2 = self.radius * self.radius;
         for (index, anchor) in anchors.iter().enumerate().filter(|(_, anchor)| run.reach2(anchor) < radius2) {
@@ -91,7 +102,9 @@ impl Modified {
         }
         sums.write(out);
     }
+}
 
+impl Modified {
     fn weight(&self, d2: f64) -> f64 {
         let d = d2.sqrt();
         let w = (self.radius - d).max(0.0) / (self.radius * d);

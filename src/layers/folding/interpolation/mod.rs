@@ -8,16 +8,17 @@ use kurbo::Vec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::anchors::Anchor;
+use super::anchor::Anchor;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
-use thin_plate::NoPlate;
+use inverse_distance::{Modified, Shepard};
+use rigid::Rigid;
+use thin_plate::{NoPlate, Plate};
 
 mod cholesky;
 mod inverse_distance;
 mod rigid;
 mod thin_plate;
-pub use thin_plate::bytes as thin_plate_bytes;
 
 /// How the jump vectors of a zone's anchors spread over its pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -130,17 +131,34 @@ impl Default for Jumps {
     }
 }
 
+/// A method, made ready for the anchors of a zone.
+trait Method: Send + Sync {
+    /// Writes the interpolated jump vectors of `run` to the beginning of `out`; there is at least one anchor.
+    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps);
+
+    /// Whether a pixel at an anchor takes its vector, whatever [`Method::run`] gives there.
+    fn passes_anchors(&self) -> bool {
+        true
+    }
+}
+
 /// The anchors of a zone, made ready to be interpolated.
 pub struct Interpolator {
     anchors: Vec<Anchor>,
-    method: Method,
+    method: Box<dyn Method>,
 }
 
-enum Method {
-    Shepard { power: f64 },
-    Modified(inverse_distance::Modified),
-    ThinPlate(thin_plate::Plate),
-    Rigid,
+impl Interpolation {
+    /// Bytes of memory that it takes to make `count` anchors ready, beside the anchors.
+    pub fn bytes(&self, count: u64) -> u64 {
+        match self {
+            Interpolation::ThinPlate { .. } => thin_plate::bytes(count),
+            Interpolation::Shepard { .. }
+            | Interpolation::ModifiedShepard { .. }
+            | Interpolation::ModifiedShepardRandom { .. }
+            | Interpolation::Rigid {} => 0,
+        }
+    }
 }
 
 impl Interpolator {
@@ -149,40 +167,42 @@ impl Interpolator {
     ///
     /// # Errors
     /// They need too much memory, or nobody wants them any more; the problem's path is relative to the zone.
-    pub fn new(interpolation: &Interpolation, anchors: Vec<Anchor>, materials: &Materials) -> Result<Self, Problem> {
-        use inverse_distance::Modified;
-        let method = match *interpolation {
-            Interpolation::Shepard { power } => Method::Shepard { power },
-            Interpolation::ModifiedShepard { radius } => Method::Modified(Modified { radius, ring: None }),
+    pub fn new(
+        interpolation: &Interpolation,
+        mut anchors: Vec<Anchor>,
+        materials: &Materials,
+    ) -> Result<Self, Problem> {
+        let bytes = interpolation.bytes(anchors.len() as u64);
+        let _share = materials.budget.try_take(bytes).map_err(|short| short.problem("/interpolation"))?;
+        let method: Box<dyn Method> = match *interpolation {
+            Interpolation::Shepard { power } => Box::new(Shepard { power }),
+            Interpolation::ModifiedShepard { radius } => Box::new(Modified { radius, ring: None }),
             Interpolation::ModifiedShepardRandom { radius, ring, seed } => {
-                Method::Modified(Modified { radius, ring: Some((ring, seed)) })
+                Box::new(Modified { radius, ring: Some((ring, seed)) })
             }
             Interpolation::ThinPlate { smoothing } => {
-                let bytes = thin_plate::bytes(anchors.len() as u64);
-                let _share = materials.budget.try_take(bytes).map_err(|short| short.problem("/interpolation"))?;
-                let anchors = thin_plate::distinct(&anchors);
-                let method = match thin_plate::Plate::solve(&anchors, smoothing, &|| materials.stopped()) {
-                    Ok(plate) => Method::ThinPlate(plate),
-                    Err(NoPlate::Flat) => Method::Shepard { power: two() },
+                anchors = thin_plate::distinct(&anchors);
+                match Plate::solve(&anchors, smoothing, &|| materials.stopped()) {
+                    Ok(plate) => Box::new(plate),
+                    Err(NoPlate::Flat) => Box::new(Shepard { power: two() }),
                     Err(NoPlate::Stopped) => return Err(Problem::error("/interpolation", "stopped")),
-                };
-                return Ok(Interpolator { anchors, method });
+                }
             }
-            Interpolation::Rigid {} => Method::Rigid,
+            Interpolation::Rigid {} => Box::new(Rigid),
         };
         Ok(Interpolator { anchors, method })
     }
 
     /// Writes the interpolated jump vectors of `run` to the beginning of `out`; (0, 0) without anchors.
     pub fn run(&self, run: &Run, out: &mut Jumps) {
-        match &self.method {
-            _ if self.anchors.is_empty() => *out = Jumps::default(),
-            Method::Shepard { power } => inverse_distance::shepard(&self.anchors, *power, run, out),
-            Method::Modified(modified) => modified.run(&self.anchors, run, out),
-            Method::ThinPlate(plate) => return plate.run(run, out),
-            Method::Rigid => rigid::run(&self.anchors, run, out),
+        if self.anchors.is_empty() {
+            *out = Jumps::default();
+            return;
         }
-        self.take_anchors_at(run, out);
+        self.method.run(&self.anchors, run, out);
+        if self.method.passes_anchors() {
+            self.take_anchors_at(run, out);
+        }
     }
 
     /// Pixels at an anchor take its vector, the first such anchor's.

@@ -2,17 +2,22 @@
 
 use kurbo::{Point, Vec2};
 
-use super::{Jumps, Run};
-use crate::layers::folding::anchors::Anchor;
+use super::{Jumps, Method, Run};
+use crate::layers::folding::anchor::Anchor;
 
 /// Where the weighted anchors agree on no rotation better than this (in square pixels), it is undefined.
 const UNDEFINED_PX2: f64 = 1e-20;
 
-/// Places at an anchor come out odd and are mended by the caller.
-pub fn run(anchors: &[Anchor], run: &Run, out: &mut Jumps) {
-    for k in 0..run.len {
-        let jump = at(anchors, Point::new(run.x(k), run.y()));
-        (out.x[k], out.y[k]) = (jump.x, jump.y);
+/// The method; it has no parameters.
+pub struct Rigid;
+
+impl Method for Rigid {
+    /// Places at an anchor come out odd.
+    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
+        for k in 0..run.len {
+            let jump = at(anchors, Point::new(run.x(k), run.y()));
+            (out.x[k], out.y[k]) = (jump.x, jump.y);
+        }
     }
 }
 

@@ -140,7 +140,7 @@ fn a_thin_plate_takes_no_more_memory_than_there_is_and_ends_when_asked_to() {
         Interpolator::new(&serde_json::from_str(METHODS[6]).unwrap(), make(&anchors), materials).map(drop)
     };
     let budget = |most| Materials { budget: Budget::new(most), ..Materials::default() };
-    let needed = thin_plate_bytes(100);
+    let needed = thin_plate::bytes(100);
     assert!(needed >= 100 * 100 * 8);
     let materials = budget(needed);
     solve(&materials).unwrap();

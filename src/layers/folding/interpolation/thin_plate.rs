@@ -6,9 +6,9 @@ use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 
 use super::cholesky::{Matrix, stride};
-use super::{Jumps, Run};
+use super::{Jumps, Method, Run};
 use crate::base::maths;
-use crate::layers::folding::anchors::Anchor;
+use crate::layers::folding::anchor::Anchor;
 
 /// Anchors nearer than this to an earlier one are dropped, in pixels.
 const SAME_PX: f64 = 1e-6;
@@ -79,9 +79,15 @@ impl Plate {
         let kernels = places.into_iter().zip(weights).collect();
         Ok(Plate { center, scale, kernels, affine })
     }
+}
 
-    /// The plate at the places of the run.
-    pub fn run(&self, run: &Run, out: &mut Jumps) {
+impl Method for Plate {
+    fn passes_anchors(&self) -> bool {
+        false
+    }
+
+    /// The plate at the places of the run; its anchors are in its weights.
+    fn run(&self, _anchors: &[Anchor], run: &Run, out: &mut Jumps) {
         let xs = run.xs().map(|x| (x - self.center.x) / self.scale);
         let y = (run.y() - self.center.y) / self.scale;
         for (k, x) in xs.into_iter().enumerate() {

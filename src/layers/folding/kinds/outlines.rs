@@ -146,7 +146,7 @@ fn area_lost(old: &Outline, new: f64, kept: &str) -> Option<String> {
     }
     let area = match old {
         Outline::Ellipse { radii: [w, h], .. } => std::f64::consts::PI * w * h,
-        _ => area(&polygon),
+        Outline::Rectangle { .. } | Outline::Polygon { .. } | Outline::Path { .. } => area(&polygon),
     };
     let differs = (new - area).abs() > 1e-6 * area.max(1.0);
     differs.then(|| format!("only {kept}: {} px² became {}", told(area), told(new)))

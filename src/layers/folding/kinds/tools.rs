@@ -92,7 +92,13 @@ impl Turning<'_> {
             Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => {
                 Some(point(*center))
             }
-            _ => None,
+            Tool::Point { .. }
+            | Tool::Curve { .. }
+            | Tool::Lasso { .. }
+            | Tool::Translate { .. }
+            | Tool::Affine { .. }
+            | Tool::StillBorder { .. }
+            | Tool::Field { .. } => None,
         }
     }
 

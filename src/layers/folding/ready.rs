@@ -1,0 +1,40 @@
+//! What a synthesised layer answers: frames for the CPU and the GPU, a smaller one, a still one.
+
+use std::sync::Arc;
+
+use super::frame::Frame;
+use super::passes;
+use super::reduce;
+use super::synth::Synth;
+use crate::base::reduce::Reduced;
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::passes::Plan;
+use crate::layers::ready::{Ready, Still};
+
+impl Ready for Synth {
+    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
+        Box::new(Frame::new(self, moment.t))
+    }
+
+    fn plan(&self, moment: &Moment) -> Plan {
+        passes::plan(self, moment.t)
+    }
+
+    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
+        Arc::new(Synth { picture: self.picture.clone(), zones: Vec::new() })
+    }
+
+    fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
+        Arc::new(reduce::layer(self, pictures))
+    }
+
+    fn largest_texture(&self) -> usize {
+        let read = self.zones.iter().map(|zone| &zone.source.picture).chain([&self.picture]);
+        read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
+    }
+
+    fn keep_clear_color(&self, (x, y): (usize, usize), code: &mut [u8; 4]) {
+        let within = x < self.picture.width() && y < self.picture.height();
+        self.picture.keep_clear_color(within.then_some((x, y)), code);
+    }
+}
