@@ -3,17 +3,19 @@
 use serde_json::Value;
 
 use super::items::add_here;
+use super::life;
 use super::messages;
 use super::{Call, Command, Done, command, obey, quoted, unquoted};
 use crate::base::{maths, problem};
 use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
-use crate::tui::app::{Mode, State};
-use crate::tui::choice::{self, Choice, Then};
-use crate::tui::entry::{self, Entry};
-use crate::tui::life;
-use crate::tui::numbers;
-use crate::tui::sheet::{Cell, Row};
+use crate::tui::document::choice;
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::document::sheet::{Cell, Row};
+use crate::tui::state::entry;
+use crate::tui::state::entry::Entry;
+use crate::tui::state::{Mode, State};
+use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] = &[
     command("enter", "[clear]", "Edit the cell, or go into the node", enter),

@@ -1,11 +1,11 @@
 //! Files, leaving, and what is outside the editor.
 
+use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::files::paths;
 use crate::preview::keys as window;
-use crate::tui::app::State;
-use crate::tui::update::Effect;
+use crate::tui::state::State;
 
 pub const COMMANDS: &[Command] = &[
     command("w", "[PATH]", "Save; with a path, save elsewhere", |state, call| save(state, call.text, false, false)),

@@ -9,9 +9,11 @@ use serde_json::Value;
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
-use crate::tui::app::State;
-use crate::tui::sheet::{Cell, Part, Row, tidy_json};
-use crate::tui::{entry, numbers, rows};
+use crate::tui::document::rows;
+use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
+use crate::tui::state::State;
+use crate::tui::state::entry;
+use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] =
     &[command("fill", "JSON", "Give the selected rows values: a list of rows, or one row; heads may come first", fill)

@@ -1,14 +1,14 @@
 //! Finding: the search over names and values, marks, the jump list, the same place beside this one.
 
+use super::update::Effect;
 use super::{Call, Command, Done, command, unquoted};
 use crate::scene::schema::{Body, Place};
 use crate::scene::{address, field, pointer};
-use crate::tui::app::{Mode, Pane, State};
-use crate::tui::choice::{Choice, Then};
-use crate::tui::places::Sought;
-use crate::tui::sheet::{Part, is_node, summary};
-use crate::tui::terminal::plain;
-use crate::tui::update::Effect;
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::document::places::Sought;
+use crate::tui::document::sheet::{Part, is_node, summary};
+use crate::tui::outside::terminal::plain;
+use crate::tui::state::{Mode, Pane, State};
 
 pub const COMMANDS: &[Command] = &[
     command("search", "next|previous|TEXT", "Go to the next place of that name or value", search).counted(),
@@ -223,13 +223,13 @@ fn reveal_part(state: &mut State, at: &str, part: usize) {
 fn cell_in_table(state: &State, item: &str, at: &str, part: usize) -> Option<(String, usize, usize)> {
     let (list, index) = pointer::split(item)?;
     let index = pointer::index(&index)?;
-    let sheet = crate::tui::sheet::Sheet::of(state.document(), list);
+    let sheet = crate::tui::document::sheet::Sheet::of(state.document(), list);
     let row = sheet.row(index).filter(|row| sheet.table && row.pointer == item)?;
     let named = field::is_there(state.document(), &pointer::join(item, "name"));
     Some((list.to_owned(), index, column_of(&row, at, part).filter(|_| !named)?))
 }
 
-fn column_of(row: &crate::tui::sheet::Row, at: &str, part: usize) -> Option<usize> {
+fn column_of(row: &crate::tui::document::sheet::Row, at: &str, part: usize) -> Option<usize> {
     let is = |wanted: Part| row.cells.iter().position(|cell| cell.pointer == at && cell.part == wanted);
     is(Part::Number(part)).or_else(|| is(Part::Whole))
 }

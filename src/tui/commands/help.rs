@@ -5,12 +5,13 @@ use super::cells::number;
 use super::{Call, Command, Done, all, command};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{address, pointer};
-use crate::tui::app::{Mode, Pages, Pane, State};
+use crate::tui::document::sheet;
+use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::keys::OWN_FILE;
-use crate::tui::numbers;
+use crate::tui::outside::terminal::plain;
 use crate::tui::panes::wrapped;
-use crate::tui::sheet::{self, Cell, Part};
-use crate::tui::terminal::plain;
+use crate::tui::state::{Mode, Pages, Pane, State};
+use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] = &[
     command("help", "[COMMAND]", "Show what is under the cursor, then keys and commands", help).inside(),
@@ -179,8 +180,8 @@ fn scroll(state: &mut State, call: &Call) -> Done {
 
 #[cfg(test)]
 mod tests {
-    use super::super::obey;
     use super::*;
+    use crate::tui::commands::obey;
     use crate::tui::keys;
 
     #[test]

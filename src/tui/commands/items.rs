@@ -8,12 +8,13 @@ use super::{Call, Command, Done, command, unquoted};
 use crate::base::budget;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
-use crate::tui::app::{Mode, Pane, State, first};
-use crate::tui::choice::{self, Choice, Then};
-use crate::tui::entry;
-use crate::tui::line::Line;
-use crate::tui::recorder::Work;
-use crate::tui::sheet::Cell;
+use crate::tui::document::choice;
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::document::sheet::Cell;
+use crate::tui::state::entry;
+use crate::tui::state::recorder::Work;
+use crate::tui::state::{Mode, Pane, State, first};
+use crate::tui::text::line::Line;
 
 pub const COMMANDS: &[Command] = &[
     command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add)
@@ -77,7 +78,7 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
         return Some((0, sheet.len().checked_sub(1)?));
     }
     let row = sheet.row(state.row)?;
-    let list = |row: &crate::tui::sheet::Row| {
+    let list = |row: &crate::tui::document::sheet::Row| {
         row.item.then(|| row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned())).flatten()
     };
     let own = list(&row);

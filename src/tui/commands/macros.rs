@@ -2,7 +2,7 @@
 //! ends them.
 
 use super::{Call, Command, Done, Said, command, obey};
-use crate::tui::app::{Mode, State};
+use crate::tui::state::{Mode, State};
 
 pub const COMMANDS: &[Command] = &[
     command("record", "[LETTER]", "Record a macro, or end the recording", record).inside(),

@@ -1,10 +1,10 @@
 //! The one table of commands: what keys run and what is typed after `:`. What is not here but on the command line of
 //! `plica` (render, synth, ...) runs as there, with the same arguments.
 
-use super::app::{Mode, State};
-use super::recorder::{Ended, Kept};
-use super::update::Effect;
-use super::{life, tutor};
+use super::commands::update::Effect;
+use super::state::recorder::{Ended, Kept};
+use super::state::{Mode, State};
+use super::tutor;
 use crate::base::problem;
 use crate::ops;
 
@@ -17,6 +17,7 @@ mod help;
 pub use help::entries;
 mod items;
 mod keymap;
+pub mod life;
 mod macros;
 mod messages;
 mod moving;
@@ -32,6 +33,7 @@ mod seeing;
 mod selecting;
 mod typing;
 mod undoing;
+pub mod update;
 mod values;
 mod yanking;
 pub use pasting::pasted;

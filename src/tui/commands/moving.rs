@@ -1,10 +1,10 @@
 //! Moving about: in the tree, in forms and tables, between panes, and by search.
 
 use super::finding::leave as leave_place;
+use super::update::Effect;
 use super::{Call, Command, Done, command};
-use crate::tui::app::{Pane, State};
-use crate::tui::tree;
-use crate::tui::update::Effect;
+use crate::tui::document::tree;
+use crate::tui::state::{Pane, State};
 
 pub const COMMANDS: &[Command] = &[
     command("move", "down|up|left|right|first|last|start|end|page-down|page-up|next", "Move the cursor", go)

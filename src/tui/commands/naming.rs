@@ -4,10 +4,10 @@ use super::items::{go_to, target};
 use super::{Call, Command, Done, command, unquoted};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, address, field, pointer};
-use crate::tui::app::{Mode, State};
-use crate::tui::entry;
-use crate::tui::line::Line;
-use crate::tui::terminal::plain;
+use crate::tui::outside::terminal::plain;
+use crate::tui::state::entry;
+use crate::tui::state::{Mode, State};
+use crate::tui::text::line::Line;
 
 pub const COMMANDS: &[Command] =
     &[command("rename", "[NAME]", "Give the node or row another name, everywhere", rename).change()];

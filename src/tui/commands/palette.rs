@@ -1,8 +1,8 @@
 //! The palette and the leader menu: what there is, to be chosen from.
 
 use super::{Call, Command, Done, command, obey};
-use crate::tui::app::{Mode, State};
-use crate::tui::palette::Palette;
+use crate::tui::document::palette::Palette;
+use crate::tui::state::{Mode, State};
 
 pub const COMMANDS: &[Command] = &[
     command("palette", "[next|previous|take]", "Find commands, nodes and fields by a few of their letters", palette)

@@ -6,8 +6,9 @@ use serde_json::Value;
 use super::yanking::{here, item_of, upward};
 use super::{Done, cells, filling, obey};
 use crate::scene::field::{self, Kind};
-use crate::tui::app::{Pane, State};
-use crate::tui::rows::{self, Target};
+use crate::tui::document::rows;
+use crate::tui::document::rows::Target;
+use crate::tui::state::{Pane, State};
 
 /// Takes a pasted text, as one step of undo; where something is wrong with it, nothing changes.
 pub fn pasted(state: &mut State, text: &str) -> Done {

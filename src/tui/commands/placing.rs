@@ -3,13 +3,14 @@
 use kurbo::{Point, Vec2};
 
 use super::items::go_to;
+use super::update::Effect;
 use super::{Call, Command, Done, command, obey};
 use crate::base::problem::quoted;
 use crate::render::overlay;
-use crate::tui::app::{Mode, Pane, State};
-use crate::tui::numbers::short;
-use crate::tui::update::Effect;
-use crate::tui::{entry, place, seeing};
+use crate::tui::layout::seeing;
+use crate::tui::state::{Mode, Pane, State};
+use crate::tui::state::{entry, place};
+use crate::tui::text::numbers::short;
 
 pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor).counted(),

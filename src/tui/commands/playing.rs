@@ -1,9 +1,9 @@
 //! Time: playing and going from frame to frame.
 
+use super::update::Effect;
 use super::{Call, Command, Done, command};
-use crate::tui::app::State;
-use crate::tui::transport::SPEEDS;
-use crate::tui::update::Effect;
+use crate::tui::state::State;
+use crate::tui::state::transport::SPEEDS;
 
 pub const COMMANDS: &[Command] = &[
     command("play", "", "Play or pause", play).inside(),

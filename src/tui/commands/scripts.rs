@@ -1,9 +1,9 @@
 //! Lines that were run, as one thing: the log of the session, and scripts.
 
+use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::files::paths;
-use crate::tui::app::{Mode, Pages, State};
-use crate::tui::update::Effect;
+use crate::tui::state::{Mode, Pages, State};
 
 pub const COMMANDS: &[Command] = &[
     command("log", "[FILE]", "Show the lines that this session has run, or write them to a file", log).inside(),
@@ -21,7 +21,8 @@ fn log(state: &mut State, call: &Call) -> Done {
         Some(place) => format!("this log is {}", place.display()),
         None => "this log is only here: :log FILE writes it".into(),
     };
-    let lines = vec![format!("-- {} --", crate::tui::terminal::plain(&place))].into_iter().chain(lines).collect();
+    let lines =
+        vec![format!("-- {} --", crate::tui::outside::terminal::plain(&place))].into_iter().chain(lines).collect();
     state.mode = Mode::Pages(Pages { title: "log".into(), lines, scroll: 0 });
     Ok(())
 }

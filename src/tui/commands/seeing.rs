@@ -2,13 +2,14 @@
 
 use kurbo::Vec2;
 
+use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::problem;
-use crate::tui::app::{Pane, State};
 use crate::tui::graphics::Protocol;
-use crate::tui::numbers::short;
-use crate::tui::update::Effect;
-use crate::tui::{seeing, sight};
+use crate::tui::graphics::sight;
+use crate::tui::layout::seeing;
+use crate::tui::state::{Pane, State};
+use crate::tui::text::numbers::short;
 
 pub const COMMANDS: &[Command] = &[
     command("zoom", "in|out|fit|one", "Zoom the picture, here and in the window", zoom).counted_with(&["in", "out"]),

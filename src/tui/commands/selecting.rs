@@ -2,7 +2,7 @@
 
 use super::items::rows;
 use super::{Call, Command, Done, command};
-use crate::tui::app::State;
+use crate::tui::state::State;
 
 pub const COMMANDS: &[Command] =
     &[command("select", "[all|again]", "Begin or end a selection of rows; take all, or the last one again", select)

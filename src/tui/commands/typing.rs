@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use super::finding::{search_left, search_typed};
+use super::update::Effect;
 use super::{Call, Command, Done, command, obey, quoted, unquoted};
-use crate::tui::app::{Mode, State};
-use crate::tui::line::{self, Line};
-use crate::tui::text::Text;
-use crate::tui::update::Effect;
+use crate::tui::state::{Mode, State};
+use crate::tui::text::input::Text;
+use crate::tui::text::line;
+use crate::tui::text::line::Line;
 
 pub const COMMANDS: &[Command] = &[
     command("line", "[/|:TEXT]", "Type a command, one that begins so, or with / a search", |state, call| {

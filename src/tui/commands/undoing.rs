@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
+use super::update::Change;
 use super::{Call, Command, Done, command};
-use crate::tui::app::{Mode, Pages, State};
-use crate::tui::door::Door;
-use crate::tui::terminal::plain;
-use crate::tui::update::Change;
+use crate::tui::document::door::Door;
+use crate::tui::outside::terminal::plain;
+use crate::tui::state::{Mode, Pages, State};
 
 pub const COMMANDS: &[Command] = &[
     command("undo", "[STEPS|#STATE]", "Undo; #STATE goes to a state that :history lists", |state, call| {

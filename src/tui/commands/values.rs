@@ -6,7 +6,7 @@ use super::{Call, Command, Done, command};
 use crate::base::error::Error;
 use crate::ops::set;
 use crate::scene::{address, field};
-use crate::tui::app::{State, first};
+use crate::tui::state::{State, first};
 
 pub const COMMANDS: &[Command] = &[
     command("set", "PATH=VALUE ...", "Set values by their paths", set).change(),
@@ -37,6 +37,6 @@ fn set(state: &mut State, call: &Call) -> Done {
 fn get(state: &mut State, call: &Call) -> Done {
     let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
     let value = field::value(state.document(), &pointer).unwrap_or(Value::Null);
-    state.say(crate::tui::terminal::plain(&value.to_string()));
+    state.say(crate::tui::outside::terminal::plain(&value.to_string()));
     Ok(())
 }

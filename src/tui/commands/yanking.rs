@@ -3,16 +3,19 @@
 use serde_json::{Map, Value};
 
 use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, targets};
+use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::insert::misfit;
 use crate::scene::{Document, Edit, address, json, pointer};
-use crate::tui::app::{Pane, State};
-use crate::tui::clipboard::{MOST_BYTES, Yanked};
-use crate::tui::sheet::Sheet;
-use crate::tui::update::Effect;
-use crate::tui::{entry, numbers, rows, terminal};
+use crate::tui::document::rows;
+use crate::tui::document::sheet::Sheet;
+use crate::tui::outside::terminal;
+use crate::tui::state::entry;
+use crate::tui::state::{Pane, State};
+use crate::tui::text::clipboard::{MOST_BYTES, Yanked};
+use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] = &[
     command("yank", "[json|csv]", "Yank the row, the selection or the node", yank).counted(),

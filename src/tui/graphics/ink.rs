@@ -3,12 +3,12 @@
 
 use kurbo::{Point, Vec2};
 
+use super::sight::clipped;
 use crate::base::geometry::Polygon;
 use crate::base::maths;
 use crate::base::pixels::Frame;
 use crate::render::overlay::{self, Dot, Mark, Shape};
 use crate::render::part::Part;
-use crate::tui::sight::clipped;
 
 /// Length of an arrow's head, in dots.
 const HEAD: f64 = 5.0;

@@ -6,18 +6,18 @@ use std::sync::Arc;
 use kurbo::Point;
 use ratatui::buffer::Buffer;
 
-use super::colour::Depth;
+use super::text::colour::Depth;
 use crate::base::pixels::Frame;
 use crate::render::Synth;
 use crate::render::overlay::{View, overlay};
 use crate::render::part::{self, Part};
 use crate::scene::Scene;
 
-pub mod ask;
 mod diacritics;
 mod encode;
 pub use encode::forget;
 mod ink;
+pub mod sight;
 mod sixel;
 
 /// How the picture reaches the terminal.

@@ -156,7 +156,7 @@ impl Keymap {
 fn help(line: &str) -> Cow<'static, str> {
     let row = KEYS.iter().find(|row| row.command == line).map(|row| row.help);
     let command = || commands::find(line).map(|command| command.help);
-    row.or_else(command).map_or_else(|| Cow::Owned(crate::tui::terminal::plain(line)), Cow::Borrowed)
+    row.or_else(command).map_or_else(|| Cow::Owned(crate::tui::outside::terminal::plain(line)), Cow::Borrowed)
 }
 
 /// The bindings of a file that are written as they should be.
@@ -300,8 +300,8 @@ fn check(key: &str) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{EVERYWHERE, TREE};
     use super::*;
+    use crate::tui::keys::{EVERYWHERE, TREE};
 
     #[test]
     fn own_keys_come_before_the_tables() {

@@ -3,8 +3,8 @@
 
 use super::{clipped, width};
 use crate::scene::field::Kind;
-use crate::tui::numbers;
-use crate::tui::sheet::{Cell, Row};
+use crate::tui::document::sheet::{Cell, Row};
+use crate::tui::text::numbers;
 
 /// Columns between two cells; where some are left out a mark stands between them.
 pub const GAP: i32 = 2;

@@ -6,9 +6,12 @@ use ratatui::style::{Modifier, Style};
 
 use super::{wrapped, write};
 use crate::scene::field::Kind;
-use crate::tui::app::State;
-use crate::tui::sheet::{self, Cell, Part};
-use crate::tui::{colour, entry, numbers, terminal};
+use crate::tui::document::sheet;
+use crate::tui::document::sheet::{Cell, Part};
+use crate::tui::outside::terminal;
+use crate::tui::state::State;
+use crate::tui::state::entry;
+use crate::tui::text::{colour, numbers};
 
 /// Draws it: name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {

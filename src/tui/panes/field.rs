@@ -10,10 +10,11 @@ use ratatui::style::{Color, Modifier, Style};
 use super::{arrow, write};
 use crate::base::oklab;
 use crate::layers::folding::{self, field::Field};
-use crate::tui::app::State;
-use crate::tui::colour::{self, Depth};
-use crate::tui::numbers::{polar, short};
-use crate::tui::tree;
+use crate::tui::document::tree;
+use crate::tui::state::State;
+use crate::tui::text::colour;
+use crate::tui::text::colour::Depth;
+use crate::tui::text::numbers::{polar, short};
 
 /// Shorter than this share of the longest, a vector is a dot.
 const NOTHING: f64 = 0.02;

@@ -6,9 +6,9 @@ use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 
 use super::{width, wrapped, write};
-use crate::tui::app::State;
-use crate::tui::colour;
 use crate::tui::keys::Keymap;
+use crate::tui::state::State;
+use crate::tui::text::colour;
 use crate::tui::tutor::Tutor;
 use crate::tui::tutor::lessons::LESSONS;
 

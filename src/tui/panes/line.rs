@@ -7,8 +7,9 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::widgets::{Clear, Widget};
 
 use super::{folded, typed, width, write};
-use crate::tui::app::{Mode, State};
-use crate::tui::{colour, terminal};
+use crate::tui::outside::terminal;
+use crate::tui::state::{Mode, State};
+use crate::tui::text::colour;
 
 /// Draws it; the cursor is in the line being typed.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {

@@ -5,9 +5,10 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::Span;
 
-use super::numbers::polar;
-use super::text::Text;
-use super::{colour, terminal};
+use super::outside::terminal;
+use super::text::colour;
+use super::text::input::Text;
+use super::text::numbers::polar;
 
 mod braille;
 mod columns;
@@ -23,6 +24,7 @@ pub mod probe;
 pub mod status;
 pub mod table;
 pub mod tree;
+pub mod view;
 
 /// Width of a text in terminal columns.
 pub fn width(text: &str) -> u16 {

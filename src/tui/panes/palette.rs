@@ -4,11 +4,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
+use super::view;
 use super::{clipped, first_row, typed, width, write};
 use crate::scene::field;
-use crate::tui::app::State;
-use crate::tui::palette::{Palette, Row};
-use crate::tui::{colour, sheet, view};
+use crate::tui::document::palette::{Palette, Row};
+use crate::tui::document::sheet;
+use crate::tui::state::State;
+use crate::tui::text::colour;
 
 /// Columns of what a row is.
 const SORT: i32 = 9;

@@ -6,14 +6,18 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 
+use super::view;
 use super::{arrow, write};
 use crate::render::overlay::{self, Dot, Kind, Mark, Shape};
 use crate::render::part::Part;
-use crate::tui::app::{Mode, Pane, State};
-use crate::tui::colour::{self, Depth};
+use crate::tui::graphics::sight;
 use crate::tui::graphics::{Protocol, Shown};
-use crate::tui::numbers::short;
-use crate::tui::{place, seeing, sight, view};
+use crate::tui::layout::seeing;
+use crate::tui::state::place;
+use crate::tui::state::{Mode, Pane, State};
+use crate::tui::text::colour;
+use crate::tui::text::colour::Depth;
+use crate::tui::text::numbers::short;
 
 /// The cursor's coordinates, how large the picture is shown, and how it comes to the terminal.
 pub fn title(state: &State) -> String {

@@ -5,10 +5,12 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 
+use super::view;
 use super::{first_row, folded, width, write};
-use crate::tui::app::{Mode, Pages, State};
-use crate::tui::choice::{Choice, Then};
-use crate::tui::{colour, terminal, view};
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::outside::terminal;
+use crate::tui::state::{Mode, Pages, State};
+use crate::tui::text::colour;
 
 /// Draws what there is; the cursor is in the list.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {

@@ -9,9 +9,11 @@ use super::braille::Braille;
 use super::{width, write};
 use crate::layers::Layer;
 use crate::layers::folding::position::Clock;
-use crate::tui::app::State;
-use crate::tui::numbers::short;
-use crate::tui::{colour, terminal, tree};
+use crate::tui::document::tree;
+use crate::tui::outside::terminal;
+use crate::tui::state::State;
+use crate::tui::text::colour;
+use crate::tui::text::numbers::short;
 
 /// The colours of zones, over and over; letters tell what colours repeat.
 const COLOURS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];

@@ -7,10 +7,12 @@ use ratatui::style::Style;
 
 use super::write;
 use crate::layers::folding::probe::Probe;
-use crate::tui::app::State;
-use crate::tui::numbers::{polar, short};
-use crate::tui::seeing::{self, Probed};
-use crate::tui::{colour, terminal};
+use crate::tui::layout::seeing;
+use crate::tui::layout::seeing::Probed;
+use crate::tui::outside::terminal;
+use crate::tui::state::State;
+use crate::tui::text::colour;
+use crate::tui::text::numbers::{polar, short};
 
 /// Draws it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {

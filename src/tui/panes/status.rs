@@ -7,10 +7,11 @@ use ratatui::style::{Modifier, Style};
 use super::{clipped, width, write};
 use crate::layers::Layer;
 use crate::layers::folding::position::Clock;
-use crate::tui::app::{Mode, Pane, State};
 use crate::tui::commands::step_of;
-use crate::tui::numbers::short;
-use crate::tui::{terminal, tree};
+use crate::tui::document::tree;
+use crate::tui::outside::terminal;
+use crate::tui::state::{Mode, Pane, State};
+use crate::tui::text::numbers::short;
 
 /// Draws it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {

@@ -10,9 +10,11 @@ use ratatui::style::{Modifier, Style};
 use super::columns::{Columns, GAP, Placed, Sight};
 use super::{clipped, first_row, typed, width, write};
 use crate::scene::address;
-use crate::tui::app::{Mode, Pane, State};
-use crate::tui::sheet::Row;
-use crate::tui::{colour, entry, numbers, terminal};
+use crate::tui::document::sheet::Row;
+use crate::tui::outside::terminal;
+use crate::tui::state::entry;
+use crate::tui::state::{Mode, Pane, State};
+use crate::tui::text::{colour, numbers};
 
 /// The node's address.
 pub fn title(state: &State) -> String {
@@ -167,7 +169,7 @@ fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
 }
 
 /// The entry stands where its cell does, and moves left where it would not fit. Gives the cursor and the column after it.
-fn draw_entry(text: &crate::tui::text::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
+fn draw_entry(text: &crate::tui::text::input::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
     let wide = width(&terminal::plain(text.value())).max(8) + 1;
     let x = at.x.min((cells.x + cells.width).saturating_sub(wide)).max(cells.x);
     let style = if text.is_fresh() { colour::focus() } else { Style::new().add_modifier(Modifier::UNDERLINED) };

@@ -5,8 +5,9 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
 use super::{clipped, first_row, width, write};
-use crate::tui::app::{Pane, State};
-use crate::tui::{colour, tree};
+use crate::tui::document::tree;
+use crate::tui::state::{Pane, State};
+use crate::tui::text::colour;
 
 /// Draws it; the cursor is on the node that is shown, where the tree has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {

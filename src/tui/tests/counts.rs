@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::super::app::{Mode, Pane, State};
 use super::support::{press, replayed, state, state_of};
 use super::{MOTION, check, motion, zone};
 use crate::files::session::Mode as Open;
-use crate::tui::colour::Depth;
+use crate::tui::commands::update::{Effect, Event, update};
 use crate::tui::commands::{self, Counts, obey};
-use crate::tui::door::Door;
-use crate::tui::update::{Effect, Event, update};
+use crate::tui::document::door::Door;
+use crate::tui::state::{Mode, Pane, State};
+use crate::tui::text::colour::Depth;
 
 fn at(state: &State, pointer: &str) -> Value {
     state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null)

@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::super::app::{Mode, Pane, State};
-use super::super::door::Door;
-use super::super::update::{Effect, Event, update};
 use super::support::{press, state, state_of};
 use super::{check, motion, zone};
 use crate::scene::field::{self, Kind};
+use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::document::door::Door;
+use crate::tui::state::{Mode, Pane, State};
 
 fn paste(state: &mut State, text: &str) {
     update(state, Event::Paste(text.into()));
@@ -319,7 +319,7 @@ fn undo_goes_on_over_save_and_reopening_and_the_mark_follows() {
     std::fs::write(&path, super::support::SCENE).unwrap();
     let open = || {
         let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
-        State::new(door, (80, 24), crate::tui::colour::Depth::None)
+        State::new(door, (80, 24), crate::tui::text::colour::Depth::None)
     };
     let marks = |state: &mut State, keys: &[(&str, bool, i64)]| {
         for (key, saved, radius) in keys {

@@ -5,8 +5,8 @@ use serde_json::json;
 use super::support::{press, state};
 use super::{check, motion, zone};
 use crate::scene::schema::Place;
-use crate::tui::app::{Mode, Pane, State};
-use crate::tui::sheet::Sheet;
+use crate::tui::document::sheet::Sheet;
+use crate::tui::state::{Mode, Pane, State};
 
 /// What is under the cursor: the node in the tree, else the cell by its pointer and its name.
 fn place(state: &State) -> String {

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use super::support::{SCENE, press};
 use crate::files::Options;
 use crate::files::session::Mode as Open;
-use crate::tui::app::{Mode, State};
-use crate::tui::choice::Then;
-use crate::tui::colour::Depth;
-use crate::tui::door::Door;
-use crate::tui::update::{Effect, Event, update};
+use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::document::choice::Then;
+use crate::tui::document::door::Door;
+use crate::tui::state::{Mode, State};
+use crate::tui::text::colour::Depth;
 
 /// A scene on the disk, with its journal.
 struct Place {

@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use super::support::{press, replayed, state};
 use super::{check, motion, zone};
-use crate::tui::app::{Mode, Pane, State};
 use crate::tui::commands::obey;
-use crate::tui::update::{Event, update};
+use crate::tui::commands::update::{Event, update};
+use crate::tui::state::{Mode, Pane, State};
 
 fn log(state: &State) -> Vec<&str> {
     state.recorder.log().iter().map(String::as_str).collect()

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use self::support::{press, replayed, state};
-use super::app::Mode;
-use super::update::Effect;
+use super::commands::update::Effect;
+use super::state::Mode;
+use super::tests::support::{press, replayed, state};
 
 mod counts;
 pub mod coverage;
@@ -209,8 +209,8 @@ fn escape_ends_one_thing_after_the_other() {
         press(&mut state, "Esc");
         let now = (matches!(state.mode, Mode::Entry(_)), state.selected_from.is_some(), state.focus);
         let expected = match left {
-            "entry" => (false, true, super::app::Pane::Table),
-            _ => (false, false, super::app::Pane::Table),
+            "entry" => (false, true, super::state::Pane::Table),
+            _ => (false, false, super::state::Pane::Table),
         };
         assert_eq!(now, expected, "after {left}");
     }
@@ -240,7 +240,7 @@ fn an_alt_key_that_is_not_bound_is_escape_and_that_key() {
 
 #[test]
 fn nothing_is_edited_on_a_terminal_that_is_too_small() {
-    use super::update::{Event, update};
+    use super::commands::update::{Event, update};
     let keys = ["d", "o", "+", "D", "p", "P", "u", "Enter", "5", "Alt-d", "Space w", "v", ".", "q a", "Tab", "y"];
     for small in [(59, 24), (60, 19), (1, 1), (0, 0)] {
         let mut state = state();

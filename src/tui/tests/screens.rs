@@ -9,11 +9,12 @@ use ratatui::backend::TestBackend;
 use super::support::{press, state};
 use crate::base::picture::Picture;
 use crate::layers::parts::materials::Materials;
-use crate::tui::app::State;
+use crate::tui::commands::update::{Event, Synthesis, update};
 use crate::tui::graphics::Shown;
-use crate::tui::seeing::{self, Probed};
-use crate::tui::update::{Event, Synthesis, update};
-use crate::tui::view;
+use crate::tui::layout::seeing;
+use crate::tui::layout::seeing::Probed;
+use crate::tui::panes::view;
+use crate::tui::state::State;
 
 /// The states: a name, and the keys that lead there.
 pub const STATES: &[(&str, &str)] = &[

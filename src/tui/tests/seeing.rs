@@ -10,11 +10,13 @@ use serde_json::json;
 
 use super::screens::{STATES, changed, opened, screen, see};
 use super::support::{press, state};
-use crate::tui::app::State;
-use crate::tui::colour::Depth;
+use crate::tui::commands::update::{Event, update};
 use crate::tui::graphics::Protocol;
-use crate::tui::update::{Event, update};
-use crate::tui::{entry, seeing, view};
+use crate::tui::layout::seeing;
+use crate::tui::panes::view;
+use crate::tui::state::State;
+use crate::tui::state::entry;
+use crate::tui::text::colour::Depth;
 
 /// The screen as cells.
 fn cells(state: &State) -> Buffer {

@@ -2,11 +2,11 @@
 
 use std::sync::LazyLock;
 
-use crate::tui::app::State;
-use crate::tui::colour::Depth;
 use crate::tui::commands::obey;
-use crate::tui::door::Door;
-use crate::tui::update::{Effect, Event, update};
+use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::document::door::Door;
+use crate::tui::state::State;
+use crate::tui::text::colour::Depth;
 
 /// A scene with one of everything that the keys meet.
 pub const SCENE: &str = r#"{

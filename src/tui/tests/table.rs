@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use serde_json::json;
 
 use super::support::{press, state, state_of};
-use crate::tui::app::{Pane, State};
 use crate::tui::panes;
+use crate::tui::state::{Pane, State};
 
 /// The table alone in so many columns, line by line.
 fn table(state: &State, width: u16) -> Vec<String> {
@@ -87,7 +87,7 @@ fn handles_are_called_handles() {
     for (column, title) in [(0, "-- at x --"), (2, "-- in dx --"), (6, "-- out dx --"), (9, "-- out ° --")] {
         state.column = column;
         press(&mut state, "?");
-        let crate::tui::app::Mode::Pages(pages) = &state.mode else { panic!("no help") };
+        let crate::tui::state::Mode::Pages(pages) = &state.mode else { panic!("no help") };
         assert_eq!(pages.lines[0], title);
         assert!(
             !pages.lines.iter().take(9).any(|line| line.contains("1000000000") || line.contains("(2)")),

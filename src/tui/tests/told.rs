@@ -4,11 +4,11 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use serde_json::{Value, json};
 
-use super::super::app::{Mode, State};
-use super::super::update::{Event, update};
 use super::support::{press, replayed, state, state_of};
 use super::{motion, zone};
-use crate::tui::view;
+use crate::tui::commands::update::{Event, update};
+use crate::tui::panes::view;
+use crate::tui::state::{Mode, State};
 
 fn at(state: &State, pointer: &str) -> Value {
     state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null)

@@ -4,13 +4,13 @@ use super::support::press;
 use crate::files::Options;
 use crate::files::profiles::TUTOR;
 use crate::files::session::Mode as Open;
-use crate::tui::app::State;
-use crate::tui::colour::Depth;
-use crate::tui::door::Door;
+use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::document::door::Door;
 use crate::tui::keys::Keymap;
+use crate::tui::state::State;
+use crate::tui::text::colour::Depth;
 use crate::tui::tutor::Tutor;
 use crate::tui::tutor::lessons::LESSONS;
-use crate::tui::update::{Effect, Event, update};
 
 /// The tutor's scene with its first lesson.
 fn begun() -> (tempfile::TempDir, State) {

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::has_ended;
-use crate::tui::app::{Mode, Pane, State};
 use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, TABLE, TREE, TYPING};
+use crate::tui::state::{Mode, Pane, State};
 
 /// A step of the tutor.
 #[derive(Debug)]

@@ -1,0 +1,232 @@
+//! What happens to a scene outside the editor, and what is asked about it: unsaved edits of a session that did not end
+//! well, somebody else who edits the scene, another program that writes its file.
+
+use std::path::PathBuf;
+
+use super::update::Effect;
+use super::{Call, Command, Done, command};
+use crate::base::error::Error;
+use crate::files::session::Taken;
+use crate::scene::merge::Side;
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::document::door::Door;
+use crate::tui::outside::terminal::plain;
+use crate::tui::state::{Mode, Pages, State};
+
+/// So many changes are shown in a question; the rest can be looked at.
+const FEW: usize = 5;
+
+/// Something that only the person can decide.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Question {
+    /// What it is about.
+    pub about: About,
+    /// What is to be known, a line each.
+    pub text: Vec<String>,
+}
+
+/// What a question is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// Unsaved edits that a session left behind.
+    Recovery,
+    /// Somebody else edits the scene.
+    Holder,
+    /// Another program changed in the file what was changed here too.
+    File,
+}
+
+/// What the editor knows about the outside.
+#[derive(Clone, Debug, Default)]
+pub struct Life {
+    /// A question that waits until nothing else is going on.
+    pub waiting: Option<Choice>,
+    /// How the file differs from what it should be, in a word for the status line.
+    pub file: Option<&'static str>,
+}
+
+/// Where both changed the file and nothing was decided.
+const UNDECIDED: &str = "file differs";
+
+pub const COMMANDS: &[Command] = &[
+    command("merge", "[mine|theirs]", "Take in what another program wrote to the file", merge),
+    command("recovery", "[keep|drop]", "Answer about unsaved edits that were left behind, or ask again", recovery),
+];
+
+impl Life {
+    /// What is to be asked when a scene has been opened.
+    pub fn begin(door: &Door) -> Life {
+        let held = door.held_by().map(|holder| {
+            let text = vec![format!("The scene {}.", plain(&holder.in_words()))];
+            let mut options = vec![("look", "Open it to read only; it follows what is saved there")];
+            if !holder.certain {
+                options.push(("edit", "Edit it all the same: nobody is there any more"));
+            }
+            options.push(("quit", "Leave"));
+            question(About::Holder, "the scene is open elsewhere".into(), text, &options)
+        });
+        Life { waiting: held.or_else(|| about_recovery(door)), file: None }
+    }
+}
+
+/// What is asked about unsaved edits that were left behind.
+fn about_recovery(door: &Door) -> Option<Choice> {
+    let offer = door.offered()?;
+    let title = format!("{} left behind, {}", offer.in_words(), door.ago(offer.time_ms));
+    let mut text = few(&offer.words);
+    if offer.file_changed {
+        text.push("Another program has changed the file since.".into());
+    }
+    let options = [
+        ("recover", "Take the changes"),
+        ("leave", "Leave the file as it is; u still gives the changes"),
+        ("difference", "Look at all of them"),
+    ];
+    Some(question(About::Recovery, title, text, &options))
+}
+
+/// A list with what is to be known above it.
+fn question(about: About, title: String, text: Vec<String>, options: &[(&str, &str)]) -> Choice {
+    let options = options.iter().map(|(word, help)| (word.to_string(), help.to_string())).collect();
+    Choice { title, options, at: 0, then: Then::Answer(Question { about, text }) }
+}
+
+/// The first few lines, and how many more there are.
+fn few(lines: &[String]) -> Vec<String> {
+    let mut text: Vec<String> = lines.iter().take(FEW).map(|line| plain(line)).collect();
+    if lines.len() > FEW {
+        text.push(format!("and {} more", lines.len() - FEW));
+    }
+    text
+}
+
+/// Asks what waits, once nothing else is going on.
+pub fn ask(state: &mut State) {
+    if let (Mode::Normal, true) = (&state.mode, state.life.waiting.is_some()) {
+        state.mode = state.life.waiting.take().map_or(Mode::Normal, Mode::Choice);
+    }
+}
+
+/// Does what was chosen; `asked` comes again where something is to be looked at first.
+pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Done {
+    match (about, word) {
+        (About::Holder, "quit") => state.ask(Effect::Quit),
+        (About::Holder, "edit") => state.ask(Effect::TakeOver),
+        (About::Recovery, "recover") => return recover(state, true),
+        (About::Recovery, "leave") => return recover(state, false),
+        (About::Recovery, _) if word == "difference" => {
+            let lines = state.door.offered().map(|offer| offer.words.clone()).unwrap_or_default();
+            look(state, lines, asked);
+        }
+        (About::File, "mine") => return take_in(state, Some(Side::Mine)),
+        (About::File, "theirs") => return take_in(state, Some(Side::Theirs)),
+        (About::File, "difference") => {
+            let lines = state.door.difference().map_err(|error| error.to_string())?;
+            look(state, lines, asked);
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+/// Takes the unsaved edits that are offered, or leaves them.
+fn recover(state: &mut State, take: bool) -> Done {
+    let change = state.door.recover(take);
+    change.into_iter().for_each(|change| state.changed(change));
+    if take { take_in(state, None) } else { Ok(()) }
+}
+
+fn recovery(state: &mut State, call: &Call) -> Done {
+    let asked = about_recovery(&state.door).ok_or("no unsaved edits were left behind")?;
+    match call.text {
+        "" => state.life.waiting = Some(asked),
+        "keep" => return recover(state, true),
+        "drop" => return recover(state, false),
+        _ => return Err("recovery takes keep, drop or nothing".into()),
+    }
+    Ok(())
+}
+
+/// Shows lines, and then the question again.
+fn look(state: &mut State, lines: Vec<String>, then: Choice) {
+    let lines = if lines.is_empty() { vec!["there is no difference".into()] } else { lines };
+    let lines = lines.iter().map(|line| plain(line)).collect();
+    state.mode = Mode::Pages(Pages { title: "what differs".into(), lines, scroll: 0 });
+    state.life.waiting = Some(then);
+}
+
+/// Another program wrote the scene or one of its pictures.
+pub fn follow(state: &mut State, files: &[PathBuf]) {
+    if files.iter().any(|file| file != state.door.path()) {
+        state.ask(Effect::Reload);
+    }
+    if files.iter().any(|file| file == state.door.path())
+        && let Err(why) = take_in(state, None)
+    {
+        state.complain(why);
+    }
+}
+
+fn merge(state: &mut State, call: &Call) -> Done {
+    let side = match call.text {
+        "" => None,
+        "mine" => Some(Side::Mine),
+        "theirs" => Some(Side::Theirs),
+        _ => return Err("merge takes mine, theirs or nothing".into()),
+    };
+    take_in(state, side)?;
+    if state.message.is_none() && state.life.waiting.is_none() {
+        state.say("the file is as it was left");
+    }
+    Ok(())
+}
+
+/// Takes the file's version in, says so, or asks.
+fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
+    let (taken, change) = match state.door.take_in(prefer) {
+        Ok(taken) => taken,
+        Err(error) => {
+            state.life.file = Some("file unreadable");
+            return Err(format!("what is here stays: {}", first_line(&error)));
+        }
+    };
+    change.into_iter().for_each(|change| state.changed(change));
+    state.life.file = None;
+    match taken {
+        Taken::Nothing => {}
+        Taken::Gone => {
+            state.life.file = Some("file gone");
+            state.complain("the file was taken away: :w writes it again");
+        }
+        Taken::Whole if state.door.read_only() => state.say("the file was saved: this is what it holds now"),
+        Taken::Whole => state.say("the file was changed by another program: its version is here, u takes it back"),
+        Taken::Merged => {
+            state.say("the file was changed by another program: its changes are here beside the unsaved ones")
+        }
+        Taken::Asked(places) => ask_about_file(state, &places),
+    }
+    Ok(())
+}
+
+fn ask_about_file(state: &mut State, places: &[String]) {
+    state.life.file = Some(UNDECIDED);
+    let options = [
+        ("mine", "There, keep what is here; take in the rest"),
+        ("theirs", "There, take what the file has; keep the rest"),
+        ("difference", "Look at everything that differs"),
+        ("later", "Leave it open: :merge asks again, :w waits"),
+    ];
+    let title = "another program changed the same places".into();
+    state.life.waiting = Some(question(About::File, title, few(places), &options));
+}
+
+/// An error on one line.
+fn first_line(error: &Error) -> String {
+    match error {
+        Error::Scene { file, problems } => match problems.as_slice() {
+            [first, rest @ ..] if !rest.is_empty() => format!("{file}: {first} (and {} more)", rest.len()),
+            _ => error.to_string(),
+        },
+        _ => error.to_string(),
+    }
+}

@@ -1,0 +1,90 @@
+//! A list to choose from: the words of a choice, the kinds of a tagged object, the scene's images.
+
+use super::sheet::Cell;
+use crate::scene::field::{self, Kind};
+use crate::tui::commands::life::Question;
+use crate::tui::state::State;
+
+/// A list to choose from.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// What is chosen.
+    pub title: String,
+    /// What there is: a word, and a line of help.
+    pub options: Vec<(String, String)>,
+    /// The one under the cursor.
+    pub at: usize,
+    /// What happens with the word.
+    pub then: Then,
+}
+
+/// What happens with the word that was chosen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Then {
+    /// These places take it.
+    Set(Vec<String>),
+    /// The tagged object here becomes one of that kind.
+    Become(String),
+    /// The place of that address is gone to.
+    Go,
+    /// A question is answered.
+    Answer(Question),
+}
+
+impl Choice {
+    /// Moves the cursor as far as the list goes.
+    pub fn step(&mut self, by: i64) {
+        let last = self.options.len().saturating_sub(1) as i64;
+        self.at = (self.at as i64).saturating_add(by).clamp(0, last) as usize;
+    }
+
+    /// Moves the cursor to the next word that begins with a letter, after the last from the first on; false if none does.
+    pub fn seek(&mut self, letter: char) -> bool {
+        let begins = |i: &usize| self.options[*i].0.to_lowercase().starts_with(letter.to_ascii_lowercase());
+        let found = (self.at + 1..self.options.len()).chain(0..=self.at).find(|i| *i < self.options.len() && begins(i));
+        self.at = found.unwrap_or(self.at);
+        found.is_some()
+    }
+
+    /// Moves the cursor, from the last to the first.
+    pub fn turn(&mut self, by: i64) {
+        let n = self.options.len().max(1) as i64;
+        self.at = (self.at as i64 + by).rem_euclid(n) as usize;
+    }
+
+    /// The word under the cursor.
+    pub fn taken(&self) -> Option<&str> {
+        self.options.get(self.at).map(|(word, _)| word.as_str())
+    }
+}
+
+/// The words that a cell takes; `None` if it is typed.
+pub fn options(state: &State, kind: &Kind) -> Vec<(String, String)> {
+    match kind {
+        Kind::Choice(all) | Kind::Tagged { variants: all, .. } => {
+            all.iter().map(|one| (one.name.to_string(), one.help.to_string())).collect()
+        }
+        Kind::Bool => [("false", "no"), ("true", "yes")].map(|(word, help)| (word.into(), help.into())).to_vec(),
+        Kind::Reference(list) => {
+            let entries = field::children(state.document(), &format!("/{list}"));
+            let path = |pointer: &str| {
+                let value = field::value(state.document(), &format!("{pointer}/path"));
+                value.and_then(|path| path.as_str().map(crate::tui::outside::terminal::plain)).unwrap_or_default()
+            };
+            entries.into_iter().map(|entry| (entry.name, path(&entry.pointer))).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The list for a cell, the cursor on what it has; `None` if it is typed.
+pub fn of_cell(state: &State, cell: &Cell, others: Vec<String>) -> Option<Choice> {
+    let options = options(state, &cell.field.kind);
+    let at = options.iter().position(|(word, _)| *word == cell.text).unwrap_or(0);
+    let parent = cell.pointer.rsplit_once('/').map(|(parent, _)| parent.to_string()).unwrap_or_default();
+    let tag = field::field(state.document(), &parent).is_some_and(
+        |field| matches!(field.kind, Kind::Tagged { tag, .. } if cell.pointer.ends_with(&format!("/{tag}"))),
+    );
+    let then = if tag { Then::Become(parent) } else { Then::Set(others) };
+    (!options.is_empty()).then(|| Choice { title: cell.field.name.clone(), options, at, then })
+}

@@ -1,0 +1,333 @@
+//! The one door through which the editor changes a scene: a session (document, history, journal, file) and what the
+//! editor says about it.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use crate::base::error::{Error, Result};
+use crate::base::problem::Problem;
+use crate::base::text;
+use crate::files::holder::Holder;
+use crate::files::outputs::{self, Guard};
+use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
+use crate::files::{self, picture, write};
+use crate::scene::history::{Applied, Way};
+use crate::scene::merge::Side;
+use crate::scene::{Document, Edit, History};
+use crate::tui::commands::update::Change;
+
+/// What is said where the scene may only be looked at.
+const READ_ONLY: &str = "the scene is open for reading only: :w PATH saves a copy of it";
+
+/// A scene that is open.
+pub struct Door {
+    session: Session,
+    options: files::Options,
+    read_only: bool,
+    journaled: bool,
+    made: bool,
+}
+
+impl Door {
+    /// Opens a scene; or a picture, whose scene lies beside it and is made where it is not there.
+    ///
+    /// # Errors
+    /// The scene or the picture cannot be read, or somebody else edits the scene.
+    pub fn open(path: &Path, mode: Mode, options: &files::Options) -> Result<Door> {
+        let read_only = mode == Mode::ReadOnly;
+        let is_scene = path.extension().is_some_and(|extension| extension == "json");
+        let (scene, made) = if is_scene { (path.to_owned(), false) } else { beside(path, read_only, options)? };
+        let session = Session::open(&scene, options, mode)?;
+        let read_only = session.reads_only();
+        Ok(Door { session, options: options.clone(), read_only, journaled: !read_only, made })
+    }
+
+    /// The scene as it is now.
+    pub fn document(&self) -> &Document {
+        self.session.document()
+    }
+
+    /// The scene's file.
+    pub fn path(&self) -> &Path {
+        self.session.path()
+    }
+
+    /// How files are read.
+    pub fn options(&self) -> &files::Options {
+        &self.options
+    }
+
+    /// Whether the scene may only be looked at.
+    pub fn read_only(&self) -> bool {
+        self.read_only
+    }
+
+    /// How many changes there were.
+    pub fn revision(&self) -> u64 {
+        self.session.history().revision()
+    }
+
+    /// Whether the file holds the scene as it is now.
+    pub fn is_saved(&self) -> bool {
+        self.session.safety().saved
+    }
+
+    /// Whether every edit is safe in the journal, as far as there is one.
+    pub fn is_synced(&self) -> bool {
+        let safety = self.session.safety();
+        safety.journaled || !self.journaled || safety.failing.is_some()
+    }
+
+    /// Tries a journal again that could not be opened; to be called now and then.
+    pub fn tend(&mut self) {
+        self.session.tend();
+    }
+
+    /// Gives unsaved edits up: the next opening does not ask about them. Undo still has them.
+    pub fn give_up(&mut self) {
+        if !self.read_only {
+            self.session.give_up();
+        }
+    }
+
+    /// Where bytes of a damaged journal were kept aside.
+    pub fn kept_aside(&self) -> Option<&Path> {
+        self.session.kept_aside()
+    }
+
+    /// Why edits do not reach the journal.
+    pub fn failing(&self) -> Option<String> {
+        self.session.safety().failing.filter(|_| !self.read_only)
+    }
+
+    /// How long the screen may stay as it is: a mark that will go is looked after soon.
+    pub fn patience(&self) -> Duration {
+        let patience = match (self.failing().is_some(), self.is_synced()) {
+            (true, _) => 500,
+            (false, true) => 60_000,
+            (false, false) => 15,
+        };
+        Duration::from_millis(patience)
+    }
+
+    /// What is said when the scene has been opened.
+    pub fn greeting(&self, home: Option<String>) -> String {
+        let name = self.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let made = if self.made { "made, " } else { "" };
+        match self.session.kept_aside() {
+            Some(aside) => format!("{name}: the journal was damaged, what could not be read is in {}", aside.display()),
+            None => match home {
+                Some(line) => format!("at home: {line}; ? help, :tutor teaches"),
+                None if self.session.history().depth() == (0, 0) => format!("{name}: {made}? help, Space menu, :tutor"),
+                None => format!("{name}: ? help, :q leaves"),
+            },
+        }
+    }
+
+    /// Unsaved edits that a session left behind.
+    pub fn offered(&self) -> Option<&Recovery> {
+        self.session.recovery()
+    }
+
+    /// Who edits the scene, so that here it may only be looked at.
+    pub fn held_by(&self) -> Option<&Holder> {
+        self.session.held_by()
+    }
+
+    /// Refuses what would change the scene where it may only be looked at, or while unsaved edits of before wait for an
+    /// answer.
+    ///
+    /// # Errors
+    /// Says so.
+    pub fn writable(&self) -> std::result::Result<(), String> {
+        if self.read_only {
+            return Err(READ_ONLY.into());
+        }
+        match self.offered() {
+            None => Ok(()),
+            Some(offer) => Err(format!(
+                "{} left behind: :recovery keep takes them, :recovery drop leaves them (undo has them then)",
+                offer.in_words()
+            )),
+        }
+    }
+
+    /// Takes the unsaved edits that are offered, or leaves them; undo still gives them.
+    pub fn recover(&mut self, take: bool) -> Option<Change> {
+        let before = self.document().clone();
+        if take {
+            self.session.recover();
+        } else {
+            self.session.discard_recovery();
+        }
+        let edit = Edit::between(&before, self.document());
+        (!edit.is_empty()).then(|| Change { document: self.document().clone(), revision: self.revision(), edit })
+    }
+
+    /// Applies an edit; one of a held key joins the one before it. `None` if it changes nothing.
+    ///
+    /// # Errors
+    /// What would be wrong in the scene.
+    pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Change>, Vec<Problem>> {
+        self.writable().map_err(|why| vec![Problem::error("", why)])?;
+        let applied = self.session.apply(edit, held)?;
+        Ok(applied.map(|applied| self.change(applied)))
+    }
+
+    fn change(&self, applied: Applied) -> Change {
+        Change { document: self.document().clone(), revision: applied.revision, edit: applied.edit }
+    }
+
+    /// Takes the last step back; `None` if there is none.
+    pub fn undo(&mut self) -> Option<Change> {
+        let applied = self.session.undo()?;
+        Some(self.change(applied))
+    }
+
+    /// Does the last undone step again; `None` if there is none.
+    pub fn redo(&mut self) -> Option<Change> {
+        let applied = self.session.redo()?;
+        Some(self.change(applied))
+    }
+
+    /// Back to the scene as it was so long before now; before the present state where that is not the newest one. With it,
+    /// how many steps that is.
+    pub fn earlier(&mut self, time: Duration) -> (usize, Option<Change>) {
+        let history = self.session.history();
+        let now = if history.state() == history.newest() { files::now_ms() } else { history.time_ms() };
+        let all = self.session.travel(|history| history.earlier(now.saturating_sub(millis(time))));
+        self.travelled(all)
+    }
+
+    /// On by so long a time from the present state. With it, how many steps that is.
+    pub fn later(&mut self, time: Duration) -> (usize, Option<Change>) {
+        let time = self.session.history().time_ms().saturating_add(millis(time));
+        let all = self.session.travel(|history| history.later(time));
+        self.travelled(all)
+    }
+
+    /// Goes to a state of the history, in whatever branch it is.
+    pub fn go_to(&mut self, state: usize) -> Option<Change> {
+        let all = self.session.travel(|history| history.go_to(state));
+        self.travelled(all).1
+    }
+
+    fn travelled(&self, all: Vec<(Way, Applied)>) -> (usize, Option<Change>) {
+        let count = all.len();
+        let edit = Edit::all(all.into_iter().map(|(_, applied)| applied.edit));
+        (count, (count > 0).then(|| Change { document: self.document().clone(), revision: self.revision(), edit }))
+    }
+
+    /// What was done and can be undone.
+    pub fn history(&self) -> &History {
+        self.session.history()
+    }
+
+    /// How long ago a time (in milliseconds since the epoch) is, in words.
+    pub fn ago(&self, time_ms: u64) -> String {
+        text::ago(files::now_ms().saturating_sub(time_ms))
+    }
+
+    /// Ends a held key.
+    pub fn close_step(&mut self) {
+        self.session.close_step();
+    }
+
+    /// Saves; to another file where one is given, which must not be there yet. Gives what to say.
+    ///
+    /// # Errors
+    /// It is not saved then.
+    pub fn save(&mut self, to: Option<&Path>, overwrite: bool) -> Result<String> {
+        if let Some(to) = to {
+            let mut guard = Guard::default();
+            guard.protect(self.path(), self.document().scene());
+            guard.spare(to)?;
+            write::write_new(to, self.session.text().as_bytes())?;
+            let missing = outputs::missing(to, self.document().scene()).join(", ");
+            let but = if missing.is_empty() { missing } else { format!(", but lacks what it reads there: {missing}") };
+            return Ok(format!("{} is written{but}", to.display()));
+        }
+        if !overwrite && let Err(why) = self.session.may_overwrite() {
+            tracing::warn!("not saved: {why}");
+            return Err(Error::Usage("another program changed the file: :merge takes it in, :w! overwrites it".into()));
+        }
+        if !overwrite && self.session.refuse_protected().is_err() {
+            return Err(Error::Usage(
+                "the file is read-only: :w! writes it all the same, :w PATH saves elsewhere".into(),
+            ));
+        }
+        self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
+        Ok(format!("{} is saved", self.path().display()))
+    }
+
+    /// The scene as its file has it, as one edit. `None` if there is no difference.
+    ///
+    /// # Errors
+    /// The file cannot be read, or has errors in it.
+    pub fn revert(&mut self) -> Result<Option<Change>> {
+        let applied = self.session.revert()?;
+        Ok(applied.map(|applied| self.change(applied)))
+    }
+
+    /// Takes what another program wrote to the file in: see [`Session::take_in`].
+    ///
+    /// # Errors
+    /// The file cannot be read, or has errors in it.
+    pub fn take_in(&mut self, prefer: Option<Side>) -> Result<(Taken, Option<Change>)> {
+        let (taken, applied) = self.session.take_in(prefer)?;
+        Ok((taken, applied.map(|applied| self.change(applied))))
+    }
+
+    /// What the file has otherwise than the scene here, in words.
+    ///
+    /// # Errors
+    /// As [`Door::take_in`].
+    pub fn difference(&self) -> Result<Vec<String>> {
+        self.session.difference()
+    }
+
+    /// Waits until every edit is in the journal.
+    pub fn flush(&self) {
+        if let Err(reason) = self.session.flush() {
+            tracing::warn!("leaving without a journal: {reason}");
+        }
+    }
+
+    /// What becomes of unsaved edits that are left now, in words.
+    pub fn left_unsaved(&self) -> String {
+        match self.session.flush() {
+            Ok(()) => "the edits are not saved; the next `plica edit` offers them".into(),
+            Err(reason) => format!("the edits are not saved, and lost: no journal has them ({reason})"),
+        }
+    }
+}
+
+fn millis(time: Duration) -> u64 {
+    time.as_millis().try_into().unwrap_or(u64::MAX)
+}
+
+/// The scene beside a picture, and whether it had to be made.
+fn beside(picture: &Path, read_only: bool, options: &files::Options) -> Result<(PathBuf, bool)> {
+    let scene = picture.with_extension("plica.json");
+    if read_only || scene.exists() {
+        return Ok((scene, false));
+    }
+    let (width, height) = picture::size(picture, &options.limits)?;
+    let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (name, file) = (text(picture.file_stem()), text(picture.file_name()));
+    let place = || scene.display().to_string();
+    let document =
+        Document::new(&[(&name, &file, width, height)]).map_err(|problems| Error::Scene { file: place(), problems })?;
+    write::write_new(&scene, document.to_text().as_bytes())?;
+    Ok((scene, true))
+}
+
+#[cfg(test)]
+impl Door {
+    /// A scene whose edits stay in memory.
+    pub fn in_memory(path: &Path) -> Door {
+        let options = files::Options::default();
+        let session = Session::open(path, &options, Mode::ReadOnly).expect("a scene of the tests");
+        Door { session, options, read_only: false, journaled: false, made: false }
+    }
+}

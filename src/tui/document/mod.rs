@@ -1,0 +1,9 @@
+//! Views of a document: its nodes as rows and as a tree, its places, tables as text, and the door to its file.
+
+pub mod choice;
+pub mod door;
+pub mod palette;
+pub mod places;
+pub mod rows;
+pub mod sheet;
+pub mod tree;

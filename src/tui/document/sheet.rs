@@ -1,0 +1,355 @@
+//! A node of the scene as rows and cells, made from the schema: a list becomes a table, anything else a form, and a short
+//! list inside a form stands in it row by row. The panes draw a sheet and the commands edit its cells; neither knows a
+//! field by name, so a new parameter shows up here by itself.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use kurbo::Vec2;
+use serde_json::Value;
+
+use crate::scene::field::{self, Child, Field, Kind};
+use crate::scene::schema::{Body, Place};
+use crate::scene::{Document, pointer};
+use crate::tui::text::numbers;
+
+/// A node as rows. Each is made where it is looked at, so that a list of ten thousand is as quick as one of ten.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// Whether it is a list, its items the rows.
+    pub table: bool,
+    document: Document,
+    blocks: Vec<Block>,
+}
+
+/// Rows that follow one another and are made alike.
+#[derive(Clone, Debug)]
+struct Block {
+    /// The list whose items they are, or the one field.
+    pointer: String,
+    /// How many items; none for a field.
+    items: Option<usize>,
+}
+
+/// One row: a field, an item of a list, or the heading of a list inside a form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Where it is in the document.
+    pub pointer: String,
+    /// Its name or index.
+    pub label: String,
+    /// What it is.
+    pub field: Arc<Field>,
+    /// Whether it is written in the document.
+    pub set: bool,
+    /// Whether it is an item of a list.
+    pub item: bool,
+    /// What can be edited in it, from left to right.
+    pub cells: Vec<Cell>,
+}
+
+/// Something that is edited by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// Where its value is in the document; for a part of a list of numbers, where that list is.
+    pub pointer: String,
+    /// Which part of the value it is.
+    pub part: Part,
+    /// Its name in the row (x, y, dx, |J|, in dx), empty where the row's own name says it.
+    pub head: String,
+    /// What the value is.
+    pub field: Arc<Field>,
+    /// What it shows.
+    pub text: String,
+}
+
+/// Which part of a value a cell is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// One of its numbers.
+    Number(usize),
+    /// The length of the vector that it is.
+    Length,
+    /// The direction of the vector that it is, in degrees.
+    Degrees,
+}
+
+impl Cell {
+    /// Whether it takes numbers.
+    pub fn is_number(&self) -> bool {
+        self.part != Part::Whole || matches!(self.field.kind, Kind::Number { .. })
+    }
+
+    /// Whether it stands for something with an inside of its own.
+    pub fn is_node(&self) -> bool {
+        is_node(&self.field.kind)
+    }
+
+    /// Its number in the document.
+    pub fn number(&self, document: &Document) -> Option<f64> {
+        let value = field::value(document, &self.pointer)?;
+        match self.part {
+            Part::Whole => value.as_f64(),
+            Part::Number(index) => value.get(index)?.as_f64(),
+            Part::Length => vector(&value).map(|v| numbers::polar(v).0),
+            Part::Degrees => vector(&value).map(|v| numbers::polar(v).1),
+        }
+    }
+
+    /// The pointer and the value that say `number` in the document.
+    pub fn with_number(&self, document: &Document, number: f64) -> Option<(String, Value)> {
+        let json = |number: f64| match self.field.kind {
+            Kind::Number { integer: true } if number == number.trunc() => Value::from(number as i64),
+            _ => tidy_json(number),
+        };
+        let both = |v: Vec2| Some((self.pointer.clone(), Value::from(vec![tidy_json(v.x), tidy_json(v.y)])));
+        let old = field::value(document, &self.pointer)?;
+        match self.part {
+            Part::Whole => Some((self.pointer.clone(), json(number))),
+            Part::Number(index) => {
+                let mut all = old.as_array()?.clone();
+                *all.get_mut(index)? = json(number);
+                Some((self.pointer.clone(), all.into()))
+            }
+            Part::Length => both(numbers::with_length(vector(&old)?, number)),
+            Part::Degrees => both(numbers::cartesian(numbers::polar(vector(&old)?).0, number)),
+        }
+    }
+}
+
+/// A JSON number, without a fraction where it has none.
+pub fn tidy_json(number: f64) -> Value {
+    if number == number.trunc() && number.abs() < 1e15 { Value::from(number as i64) } else { Value::from(number) }
+}
+
+/// Whether something of this kind has an inside of its own.
+pub fn is_node(kind: &Kind) -> bool {
+    matches!(kind, Kind::Object | Kind::Tagged { .. } | Kind::List(_) | Kind::Map(_))
+}
+
+fn vector(value: &Value) -> Option<Vec2> {
+    Some(Vec2::new(value.get(0)?.as_f64()?, value.get(1)?.as_f64()?))
+}
+
+impl Block {
+    fn len(&self) -> usize {
+        self.items.unwrap_or(1)
+    }
+}
+
+impl Sheet {
+    /// The node at `node`; empty where there is none.
+    pub fn of(document: &Document, node: &str) -> Sheet {
+        let place = Place::of(document.json(), node);
+        let body = place.map(|place| place.shape.body());
+        let table = matches!(body, Some(Body::List(..) | Body::Map(_)));
+        let blocks = match (place, body) {
+            (Some(place), Some(Body::List(..))) => {
+                vec![Block { pointer: node.to_owned(), items: Some(field::count(place)) }]
+            }
+            (Some(place), Some(_)) => blocks(place, node),
+            _ => Vec::new(),
+        };
+        Sheet { table, document: document.clone(), blocks }
+    }
+
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        self.blocks.iter().map(Block::len).sum()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One row.
+    pub fn row(&self, index: usize) -> Option<Row> {
+        self.rows(index..index.checked_add(1)?).pop()
+    }
+
+    /// The rows of a range, as far as they are there.
+    pub fn rows(&self, range: Range<usize>) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let mut first = 0;
+        for block in &self.blocks {
+            let end = first + block.len();
+            let (from, to) = (range.start.clamp(first, end), range.end.clamp(first, end));
+            if from < to {
+                self.make(block, from - first..to - first, &mut rows);
+            }
+            first = end;
+        }
+        rows
+    }
+
+    /// The rows that are fields, not items of lists.
+    pub fn fields(&self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        self.blocks.iter().filter(|block| block.items.is_none()).for_each(|block| self.make(block, 0..1, &mut rows));
+        rows
+    }
+
+    fn make(&self, block: &Block, range: Range<usize>, rows: &mut Vec<Row>) {
+        let json = self.document.json();
+        match block.items {
+            Some(_) => {
+                let Some(list) = Place::of(json, &block.pointer) else { return };
+                let items = range.filter_map(|i| field::child(list, &block.pointer, &i.to_string()));
+                rows.extend(items.map(|(child, place)| item(child, place)));
+            }
+            None => {
+                let parent = pointer::split(&block.pointer);
+                let place = parent.as_ref().and_then(|(parent, _)| Place::of(json, parent));
+                let (Some((parent, name)), Some(place)) = (parent, place) else { return };
+                let Some((child, place)) = field::child(place, parent, &name) else { return };
+                rows.push(if self.table { item(child, place) } else { form_row(child, place) });
+            }
+        }
+    }
+
+    /// Where a row is in the document.
+    pub fn pointer(&self, index: usize) -> Option<String> {
+        let mut rest = index;
+        for block in &self.blocks {
+            match block.items {
+                Some(_) if rest < block.len() => return Some(pointer::join(&block.pointer, rest)),
+                None if rest == 0 => return Some(block.pointer.clone()),
+                _ => rest -= block.len(),
+            }
+        }
+        None
+    }
+
+    /// The row of a place in the document.
+    pub fn position(&self, pointer: &str) -> Option<usize> {
+        let mut first = 0;
+        for block in &self.blocks {
+            match block.items {
+                None if block.pointer == pointer => return Some(first),
+                Some(count) => {
+                    let token = pointer.strip_prefix(&block.pointer).and_then(|rest| rest.strip_prefix('/'));
+                    if let Some(index) = token.and_then(pointer::index).filter(|&index| index < count) {
+                        return Some(first + index);
+                    }
+                }
+                None => {}
+            }
+            first += block.len();
+        }
+        None
+    }
+}
+
+/// The fields of a form, each list that is shown inside it with its items.
+fn blocks(place: Place, node: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for (child, place) in field::below(place, node) {
+        let inside = match &child.field.kind {
+            Kind::List(of) if is_flat(&of.kind) => Some(field::count(place)),
+            _ => None,
+        };
+        blocks.push(Block { pointer: child.pointer.clone(), items: None });
+        blocks.extend(inside.map(|count| Block { pointer: child.pointer, items: Some(count) }));
+    }
+    blocks
+}
+
+fn item(child: Child, place: Place) -> Row {
+    let label = pointer::split(&child.pointer).map(|(_, token)| token).unwrap_or_default();
+    let field = Arc::new(child.field);
+    let cells = match &field.kind {
+        Kind::Object | Kind::Tagged { .. } => {
+            let inner = field::below(place, &child.pointer).into_iter();
+            inner.fold(Vec::new(), |row, (child, place)| {
+                joined(row, cells(&child.name, &child.pointer, &Arc::new(child.field), place, true))
+            })
+        }
+        _ => cells(&child.name, &child.pointer, &field, place, true),
+    };
+    Row { label, set: true, item: true, cells, pointer: child.pointer, field }
+}
+
+fn form_row(child: Child, place: Place) -> Row {
+    let Child { name, pointer, set, field } = child;
+    let field = Arc::new(field);
+    let cells = cells(&name, &pointer, &field, place, false);
+    Row { pointer, label: name, field, set, item: false, cells }
+}
+
+/// A row with the cells of one more field; their heads carry the field's name where they would be there twice.
+fn joined(mut row: Vec<Cell>, mut more: Vec<Cell>) -> Vec<Cell> {
+    if more.iter().any(|cell| row.iter().any(|other| other.head == cell.head)) {
+        more.iter_mut().for_each(|cell| cell.head = format!("{} {}", cell.field.name, cell.head));
+    }
+    row.append(&mut more);
+    row
+}
+
+/// Whether items of this kind are shown inside the form that holds their list: unnamed ones are.
+fn is_flat(kind: &Kind) -> bool {
+    matches!(kind, Kind::Numbers(_) | Kind::Number { .. } | Kind::Object)
+}
+
+/// The cells of a field. In a table each takes the field's name as its head where it has none of its own.
+fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: bool) -> Vec<Cell> {
+    let value = place.value.unwrap_or(&Value::Null);
+    let cell = |part, head: String, text| Cell { pointer: pointer.to_owned(), part, head, field: field.clone(), text };
+    let Kind::Numbers(names) = &field.kind else {
+        let head = if table { name.to_owned() } else { String::new() };
+        return vec![cell(Part::Whole, head, summary(field, value))];
+    };
+    let number = |i: usize| value.get(i).and_then(Value::as_f64).unwrap_or(0.0);
+    // Of the vectors of a row only one with a symbol goes without its name; handles and the like say which one they are.
+    let symbol = field.symbol;
+    let head = |own: &str| {
+        if symbol.is_some() || !table || !is_vector(names) { own.to_owned() } else { format!("{name} {own}") }
+    };
+    let shown = |i: usize| numbers::shown(number(i));
+    let mut all: Vec<Cell> =
+        names.iter().enumerate().map(|(i, name)| cell(Part::Number(i), head(name), shown(i))).collect();
+    if is_vector(names) {
+        let (length, degrees) = numbers::polar(Vec2::new(number(0), number(1)));
+        all.push(cell(
+            Part::Length,
+            head(&symbol.map_or("r".into(), |symbol| format!("|{symbol}|"))),
+            numbers::short(length),
+        ));
+        all.push(cell(Part::Degrees, head("°"), numbers::short(degrees)));
+    }
+    all
+}
+
+/// Whether numbers of these names are a vector, which also has a length and a direction.
+fn is_vector(names: &[String]) -> bool {
+    names == ["dx", "dy"]
+}
+
+/// The range of a field, where it is worth a word: some are as wide as they are only to keep sums finite.
+pub fn told_range(field: &Field) -> Option<String> {
+    const UNTOLD: f64 = 1e9;
+    field.range.filter(|(min, max)| *min > -UNTOLD || *max < UNTOLD)?;
+    field.range_text()
+}
+
+/// A value in a few characters.
+pub fn summary(field: &Field, value: &Value) -> String {
+    match (&field.kind, value) {
+        (_, Value::Null) => "none".into(),
+        (Kind::Number { .. }, value) => value.as_f64().map(numbers::shown).unwrap_or_default(),
+        (_, Value::String(text)) => crate::tui::outside::terminal::plain(text),
+        (_, Value::Bool(on)) => if *on { "yes" } else { "no" }.into(),
+        (Kind::Tagged { tag, .. }, value) => value.get(tag).and_then(Value::as_str).unwrap_or("?").into(),
+        (Kind::Numbers(_), Value::Array(items)) => {
+            items.iter().filter_map(Value::as_f64).map(numbers::shown).collect::<Vec<_>>().join(", ")
+        }
+        (_, Value::Array(items)) => format!("({})", items.len()),
+        (_, Value::Object(fields)) if matches!(field.kind, Kind::Map(_)) => format!("({})", fields.len()),
+        (_, Value::Object(fields)) => {
+            fields.get("name").and_then(Value::as_str).map(crate::tui::outside::terminal::plain).unwrap_or_default()
+        }
+        (_, value) => value.to_string(),
+    }
+}

@@ -1,0 +1,3 @@
+//! Where things stand on the screen.
+
+pub mod seeing;

@@ -1,0 +1,191 @@
+//! What `update` asks for, done: the editor's hands in files, threads, window and terminal.
+
+use std::path::Path;
+
+use super::image_editor;
+use super::runner::{Editor, Options, listen};
+use super::terminal;
+use super::worker::Job;
+use crate::base::system::folders;
+use crate::base::system::signals::{self, Signal};
+use crate::files::session::Mode;
+use crate::files::{lines, paths, picture, write};
+use crate::ops;
+use crate::tui::commands::update::{Effect, Event};
+use crate::tui::document::door::Door;
+use crate::tui::keys::Keymap;
+use crate::tui::layout::seeing;
+use crate::tui::layout::seeing::Request;
+use crate::tui::state::State;
+
+impl Editor {
+    /// Does one.
+    pub fn perform(&mut self, effect: Effect) {
+        match effect {
+            Effect::Publish(change) => {
+                self.preview.publish(&change.document, change.revision, &change.edit);
+                self.watch_files();
+            }
+            Effect::Show => {
+                self.preview.select(Some(self.state.focused()));
+                self.preview.transport(self.state.transport());
+            }
+            Effect::Pass => self.preview.passing(self.state.transport().time),
+            Effect::Reload => self.worker.ask(Request { fresh: true, ..seeing::request(&self.state) }),
+            Effect::Save { to, overwrite, leave } => {
+                let result = self.state.door.save(to.as_deref(), overwrite);
+                self.leaving = leave && result.is_ok();
+                self.take(Event::Saved(result.map_err(|error| error.to_string())));
+            }
+            Effect::Write(path, text) => {
+                let written =
+                    write::write_new(&path, text.as_bytes()).map(|()| format!("{} is written", path.display()));
+                self.take(Event::Saved(written.map_err(|error| error.to_string())));
+            }
+            Effect::Source(path) => {
+                if let Err(error) = self.source(&path) {
+                    self.state.complain(error.to_string());
+                }
+            }
+            Effect::Keymap => self.load_keys(),
+            Effect::Open(path) => {
+                self.open(&path, self.options.mode());
+            }
+            Effect::TakeOver => {
+                let path = self.state.door.path().to_owned();
+                self.open(&path, Mode::TakeOver);
+            }
+            Effect::Tutor => self.learn(),
+            Effect::Run(words) => self.start(&words),
+            Effect::Probe(words) if self.screen.is_none() => self.start(&words),
+            Effect::Probe(_) => {}
+            Effect::Complete { name, path, beside } => {
+                let found = paths::complete(beside.as_deref().unwrap_or(Path::new(".")), &path);
+                self.take(Event::Completed(found.into_iter().map(|path| format!("{name} {path}")).collect()));
+            }
+            Effect::Copy(text) => match &mut self.screen {
+                Some(screen) => terminal::copy(screen, &text),
+                // Without a screen there is no clipboard to hand it to.
+                None => text.lines().for_each(terminal::print),
+            },
+            Effect::Cancel => self.job.iter().for_each(Job::cancel),
+            // What the desktop opens may be run: only what is a picture is handed to it.
+            Effect::EditImage(path) => match picture::size(&path, &self.options.files.limits) {
+                Err(error) => self.state.complain(error.to_string()),
+                Ok(_) => match image_editor::open(&path) {
+                    Ok(said) => self.state.say(said),
+                    Err(why) => self.state.complain(why),
+                },
+            },
+            Effect::View(None) => {
+                // Why there is none is told each time it is asked for.
+                self.window_told.clear();
+                self.preview.open_window();
+            }
+            Effect::View(Some(command)) => self.preview.view(&command),
+            Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
+            Effect::Suspend => self.suspend(),
+            Effect::Quit => self.leaving = true,
+        }
+    }
+
+    /// Reads the person's own keys, and says what is wrong in them.
+    pub fn load_keys(&mut self) {
+        let path = folders::config().map(|folder| folder.join("keys.toml")).filter(|path| path.exists());
+        let Some(path) = path else { return self.state.keymap = Keymap::default() };
+        self.state.keymap = match lines::read(&path) {
+            Ok(text) => Keymap::with(&path.display().to_string(), &text),
+            Err(error) => Keymap::unread(error.to_string()),
+        };
+        match self.state.keymap.mistakes() {
+            [] => {}
+            [one] => self.state.complain(one.clone()),
+            [first, rest @ ..] => self.state.complain(format!("{first} ({} more: :keys)", rest.len())),
+        }
+    }
+
+    /// Opens another scene in the place of this one; says why where it cannot, and false.
+    fn open(&mut self, path: &Path, mode: Mode) -> bool {
+        match Door::open(path, mode, &self.options.files) {
+            Ok(door) => {
+                // Whoever opens another scene with unsaved edits here was asked.
+                self.state.door.give_up();
+                let window = self.preview.has_window();
+                // First, for it may be the same scene, and a scene has one editor.
+                self.preview.close();
+                self.preview = listen(&door, &self.options.files, self.sender.clone());
+                if window {
+                    self.preview.open_window();
+                }
+                let recorder = std::mem::take(&mut self.state.recorder);
+                let keymap = std::mem::take(&mut self.state.keymap);
+                let graphics = self.state.seeing.graphics.clone();
+                self.state = State { recorder, keymap, ..State::new(door, self.state.size, self.state.depth) };
+                self.state.seeing.graphics = graphics;
+                self.begin();
+                true
+            }
+            Err(error) => {
+                self.state.complain(error.to_string());
+                false
+            }
+        }
+    }
+
+    /// Begins the tutor on a scene of its own; the present folder becomes that scene's, so that what is written lies there.
+    fn learn(&mut self) {
+        match Options::tutor() {
+            Ok(options) => {
+                if self.open(&options.path, Mode::Edit) {
+                    self.options.tutor = options.tutor;
+                    self.begin_tutor();
+                }
+            }
+            Err(error) => self.state.complain(error.to_string()),
+        }
+    }
+
+    /// Runs a subcommand on the scene that is open, as it is now.
+    fn start(&mut self, words: &[String]) {
+        if self.state.seen.work.is_some() {
+            return self.state.complain("something runs already: Esc ends it");
+        }
+        let path = self.state.door.path().to_owned();
+        let words: Vec<String> = words.iter().map(|word| at_home(word)).collect();
+        let mut with = words.clone();
+        with.insert(1, path.to_string_lossy().into_owned());
+        let command = ops::parse(&with).or_else(|error| ops::parse(&words).map_err(|_| error));
+        match command {
+            Ok(command) => {
+                let name = words[0].clone();
+                let open = Some(ops::Open { path, document: self.state.document().clone() });
+                self.state.seen.work = Some(name.clone());
+                self.job = Some(Job::start(command, name, open, self.sender.clone()));
+            }
+            Err(error) => self.state.complain(error.to_string()),
+        }
+    }
+
+    /// Gives the terminal back, stops as Ctrl-Z does, and comes back with a fresh screen.
+    fn suspend(&mut self) {
+        if self.screen.is_none() {
+            return signals::default_action(Signal::Stop);
+        }
+        self.drain();
+        terminal::restore();
+        signals::default_action(Signal::Stop);
+        match terminal::enter() {
+            Ok(screen) => self.screen = Some(screen),
+            Err(_) => self.leaving = true,
+        }
+    }
+}
+
+/// A word of a command line as a shell would give it: a `~` that begins it, or the value of an option, is the home folder.
+fn at_home(word: &str) -> String {
+    let typed = |path: &str| paths::typed(path).to_string_lossy().into_owned();
+    match word.split_once('=') {
+        Some((option, path)) if option.starts_with("--") => format!("{option}={}", typed(path)),
+        _ => typed(word),
+    }
+}

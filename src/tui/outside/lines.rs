@@ -1,0 +1,253 @@
+//! The line mode, for a terminal that draws nothing (TERM=dumb) or none at all: the lines that are typed after `:` come
+//! from standard input, answers go to standard output as plain text, mistakes to standard error with the number of the
+//! line. The same commands through the same door; long work runs in the foreground.
+
+use std::io::{BufRead, IsTerminal, Read, Write, stdin, stdout};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use super::runner::Editor;
+use super::terminal;
+use crate::base::error::{Error, Result};
+use crate::scene::address;
+use crate::tui::commands;
+use crate::tui::commands::update::Event;
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::state::{Mode, Pane, State};
+
+/// A line may be this long, in bytes.
+const LONGEST: u64 = 1 << 20;
+/// Progress is told this often.
+const TELL_EVERY: Duration = Duration::from_secs(1);
+/// How long to wait for an event before looking again.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Whether a person types the lines.
+pub fn is_interactive() -> bool {
+    stdin().is_terminal() && stdout().is_terminal()
+}
+
+/// What has come of the lines so far.
+#[derive(Default)]
+struct Session {
+    interactive: bool,
+    /// How many lines were read.
+    number: usize,
+    failed: usize,
+    /// Whether the end of the input was met once with unsaved edits.
+    warned: bool,
+    /// What becomes of unsaved edits that the input ended with.
+    left: Option<String>,
+    /// Why edits reach no journal, as last told.
+    failing: Option<String>,
+    /// What was told of the work that runs, and when.
+    told: Option<(String, Instant)>,
+}
+
+impl Editor {
+    /// Runs the lines of standard input until one leaves, or they end.
+    ///
+    /// # Errors
+    /// Lines that failed, where nobody was there to see it.
+    pub fn run_lines(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
+        let interactive = is_interactive();
+        let mut session = Session { interactive, ..Session::default() };
+        if let Some(aside) = self.state.door.kept_aside() {
+            let what = "the journal was damaged, what could not be read is in";
+            terminal::remark(&format!("{what} {}", terminal::plain(&aside.display().to_string())));
+        }
+        if interactive {
+            terminal::print(&format!("{}  (? lists the commands, q leaves)", self.state.door.path().display()));
+        }
+        self.state.message = None;
+        let mut reading = false;
+        while !self.leaving {
+            self.run_scripts();
+            self.answer(&mut session);
+            self.state.door.tend();
+            session.see_journal(self.state.door.failing());
+            let busy = self.state.seen.work.is_some() || !self.scripts.is_empty();
+            if !busy && !reading {
+                session.prompt(&self.state);
+                read_line(self.sender.clone());
+                reading = true;
+            }
+            let patience =
+                if self.scripts.is_empty() || self.state.seen.work.is_some() { PATIENCE } else { Duration::ZERO };
+            for event in events.recv_timeout(patience).into_iter().chain(events.try_iter()) {
+                if let Event::Typed(line) = event {
+                    reading = false;
+                    self.typed(line, &mut session);
+                } else {
+                    self.take(event);
+                }
+            }
+        }
+        self.end();
+        self.ended().and(session.result())
+    }
+
+    /// Takes a line of the input; none at its end.
+    fn typed(&mut self, line: Option<String>, session: &mut Session) {
+        let Some(line) = line else { return self.input_ended(session) };
+        session.number += 1;
+        session.warned = false;
+        let line = line.trim();
+        let line = line.strip_prefix(':').unwrap_or(line).trim();
+        if line.is_empty() || line.starts_with('#') {
+            return;
+        }
+        match &self.state.mode {
+            Mode::Choice(choice) if choice.options.iter().any(|(word, _)| word == line) => {
+                self.take(Event::Line(format!("choose {}", commands::quoted(line))));
+            }
+            Mode::Choice(_) if line == "cancel" => self.state.mode = Mode::Normal,
+            _ if line == "?" || line == "help" => help().iter().for_each(|line| terminal::print(line)),
+            _ => {
+                if !line.starts_with("choose") && matches!(&self.state.mode, Mode::Choice(_)) {
+                    self.state.mode = Mode::Normal;
+                }
+                let before = place(&self.state);
+                self.take(Event::Line(line.to_owned()));
+                // Without a screen nothing else shows where the cursor has gone.
+                let here = place(&self.state);
+                if session.interactive && self.state.message.is_none() && here != before {
+                    self.state.say(here);
+                }
+            }
+        }
+        self.answer(session);
+    }
+
+    /// The input has ended: that leaves, but a person with unsaved edits is asked to say it twice.
+    fn input_ended(&mut self, session: &mut Session) {
+        let unsaved = !self.state.door.is_saved();
+        if unsaved && session.interactive && !session.warned {
+            session.warned = true;
+            return terminal::remark("there are unsaved edits: w saves them, q! leaves them");
+        }
+        session.left = unsaved.then(|| self.state.door.left_unsaved());
+        self.leaving = true;
+    }
+
+    /// Prints what there is to say.
+    fn answer(&mut self, session: &mut Session) {
+        let bad = self.state.message.as_ref().is_some_and(|message| message.bad);
+        if bad {
+            let text = self.state.message.take().map(|message| message.text).unwrap_or_default();
+            session.failed += 1;
+            match session.interactive {
+                true => terminal::print(&text),
+                false => terminal::remark(&format!("line {}: {text}", session.number)),
+            }
+        }
+        self.said().iter().for_each(|line| terminal::print(line));
+        session.tell(self.state.seen.work.as_deref());
+    }
+}
+
+impl Session {
+    /// Shows what is asked, and that a line may be typed.
+    fn prompt(&self, state: &State) {
+        if let Mode::Choice(choice) = &state.mode {
+            let lines = question(choice);
+            if self.interactive {
+                lines.iter().for_each(|line| terminal::print(line));
+            } else if matches!(choice.then, Then::Answer(_)) {
+                lines.iter().for_each(|line| terminal::remark(line));
+            }
+        }
+        if self.interactive {
+            let unsaved = if state.door.is_saved() { "" } else { "*" };
+            let mut out = stdout();
+            // A terminal that has gone away ends the input too.
+            let _ = write!(out, "plica{unsaved}> ").and_then(|()| out.flush());
+        }
+    }
+
+    /// Tells how long work gets on, now and then.
+    fn tell(&mut self, work: Option<&str>) {
+        let Some(work) = work else {
+            self.told = None;
+            return;
+        };
+        let due = self.told.as_ref().is_none_or(|(told, at)| told != work && at.elapsed() >= TELL_EVERY);
+        if due {
+            terminal::remark(work);
+            self.told = Some((work.to_owned(), Instant::now()));
+        }
+    }
+
+    /// Says when edits reach no journal, and when they do again.
+    fn see_journal(&mut self, failing: Option<String>) {
+        if failing != self.failing {
+            match &failing {
+                Some(why) => {
+                    terminal::remark(&format!("no journal: {} (only what is saved is safe)", terminal::plain(why)))
+                }
+                None => terminal::remark("the journal is written again"),
+            }
+            self.failing = failing;
+        }
+    }
+
+    fn result(&self) -> Result<()> {
+        let failed = match self.failed {
+            0 => None,
+            1 => Some("1 line failed".to_owned()),
+            many => Some(format!("{many} lines failed")),
+        };
+        match (failed, &self.left) {
+            (None, None) => Ok(()),
+            (_, left) if self.interactive => {
+                left.iter().for_each(|left| terminal::remark(left));
+                Ok(())
+            }
+            (Some(failed), left) => {
+                left.iter().for_each(|left| terminal::remark(left));
+                Err(Error::at("standard input", failed))
+            }
+            (None, Some(left)) => Err(Error::at("standard input", left).cure("w saves them, q! gives them up")),
+        }
+    }
+}
+
+/// Where the cursor is, and what stands there.
+fn place(state: &State) -> String {
+    let row = (state.focus != Pane::Tree).then(|| state.sheet().row(state.row)).flatten();
+    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let Some((row, cell)) = row.as_ref().zip(cell) else {
+        let node = address::told(state.document(), &state.node);
+        return if node.is_empty() { "scene".into() } else { node };
+    };
+    let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };
+    format!("{}{name}: {}", address::told(state.document(), &row.pointer), cell.text)
+}
+
+/// A list of choices as lines.
+fn question(choice: &Choice) -> Vec<String> {
+    let text: &[String] = if let Then::Answer(question) = &choice.then { &question.text } else { &[] };
+    let title = std::iter::once(format!("{}:", choice.title));
+    let text = text.iter().map(|line| format!("  {line}"));
+    let options = choice.options.iter().map(|(word, help)| format!("  {word:<12} {help}"));
+    let all: Vec<String> = title.chain(text).chain(options).collect();
+    all.into_iter().chain(["type one of these words, or cancel".into()]).collect()
+}
+
+/// Every command, as plain text.
+fn help() -> Vec<String> {
+    let commands = commands::all().map(|one| format!("{:<34} {}", format!("{} {}", one.name, one.args), one.help));
+    let ops = commands::subcommands().map(|name| format!("{name:<34} As `plica {name}` on this scene"));
+    commands.chain(ops).collect()
+}
+
+/// Reads one line on a thread of its own.
+fn read_line(sender: mpsc::Sender<Event>) {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        let read = stdin().lock().take(LONGEST).read_until(b'\n', &mut bytes);
+        let line = read.ok().filter(|&n| n > 0).map(|_| String::from_utf8_lossy(&bytes).into_owned());
+        // Nobody listens once the editor has left.
+        let _ = sender.send(Event::Typed(line));
+    });
+}

@@ -1,0 +1,66 @@
+//! The editor without a terminal: keys in, a drawn screen out. The benchmarks press keys through it.
+
+use std::path::Path;
+
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use crate::base::error::{Error, Result};
+use crate::files::{self, session::Mode};
+use crate::tui::commands::update::{Change, Effect, Event, update};
+use crate::tui::document::door::Door;
+use crate::tui::panes::view;
+use crate::tui::state::State;
+use crate::tui::text::colour::Depth;
+
+/// A scene that is open on a screen in memory. Nothing happens outside: no synthesis, no window.
+pub struct Offscreen {
+    state: State,
+    terminal: Terminal<TestBackend>,
+}
+
+impl Offscreen {
+    /// Opens the scene at `path` on a screen of `width` x `height` cells.
+    ///
+    /// # Errors
+    /// The scene cannot be read, or somebody else edits it.
+    pub fn open(path: &Path, (width, height): (u16, u16)) -> Result<Offscreen> {
+        let door = Door::open(path, Mode::Edit, &files::Options::default())?;
+        let terminal =
+            Terminal::new(TestBackend::new(width, height)).map_err(|error| Error::at("the screen", error))?;
+        Ok(Offscreen { state: State::new(door, (width, height), Depth::True), terminal })
+    }
+
+    /// Presses a key, by its name in the table, and draws the screen that it leads to.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
+    pub fn press(&mut self, key: &str) -> Result<()> {
+        self.take(key);
+        self.draw()
+    }
+
+    /// Takes a key without drawing: the changes of the scene that windows are told.
+    pub fn take(&mut self, key: &str) -> Vec<Change> {
+        let effects = update(&mut self.state, Event::Key(key.to_owned()));
+        let change = |effect| if let Effect::Publish(change) = effect { Some(*change) } else { None };
+        effects.into_iter().filter_map(change).collect()
+    }
+
+    /// Draws the screen.
+    ///
+    /// # Errors
+    /// It cannot be drawn.
+    pub fn draw(&mut self) -> Result<()> {
+        let Offscreen { state, terminal } = self;
+        terminal.draw(|frame| view::draw(frame, state)).map(drop).map_err(|error| Error::at("the screen", error))
+    }
+
+    /// What the screen shows, a line a row.
+    pub fn text(&self) -> String {
+        let buffer = self.terminal.backend().buffer();
+        let rows = buffer.content().chunks(usize::from(buffer.area.width).max(1));
+        let line = |row: &[ratatui::buffer::Cell]| row.iter().map(|cell| cell.symbol()).collect::<String>();
+        rows.map(|row| line(row).trim_end().to_owned() + "\n").collect()
+    }
+}

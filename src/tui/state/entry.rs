@@ -1,0 +1,255 @@
+//! A value being typed into a cell. The raw text is kept until it is taken; what it says is computed over the columns of
+//! the row, once for every selected row, and all of it is one edit.
+
+use kurbo::Point;
+use serde_json::Value;
+
+use super::place;
+use super::{Mode, State};
+use crate::base::expression::{self, Variables};
+use crate::scene::field::{self, Field, Kind};
+use crate::scene::{Document, Edit};
+use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
+use crate::tui::text::input::Text;
+use crate::tui::text::numbers;
+
+/// A value being typed.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What has been typed.
+    pub text: Text,
+}
+
+impl Entry {
+    /// Begins with the cell's value, all of its decimals; or from nothing.
+    pub fn new(document: &Document, cell: &Cell, clear: bool) -> Self {
+        let text = match cell.number(document) {
+            _ if clear => String::new(),
+            Some(number) if cell.is_number() => numbers::exact(number),
+            _ => field::value(document, &cell.pointer).and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default(),
+        };
+        Entry { text: Text::new(text, true) }
+    }
+}
+
+/// The rows that an edit applies to: the selection, else the row under the cursor.
+pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
+    let from = state.selected_from.unwrap_or(state.row);
+    let to = state.selected_to.filter(|_| state.selected_from.is_some()).unwrap_or(state.row);
+    from.min(to)..=from.max(to)
+}
+
+/// The cells that an edit of the cell under the cursor applies to, with their rows: the like ones of every selected row.
+pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
+    let document = state.document();
+    let Some(row) = sheet.row(state.row) else { return Vec::new() };
+    let Some(model) = row.cells.get(state.column) else { return Vec::new() };
+    let like =
+        |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
+    let list = row.pointer.rsplit_once('/').map(|(list, _)| list).filter(|_| row.item);
+    let inner = model.pointer.strip_prefix(&row.pointer).unwrap_or_default();
+    let of_row = |i: usize| {
+        let pointer = sheet.pointer(i)?;
+        // An item of the same kind has the same cells: it need not be made to be known.
+        let alike = list.is_some_and(|list| pointer.rsplit_once('/').is_some_and(|(own, _)| own == list))
+            && kind_of(document, &row.field, &pointer) == kind_of(document, &row.field, &row.pointer);
+        let cell = match alike {
+            true => Cell { pointer: pointer + inner, ..model.clone() },
+            // Elsewhere the column may have another place; in a form all that has no name of its own is alike.
+            false if model.head.is_empty() => sheet.row(i)?.cells.get(state.column).filter(like)?.clone(),
+            false => sheet.row(i)?.cells.iter().find(like)?.clone(),
+        };
+        Some((i, cell))
+    };
+    rows(state).filter_map(of_row).collect()
+}
+
+fn sheet_head(state: &State) -> String {
+    let row = state.sheet().row(state.row);
+    let head = row.as_ref().and_then(|row| row.cells.get(state.column)).map(|cell| cell.head.clone());
+    head.filter(|head| !head.is_empty()).unwrap_or_else(|| "that".into())
+}
+
+/// How many of the selected rows have the column under the cursor, where some have not.
+pub fn skipped(state: &State) -> Option<String> {
+    let all = rows(state).count();
+    let some = cells(state, &state.sheet()).len();
+    let head = sheet_head(state);
+    (some < all).then(|| format!("{some} of {all} rows have {head}"))
+}
+
+/// The word that says what kind of item stands at a place; `None` if there are no kinds.
+fn kind_of<'a>(document: &'a Document, field: &Field, pointer: &str) -> Option<&'a str> {
+    let Kind::Tagged { tag, .. } = field.kind else { return None };
+    document.json().pointer(pointer)?.get(tag)?.as_str()
+}
+
+/// The edit that `text` says for the cell under the cursor and the like ones of the selection.
+pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
+    let sheet = state.sheet();
+    let is_number = sheet.row(state.row).is_some_and(|row| row.cells.get(state.column).is_some_and(Cell::is_number));
+    if is_number {
+        return each(state, |row, cell, place| evaluate(state, &sheet, row, cell, place, text));
+    }
+    let cells = cells(state, &sheet).into_iter();
+    Ok(Edit::all(cells.map(|(_, cell)| set(state.document(), &cell.pointer, Value::from(text)))))
+}
+
+/// The edit that gives every number of the selection its value, told from its row, its cell and its place among them.
+/// Vectors without a length stay as they are where others are turned.
+pub fn each(
+    state: &State,
+    value: impl Fn(usize, &Cell, (usize, usize)) -> Result<f64, String>,
+) -> Result<Edit, String> {
+    let document = state.document();
+    let cells = cells(state, &state.sheet());
+    let n = cells.len();
+    let turns = |cell: &Cell| cell.part != Part::Degrees || length(document, cell) > 0.0;
+    let some = cells.iter().any(|(_, cell)| turns(cell));
+    let each = cells.iter().enumerate().filter(|(_, (_, cell))| turns(cell) || !some);
+    let edits = each.map(|(i, (row, cell))| number(document, cell, value(*row, cell, (i, n))?));
+    Ok(Edit::all(edits.collect::<Result<Vec<_>, _>>()?))
+}
+
+/// What the entry under way comes to, or what is wrong with it: the values of the first rows of the selection. `None` if
+/// no number is being typed.
+pub fn hint(state: &State) -> Option<Result<String, String>> {
+    const SHOWN: usize = 3;
+    let Mode::Entry(Entry { text }) = &state.mode else { return None };
+    let sheet = state.sheet();
+    let cells = cells(state, &sheet);
+    let n = cells.len();
+    if text.value().trim().is_empty() || !cells.first()?.1.is_number() {
+        return None;
+    }
+    let values = cells.iter().take(SHOWN).enumerate().map(|(i, (row, cell))| {
+        let value = evaluate(state, &sheet, *row, cell, (i, n), text.value())?;
+        in_range(&cell.field, cell.part, value).map(|()| numbers::exact(numbers::tidy(value)))
+    });
+    let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
+        let more = if n > SHOWN { " …" } else { "" };
+        let all = rows(state).count();
+        let counted = match n {
+            n if n < all => format!(" ({n} of {all} rows)"),
+            n if n > SHOWN => format!(" ({n} rows)"),
+            _ => String::new(),
+        };
+        format!("= {}{more}{counted}", values.join(", "))
+    });
+    Some(shown)
+}
+
+/// What `text` comes to for one cell, the `i`th of `n`.
+fn evaluate(
+    state: &State,
+    sheet: &Sheet,
+    row: usize,
+    cell: &Cell,
+    (i, n): (usize, usize),
+    text: &str,
+) -> Result<f64, String> {
+    // Plain numbers and changes by them name nothing.
+    let row = text.contains(char::is_alphabetic).then(|| sheet.row(row)).flatten();
+    let known = variables(state, sheet, row.as_ref(), cell, (i, n));
+    let known: Vec<(&str, f64)> = known.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    expression::evaluate(text, &Variables(&known)).map_err(|mistake| mistake.to_string())
+}
+
+fn variables(
+    state: &State,
+    sheet: &Sheet,
+    row: Option<&Row>,
+    cell: &Cell,
+    (i, n): (usize, usize),
+) -> Vec<(String, f64)> {
+    let document = state.document();
+    let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
+    let others = if row.is_none_or(|row| row.item) { Vec::new() } else { sheet.fields() };
+    for row in row.into_iter().chain(&others) {
+        // Of several vectors the one that is edited gives its dx, dy, r and a.
+        let (own, others): (Vec<&Cell>, Vec<&Cell>) = row.cells.iter().partition(|one| one.pointer == cell.pointer);
+        for cell in own.into_iter().chain(others).filter(|cell| cell.is_number()) {
+            let name = match cell.part {
+                Part::Length => "r",
+                Part::Degrees => "a",
+                _ if cell.head.is_empty() => &row.label,
+                Part::Number(_) => cell.head.rsplit(' ').next().unwrap_or(&cell.head),
+                Part::Whole => &cell.head,
+            };
+            if let (Some(value), false) = (cell.number(document), known.iter().any(|(known, _)| known == name)) {
+                known.push((name.to_string(), value));
+            }
+        }
+    }
+    if let Some((width, height)) = state.picture_size {
+        known.extend([("w".to_string(), width as f64), ("h".to_string(), height as f64)]);
+    }
+    known.extend([("i".to_string(), i as f64), ("n".to_string(), n as f64)]);
+    known
+}
+
+/// The edit that gives a cell this number; refused where it is out of the field's range.
+fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
+    in_range(&cell.field, cell.part, value)?;
+    if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
+        let length = if cell.field.name == "jump" { "|J|" } else { "r" };
+        return Err(format!("a vector without a length has no direction: set {length} first"));
+    }
+    let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
+    Ok(set(document, &pointer, value))
+}
+
+/// Whether a field takes this number; else its range.
+pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
+    let whole = matches!(field.kind, Kind::Number { integer: true });
+    if whole && value != value.trunc() {
+        return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
+    }
+    let counts = !matches!(part, Part::Length | Part::Degrees);
+    match field.range.filter(|(min, max)| counts && !(*min..=*max).contains(&value)) {
+        None => Ok(()),
+        Some(_) => {
+            let range = field.range_text().unwrap_or_default();
+            Err(format!("{} is out of range: {} takes {range}", numbers::exact(value), field.name))
+        }
+    }
+}
+
+fn length(document: &Document, cell: &Cell) -> f64 {
+    Cell { part: Part::Length, ..cell.clone() }.number(document).unwrap_or(0.0)
+}
+
+/// Whether a number is being typed.
+pub fn of_number(state: &State) -> bool {
+    state.sheet().row(state.row).is_some_and(|row| row.cells.get(state.column).is_some_and(Cell::is_number))
+}
+
+/// Types the coordinate of `at` that the field takes; a jump's is that from its point to there.
+///
+/// # Errors
+/// The field takes none.
+pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
+    let row = state.sheet().row(state.row);
+    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let label = row.as_ref().map_or("", |row| &row.label);
+    let name = cell.map_or("", |cell| if cell.head.is_empty() { label } else { &cell.head });
+    let from = place::selected(state).unwrap_or_default();
+    let (x, y) = (numbers::short(at.x), numbers::short(at.y));
+    let value = match name {
+        "x" => at.x,
+        "y" => at.y,
+        "dx" => at.x - from.x,
+        "dy" => at.y - from.y,
+        _ => return Err(format!("the window's pointer is at {x}, {y}: this field takes no coordinate")),
+    };
+    if let Mode::Entry(entry) = &mut state.mode {
+        entry.text = Text::new(numbers::exact(numbers::tidy(value)), true);
+    }
+    state.say(format!("the window's pointer is at {x}, {y}: Enter takes it"));
+    Ok(())
+}
+
+/// The edit that sets one place. A pair inside a list of numbers is set as a whole.
+pub fn set(document: &Document, pointer: &str, value: Value) -> Edit {
+    Edit::set(document, pointer, value)
+}

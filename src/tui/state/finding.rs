@@ -1,0 +1,158 @@
+//! Where the person has been and what was looked for: marks, the jump list, the search. Places go along with the items
+//! that they stand on.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::{Pane, State};
+use crate::scene::Document;
+use crate::tui::commands::update::{Change, Effect};
+use crate::tui::document::places;
+use crate::tui::document::places::Listed;
+
+/// So many places are kept in the jump list.
+const MOST_JUMPS: usize = 100;
+
+/// A place of the cursor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spot {
+    /// The pane that had the focus.
+    pub focus: Pane,
+    /// The node in the middle.
+    pub node: String,
+    /// The row under the cursor, by its pointer.
+    pub row: String,
+    /// The cell of the row.
+    pub column: usize,
+}
+
+/// Where the cursor was, and all else that going elsewhere changes.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    spot: Spot,
+    folded: BTreeSet<String>,
+    selected: (Option<usize>, Option<usize>),
+    /// The selection before, its node, first and last row.
+    selection: Option<(String, usize, usize)>,
+}
+
+/// Marks, jumps and the search.
+#[derive(Clone, Debug, Default)]
+pub struct Finding {
+    /// What was searched for last.
+    pub sought: String,
+    /// Where the cursor was when a search began to be typed.
+    pub origin: Option<Origin>,
+    marks: BTreeMap<char, Spot>,
+    older: Vec<Spot>,
+    newer: Vec<Spot>,
+    listed: Option<(Document, Arc<[Listed]>)>,
+}
+
+impl Finding {
+    /// Sets a mark.
+    pub fn mark(&mut self, name: char, spot: Spot) {
+        self.marks.insert(name, spot);
+    }
+
+    /// Where a mark was set.
+    pub fn marked(&self, name: char) -> Option<&Spot> {
+        self.marks.get(&name)
+    }
+
+    /// A jump leaves a place, to which older jumps lead back.
+    pub fn left(&mut self, spot: Spot) {
+        if self.older.last() != Some(&spot) {
+            self.older.push(spot);
+        }
+        if self.older.len() > MOST_JUMPS {
+            self.older.remove(0);
+        }
+        self.newer.clear();
+    }
+
+    /// The place that an older (or newer) jump left, from `here`; none at the end.
+    pub fn back(&mut self, older: bool, here: Spot) -> Option<Spot> {
+        let (from, to) = match older {
+            true => (&mut self.older, &mut self.newer),
+            false => (&mut self.newer, &mut self.older),
+        };
+        let last = from.iter().rposition(|spot| *spot != here)?;
+        from.truncate(last + 1);
+        let spot = from.pop()?;
+        to.push(here);
+        Some(spot)
+    }
+
+    /// The places that jumps have left, by pointer, the latest first.
+    pub fn jumps(&self) -> impl Iterator<Item = &str> {
+        self.older.iter().rev().map(|spot| spot.row.as_str())
+    }
+
+    /// The scene has changed: places go along with their items; those of items that are gone stay with their lists.
+    pub fn follow(&mut self, change: &Change) {
+        self.older.iter_mut().chain(&mut self.newer).chain(self.marks.values_mut()).for_each(|spot| {
+            spot.node = followed(&spot.node, change);
+            spot.row = followed(&spot.row, change);
+        });
+    }
+
+    /// Every place of the scene.
+    pub fn listed(&mut self, document: &Document) -> Arc<[Listed]> {
+        let known = self.listed.as_ref().filter(|(of, _)| Arc::ptr_eq(of.scene(), document.scene()));
+        if let Some((_, listed)) = known {
+            return listed.clone();
+        }
+        let listed: Arc<[Listed]> = places::list(document).into();
+        self.listed = Some((document.clone(), listed.clone()));
+        listed
+    }
+}
+
+fn followed(pointer: &str, change: &Change) -> String {
+    let mut at = Some(pointer);
+    while let Some(pointer) = at {
+        if let Some(there) = change.edit.follow(&change.document, pointer) {
+            return there;
+        }
+        at = pointer.rsplit_once('/').map(|(parent, _)| parent);
+    }
+    String::new()
+}
+
+impl State {
+    /// Where the cursor is.
+    pub fn spot(&self) -> Spot {
+        Spot { focus: self.focus, node: self.node.clone(), row: self.focused(), column: self.column }
+    }
+
+    /// Brings the cursor back to a place, or as near to it as there is one.
+    pub fn return_to(&mut self, spot: &Spot) {
+        self.unfold(&spot.node);
+        self.show(spot.node.clone());
+        self.settle();
+        let row = self.sheet().position(&spot.row).filter(|_| self.node == spot.node);
+        (self.row, self.column, self.focus) = (row.unwrap_or(self.row), spot.column, spot.focus);
+        self.settle();
+        self.ask(Effect::Show);
+    }
+
+    /// Where the cursor is, to be gone back to as if nothing had been.
+    pub fn origin(&self) -> Origin {
+        let (folded, selection) = (self.folded.clone(), self.kept.selection.clone());
+        Origin { spot: self.spot(), folded, selected: (self.selected_from, self.selected_to), selection }
+    }
+
+    /// Goes back there.
+    pub fn return_to_origin(&mut self, origin: &Origin) {
+        self.return_to(&origin.spot);
+        self.folded.clone_from(&origin.folded);
+        (self.selected_from, self.selected_to) = origin.selected;
+        self.kept.selection.clone_from(&origin.selection);
+    }
+
+    /// Unfolds what holds the node at `pointer` in the tree.
+    pub fn unfold(&mut self, pointer: &str) {
+        self.folded.retain(|folded| !pointer.strip_prefix(folded.as_str()).is_some_and(|rest| rest.starts_with('/')));
+    }
+}

@@ -1,0 +1,184 @@
+//! Placing on the picture by keyboard: a cursor with coordinates, and what it can set. What has a place, and which list
+//! takes points, is read from the schema.
+
+use kurbo::{Point, Vec2};
+use serde_json::Value;
+
+use super::State;
+use super::entry;
+use crate::scene::field::{self, Field, Kind};
+use crate::scene::{Document, Edit};
+use crate::tui::document::sheet::tidy_json;
+use crate::tui::text::numbers::tidy;
+
+/// The cursor and the zoom of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placing {
+    /// The cursor, in image pixels; on the centre of a pixel unless set by a number.
+    pub cursor: Point,
+    /// Pixels of the picture a dot; none: as many as show all of it.
+    pub zoom: Option<f64>,
+    /// The middle of what is in sight, as far as the picture and the cursor allow.
+    pub middle: Point,
+}
+
+impl Placing {
+    /// The cursor at a place, all of the picture in sight.
+    pub fn new(cursor: Point) -> Self {
+        Placing { cursor, zoom: None, middle: cursor }
+    }
+
+    /// Moves the cursor, within the picture where its size is known.
+    pub fn step(&mut self, by: Vec2, size: Option<(usize, usize)>) {
+        let moved = self.cursor + by;
+        let (w, h) = size.map_or((1e6, 1e6), |(w, h)| (w as f64, h as f64));
+        self.cursor = Point::new(moved.x.clamp(0.5, (w - 0.5).max(0.5)), moved.y.clamp(0.5, (h - 0.5).max(0.5)));
+    }
+}
+
+/// Whether a field is a pair of lengths with these names.
+fn is_pair(field: &Field, names: [&str; 2]) -> bool {
+    field.unit == Some("px") && matches!(&field.kind, Kind::Numbers(all) if *all == names)
+}
+
+fn read(document: &Document, pointer: &str) -> Option<Point> {
+    let value = field::value(document, pointer)?;
+    Some(Point::new(value.get(0)?.as_f64()?, value.get(1)?.as_f64()?))
+}
+
+/// Where the place of a thing is written: one pair, or x and y by themselves.
+enum Place {
+    Pair(String),
+    Apart(String),
+}
+
+/// The place of the thing at `pointer` itself; `None` if it has none.
+fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
+    let field = field::field(document, pointer)?;
+    if is_pair(&field, ["x", "y"]) {
+        return read(document, pointer).map(|at| (Place::Pair(pointer.into()), at));
+    }
+    if !matches!(field.kind, Kind::Object | Kind::Tagged { .. }) {
+        return None;
+    }
+    let children = field::children(document, pointer);
+    if let Some(child) = children.iter().find(|child| is_pair(&child.field, ["x", "y"])) {
+        return read(document, &child.pointer).map(|at| (Place::Pair(child.pointer.clone()), at));
+    }
+    let number = |name: &str| field::value(document, &format!("{pointer}/{name}"))?.as_f64();
+    Some((Place::Apart(pointer.into()), Point::new(number("x")?, number("y")?)))
+}
+
+fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
+    let (x, y) = (tidy_json(tidy(to.x)), tidy_json(tidy(to.y)));
+    match place {
+        Place::Pair(pointer) => entry::set(document, pointer, Value::from(vec![x, y])),
+        Place::Apart(pointer) => Edit::all(
+            [("x", x), ("y", y)].map(|(name, value)| entry::set(document, &format!("{pointer}/{name}"), value)),
+        ),
+    }
+}
+
+/// `pointer` and all that hold it, the innermost first.
+fn upward(pointer: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(pointer), |pointer| pointer.rsplit_once('/').map(|(parent, _)| parent))
+}
+
+/// The thing in focus that has a place: the row, or what holds it.
+fn placed(state: &State) -> Option<(String, Place, Point)> {
+    let focused = state.focused();
+    let document = state.document();
+    upward(&focused).find_map(|pointer| place(document, pointer).map(|(place, at)| (pointer.to_string(), place, at)))
+}
+
+/// Moves the thing in focus to the cursor.
+pub fn move_here(state: &State) -> Result<Edit, String> {
+    let (_, place, _) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
+    Ok(move_to(state.document(), &place, state.placing.cursor))
+}
+
+/// JSON pointer of the cell in focus.
+fn cell(state: &State) -> Option<String> {
+    let sheet = state.sheet();
+    sheet.row(state.row)?.cells.get(state.column).map(|cell| cell.pointer.clone())
+}
+
+/// The jump vector of the thing in focus whose cell that is, for the cursor to be its end.
+pub fn jump_in_focus(state: &State) -> Option<Vec2> {
+    let (pointer, _, at) = placed(state)?;
+    let cell = cell(state)?;
+    let children = field::children(state.document(), &pointer);
+    let is_jump = children.iter().any(|child| is_pair(&child.field, ["dx", "dy"]) && child.pointer == cell);
+    is_jump.then(|| state.placing.cursor - at)
+}
+
+/// Lets the jump vector (or the dragged place) of the thing in focus end at the cursor.
+pub fn aim_here(state: &State) -> Result<Edit, String> {
+    let document = state.document();
+    let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
+    let children = field::children(document, &pointer);
+    let cursor = state.placing.cursor;
+    let cell = cell(state);
+    let vectors = || children.iter().filter(|child| is_pair(&child.field, ["dx", "dy"]));
+    let in_focus = vectors().find(|child| Some(&child.pointer) == cell.as_ref());
+    let (target, value) = match in_focus.or_else(|| vectors().next()) {
+        Some(jump) => (jump, (cursor - at).to_point()),
+        None => {
+            let dragged = children.iter().filter(|child| is_pair(&child.field, ["x", "y"])).nth(1);
+            (dragged.ok_or("what is selected has no jump vector")?, cursor)
+        }
+    };
+    let value = vec![tidy_json(tidy(value.x)), tidy_json(tidy(value.y))];
+    Ok(entry::set(document, &target.pointer, Value::from(value)))
+}
+
+/// Adds a point at the cursor to the list in focus; with it, the pointer of the point.
+pub fn add_here(state: &State) -> Result<(Edit, String), String> {
+    let document = state.document();
+    let focused = state.focused();
+    let mut inner = None;
+    for pointer in upward(&focused) {
+        let after = inner.replace(pointer).and_then(|child: &str| child[pointer.len() + 1..].parse::<usize>().ok());
+        let is_list = field::field(document, pointer).is_some_and(|field| matches!(field.kind, Kind::List(_)));
+        let lists = match is_list {
+            true => vec![pointer.to_string()],
+            false => lists(document, pointer),
+        };
+        for list in lists {
+            let end = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
+            let index = if is_list { after.map_or(end, |i| i + 1) } else { end };
+            if let Some(added) = add_to(document, &list, index, state.placing.cursor) {
+                return Ok(added);
+            }
+        }
+    }
+    Err("no list in focus takes points: go to a zone's motion, outline or fold first".into())
+}
+
+/// The lists directly inside the node at `pointer`.
+fn lists(document: &Document, pointer: &str) -> Vec<String> {
+    let children = field::children(document, pointer).into_iter();
+    children.filter(|child| matches!(child.field.kind, Kind::List(_))).map(|child| child.pointer).collect()
+}
+
+fn add_to(document: &Document, list: &str, index: usize, at: Point) -> Option<(Edit, String)> {
+    let (edit, pointer) = Edit::insert_new(document, list, index)?;
+    let with = document.apply(&edit).ok()?;
+    let (place, _) = place(&with, &pointer)?;
+    Some((Edit::all([edit, move_to(&with, &place, at)]), pointer))
+}
+
+/// The next (1) or previous (-1) row that has a place: its number and the place.
+pub fn next_point(state: &State, by: i64) -> Option<(usize, Point)> {
+    let sheet = state.sheet();
+    let n = sheet.len() as i64;
+    (1..=n).find_map(|step| {
+        let row = (state.row as i64 + by * step).rem_euclid(n) as usize;
+        place(state.document(), &sheet.pointer(row)?).map(|(_, at)| (row, at))
+    })
+}
+
+/// The place of the thing in focus, for the marks on the picture.
+pub fn selected(state: &State) -> Option<Point> {
+    placed(state).map(|(_, _, at)| at)
+}

@@ -1,0 +1,132 @@
+//! The line at the bottom where commands and searches are typed, with completion and history.
+
+use super::input::Text;
+use crate::scene::field;
+use crate::tui::commands;
+use crate::tui::state::State;
+
+/// A line being typed.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// `:` or `/`.
+    pub kind: char,
+    /// What has been typed.
+    pub text: Text,
+    /// How far back in the history it is, and what was typed before going there.
+    recalled: Option<(usize, String)>,
+    /// What the last completion offered, and which of it is shown.
+    offered: Option<(Vec<String>, usize)>,
+}
+
+impl Line {
+    /// An empty line.
+    pub fn new(kind: char) -> Self {
+        Line { kind, text: Text::default(), recalled: None, offered: None }
+    }
+
+    /// A command begun.
+    pub fn with(text: &str) -> Self {
+        Line { text: Text::new(text, false), ..Line::new(':') }
+    }
+
+    /// What the completion offers, and which of it is shown.
+    pub fn offered(&self) -> Option<(&[String], usize)> {
+        self.offered.as_ref().map(|(all, at)| (all.as_slice(), *at))
+    }
+
+    /// Forgets completion and history: something was typed.
+    pub fn typed(&mut self) {
+        self.offered = None;
+        self.recalled = None;
+    }
+
+    /// Goes to an older (1) or newer (-1) line of `lines`.
+    pub fn recall(&mut self, lines: &[String], older: i64) {
+        let (back, typed) = self.recalled.clone().unwrap_or((0, self.text.value().to_string()));
+        let back = (back as i64 + older).clamp(0, lines.len() as i64) as usize;
+        let line = if back == 0 { typed.clone() } else { lines[lines.len() - back].clone() };
+        self.text = Text::new(line, false);
+        self.recalled = Some((back, typed));
+    }
+
+    /// Shows the next of `candidates` for the line, or of those offered before.
+    pub fn complete(&mut self, candidates: impl FnOnce(&str) -> Vec<String>) {
+        let (all, at) = match self.offered.take() {
+            Some((all, at)) if !all.is_empty() => {
+                let next = (at + 1) % all.len();
+                (all, next)
+            }
+            _ => (candidates(self.text.value()), 0),
+        };
+        if let Some(line) = all.get(at) {
+            self.text = Text::new(line.clone(), false);
+        }
+        self.offered = Some((all, at));
+    }
+}
+
+/// Commands that take the path of a file, and whether it is meant relative to the scene.
+const PATHS: &[(&str, bool)] =
+    &[("add", true), ("e", false), ("e!", false), ("log", false), ("source", false), ("w", false)];
+
+/// The command, the path typed so far and whether it is relative to the scene, where `typed` asks for a file.
+pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
+    let (name, path) = typed.split_once(' ')?;
+    PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
+}
+
+/// The lines that `typed` could become: command names, paths of the scene after `set`.
+pub fn candidates(state: &State, typed: &str) -> Vec<String> {
+    match typed.split_once(' ') {
+        None => commands::names().into_iter().filter(|name| name.starts_with(typed)).collect(),
+        Some((command @ ("set" | "get"), path)) => {
+            paths(state, path).into_iter().map(|path| format!("{command} {path}")).collect()
+        }
+        Some(_) => Vec::new(),
+    }
+}
+
+/// The paths of the scene that go on from `typed`, one name further.
+fn paths(state: &State, typed: &str) -> Vec<String> {
+    if typed.contains('=') {
+        return Vec::new();
+    }
+    let (parent, last) = typed.rsplit_once('.').unwrap_or(("", typed));
+    let pointer = if parent.is_empty() {
+        Some(String::new())
+    } else {
+        crate::scene::address::resolve(state.document(), parent).ok()
+    };
+    let children = pointer.map(|pointer| field::children(state.document(), &pointer)).unwrap_or_default();
+    let quoted = |name: String| if name.contains([' ', '.', '"', '=']) { format!("\"{name}\"") } else { name };
+    let names = children.into_iter().map(|child| quoted(child.name)).filter(|name| name.starts_with(last));
+    names.map(|name| if parent.is_empty() { name } else { format!("{parent}.{name}") }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn history_and_back() {
+        let lines = ["w".to_string(), "set a=1".to_string()];
+        let mut line = Line::new(':');
+        line.text.insert("q");
+        for (older, expected) in [(1, "set a=1"), (1, "w"), (1, "w"), (-1, "set a=1"), (-1, "q"), (-1, "q")] {
+            line.recall(&lines, older);
+            assert_eq!(line.text.value(), expected);
+        }
+    }
+
+    #[test]
+    fn completion_goes_round() {
+        let mut line = Line::new(':');
+        line.text.insert("r");
+        for expected in ["redo", "render", "redo"] {
+            line.complete(|_| vec!["redo".into(), "render".into()]);
+            assert_eq!(line.text.value(), expected);
+        }
+        line.typed();
+        assert_eq!(line.offered(), None);
+    }
+}
