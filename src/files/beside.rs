@@ -1,5 +1,5 @@
-//! The hidden files that belong to a scene and lie beside it: its journal, who edits it, a save under way. No two scenes of
-//! a folder share one, whatever they are called.
+//! The hidden files beside a scene that belong to it: its journal, who edits it, a save in progress. No two scenes in a
+//! folder share one, whatever their names.
 
 use std::ffi::{OsStr, OsString};
 use std::os::unix::ffi::OsStrExt;
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use super::{disk, scene};
 
-/// What most file systems take, in bytes.
+/// The longest file name on most file systems, in bytes.
 const LONGEST: usize = 255;
 
-/// The hidden file of a scene for one purpose: `.cat.journal` of `cat.plica.json`, `.cat.json.journal` of `cat.json`. Names
-/// that could be taken for one of these are marked, and those that would be too long are hashed.
+/// The hidden file of a scene for one purpose: `.cat.journal` for `cat.plica.json`, `.cat.json.journal` for `cat.json`.
+/// Names that could be mistaken for one of these are marked, and those that would be too long are hashed.
 pub fn path(scene_path: &Path, purpose: &str) -> PathBuf {
     let name = scene_path.file_name().unwrap_or_default();
     let bytes = name.as_bytes();

@@ -1,5 +1,6 @@
-//! Files of scenes on other machines, kept in the user's cache by content hash: what was transferred once is not again. A
-//! file is checked by its hash before it counts; the least recently used go when there is too much.
+//! Files of scenes on other machines, kept in the user's cache by content hash, so that nothing is transferred twice. A
+//! file is checked against its hash before it is used; the least recently used are evicted when the cache grows too
+//! large.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -15,7 +16,7 @@ use super::{Limits, paths, temporary};
 use crate::base::error::{Error, Result};
 use crate::base::system::folders;
 
-/// The most files that are kept, and that one scene may name.
+/// The most files in the cache, and the most that one scene may name.
 pub const MOST_FILES: usize = 4096;
 
 /// A folder of files named by their hash.
@@ -26,20 +27,20 @@ pub struct Cache {
 }
 
 impl Cache {
-    /// The user's own: `plica/images` in the cache folder.
+    /// The user's cache: `plica/images` in the cache folder.
     ///
     /// # Errors
-    /// There is no home, or the folder cannot be made.
+    /// If there is no home, or the folder cannot be created.
     pub fn of_user(limits: &Limits) -> Result<Cache> {
         let folder =
             folders::cache().ok_or_else(|| Error::at("cache", "there is no home").cure("set XDG_CACHE_HOME"))?;
         Cache::at(folder.join("images"), limits.cache)
     }
 
-    /// One in `folder`, of at most `most` bytes.
+    /// A cache in `folder`, of at most `most` bytes.
     ///
     /// # Errors
-    /// The folder cannot be made.
+    /// If the folder cannot be created.
     pub fn at(folder: PathBuf, most: u64) -> Result<Cache> {
         fs::create_dir_all(&folder)
             .map_err(|error| Error::at(folder.display(), error).cure("set XDG_CACHE_HOME to a folder of yours"))?;
@@ -47,35 +48,35 @@ impl Cache {
         Ok(Cache { folder, most })
     }
 
-    /// The file with these contents, where it is here and whole; one that is not is removed.
+    /// The file with these contents, if it is in the cache and intact; a damaged one is removed.
     pub fn find(&self, wanted: &Contents) -> Option<PathBuf> {
         let path = self.path(&wanted.hash)?;
         let mut file = paths::open_named(&path).ok()?;
         if contents(&mut file).ok().as_ref() != Some(wanted) {
-            // It is asked for again; what cannot be removed is replaced then.
+            // It will be transferred again; if it cannot be removed now, it is replaced then.
             drop(fs::remove_file(&path));
             return None;
         }
-        // When it was used last; where that cannot be kept it goes earlier, and that is all.
+        // The modification time is when it was last used; if it cannot be set, the file is only evicted earlier.
         drop(File::options().write(true).open(&path).and_then(|file| file.set_modified(SystemTime::now())));
         Some(path)
     }
 
-    /// Begins to take a file.
+    /// Begins to receive a file.
     ///
     /// # Errors
-    /// The hash is none, or the folder cannot be written.
+    /// If the hash is not a hash, or the folder cannot be written.
     pub fn begin(&self, wanted: &Contents) -> Result<Incoming> {
         let path = self.path(&wanted.hash).ok_or_else(|| Error::at("link", "a hash that is none"))?;
         Ok(Incoming { file: Atomic::create(&path)?, path, wanted: wanted.clone(), hash: Sha256::new(), have: 0 })
     }
 
-    /// The most bytes that are kept.
+    /// The most bytes in the cache.
     pub fn most(&self) -> u64 {
         self.most
     }
 
-    /// Removes the least recently used until the rest fits; what is in `used` stays.
+    /// Evicts the least recently used files until the rest fits; those in `used` (hashes) stay.
     pub fn trim(&self, used: &BTreeSet<String>) {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let mut files: Vec<_> = entries
@@ -91,7 +92,7 @@ impl Cache {
             if all <= self.most && count <= MOST_FILES {
                 return;
             }
-            // Another window may have been first.
+            // Another window may have removed it already.
             drop(fs::remove_file(path));
             (all, count) = (all - bytes, count - 1);
         }
@@ -103,7 +104,7 @@ impl Cache {
     }
 }
 
-/// A file that is being taken, piece by piece. Dropped before it is whole, it leaves nothing behind.
+/// A file being received, piece by piece. If dropped before it is complete, it leaves nothing behind.
 #[derive(Debug)]
 pub struct Incoming {
     file: Atomic,
@@ -114,20 +115,20 @@ pub struct Incoming {
 }
 
 impl Incoming {
-    /// What it is to be.
+    /// The contents that it should have.
     pub fn wanted(&self) -> &Contents {
         &self.wanted
     }
 
-    /// How many bytes are here.
+    /// How many bytes have been received.
     pub fn have(&self) -> u64 {
         self.have
     }
 
-    /// Takes the next bytes.
+    /// Adds the next bytes.
     ///
     /// # Errors
-    /// There are more than were told of, or they cannot be written.
+    /// If there are more than announced, or they cannot be written.
     pub fn add(&mut self, bytes: &[u8]) -> Result<()> {
         self.have += bytes.len() as u64;
         if self.have > self.wanted.bytes {
@@ -137,10 +138,10 @@ impl Incoming {
         self.file.write_all(bytes).map_err(|error| Error::at(self.path.display(), error))
     }
 
-    /// Checks the whole and puts it in its place.
+    /// Checks the whole file and moves it into place.
     ///
     /// # Errors
-    /// It is not what was told of, or cannot be written.
+    /// If it is not what was announced, or cannot be written.
     pub fn finish(self) -> Result<PathBuf> {
         if hex(&self.hash.finalize()) != self.wanted.hash {
             return Err(Error::at("link", "a file that is not what was said"));

@@ -1,5 +1,5 @@
-//! The operations that what is durable is made of, one function each. A test can make the n-th of them fail or kill the
-//! process there, where no tracer may do it from outside (tests/durability.rs).
+//! The disk operations that durability is built from, one function each. A test can make the n-th of them fail, or kill
+//! the process there, where no tracer can do it from outside (tests/durability.rs).
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -10,12 +10,12 @@ use std::time::Duration;
 
 use crate::base::system;
 
-/// What happens at an operation that a test chose.
+/// What happens at the operation that a test chose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It fails.
+    /// The operation fails.
     Error,
-    /// The process ends there; a write is half done.
+    /// The process is killed there; a write is half done.
     Kill,
 }
 
@@ -34,15 +34,15 @@ pub fn operations() -> u64 {
     DONE.load(Ordering::SeqCst)
 }
 
-/// Makes a file that must not be there yet; others may read it as the process's umask says, or nobody.
+/// Creates a file that must not exist yet, readable for its owner alone if `private`, otherwise by the process's umask.
 pub fn create_new(path: &Path, private: bool) -> io::Result<File> {
     operation(None)?;
     let mode = if private { 0o600 } else { 0o666 };
     OpenOptions::new().read(true).write(true).create_new(true).mode(mode).open(path)
 }
 
-/// Opens a file of ours to read and write, made with mode 0600 where missing. A link, and whatever is no regular file, is
-/// refused; a FIFO makes nobody wait.
+/// Opens a file of ours to read and write, created with mode 0600 if missing. A link, and anything but a regular file,
+/// is refused; opening a FIFO never blocks.
 pub fn open_private(path: &Path) -> io::Result<File> {
     operation(None)?;
     let mut options = OpenOptions::new();
@@ -51,10 +51,10 @@ pub fn open_private(path: &Path) -> io::Result<File> {
     regular(options.open(path)?)
 }
 
-/// The file, where it is a regular one.
+/// The file, if it is a regular file.
 ///
 /// # Errors
-/// It is a folder, a FIFO, a device or a socket: `InvalidInput`, and says which.
+/// `InvalidInput` if it is a folder, a FIFO, a device or a socket; the message says which.
 pub fn regular(file: File) -> io::Result<File> {
     let kind = file.metadata()?.file_type();
     let kinds = [
@@ -69,19 +69,19 @@ pub fn regular(file: File) -> io::Result<File> {
     }
 }
 
-/// Writes all of `bytes` where the file stands.
+/// Writes all of `bytes` at the file's current position.
 pub fn write(file: &mut File, bytes: &[u8]) -> io::Result<()> {
     operation(Some((file, bytes)))?;
     file.write_all(bytes)
 }
 
-/// Cuts the file off.
+/// Truncates the file to `length` bytes.
 pub fn truncate(file: &File, length: u64) -> io::Result<()> {
     operation(None)?;
     file.set_len(length)
 }
 
-/// Brings the file and its attributes to the disk. After a failure its pages may be lost for good: write a new file.
+/// Flushes the file and its attributes to the disk. After a failure its pages may be lost for good: write a new file.
 pub fn sync(file: &File) -> io::Result<()> {
     operation(None)?;
     #[cfg(test)]
@@ -91,31 +91,31 @@ pub fn sync(file: &File) -> io::Result<()> {
     file.sync_all()
 }
 
-/// Brings the file's content to the disk; as [`sync`].
+/// Flushes the file's content to the disk, as [`sync`] does.
 pub fn sync_data(file: &File) -> io::Result<()> {
     operation(None)?;
     file.sync_data()
 }
 
-/// Puts `from` in the place of `to`, at once.
+/// Atomically replaces `to` with `from`.
 pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     operation(None)?;
     std::fs::rename(from, to)
 }
 
-/// Brings the names in the folder of `path` to the disk.
+/// Flushes the names in the folder of `path` to the disk.
 pub fn sync_folder_of(path: &Path) -> io::Result<()> {
     operation(None)?;
     File::open(folder_of(path))?.sync_all()
 }
 
-/// Takes the file away.
+/// Removes the file.
 pub fn remove(path: &Path) -> io::Result<()> {
     operation(None)?;
     std::fs::remove_file(path)
 }
 
-/// The folder that `path` lies in.
+/// The folder that contains `path`.
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -125,7 +125,7 @@ pub fn folder_of(path: &Path) -> &Path {
 
 #[cfg(test)]
 thread_local! {
-    /// Whether nothing that this thread writes reaches the disk.
+    /// Whether the disk counts as full for this thread.
     pub static IS_FULL: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
 }
 
@@ -134,7 +134,7 @@ fn operation(written: Option<(&mut File, &[u8])>) -> io::Result<()> {
         return Ok(());
     }
     if KILLS.load(Ordering::SeqCst) {
-        // A slow disk: whoever does not wait for it has time to say that all is well.
+        // A slow disk: a caller that does not wait for it has time to report success too early.
         std::thread::sleep(Duration::from_millis(20));
         if let Some((file, bytes)) = written {
             file.write_all(&bytes[..bytes.len() / 2])?;

@@ -1,5 +1,5 @@
-//! Output that appears whole or not at all: it is written to a hidden temporary beside its place and renamed when it is
-//! complete. A draft that is dropped before (an error, an interrupt) leaves nothing.
+//! Output that appears complete or not at all: it is written to a hidden temporary file beside its place and renamed
+//! when complete. A draft that is dropped before (after an error or an interrupt) leaves nothing behind.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -11,17 +11,17 @@ use super::temporary::{self, Temporary};
 use super::write::Atomic;
 use crate::base::error::{Error, Result};
 
-/// A file being written, buffered. What already stands in its place stays until [`DraftFile::keep`].
+/// A file being written, buffered. A file that is already in its place stays until [`DraftFile::keep`].
 #[derive(Debug)]
 pub enum DraftFile {
     /// A regular file.
     Whole(BufWriter<Atomic>, PathBuf),
-    /// A pipe or a device, which is written as it goes.
+    /// A pipe or a device, which is written directly.
     Special(BufWriter<File>, PathBuf),
 }
 
 impl DraftFile {
-    /// Begins a file that shall stand at `place`. A link is followed; the folder must be there.
+    /// Begins a file for `place`. A link is followed; the folder must exist.
     pub fn create(place: &Place) -> Result<Self> {
         let path = place.path();
         if !fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
@@ -31,7 +31,7 @@ impl DraftFile {
         Ok(DraftFile::Special(BufWriter::new(file), path.to_path_buf()))
     }
 
-    /// Puts the file in its place, replacing what stood there.
+    /// Moves the file into place, replacing what was there.
     pub fn keep(self) -> Result<()> {
         match self {
             DraftFile::Whole(file, path) => {
@@ -67,7 +67,8 @@ impl Seek for DraftFile {
     }
 }
 
-/// A file that another program writes: it is to write what is there over, and [`Atomic::commit`] puts it in its place.
+/// A file for another program to write: the program overwrites the temporary file, and [`Atomic::commit`] moves it into
+/// place.
 ///
 /// # Errors
 /// As [`Atomic::create`].
@@ -75,8 +76,8 @@ pub fn for_program(place: &Place) -> Result<Atomic> {
     Atomic::create(place.path())
 }
 
-/// A set of files being written, to stand in one folder. Files that already stand there stay until [`DraftFolder::keep`];
-/// those of an earlier set that the new one has not go then, and those of other names stay for good.
+/// A set of files being written to one folder. Files that are already there stay until [`DraftFolder::keep`]; those of
+/// an earlier set that are not in the new one are removed then, and files with other names stay for good.
 #[derive(Debug)]
 pub struct DraftFolder {
     target: PathBuf,
@@ -87,14 +88,14 @@ pub struct DraftFolder {
 }
 
 impl DraftFolder {
-    /// Begins a set of files for the folder at `place`, which need not be there; the folder around it must.
+    /// Begins a set of files for the folder at `place`, which need not exist; its parent must.
     pub fn create(place: &FolderPlace) -> Result<Self> {
         let path = place.path();
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if target.exists() && !target.is_dir() {
             return Err(Error::at(path.display(), "is a file, not a folder").cure("name a folder"));
         }
-        // Within a folder that is there, else beside it: renaming needs one file system.
+        // In the folder if it exists, otherwise beside it: renaming works only within one file system.
         let temporary =
             if target.is_dir() { Temporary::beside(&target.join("file")) } else { Temporary::beside(&target) };
         fs::create_dir(temporary.path()).map_err(|e| at_folder_of(path, &e))?;
@@ -112,8 +113,8 @@ impl DraftFolder {
         written.map_err(|e| Error::at(self.target.join(name).display(), e))
     }
 
-    /// Puts the files in their place, in the order of `names`: the last one should tell of the others. What is left of the
-    /// earlier set goes just before it.
+    /// Moves the files into place, in the order of `names`: the last one should be the one that lists the others. What
+    /// is left of the earlier set is removed just before it.
     pub fn keep(self, names: &[String]) -> Result<()> {
         if !self.target.exists() {
             return self.temporary.put(&self.target).map_err(|e| Error::at(self.target.display(), e));
@@ -121,7 +122,7 @@ impl DraftFolder {
         let (others, last) = names.split_at(names.len().saturating_sub(1));
         others.iter().try_for_each(|name| self.put(name))?;
         for name in self.earlier.iter().filter(|name| !names.contains(name)) {
-            // One that cannot be removed does no harm but to order.
+            // One that cannot be removed is only untidy.
             let _ = fs::remove_file(self.target.join(name));
         }
         last.iter().try_for_each(|name| self.put(name))
@@ -188,7 +189,7 @@ mod tests {
         draft.write("a", b"1").unwrap();
         drop(draft);
         assert!(names(folder.path()).is_empty());
-        // What the set is, what the one before was, what is there then.
+        // The new set, the earlier set, the files there afterwards.
         for (content, earlier, there) in [
             (&["a", "old", "m"][..], &[][..], &["a", "m", "old"][..]),
             (&["a", "m"], &["a", "old", "m"], &["a", "m", "mine"]),

@@ -1,6 +1,6 @@
-//! Sampled vector fields from files, for the `field` tool: Middlebury `.flo`, KITTI optical flow (16-bit PNG) and OpenEXR
-//! (R and G, u and v, or those of a layer as forward.u and forward.v, are x and y, in pixels). A vector that the file calls unknown or invalid, or that is not finite, is
-//! zero: that place stays still.
+//! Sampled vector fields from files, for the `field` tool: Middlebury `.flo`, KITTI optical flow (16-bit PNG) and
+//! OpenEXR (R and G, u and v, or those of a layer such as forward.u and forward.v, are x and y, in pixels). A vector
+//! that is unknown or invalid according to the file, or not finite, is zero: that place stays still.
 
 use std::fs::File;
 use std::io::{Read, Seek};
@@ -20,10 +20,10 @@ const EXR: &[u8] = b"\x76\x2f\x31\x01";
 /// Components of a `.flo` beyond this are unknown.
 const FLO_KNOWN: f32 = 1e9;
 
-/// The vector field in an open file, told apart by its first bytes; `place` is what messages call it.
+/// The vector field in an open file, whose format is recognized by its first bytes; `place` is its name in messages.
 ///
 /// # Errors
-/// One message when it is none of the three formats, is broken, or is larger than the limits allow.
+/// If it is none of the three formats, is broken, or is larger than the limits allow.
 pub fn decode(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
     let mut magic = Vec::new();
     (&mut file).take(4).read_to_end(&mut magic).map_err(|error| Error::at(place, error))?;
@@ -57,7 +57,7 @@ fn flo(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<
         return Err(cut_short(place));
     }
     let share = budget.take(width * height * 8, place)?;
-    // Row by row: the file is never there as a whole beside what is made of it.
+    // Row by row: the whole file is never in memory beside the vectors.
     let mut row = vec![0; (width * 8) as usize];
     let mut vectors = Vec::with_capacity((width * height) as usize);
     for _ in 0..height {
@@ -71,7 +71,7 @@ fn flo(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<
 
 fn from_kitti(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(VectorField, Share)> {
     let mut share = Share::default();
-    // The decoded picture and the vectors stand beside one another for a moment.
+    // The decoded picture and the vectors are both in memory for a moment.
     let allow = |bytes: u64| {
         share = budget.take(bytes.saturating_mul(7) / 3, place)?;
         Ok(())
@@ -93,7 +93,7 @@ fn from_exr(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result
     Ok((Grid::from_cells(width, height, vectors), share))
 }
 
-/// x = (red - 2^15) / 64, y likewise from green; blue says whether they are valid.
+/// x = (red - 2^15) / 64, y likewise from green; blue is 0 if they are invalid.
 fn vector_of_kitti([r, g, valid]: [u16; 3]) -> [f32; 2] {
     if valid == 0 { [0.0; 2] } else { [r, g].map(|code| (f32::from(code) - 32768.0) / 64.0) }
 }

@@ -1,6 +1,6 @@
-//! Who edits a scene: a small file beside it that whoever comes second can read. The lock itself is the journal's and dies
-//! with its process, on every machine that shares the lock; this file only tells who, and stands in where the lock cannot
-//! be seen: another user's journal, or a folder that machines share without sharing locks.
+//! Who edits a scene: a small file beside it for others to read. The lock itself is on the journal and ends with its
+//! process, on every machine that shares the lock; this file only says who holds it, and replaces it where the lock
+//! cannot be seen: with another user's journal, or in a folder that machines share without sharing locks.
 
 use std::fmt;
 use std::fs::OpenOptions;
@@ -14,26 +14,26 @@ use super::{beside, disk, journal};
 use crate::base::system;
 use crate::base::text::ago;
 
-/// A file longer than this is none of ours, in bytes.
+/// A longer file, in bytes, is not one of ours.
 const MOST_BYTES: u64 = 4096;
 
 /// A process that edits a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Holder {
-    /// Its number there.
+    /// Its process number on its machine.
     pub pid: u32,
-    /// Who runs it; empty where not known.
+    /// The user who runs it; empty if not known.
     pub user: String,
-    /// The machine; empty where not known.
+    /// The machine; empty if not known.
     pub host: String,
-    /// Since when, in milliseconds since the epoch; 0 where not known.
+    /// Since when, in milliseconds since the epoch; 0 if not known.
     pub since_ms: u64,
-    /// Whether it is known to be alive: its lock was met.
+    /// Whether it is known to be alive, because it holds the lock.
     #[serde(skip)]
     pub certain: bool,
 }
 
-/// `ann on box (process 123, 12 min ago)`.
+/// `ann on box (process 123, since 12 min ago)`.
 impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.user.as_str(), self.host.as_str()) {
@@ -47,7 +47,7 @@ impl fmt::Display for Holder {
 }
 
 impl Holder {
-    /// What somebody who comes second is told.
+    /// The message to others who open the scene.
     pub fn in_words(&self) -> String {
         if self.certain {
             format!("is being edited by {self}")
@@ -56,7 +56,7 @@ impl Holder {
         }
     }
 
-    /// Whether it is known to have been there for so long, in milliseconds.
+    /// Whether it is known to have been editing for more than `ms` milliseconds.
     pub fn has_been_there(&self, ms: u64) -> bool {
         self.since_ms > 0 && super::now_ms().saturating_sub(self.since_ms) > ms
     }
@@ -66,7 +66,7 @@ impl Holder {
         Holder { pid: std::process::id(), user, host, since_ms: super::now_ms(), certain: true }
     }
 
-    /// Who holds the lock of `scene`: what its file tells, where that is about process `pid`.
+    /// Who holds the lock of `scene`: what the file says, if it is about process `pid`.
     pub fn of_lock(scene: &Path, pid: Option<u32>) -> Holder {
         let nobody =
             Holder { pid: pid.unwrap_or(0), user: String::new(), host: String::new(), since_ms: 0, certain: true };
@@ -74,8 +74,8 @@ impl Holder {
         told.map_or(nobody, |told| Holder { certain: true, ..told })
     }
 
-    /// Who may be editing `scene` although its journal at `journal` could be locked: somebody on another machine, where the
-    /// folder may be shared without its locks, or another user, whose journal lies elsewhere.
+    /// Who may be editing `scene` although its journal at `journal` could be locked: somebody on another machine, if
+    /// the folder may be shared without locks, or another user, whose journal is elsewhere.
     pub fn unseen(scene: &Path, journal: &Path) -> Option<Holder> {
         let told = read(scene)?;
         let here = told.host == system::host_name();
@@ -86,7 +86,7 @@ impl Holder {
     }
 }
 
-/// Where it lies.
+/// The path of the file.
 pub fn path_beside(scene: &Path) -> PathBuf {
     beside::path(scene, "editor")
 }
@@ -99,16 +99,16 @@ fn read(scene: &Path) -> Option<Holder> {
     serde_json::from_slice(&bytes).ok()
 }
 
-/// The file that this process wrote; dropping it takes it away.
+/// The file that this process wrote; dropping it removes the file.
 #[derive(Debug)]
 pub struct Sign(PathBuf);
 
 impl Sign {
-    /// Tells others who edits `scene`; to be called by whoever has its lock. Where it cannot be written, others are told
-    /// less: none.
+    /// Tells others who edits `scene`; to be called only with its lock. `None` if the file cannot be written: others
+    /// then see less.
     pub fn put_up(scene: &Path) -> Option<Sign> {
         let path = path_beside(scene);
-        // What a killed editor left behind; it may be somebody else's file.
+        // A killed editor may have left one behind; it may belong to another user.
         let _ = std::fs::remove_file(&path);
         let text = serde_json::to_vec(&Holder::of_this_process()).ok()?;
         let file = OpenOptions::new().write(true).create_new(true).custom_flags(system::no_follow()).open(&path);
@@ -119,7 +119,7 @@ impl Sign {
 
 impl Drop for Sign {
     fn drop(&mut self) {
-        // One that stays does no harm: the lock is what counts.
+        // A file that stays does no harm: the lock is what counts.
         let _ = std::fs::remove_file(&self.0);
     }
 }
@@ -153,7 +153,7 @@ mod tests {
             (1, here.as_str(), &elsewhere, true),
             (dead, here.as_str(), &elsewhere, false),
             (std::process::id(), here.as_str(), &elsewhere, false),
-            // The folder of this test is on no network.
+            // The folder of this test is not on a network.
             (1, "far", &beside, false),
         ] {
             let told = Holder { pid, user: "ann".into(), host: host.into(), since_ms: 1, certain: false };

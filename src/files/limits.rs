@@ -1,5 +1,5 @@
-//! How much a file may take, checked before memory is: one table of names, defaults and help, for the checks and for
-//! `--limit NAME=VALUE`.
+//! How much a file may take, checked before memory is allocated: one table of names, defaults and help, for the checks
+//! and for `--limit NAME=VALUE`.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -9,20 +9,20 @@ use crate::base::error::{Error, Result};
 use crate::layers::KINDS;
 use crate::layers::technique::Counted;
 
-/// Limits on what is read. The defaults fit every sane file.
+/// Limits on what is read. Every sane file is within the defaults.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Pixels of a picture: width times height.
     pub pixels: u64,
     /// Width and height of a picture, each.
     pub side: u64,
-    /// Bytes that what is read and made may take, in sum.
+    /// Bytes that everything read and computed may take in total.
     pub memory: u64,
     /// Bytes of a scene file.
     pub scene: u64,
     /// Depth of a scene's JSON.
     pub depth: u64,
-    /// What techniques count in a scene, by its name there.
+    /// The limits on what techniques count in a scene, by its name.
     pub counted: BTreeMap<&'static str, u64>,
     /// Bytes of an expression.
     pub expression: u64,
@@ -34,25 +34,25 @@ pub struct Limits {
     pub message: u64,
     /// Bytes pasted at once.
     pub paste: u64,
-    /// Width and height of a picture given to the GPU by the window, each.
+    /// Width and height of a picture that the window gives to the GPU, each.
     pub texture: u64,
-    /// Bytes of files from other machines that are kept.
+    /// Bytes of cached files from other machines.
     pub cache: u64,
 }
 
 /// A row of the table.
 #[derive(Debug)]
 pub struct Limit {
-    /// What `--limit` calls it.
+    /// Its name in `--limit`.
     pub name: &'static str,
     /// What it limits.
     pub help: &'static str,
-    /// What it is unless set.
+    /// Its value unless set.
     pub default: u64,
     of: Of,
 }
 
-/// Where a limit is kept.
+/// Where a limit is stored.
 #[derive(Debug)]
 enum Of {
     Field(fn(&mut Limits) -> &mut u64),
@@ -131,7 +131,7 @@ impl Limits {
     /// Sets one limit from `NAME=VALUE`; the value may end in K, M or G (2^10, 2^20, 2^30).
     ///
     /// # Errors
-    /// An unknown name lists the known ones; a value that is no whole number says so.
+    /// If the name is unknown (the message lists the known ones) or the value is no whole number.
     pub fn set(&mut self, setting: &str) -> Result<()> {
         let (name, value) = setting
             .split_once('=')
@@ -143,7 +143,7 @@ impl Limits {
         Ok(())
     }
 
-    /// The limits that a command line sets, over the defaults.
+    /// The defaults, changed by the limits that a command line sets.
     ///
     /// # Errors
     /// As [`Limits::set`].
@@ -153,17 +153,17 @@ impl Limits {
         Ok(limits)
     }
 
-    /// The memory that one piece of work may take; everything in it shares this.
+    /// The memory budget of one piece of work; everything in it shares this.
     pub fn budget(&self) -> Budget {
         Budget::new(self.memory)
     }
 
-    /// Items that a list may get at once: as many as a scene may have of anything that is counted.
+    /// The most items that a list may get at once: as many as a scene may have of anything that is counted.
     pub fn items(&self) -> u64 {
         self.counted.values().copied().max().unwrap_or(u64::MAX)
     }
 
-    /// What sets these limits over the defaults, as `NAME=VALUE`.
+    /// The settings that give these limits, as `NAME=VALUE`; defaults are left out.
     pub fn settings(&self) -> Vec<String> {
         let mut own = self.clone();
         let values = TABLE.iter().map(|row| (row, *row.of(&mut own)));

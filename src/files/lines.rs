@@ -1,5 +1,6 @@
-//! Files of lines that the editor runs: scripts, and the logs of its sessions, which are scripts too. A log is written by a
-//! thread of its own, so that no key waits for a disk; it comes into being with its first line, and the newest few stay.
+//! Files of lines that the editor runs: scripts, and the logs of its sessions, which are scripts too. A log is written
+//! by a separate thread, so that no key waits for a disk; the file is created with the first line, and only the newest
+//! few are kept.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -15,17 +16,17 @@ use crate::base::system::folders;
 
 /// How many logs are kept.
 const KEPT: usize = 20;
-/// So much of a scene's name is in a log's, in characters: a name of four bytes each fits beside the rest.
+/// The most characters of a scene's name in a log's name: with four bytes each they still fit beside the rest.
 const LONGEST_STEM: usize = 50;
 /// How a log's name ends.
 const SUFFIX: &str = "plica";
-/// A script longer than this is none.
+/// A longer file is not a script.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// Reads a script.
 ///
 /// # Errors
-/// When there is no such file, or it is no text, or far too long for a script.
+/// If there is no such file, it is no text, or it is far too long for a script.
 pub fn read(path: &Path) -> Result<String> {
     let mut bytes = Vec::new();
     let read = paths::open_named(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes);
@@ -44,8 +45,8 @@ pub struct Log {
 }
 
 impl Log {
-    /// A log in the user's state folder, named by the scene; `header` is written before its first line. Where it cannot be
-    /// written, `failed` is told once. `None` if there is no such folder.
+    /// A log in the user's state folder, named after the scene; `header` is written before its first line. If it cannot
+    /// be written, `failed` is called once. `None` if there is no such folder.
     pub fn begin(scene: &Path, header: Vec<String>, failed: impl FnOnce(String) + Send + 'static) -> Option<Log> {
         Some(Log::begin_in(&folders::state()?.join("sessions"), scene, header, failed))
     }
@@ -65,23 +66,23 @@ impl Log {
         Log { path, lines: Some(sender), thread: Some(thread) }
     }
 
-    /// Where it is, or will be once there is a line in it.
+    /// Its path, even before it has a first line.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes a line, at some time soon.
+    /// Queues a line to be written.
     pub fn write(&self, line: String) {
-        // A thread that could not write has said so and ended.
+        // A thread that could not write has reported it and ended.
         self.lines.iter().for_each(|lines| drop(lines.send(line.clone())));
     }
 }
 
 impl Drop for Log {
-    /// Waits until all of it is written.
+    /// Waits until everything is written.
     fn drop(&mut self) {
         self.lines = None;
-        // It panics over nothing; if it did, the log is what is lost.
+        // The thread does not panic; if it did, only the log would be lost.
         self.thread.take().into_iter().for_each(|thread| drop(thread.join()));
     }
 }
@@ -103,7 +104,7 @@ fn write(path: &Path, header: &[String], lines: &Receiver<String>) -> io::Result
     }
 }
 
-/// Makes the file and its folder, and removes the oldest of the others.
+/// Creates the file and its folder, and removes the oldest of the other logs.
 fn create(path: &Path) -> io::Result<File> {
     let folder = super::disk::folder_of(path);
     std::fs::create_dir_all(folder)?;
@@ -115,7 +116,7 @@ fn create(path: &Path) -> io::Result<File> {
         .collect();
     all.sort();
     for (_, old) in all.iter().rev().skip(KEPT - 1) {
-        // One more than is meant to be there is no harm.
+        // One log too many does no harm.
         let _ = std::fs::remove_file(old);
     }
     Ok(file)

@@ -1,5 +1,5 @@
-//! The log: what happened, for whoever mends a fault. It is a file and nothing else; the terminal is the user's. It
-//! comes into being with its first line.
+//! The log: what happened, for those who fix faults. It goes to a file only; the terminal belongs to the user. The file
+//! is created with the first line.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -10,13 +10,14 @@ use std::sync::Mutex;
 use crate::base::error::{Error, Result};
 use crate::base::system::{self, folders};
 
-/// A log longer than this begins anew; the old one is kept once.
+/// A longer log, in bytes, is started anew; one old log is kept.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Starts the log in `file`, else in the user's state folder, and tells where it is. `None` if there is no such folder.
+/// Starts the log in `file`, otherwise in the user's state folder, and returns its path. `None` if there is no such
+/// folder.
 ///
 /// # Errors
-/// When `file` is given and cannot be written.
+/// If `file` is given and cannot be written.
 pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
     let path = match file {
         Some(file) => file.to_owned(),
@@ -34,12 +35,12 @@ pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
         log.open().map_err(|error| Error::at(path.display(), format!("cannot be written: {error}")))?;
     }
     let subscriber = tracing_subscriber::fmt().with_ansi(false).with_writer(Mutex::new(log)).finish();
-    // Somebody else's subscriber, in a program that uses the library, stays.
+    // In a program that uses the library, a subscriber of its own stays.
     let _ = tracing::subscriber::set_global_default(subscriber);
     Ok(Some(path))
 }
 
-/// Whether a log may go on in this file: it is new, empty, or begins as every log does, with a time.
+/// Whether a log may be written to this file: it is new, empty, or begins with a time, as every log does.
 fn may_be_log(path: &Path) -> bool {
     let mut head = Vec::new();
     match path.metadata() {
@@ -68,7 +69,7 @@ impl Log {
                 std::fs::rename(&self.path, self.path.with_extension("log.old"))?;
             }
             let mut options = OpenOptions::new();
-            // A FIFO that nobody reads is no place for a log, and none to wait at.
+            // A FIFO that nobody reads is no place for a log, and opening it must not block.
             options.append(true).create(true).mode(0o600).custom_flags(system::no_wait());
             self.file = Some(options.open(&self.path)?);
         }

@@ -1,5 +1,5 @@
-//! What a scene names, loaded: pictures and vector fields, in parallel. A cache keeps what did not change, and the last
-//! good version of what cannot be read just now.
+//! Loads the files that a scene names, pictures and vector fields, in parallel. A cache keeps what did not change, and
+//! the last good version of what cannot be read just now.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
@@ -20,21 +20,21 @@ use crate::base::problem::{Problem, Severity};
 use crate::layers::parts::materials::{Materials, Of, Use, What};
 use crate::scene::{Scene, check, pointer};
 
-/// What was loaded before, by path; for as long as a scene names it.
+/// What was loaded before, by path, for as long as the scene names it.
 #[derive(Debug, Default)]
 pub struct Cache {
     pictures: Store<Picture>,
-    /// What was made of masks without alpha.
+    /// What masks without alpha were turned into.
     masks: Vec<Masked>,
     fields: Store<VectorField>,
-    /// The memory that is left for them and what is made of them; as the limits said when it was first used.
+    /// The memory that is left for the files and what is made from them; by the limits at the first use.
     budget: Option<Budget>,
-    /// Cancellation flag of the loading.
+    /// Cancels the loading.
     pub stop: Option<Arc<AtomicBool>>,
 }
 
 impl Cache {
-    /// An empty one, which loads only until `stop` is set.
+    /// An empty cache; loading ends when `stop` is set.
     pub fn until(stop: Arc<AtomicBool>) -> Self {
         Cache { stop: Some(stop), ..Cache::default() }
     }
@@ -42,23 +42,23 @@ impl Cache {
 
 type Store<T> = HashMap<PathBuf, Loaded<T>>;
 
-/// A file as it was loaded, and the memory that it takes.
+/// A loaded file, and the memory that it takes.
 #[derive(Debug)]
 struct Loaded<T> {
     stamp: Stamp,
     value: Arc<T>,
-    /// What of the file could not be followed.
+    /// What in the file could not be honoured, in words.
     notes: Arc<[String]>,
     share: Arc<Share>,
 }
 
-/// A mask without alpha, laid on the picture that it is for.
+/// A mask without alpha, applied to the picture that it is for.
 #[derive(Clone, Debug)]
 struct Masked {
     mask: Arc<Picture>,
     own: Arc<Picture>,
     made: Arc<Picture>,
-    /// Given back with the rest.
+    /// Released with the rest.
     _share: Arc<Share>,
 }
 
@@ -68,7 +68,7 @@ impl<T> Clone for Loaded<T> {
     }
 }
 
-/// A file's identity and version; another program cannot change the file and keep it.
+/// A file's identity and version; another program cannot change the file without changing this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stamp([i128; 5]);
 
@@ -86,10 +86,10 @@ impl Stamp {
     }
 }
 
-/// Loads all that `scene` names; what did not change since comes from `cache`. With it come warnings.
+/// Loads all files that `scene` names; those that have not changed come from `cache`. Also returns warnings.
 ///
 /// # Errors
-/// Every file that cannot be loaded or does not fit, as a problem at the path of the scene that names it.
+/// Every file that cannot be loaded or does not fit, as a problem at the path in the scene that names it.
 pub fn load(
     scene_path: &Path,
     scene: &Scene,
@@ -101,13 +101,14 @@ pub fn load(
     if failed { Err(problems) } else { Ok((materials, problems)) }
 }
 
-/// As [`load`], for an editor that goes on: what can be loaded, and the problems, errors first. In the place of a file that cannot be
-/// read just now stands its last good version, where the cache has one.
+/// As [`load`], for an editor, which continues with what can be loaded: also returns the problems, errors first. A file
+/// that cannot be read just now is replaced by its last good version, if that is in the cache.
 pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Materials, Vec<Problem>) {
     Sources { place: Place::Beside(scene_path), options }.gather(scene, cache)
 }
 
-/// Copies of the files that a scene on another machine names, by the path as written there; or why there is none.
+/// Copies of the files that a scene on another machine names, by the path as written in the scene; or why there is no
+/// copy.
 pub type Copies = BTreeMap<String, std::result::Result<PathBuf, String>>;
 
 /// As [`gather`], for a scene on another machine.
@@ -140,20 +141,20 @@ pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<S
     (sizes, problems)
 }
 
-/// The files that `scene` names, to be watched.
+/// The files that `scene` names, for watching.
 pub fn files(scene_path: &Path, scene: &Scene) -> Vec<PathBuf> {
     let named = named_pictures(scene).into_iter().chain(named_fields(scene));
     named.map(|named| paths::beside(scene_path, named.path)).collect()
 }
 
-/// The same as paths, as they are written.
+/// The same, as the paths written in the scene.
 pub(super) fn paths(scene: &Scene) -> BTreeSet<&str> {
     named_pictures(scene).into_iter().chain(named_fields(scene)).map(|named| named.path).collect()
 }
 
 /// A file that a scene names.
 struct Named<'a> {
-    /// What [`Materials`] calls it.
+    /// Its key in [`Materials`].
     key: &'a str,
     /// The path as written.
     path: &'a str,
@@ -202,10 +203,10 @@ impl Sources<'_> {
         (materials, problems)
     }
 
-    /// What a file is kept under.
+    /// The key of a file in the cache.
     fn key(&self, path: &str) -> PathBuf {
         match self.place {
-            // Layers of one file are pictures of their own.
+            // Layers of one file are separate pictures.
             Place::Beside(scene_path) => match paths::layer_of(path) {
                 None => paths::beside(scene_path, path),
                 Some(layer) => paths::beside(scene_path, path).join(format!("#{layer}")),
@@ -233,7 +234,7 @@ impl Sources<'_> {
         store: &mut Store<T>,
         problems: &mut Vec<Problem>,
     ) -> BTreeMap<String, Arc<T>> {
-        // One decoding a file, however often it is named.
+        // Each file is decoded once, however often it is named.
         let files: BTreeMap<PathBuf, &str> = named.iter().map(|named| (self.key(named.path), named.path)).collect();
         let loaded: HashMap<PathBuf, Result<Loaded<T>>> = files
             .into_par_iter()
@@ -286,7 +287,7 @@ impl Sources<'_> {
     }
 }
 
-/// What loading may take, and whether it is still wanted.
+/// What loading may consume, and the flag that cancels it.
 #[derive(Clone, Copy)]
 struct Allowed<'a> {
     limits: &'a Limits,
@@ -294,7 +295,8 @@ struct Allowed<'a> {
     stop: Option<&'a AtomicBool>,
 }
 
-/// Reads an open file that messages call by its path, and tells what of it could not be followed and what memory it takes.
+/// Reads an open file; the path is its name in messages. Also returns what in it could not be honoured, and the memory
+/// that it takes.
 type Decode<T> = fn(File, &str, Allowed) -> Result<(T, Vec<String>, Share)>;
 
 fn decode_picture(file: File, place: &str, allowed: Allowed) -> Result<(Picture, Vec<String>, Share)> {
@@ -307,7 +309,7 @@ fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorFiel
     Ok((field, Vec::new(), share))
 }
 
-/// Masks without alpha are laid on their pictures once, not whenever they are read.
+/// Applies masks without alpha to their pictures once, not every time they are read.
 fn lay_masks(scene: &Scene, materials: &mut Materials, known: &mut Vec<Masked>, problems: &mut Vec<Problem>) {
     let mut kept: Vec<Masked> = Vec::new();
     for Use { at, of, what } in scene.uses() {

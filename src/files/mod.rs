@@ -1,4 +1,4 @@
-//! The only file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
+//! All file access: scenes, pictures, the journal and recovery, watching. Nothing is opened, written or trusted
 //! elsewhere.
 
 mod beside;
@@ -32,13 +32,13 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::scene::check::Rules;
 
-/// Milliseconds since the epoch, now.
+/// The current time, in milliseconds since the epoch.
 pub(crate) fn now_ms() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.map_or(0, |since| since.as_millis().try_into().unwrap_or(u64::MAX))
 }
 
-/// What a person allows a scene to do and to take.
+/// What a person allows a scene to do and to consume.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// How much a file may take.
@@ -48,13 +48,13 @@ pub struct Options {
 }
 
 impl Options {
-    /// What they mean for the check of a scene.
+    /// The rules for the check of a scene.
     pub fn rules(&self) -> Rules {
         let Limits { frames, memory, ref counted, .. } = self.limits;
         Rules { allow_outside: self.allow_outside, counted: counted.clone(), frames, memory }
     }
 
-    /// The command line that means the same, for another process that opens the same scene.
+    /// The equivalent command line options, for another process that opens the same scene.
     pub fn arguments(&self) -> Vec<String> {
         let limits = self.limits.settings().into_iter().flat_map(|setting| ["--limit".to_owned(), setting]);
         limits.chain(self.allow_outside.then(|| "--allow-outside".to_owned())).collect()

@@ -1,5 +1,6 @@
-//! The files that a scene names, for a window on another machine: told by content hash, given out in small pieces, as they
-//! lie on the disk. A file stays open while the scene names it, so that its pieces fit together whatever is saved meanwhile.
+//! The files that a scene names, for a window on another machine: identified by content hash, sent in small pieces, as
+//! they are on the disk. A file stays open while the scene names it, so that its pieces fit together whatever is saved
+//! meanwhile.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -17,14 +18,14 @@ use crate::base::budget::size;
 use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 
-/// The most bytes of a piece: other messages go between two of them.
+/// The most bytes of a piece: other messages can go between two pieces.
 pub const PIECE: usize = 8 << 10;
 
 /// A file that a scene names.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Original {
-    /// Its path as the scene writes it.
+    /// Its path as written in the scene.
     pub path: String,
     /// What is in it, or why it cannot be read.
     pub file: std::result::Result<Contents, String>,
@@ -36,7 +37,7 @@ pub struct Original {
 pub struct Contents {
     /// SHA-256 of all its bytes, in hexadecimal.
     pub hash: String,
-    /// How many there are.
+    /// The number of bytes.
     pub bytes: u64,
 }
 
@@ -54,7 +55,7 @@ struct Found {
 }
 
 impl Originals {
-    /// Looks at the files that `scene` names; those that did not change since `before` are not read again.
+    /// Opens and hashes the files that `scene` names; those that have not changed since `before` are not read again.
     pub fn of(scene_path: &Path, scene: &Scene, options: &Options, before: &Originals) -> Originals {
         let look = |path: &str| {
             let old = before.found.get(path).and_then(|found| found.as_ref().ok());
@@ -72,7 +73,7 @@ impl Originals {
         self.found.iter().map(|(path, found)| Original { path: path.clone(), file: file(found) }).collect()
     }
 
-    /// The bytes from `offset` on, at most [`PIECE`], of the file with this hash; `None` if there is none.
+    /// At most [`PIECE`] bytes from `offset` of the file with this hash; empty if there is no such file.
     pub fn piece(&self, hash: &str, offset: u64) -> Vec<u8> {
         let mut bytes = vec![0; PIECE];
         let found = self.found.values().flatten().find(|found| found.contents.hash == hash);
@@ -109,7 +110,7 @@ fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found
     Ok(Arc::new(Found { stamp, contents, file }))
 }
 
-/// The reason alone: whoever reads it knows the path.
+/// The reason alone: the reader knows the path.
 fn why(error: Error) -> String {
     match error {
         Error::Failed { what, cure: None, .. } => what,
@@ -171,7 +172,7 @@ mod tests {
         let contents = list[1].file.clone().unwrap();
         assert_eq!(contents, Contents { hash: super::super::scene::hash(&long), bytes: 20_000 });
         assert_eq!(first.piece(&contents.hash, 0).len(), PIECE);
-        // Saved by rename meanwhile: what was told of is still given out whole.
+        // Replaced by rename meanwhile: what was announced is still sent completely.
         std::fs::write(folder.path().join("new"), "short").unwrap();
         std::fs::rename(folder.path().join("new"), folder.path().join("a.png")).unwrap();
         assert!(whole(&first, &contents.hash) == long);

@@ -1,4 +1,4 @@
-//! Paths that a scene names: they stay beneath its folder unless a person allows otherwise, and are regular files.
+//! Paths that a scene names: they must stay in its folder unless a person allows otherwise, and must be regular files.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -13,12 +13,12 @@ pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
     folder_of_scene(scene_path).join(file_of(path))
 }
 
-/// The file of a path written in a scene, without the layer of it that is meant (`a.exr#beauty`).
+/// The file of a path written in a scene, without the layer in it (`a.exr#beauty`).
 pub fn file_of(path: &str) -> &str {
     parts(path).map_or(path, |(file, _)| file)
 }
 
-/// The layer that a path names; only an OpenEXR has some.
+/// The layer that a path names; only OpenEXR files have layers.
 pub fn layer_of(path: &str) -> Option<&str> {
     parts(path).map(|(_, layer)| layer)
 }
@@ -28,7 +28,7 @@ fn parts(path: &str) -> Option<(&str, &str)> {
     path.rsplit_once('#').filter(named)
 }
 
-/// The folder that the scene really lies in: one opened through a link shows the same pictures.
+/// The folder that the scene is really in: a scene opened through a link finds the same pictures.
 fn folder_of_scene(scene_path: &Path) -> PathBuf {
     let is_link = scene_path.symlink_metadata().is_ok_and(|found| found.is_symlink());
     let real = if is_link { std::fs::canonicalize(scene_path).ok() } else { None };
@@ -38,8 +38,8 @@ fn folder_of_scene(scene_path: &Path) -> PathBuf {
 /// Opens a file that the scene at `scene_path` names by `path`.
 ///
 /// # Errors
-/// When the path leads out of the scene's folder and [`Options::allow_outside`] is not set; when there is no such file;
-/// when it is a folder, a device, a FIFO or a socket.
+/// If the path leads out of the scene's folder and [`Options::allow_outside`] is not set; if there is no such file; if
+/// it is a folder, a device, a FIFO or a socket.
 pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
     let opened = if options.allow_outside {
         beneath::open_anywhere(&beside(scene_path, path))
@@ -53,14 +53,14 @@ pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
 /// Opens a file that a person named.
 ///
 /// # Errors
-/// When there is no such file, or it is a folder, a device, a FIFO or a socket.
+/// If there is no such file, or it is a folder, a device, a FIFO or a socket.
 pub fn open_named(path: &Path) -> Result<File> {
     let place = path.display().to_string();
     let opened = beneath::open_anywhere(path).map_err(|error| explain(&place, error))?;
     regular(File::from(opened), &place)
 }
 
-/// Reads a regular file of at most `most` bytes; whatever else lies there makes nobody wait.
+/// Reads a regular file of at most `most` bytes; anything else is refused without blocking.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = disk::regular(beneath::open_anywhere(path)?.into())?;
     let mut bytes = Vec::new();
@@ -87,7 +87,7 @@ fn explain(place: &str, error: io::Error) -> Error {
     }
 }
 
-/// A path as a person types it: a `~` at its beginning is the home folder, as in a shell.
+/// A path as typed by a person: a leading `~` is the home folder, as in a shell.
 pub fn typed(path: &str) -> PathBuf {
     let home = || std::env::var_os("HOME").filter(|home| !home.is_empty()).map(PathBuf::from);
     match path.strip_prefix('~').filter(|rest| rest.is_empty() || rest.starts_with('/')) {
@@ -99,15 +99,15 @@ pub fn typed(path: &str) -> PathBuf {
 /// The most files that a completion offers.
 const MOST_OFFERED: usize = 500;
 
-/// The paths that begin with `typed`, relative to `folder` unless absolute: folders end in `/`; hidden ones only where a dot
-/// is typed. `None` if the folder cannot be read.
+/// The paths that begin with `typed`, relative to `folder` unless absolute: folders end in `/`; hidden ones are listed
+/// only if a dot is typed. Empty if the folder cannot be read.
 pub fn complete(folder: &Path, typed: &str) -> Vec<String> {
     let (parent, begun) = typed.rfind('/').map_or(("", typed), |at| typed.split_at(at + 1));
     let Ok(entries) = std::fs::read_dir(folder.join(self::typed(parent))) else { return Vec::new() };
     let fits = |name: &String| name.starts_with(begun) && (begun.starts_with('.') || !name.starts_with('.'));
     let path = |entry: std::fs::DirEntry| {
         let name = entry.file_name().into_string().ok().filter(fits)?;
-        // A link to a folder counts as one.
+        // A link to a folder counts as a folder.
         let slash = if entry.path().is_dir() { "/" } else { "" };
         Some(format!("{parent}{name}{slash}"))
     };
@@ -133,7 +133,7 @@ mod tests {
             .unwrap();
         let outside = outer.path().join("dog.png");
         let scene = root.join("scene.plica.json");
-        // Path, part of the refusal without and with --allow-outside.
+        // Path; part of the message without --allow-outside, and with it.
         for (path, beneath, anywhere) in [
             ("sub/cat.png", None, None),
             ("../dog.png", Some("--allow-outside"), None),

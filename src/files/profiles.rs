@@ -1,4 +1,4 @@
-//! The demo scenes, embedded in the binary so that it needs nothing beside it, and unpacked where they can be edited.
+//! The demo scenes, embedded in the binary so that it needs no other files, and unpacked where they can be edited.
 
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ macro_rules! profile {
     };
 }
 
-/// Every demo scene; the first is the one opened without a name.
+/// Every demo scene; the first is the default.
 pub const TABLE: &[Profile] = &[
     profile!("blink", "an eyelid slides over an eyeball", "blink.plica.json", "eye.png", "lashes.png"),
     profile!("cat", "a cat squints: two fold regions in one zone", "cat.plica.json", "cat.png"),
@@ -42,13 +42,14 @@ pub const TABLE: &[Profile] = &[
     profile!("car", "a car flies past a sign", "car.plica.json", "road.png", "car.png", "light.png"),
 ];
 
-/// What the tutor begins with: a picture, the lid and the opening of an eye, and a curve that does not move yet.
+/// The scene that the tutor begins with: a picture, the lid and the opening of an eye, and a curve that does not move
+/// yet.
 pub const TUTOR: Profile = profile!("tutor", "a first animation", "cat" / "tutor.plica.json", "cat" / "cat.png");
 
 /// The demo scene called `name`.
 ///
 /// # Errors
-/// A name that is not in the table is a wrong command line; the message names the nearest one.
+/// [`Error::Usage`] if the name is not in the table; the message suggests the nearest one.
 pub fn find(name: &str) -> Result<&'static Profile> {
     TABLE.iter().find(|profile| profile.name == name).ok_or_else(|| {
         let hint = nearest(name, TABLE.iter().map(|profile| profile.name)).unwrap_or_default();
@@ -57,7 +58,7 @@ pub fn find(name: &str) -> Result<&'static Profile> {
 }
 
 impl Profile {
-    /// The folder it is unpacked into where no other is named: under the user's cache, else with the temporary files.
+    /// The default folder to unpack it into: in the user's cache, otherwise in the temporary folder.
     pub fn scratch(&self) -> PathBuf {
         let folder = format!("plica-demo-{}", self.name);
         match system::folders::cache() {
@@ -66,10 +67,10 @@ impl Profile {
         }
     }
 
-    /// A new folder for it, with the temporary files.
+    /// A new folder for it, in the temporary folder.
     ///
     /// # Errors
-    /// When it cannot be made.
+    /// If it cannot be created.
     pub fn fresh(&self) -> Result<PathBuf> {
         let names = (1..).map(|n| format!("plica-{}-{}-{n}", self.name, std::process::id()));
         let folders = names.map(|name| std::env::temp_dir().join(name));
@@ -85,11 +86,11 @@ impl Profile {
         format!("{}.plica.json", self.name)
     }
 
-    /// Writes what is missing of the scene and its pictures into `folder`, and returns the scene's path. What is there
-    /// already is kept as it is: somebody may have edited it.
+    /// Writes those files of the scene that are missing in `folder`, and returns the scene's path. Files that are
+    /// already there are left as they are: somebody may have edited them.
     ///
     /// # Errors
-    /// When the folder cannot be made or written.
+    /// If the folder cannot be created or written.
     pub fn unpack(&self, folder: &Path) -> Result<PathBuf> {
         std::fs::create_dir_all(folder)
             .map_err(|error| Error::at(folder.display(), error).cure("name another folder with -o"))?;

@@ -1,4 +1,4 @@
-//! From a journal back to a history: its records are done again, one after another, from the document it starts from.
+//! From a journal back to a history: its records are replayed in order, starting with the document in its header.
 
 use serde_json::Value;
 
@@ -8,30 +8,30 @@ use crate::scene::check::Rules;
 use crate::scene::history::{Remade, Replay, Stamp};
 use crate::scene::{Edit, History, migrate};
 
-/// How many records may be left out at the end because of what they lead to.
+/// How many records at the end may be dropped because they lead to a document with errors.
 const MOST_TRIES: usize = 100;
 
-/// What a journal tells.
+/// The result of replaying a journal.
 #[derive(Debug)]
 pub struct Replayed {
-    /// The history after the last record that could be done.
+    /// The history after the last record that could be replayed.
     pub history: History,
-    /// How many records could be done.
+    /// How many records could be replayed.
     pub records: usize,
-    /// SHA-256 of the scene file as the journal last knew it.
+    /// SHA-256 of the scene file as last recorded in the journal.
     pub file: String,
-    /// What that file held, where the journal tells.
+    /// The document in that file, if the journal has it.
     pub base: Option<Value>,
     /// Changes since then.
     pub unsaved: usize,
     /// When the last record was made, in milliseconds since the epoch.
     pub time_ms: u64,
-    /// What brought the document to the present version of the format, and what takes that back.
+    /// The edit that brought the document to the current version of the format, and its inverse.
     pub migration: Option<(Edit, Edit)>,
 }
 
-/// Does the records of a journal again, as far as they can be done and lead to a document without errors. `None` if none
-/// do: it does not start from a document that this program understands.
+/// Replays the records of a journal, as far as they can be applied and lead to a document without errors. `None` if not
+/// even the document that the journal starts from is one that this program understands.
 pub fn replay(contents: &Contents) -> Option<Replayed> {
     replay_with(contents, &migrate::migrate)
 }
@@ -49,7 +49,7 @@ fn replay_with(contents: &Contents, migrate: &Migrate) -> Option<Replayed> {
     None
 }
 
-/// Does the first `count` records. Fails with how many to try instead.
+/// Replays the first `count` records. Fails with how many to try instead.
 fn attempt(contents: &Contents, count: usize, migrate: &Migrate) -> Result<Replayed, Option<usize>> {
     let start = &contents.header.document;
     let mut replay = Replay::new(start.clone());
@@ -101,7 +101,7 @@ mod tests {
         (Record { revision: step + 1, time: 9, step, kind, patch: edit(patch), inverse: edit(inverse) }, 0)
     }
 
-    /// Version 2 of these tests calls the title `name`, which no scene of version 1 has.
+    /// In these tests, `name` in version 1 becomes `title` in version 2; no real scene of version 1 has a `name`.
     fn to_two(json: &mut Value) -> Result<(), Problem> {
         if json["plica"] == 1 {
             let name = json.as_object_mut().unwrap().shift_remove("name");
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(replayed.history.document().json(), &json!({ "plica": 2, "title": "c" }));
         assert_eq!((replayed.unsaved, replayed.history.is_saved(), replayed.history.depth()), (1, false, (0, 0)));
         assert_eq!(replayed.base, Some(json!({ "plica": 2, "title": "b" })));
-        // The migration is recorded, and what follows it is of the new version.
+        // The migration is recorded, and later records are of the new version.
         let (patch, inverse) = replayed.migration.unwrap();
         contents.records.push((Record { patch, inverse, ..rename(2, "", "").0 }, 0));
         let set = |title| format!(r#"[{{"op": "replace", "path": "/title", "value": "{title}"}}]"#);

@@ -12,7 +12,7 @@ use crate::scene::{Document, json};
 /// Reads the scene at `path`; `-` is standard input.
 ///
 /// # Errors
-/// When it cannot be read, is larger than the limits allow, or has errors in it: all of them.
+/// If it cannot be read, is larger than the limits allow, or contains errors: all of them.
 pub fn open(path: &Path, options: &Options) -> Result<Document> {
     parse(path, &read_text(path, &options.limits)?, options)
 }
@@ -20,7 +20,7 @@ pub fn open(path: &Path, options: &Options) -> Result<Document> {
 /// The document in the text of the scene at `path`.
 ///
 /// # Errors
-/// When it has errors in it or exceeds the limits: all problems.
+/// If it contains errors or exceeds the limits: all problems.
 pub fn parse(path: &Path, text: &str, options: &Options) -> Result<Document> {
     let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
     Document::parse_under(text, options.rules()).map_err(refused)
@@ -29,27 +29,27 @@ pub fn parse(path: &Path, text: &str, options: &Options) -> Result<Document> {
 /// The text of the scene at `path`; `-` is standard input.
 ///
 /// # Errors
-/// When it cannot be read, is no text, or is larger than the limits allow.
+/// If it cannot be read, is no text, or is larger than the limits allow.
 pub fn read_text(path: &Path, limits: &Limits) -> Result<String> {
     if path == Path::new("-") {
         return text("standard input", std::io::stdin().lock(), limits);
     }
     let read = text(&path.display().to_string(), paths::open_named(path)?, limits);
-    // Where a save was cut short, its copy is the file's text.
+    // If a save was cut short, the copy that it left is the file's text.
     match through::left_behind(path) {
         Some(copy) if !read.as_ref().is_ok_and(|text| is_whole(text)) && is_whole(&copy) => Ok(copy),
         _ => read,
     }
 }
 
-/// Whether a text is JSON from its beginning to its end.
+/// Whether a text is complete JSON.
 pub(super) fn is_whole(text: &str) -> bool {
     json::parse(text).is_ok()
 }
 
 fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
     let mut bytes = Vec::new();
-    // One more than allowed tells a file that is too large from one that just fits.
+    // One byte more than allowed distinguishes a file that is too large from one that just fits.
     from.take(limits.scene.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| Error::at(place, error))?;
     if bytes.len() as u64 > limits.scene {
         let most = limits.scene;
@@ -61,7 +61,7 @@ fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
     })
 }
 
-/// Writes a scene's text to `path`: atomically, or in place where the file has other names, which it keeps.
+/// Writes a scene's text to `path`: atomically, or in place if the file has other hard links, which it keeps.
 ///
 /// # Errors
 /// As [`write_atomic`]: the scene is not saved then.
@@ -73,7 +73,7 @@ pub fn save(path: &Path, text: &str) -> Result<()> {
     }
 }
 
-/// SHA-256 of a file's bytes, in hexadecimal: how a file that another program wrote is told from our own.
+/// SHA-256 of a file's bytes, in hexadecimal: shows whether another program wrote the file.
 pub fn hash(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

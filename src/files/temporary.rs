@@ -1,6 +1,6 @@
-//! Names for what is half made. They say which process makes it (machine, boot, process numbers' namespace, number, start), so
-//! that whoever comes by later clears what a killed process left, and never what a living one is still writing: not in
-//! another container, not on another machine that shares the folder.
+//! Names of unfinished files. They say which process writes the file (machine, boot, PID namespace, PID, start time),
+//! so that a later process can remove what a killed one left behind, but never what a living one is still writing, not
+//! even in another container or on another machine that shares the folder.
 
 use std::fs::File;
 use std::io;
@@ -15,20 +15,20 @@ use crate::base::system::process::{self, Identity};
 const PREFIX: &str = ".plica-";
 const SUFFIX: &str = ".tmp";
 
-/// A process of another namespace has locked its file after so long a time.
+/// After this time, a living process of another namespace has locked its file.
 const LOCKED_WITHIN: Duration = Duration::from_secs(60);
-/// What nobody has touched for so long a time, nobody writes any more.
+/// After this time without a change, nobody is writing the file any more.
 const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
 
-/// A name for a file or folder being made, beside its place. What stands there is removed when this is dropped.
+/// The name of an unfinished file or folder, beside its final place. The file is removed when this is dropped.
 #[derive(Debug)]
 pub struct Temporary(PathBuf);
 
-/// What [`remove_unfinished`] removes.
+/// The files that [`remove_unfinished`] removes.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 impl Temporary {
-    /// A name of our own beside `path`, short so that it is never too long where `path` is not. Nothing is made.
+    /// A unique name beside `path`, short enough for any file system. Nothing is created.
     pub fn beside(path: &Path) -> Self {
         static MADE: AtomicU64 = AtomicU64::new(0);
         let name = name(Identity::own(), MADE.fetch_add(1, Ordering::Relaxed));
@@ -37,15 +37,15 @@ impl Temporary {
         Temporary(path)
     }
 
-    /// Where it is to be made.
+    /// Where to create the file.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Puts what was made in its place, at once.
+    /// Moves the finished file into place, atomically.
     ///
     /// # Errors
-    /// When it cannot be renamed; it is removed then.
+    /// If it cannot be renamed; it is removed then.
     pub fn put(self, target: &Path) -> io::Result<()> {
         disk::rename(&self.0, target)
     }
@@ -58,8 +58,8 @@ impl Drop for Temporary {
     }
 }
 
-/// Tells processes that cannot see this one that the file or folder is being written, for as long as `file` is open. Where
-/// there are no locks, its age has to tell.
+/// Shows processes that cannot see this one that the file or folder is being written, for as long as `file` is open.
+/// Where there are no locks, they have to go by its age.
 pub fn hold(file: &File) {
     let _ = file.try_lock();
 }
@@ -69,7 +69,7 @@ fn name(of: &Identity, number: u64) -> String {
     format!("{PREFIX}{host}-{boot}-{namespace}-{pid}-{start}-{number}{SUFFIX}")
 }
 
-/// The process that a name is about; `None` where it is no such name.
+/// The process in a name; `None` if it is not such a name.
 fn maker(name: &str) -> Option<Identity> {
     let middle = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
     let parts: Vec<&str> = middle.rsplitn(6, '-').collect();
@@ -89,12 +89,12 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what this process has half made; for a process that is to end at once.
+/// Removes this process's unfinished files; for a process that must end at once.
 pub fn remove_unfinished() {
     unfinished().drain(..).for_each(|path| remove(&path));
 }
 
-/// Removes what killed processes left half made in `folder`; returns how many files and folders that were.
+/// Removes unfinished files and folders that killed processes left in `folder`; returns how many there were.
 pub fn remove_stale(folder: &Path) -> usize {
     let Ok(entries) = std::fs::read_dir(folder) else { return 0 };
     let stale = entries.flatten().filter(|entry| {
@@ -111,15 +111,15 @@ fn is_stale(path: &Path, maker: &Identity) -> bool {
     let Ok(touched) = path.symlink_metadata().and_then(|found| found.modified()) else { return false };
     let idle = SystemTime::now().duration_since(touched).unwrap_or_default();
     if maker.same_boot() {
-        // In another container of this machine: its lock is seen from here, once it has had the time to take it.
+        // In another container on this machine: its lock can be seen from here, once it has had time to take it.
         return idle > LOCKED_WITHIN && File::open(path).is_ok_and(|file| file.try_lock().is_ok());
     }
     let before_boot = maker.host == Identity::own().host && process::boot_time().is_some_and(|boot| touched < boot);
     before_boot || idle > FORGOTTEN
 }
 
-/// Removes a file or a folder. It may have got its place meanwhile, or somebody else was first; and what cannot be
-/// removed now is removed as stale another day.
+/// Removes a file or a folder. It may have been moved into place or removed meanwhile; and what cannot be removed now
+/// will be removed as stale later.
 fn remove(path: &Path) {
     match path.symlink_metadata() {
         Ok(found) if found.is_dir() => drop(std::fs::remove_dir_all(path)),
@@ -160,7 +160,7 @@ mod tests {
         let rebooted = Identity { boot: FAR.into(), ..own.clone() };
         let far = Identity { host: "far".into(), ..rebooted.clone() };
         let since_boot = process::boot_time().and_then(|boot| SystemTime::now().duration_since(boot).ok());
-        // Whose, for how long not touched, whether it is locked, whether it goes.
+        // Whose it is, how long ago it changed, whether it is locked, whether it is removed.
         let mut cases = vec![
             (own, minutes(9999), false, false),
             (&dead, minutes(0), false, true),

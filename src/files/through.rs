@@ -1,6 +1,6 @@
-//! Saving a scene whose file has other names (hard links) or is protected. Renaming a new file over one of its names would
-//! part them, so such a file is written in place. A copy of the new text, safe on the disk before the first byte is written,
-//! takes the place of the file's own text where a save was cut short.
+//! Saving a scene whose file has other names (hard links) or is protected. Renaming a new file over one of the names
+//! would separate them, so such a file is written in place. A copy of the new text is on the disk before the first byte
+//! is written; if the save is cut short, the copy counts instead of the file's own text.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
@@ -15,7 +15,7 @@ use crate::base::system;
 /// Refuses to replace a file that is write-protected.
 ///
 /// # Errors
-/// It is, for everybody or for this user; or what it is cannot be told.
+/// If it is, for everybody or for this user; or if that cannot be found out.
 pub fn refuse_protected(path: &Path) -> Result<()> {
     match found(path)? {
         Some(found) if found.mode() & 0o222 == 0 || system::is_denied_to_write(path) => {
@@ -28,12 +28,12 @@ pub fn refuse_protected(path: &Path) -> Result<()> {
 /// Whether the file at `path` has other names.
 ///
 /// # Errors
-/// That cannot be told: to replace the file could part it from them.
+/// If that cannot be found out: replacing the file could separate it from them.
 pub fn has_other_names(path: &Path) -> Result<bool> {
     Ok(found(path)?.is_some_and(|found| found.is_file() && found.nlink() > 1))
 }
 
-/// What is at `path`; `None` if nothing is.
+/// The metadata of `path`; `None` if there is no such file.
 fn found(path: &Path) -> Result<Option<Metadata>> {
     match path.metadata() {
         Ok(found) => Ok(Some(found)),
@@ -45,7 +45,7 @@ fn found(path: &Path) -> Result<Option<Metadata>> {
 /// Writes `bytes` into the file at `path`, which keeps its names, owner, mode and attributes.
 ///
 /// # Errors
-/// As [`write::write_atomic`]. The file has its old content then, or the copy beside it stands in: see [`left_behind`].
+/// As [`write::write_atomic`]. Then the file has its old content, or the copy beside it counts: see [`left_behind`].
 pub fn write_through(path: &Path, bytes: &[u8]) -> Result<()> {
     let failed = |error| write::cannot_write(path, error);
     let old = std::fs::read(path).map_err(failed)?;
@@ -64,10 +64,10 @@ pub fn write_through(path: &Path, bytes: &[u8]) -> Result<()> {
         failed(error)
     })?;
     let written = fill(&mut file, bytes);
-    // Both the mode and the copy are a matter of the next save, if not of this one.
+    // If restoring the mode or removing the copy fails, the next save tries again.
     let _ = file.set_permissions(mode);
     if let Err(error) = written {
-        // The old content fits where it was. Where not even that can be written, the copy stays.
+        // The old content fits where it was. If not even that can be written, the copy stays.
         if fill(&mut file, &old).is_ok() {
             let _ = disk::remove(&copy);
         }
@@ -101,7 +101,7 @@ fn copy_of(scene_path: &Path) -> PathBuf {
     beside::path(scene_path, "saving")
 }
 
-/// The text of a save that was cut short, where there was one.
+/// The text of a save that was cut short, if there is one.
 pub fn left_behind(scene_path: &Path) -> Option<String> {
     let copy = copy_of(&scene_path.canonicalize().ok()?);
     let file = OpenOptions::new().read(true).custom_flags(system::no_follow()).open(copy).ok()?;
@@ -111,18 +111,18 @@ pub fn left_behind(scene_path: &Path) -> Option<String> {
     Some(text)
 }
 
-/// Ends a save that was cut short: `is_whole` says whether a text is one that a save leaves. To be called under the lock of
+/// Completes a save that was cut short: `is_whole` says whether a text is a complete one. To be called with the lock of
 /// the scene.
 ///
 /// # Errors
-/// The file cannot be written.
+/// If the file cannot be written.
 pub fn mend(scene_path: &Path, is_whole: impl Fn(&str) -> bool) -> Result<()> {
     let Some(text) = left_behind(scene_path) else { return Ok(()) };
     let now = std::fs::read(scene_path).unwrap_or_default();
     if is_whole(&text) && !std::str::from_utf8(&now).is_ok_and(&is_whole) {
         return write_through(scene_path, text.as_bytes());
     }
-    // One that stays is looked at again next time.
+    // A copy that stays is looked at again next time.
     let _ = disk::remove(&copy_of(scene_path));
     Ok(())
 }

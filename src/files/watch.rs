@@ -1,5 +1,6 @@
-//! Watches files for other programs' changes. Folders are watched, not files: programs save by renaming a new file over
-//! the old one. Changes are told once a file has been quiet for a moment, so that one written in pieces is read whole.
+//! Watches files for changes by other programs. Folders are watched, not files: programs save by renaming a new file
+//! over the old one. Changes are reported once a file has been quiet for a moment, so that one written in pieces is
+//! read whole.
 
 use std::collections::{BTreeSet, HashMap};
 use std::ffi::OsStr;
@@ -14,13 +15,13 @@ use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 use super::disk::folder_of;
 use crate::base::error::{Error, Result};
 
-/// A change is told once nothing more came for this long.
+/// A change is reported after nothing more has come for this long.
 const QUIET: Duration = Duration::from_millis(100);
-/// A file written without a pause is told this long after its first change.
+/// A file that is written without a pause is reported this long after its first change.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Files being watched. Whether a change is somebody else's is told by the file's hash: see
-/// [`super::session::Session::reload`].
+/// Files being watched. Whether a change is somebody else's shows in the file's hash: see
+/// [`super::session::Session::take_in`].
 #[derive(Debug)]
 pub struct Watch {
     watcher: RecommendedWatcher,
@@ -28,14 +29,14 @@ pub struct Watch {
     files: Arc<Mutex<Files>>,
 }
 
-/// What the watcher calls a file, to what our caller calls it.
+/// From the watcher's name of a file to our caller's name of it.
 type Files = HashMap<PathBuf, PathBuf>;
 
 impl Watch {
-    /// Watches nothing yet. `changed` is called on a thread of its own, with the files that changed.
+    /// Watches nothing yet. `changed` is called on a separate thread, with the files that changed.
     ///
     /// # Errors
-    /// When the system cannot watch files.
+    /// If the system cannot watch files.
     pub fn new(changed: impl Fn(Vec<PathBuf>) + Send + 'static) -> Result<Watch> {
         let (sender, events) = mpsc::channel();
         let watcher = notify::recommended_watcher(sender).map_err(cannot_watch)?;
@@ -48,17 +49,17 @@ impl Watch {
         Ok(Watch { watcher, folders: BTreeSet::new(), files })
     }
 
-    /// Watches these files from now on, and no others. They need not be there.
+    /// Watches these files from now on, and no others. They need not exist.
     ///
     /// # Errors
-    /// The first folder that cannot be watched; all others are.
+    /// If a folder cannot be watched: the first such folder; all others are watched.
     pub fn set(&mut self, files: &[PathBuf]) -> Result<()> {
         let named: Files =
             files.iter().flat_map(|file| places(file).into_iter().map(|place| (place, file.clone()))).collect();
         let folders: BTreeSet<PathBuf> = named.keys().map(|file| folder_of(file).to_owned()).collect();
         *lock(&self.files) = named;
         for gone in self.folders.difference(&folders) {
-            // It may have been removed, and its watch with it.
+            // The folder may have been removed, and its watch with it.
             let _ = self.watcher.unwatch(gone);
         }
         let mut outcome = Ok(());
@@ -71,7 +72,7 @@ impl Watch {
     }
 }
 
-/// Where changes of a file show: in its folder, and where it is a link, in the folder of what it leads to.
+/// Where changes of a file show: in its folder, and for a link, also in the folder of its target.
 fn places(file: &Path) -> Vec<PathBuf> {
     let name = file.file_name().unwrap_or(OsStr::new(""));
     let folder = std::fs::canonicalize(folder_of(file)).unwrap_or_else(|_| folder_of(file).to_owned());
@@ -97,7 +98,7 @@ fn debounce(events: &Receiver<notify::Result<notify::Event>>, files: &Mutex<File
     }
 }
 
-/// Which watched files an event is about; all of them where the system lost count.
+/// The watched files that an event is about; all of them if the system lost events.
 fn concerned(event: notify::Result<notify::Event>, files: &Files) -> BTreeSet<PathBuf> {
     let Ok(event) = event else { return BTreeSet::new() };
     if event.need_rescan() {
@@ -124,7 +125,7 @@ fn cannot_watch(error: notify::Error) -> Error {
 mod tests {
     use super::*;
 
-    /// Long enough on any machine; a change that is told ends the wait.
+    /// Long enough on any machine; a reported change ends the wait.
     const LONG: Duration = Duration::from_secs(60);
 
     #[test]

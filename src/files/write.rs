@@ -1,5 +1,5 @@
-//! Atomic writes: a temporary file in the same folder, synced, renamed over the old one, and the folder synced. Whoever
-//! looks sees the old file or the new one, whole, whatever happens in between.
+//! Atomic writes: a temporary file in the same folder, synced, renamed over the old one, and the folder synced. Readers
+//! see the complete old file or the complete new one, whatever happens in between.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -14,18 +14,18 @@ use crate::base::system;
 /// Writes `bytes` to `path` atomically. An existing file's mode and extended attributes are kept; a link is followed.
 ///
 /// # Errors
-/// When anything fails up to and including the sync of the folder: the data is not safe on the disk then, and the
-/// caller must not say so. The old file stays, except where that last sync is what failed.
+/// If anything fails up to and including the sync of the folder: the data is not safe on the disk then, and the caller
+/// must not claim it is. The old file stays, unless only that last sync failed.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = Atomic::create(path)?;
     file.write_all(bytes).map_err(|error| cannot_write(path, error))?;
     file.commit()
 }
 
-/// Writes `bytes` to a new file, atomically; a file that is there is left alone.
+/// Writes `bytes` to a new file, atomically; an existing file is left alone.
 ///
 /// # Errors
-/// When something of that name is there, or as [`write_atomic`].
+/// If something of that name exists, or as [`write_atomic`].
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
     if path.symlink_metadata().is_ok() {
         return Err(Error::at(path.display(), "is there already").cure("choose another name, or move it away"));
@@ -33,17 +33,17 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
     write_atomic(path, bytes)
 }
 
-/// Copies a file to a new one, atomically; a file of the same content that is there already will do.
+/// Copies a file to a new one, atomically; an existing file with the same content is accepted.
 ///
 /// # Errors
-/// When something else of that name is there, or as [`write_atomic`].
+/// If something else of that name exists, or as [`write_atomic`].
 pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     let mut bytes = Vec::new();
     paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
     if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
 }
 
-/// A file being written, to take its place on [`Atomic::commit`]. Dropped before that, it leaves nothing behind.
+/// A file being written, moved into place by [`Atomic::commit`]. If dropped before that, it leaves nothing behind.
 #[derive(Debug)]
 pub struct Atomic {
     file: File,
@@ -52,10 +52,10 @@ pub struct Atomic {
 }
 
 impl Atomic {
-    /// Begins a file that will stand at `path`.
+    /// Begins a file for `path`.
     ///
     /// # Errors
-    /// When the folder cannot be written, or `path` is there and no regular file.
+    /// If the folder cannot be written, or `path` exists and is no regular file.
     pub fn create(path: &Path) -> Result<Self> {
         let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let old = target.metadata().ok();
@@ -66,7 +66,7 @@ impl Atomic {
         let file = disk::create_new(temporary.path(), false).map_err(|error| cannot_write(path, error))?;
         temporary::hold(&file);
         if let Some(old) = old {
-            // Giving a file to its old owner is for root alone; the mode matters to everybody.
+            // Only root can give a file back to its old owner; the mode matters for everybody.
             let _ = fchown(&file, Some(old.uid()), Some(old.gid()));
             file.set_permissions(old.permissions()).map_err(|error| cannot_write(path, error))?;
             if let Ok(old) = File::open(&target) {
@@ -76,15 +76,15 @@ impl Atomic {
         Ok(Atomic { file, temporary, target })
     }
 
-    /// Where it is until then.
+    /// Where it is until it is committed.
     pub fn temporary(&self) -> &Path {
         self.temporary.path()
     }
 
-    /// Brings the file to the disk and puts it in its place.
+    /// Flushes the file to the disk and moves it into place.
     ///
     /// # Errors
-    /// As [`write_atomic`]. The failed file is never tried again: begin a new one.
+    /// As [`write_atomic`]. A failed file cannot be retried: begin a new one.
     pub fn commit(self) -> Result<()> {
         let Atomic { file, temporary, target } = self;
         disk::sync(&file).and_then(|()| temporary.put(&target)).map_err(|error| cannot_write(&target, error))?;

@@ -1,6 +1,6 @@
 //! The bytes of a journal: 8 bytes magic, version and the writer's process number as u32, then frames of {length u32,
 //! crc32c u32 of length and payload, payload}, little-endian. The first frame is the header, the others are records;
-//! payloads are JSON. The process number changes hands and is under no checksum.
+//! payloads are JSON. The process number is overwritten by each writer and is not covered by a checksum.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -12,19 +12,19 @@ const VERSION: u32 = 1;
 
 /// Where the first frame begins.
 const FRAMES: usize = 16;
-/// Where the process number stands.
+/// The offset of the process number.
 pub(super) const PID_AT: usize = 12;
 /// Length and checksum of a frame.
 const FRAME_HEAD: usize = 8;
 
-/// What a journal starts from.
+/// The state that a journal starts from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// SHA-256 of the scene file as it was last read or saved before the first record.
     pub file: String,
     /// The document before the first record.
     pub document: Value,
-    /// Whether the file held that document.
+    /// Whether that document was in the file.
     #[serde(default)]
     pub is_file: bool,
 }
@@ -32,18 +32,18 @@ pub struct Header {
 /// One change of a document, or that it was saved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// The history's revision after it.
+    /// The history's revision after this record.
     pub revision: u64,
     /// Milliseconds since the epoch.
     pub time: u64,
-    /// Edits that share a step are undone as one; never used twice in a journal.
+    /// Edits with the same step are undone together; numbers are never reused in a journal.
     pub step: u64,
     /// What was done.
     pub kind: Kind,
-    /// What changed the document; empty where it was saved.
+    /// The change of the document; empty for a save.
     #[serde(default, skip_serializing_if = "Edit::is_empty")]
     pub patch: Edit,
-    /// What takes it back.
+    /// The inverse of `patch`.
     #[serde(default, skip_serializing_if = "Edit::is_empty")]
     pub inverse: Edit,
 }
@@ -54,9 +54,9 @@ pub struct Record {
 pub enum Kind {
     /// An edit.
     Edit,
-    /// The last step was taken back.
+    /// The last step was undone.
     Undo,
-    /// The step undone last was done again.
+    /// The step that was undone last was redone.
     Redo,
     /// The document was written to its file, whose SHA-256 this is.
     Saved(String),
@@ -65,9 +65,9 @@ pub enum Kind {
 /// What could be read of a journal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
-    /// What it starts from.
+    /// The state that it starts from.
     pub header: Header,
-    /// The records that are whole, each with the place where it ends.
+    /// The complete records, each with the offset of its end.
     pub records: Vec<(Record, usize)>,
     /// Where the header ends.
     pub header_end: usize,
@@ -83,7 +83,7 @@ impl Contents {
 /// Why a journal has no contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unreadable {
-    /// Its header is not whole: nothing was ever acknowledged, or it is no journal.
+    /// Its header is incomplete: nothing was ever acknowledged, or it is no journal.
     Damaged,
     /// A newer program wrote it.
     Newer(u32),
@@ -109,7 +109,7 @@ pub fn read(bytes: &[u8]) -> Result<Contents, Unreadable> {
     Ok(Contents { header, records, header_end })
 }
 
-/// The bytes of a journal without records, of this process.
+/// The bytes of a journal of this process, without records.
 pub fn start(header: &Header) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     bytes.extend(VERSION.to_le_bytes());
@@ -128,7 +128,7 @@ pub fn encode(value: &impl Serialize) -> Vec<u8> {
     bytes
 }
 
-/// The process that writes the journal, as far as its first bytes say.
+/// The process that writes the journal, according to its first bytes.
 pub fn writer(bytes: &[u8]) -> Option<u32> {
     bytes.starts_with(MAGIC).then(|| number(bytes, PID_AT))?
 }
@@ -142,7 +142,7 @@ fn frame<T: for<'a> Deserialize<'a>>(bytes: &[u8], at: usize) -> Option<(T, usiz
     Some((value, end))
 }
 
-/// The length is summed too, so that a run of zeros is no frame.
+/// The checksum also covers the length, so that a run of zeros is not a valid frame.
 fn checksum(length: [u8; 4], payload: &[u8]) -> u32 {
     crc32c::crc32c_append(crc32c::crc32c(&length), payload)
 }

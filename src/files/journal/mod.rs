@@ -1,6 +1,6 @@
-//! The journal beside a scene: every edit, undo, redo and save, on the disk some milliseconds after it was made. It holds
-//! a lock for as long as somebody edits, is kept over save and quit (that is undo after reopening), and drops its oldest
-//! half when it outgrows a bound.
+//! The journal beside a scene: every edit, undo, redo and save, on the disk some milliseconds after it was made. It is
+//! locked while somebody edits, survives save and quit (this gives undo after reopening), and drops its oldest part
+//! when it grows too large.
 
 use std::fs::{File, Permissions};
 use std::io::{self, Read};
@@ -21,22 +21,22 @@ use crate::base::system::{self, folders};
 use crate::scene::Document;
 use writer::{Message, Shared, Writer};
 
-/// A journal grows by this much between two droppings of its oldest part.
+/// By how many bytes a journal grows before its oldest part is dropped.
 const COMPACT_EVERY: usize = 8 << 20;
-/// A journal larger than this is none of ours.
+/// A larger file is not one of our journals.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// A journal open for writing. Dropping it waits until all is on the disk; one without records is removed.
+/// A journal open for writing. Dropping it waits until everything is on the disk; a journal without records is removed.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
     messages: Option<Sender<Message>>,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<Writer>>,
-    /// Length of the journal once all that was sent is written.
+    /// The length of the journal once everything that was sent is written.
     length: usize,
     empty: bool,
-    /// A place in the journal, and the document there.
+    /// An offset in the journal, and the document at that point.
     checkpoint: Option<(usize, Document)>,
     compact_every: usize,
 }
@@ -46,10 +46,10 @@ pub struct Journal {
 pub enum Unopened {
     /// Another process edits the scene.
     Locked {
-        /// Its number, where known.
+        /// Its process number, if known.
         pid: Option<u32>,
     },
-    /// It cannot be written, or is not to be touched.
+    /// The journal cannot be written, or must not be touched.
     Failed(io::Error),
 }
 
@@ -59,35 +59,36 @@ impl From<io::Error> for Unopened {
     }
 }
 
-/// A journal found and locked, or to be made: what to do with it is not decided yet.
+/// A journal that was found or created, and locked; what to do with it is not decided yet.
 #[derive(Debug)]
 pub struct Found {
     file: File,
     path: PathBuf,
     bytes: Vec<u8>,
-    /// What it holds; `None` if it is new or damaged.
+    /// Its contents; `None` if it is new or damaged.
     pub contents: Option<Contents>,
-    /// Where bytes that were not understood are kept.
+    /// The file that bytes which were not understood were moved to.
     aside: Option<PathBuf>,
 }
 
-/// Where the journal of a scene lies: beside it.
+/// The path of a scene's journal: beside the scene.
 pub fn path_beside(scene_path: &Path) -> PathBuf {
     beside::path(scene_path, "journal")
 }
 
-/// Where the journal of a scene lies if its folder cannot be written: among the user's state, under a hash of its path.
+/// The path of a scene's journal if its folder cannot be written: in the user's state folder, named by a hash of the
+/// scene's path.
 pub fn path_in_state(scene_path: &Path) -> Option<PathBuf> {
     let hash = scene::hash(scene_path.as_os_str().as_encoded_bytes());
     Some(folders::state()?.join("journals").join(format!("{}.journal", &hash[..32])))
 }
 
-/// Finds and locks the journal of a scene, or makes an empty one. `scene_path` is absolute and free of links. Where there
-/// is one in both places, the one written last counts.
+/// Finds and locks the journal of a scene, or creates an empty one. `scene_path` is absolute and free of links. If
+/// there is one in both places, the one written last counts.
 ///
 /// # Errors
-/// When another process holds it, when it can lie neither beside the scene nor among the user's state, or when a newer
-/// program wrote it.
+/// If another process has locked it, if it can be neither beside the scene nor in the user's state folder, or if a
+/// newer version of the program wrote it.
 pub fn find(scene_path: &Path) -> Result<Found, Unopened> {
     let beside = lock(&path_beside(scene_path));
     let Some(in_state) = path_in_state(scene_path) else { return beside };
@@ -122,7 +123,7 @@ fn lock(path: &Path) -> Result<Found, Unopened> {
             }
             Err(std::fs::TryLockError::Error(error)) => return Err(error.into()),
         }
-        // The holder before us may have put a new file in its place, or removed it, after we opened it.
+        // The previous holder may have replaced or removed the file after we opened it.
         let (ours, there) = (file.metadata()?, std::fs::metadata(path));
         if !there.is_ok_and(|there| (there.dev(), there.ino()) == (ours.dev(), ours.ino())) {
             continue;
@@ -144,8 +145,8 @@ fn lock(path: &Path) -> Result<Found, Unopened> {
     }
 }
 
-/// A journal that somebody else laid there, or that has a name elsewhere, is not written: its reader, or the owner of the
-/// other name, is not meant. One that others may read is taken from them.
+/// Refuses a journal that another user put there or that has another hard link, since edits are not meant for them.
+/// Makes a journal that others may read private.
 fn keep_private(file: &File) -> io::Result<()> {
     let found = file.metadata()?;
     let refused = |what: &str| Err(io::Error::new(io::ErrorKind::PermissionDenied, what));
@@ -162,7 +163,7 @@ fn keep_private(file: &File) -> io::Result<()> {
 }
 
 impl Found {
-    /// Where it lies.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -173,7 +174,7 @@ impl Found {
         last.map_or(0, |(record, _)| record.time)
     }
 
-    /// Not used after all.
+    /// Gives it up unused.
     pub fn leave(self) {
         if self.bytes.is_empty() {
             // An empty file that stays does no harm.
@@ -181,11 +182,11 @@ impl Found {
         }
     }
 
-    /// Goes on with the first `records` records; the bytes after them are kept aside. Without contents it starts anew
-    /// from `header`. `revision` is that of the history which the records gave.
+    /// Continues after the first `records` records; the bytes after them are moved to a separate file. Without contents
+    /// it starts anew from `header`. `revision` is that of the replayed history.
     ///
     /// # Errors
-    /// When it cannot be written. What was found is still there then, and locked: this may be tried again.
+    /// If it cannot be written. The journal that was found is still there then, and locked: this may be tried again.
     pub fn open(&mut self, header: &Header, records: usize, revision: u64) -> io::Result<Opened> {
         let end = match &self.contents {
             None => 0,
@@ -201,7 +202,7 @@ impl Found {
         }
         io::Seek::seek(&mut self.file, io::SeekFrom::Start(end as u64))?;
         let bytes = if self.contents.is_none() {
-            // What an earlier try has written is overwritten, to its end.
+            // What an earlier attempt wrote is overwritten completely.
             let start = format::start(header);
             disk::write(&mut self.file, &start)?;
             self.file.set_len(start.len() as u64)?;
@@ -218,7 +219,7 @@ impl Found {
         Ok(Opened { journal: self.start(bytes, revision, empty)?, aside: self.aside.clone() })
     }
 
-    /// Writes the bytes from `end` on to a file of their own.
+    /// Copies the bytes from `end` on to a separate file.
     fn keep_aside(&self, end: usize) -> io::Result<PathBuf> {
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
         let free = |path: &PathBuf| path.symlink_metadata().is_err();
@@ -226,7 +227,7 @@ impl Found {
         let path = names.map(|name| self.path.with_file_name(name)).find(free).expect("some number is free");
         let mut file = disk::create_new(&path, true)?;
         let written = disk::write(&mut file, &self.bytes[end..]).and_then(|()| disk::sync(&file));
-        // Half of it is of no use, and the next try makes another.
+        // Half a copy is useless, and the next attempt makes another.
         written.inspect_err(|_| drop(disk::remove(&path))).map(|()| path)
     }
 
@@ -235,7 +236,7 @@ impl Found {
         shared.acknowledged.store(revision, Ordering::Release);
         let (length, path) = (bytes.len(), self.path.clone());
         let writer = Writer {
-            // The copy shares the lock.
+            // The clone shares the lock.
             file: self.file.try_clone()?,
             path: self.path.clone(),
             synced: length,
@@ -262,14 +263,14 @@ impl Found {
 /// A journal ready to be written.
 #[derive(Debug)]
 pub struct Opened {
-    /// It.
+    /// The journal.
     pub journal: Journal,
-    /// Where bytes that were not understood are kept.
+    /// The file that bytes which were not understood were moved to.
     pub aside: Option<PathBuf>,
 }
 
 impl Journal {
-    /// Takes a record, without waiting. `document` is what it led to, `file` the hash of the scene file.
+    /// Queues a record, without waiting. `document` is the document after it, `file` the hash of the scene file.
     pub fn append(&mut self, record: &Record, document: &Document, file: &str) {
         let frame = encode(record);
         self.length += frame.len();
@@ -294,7 +295,7 @@ impl Journal {
         self.send(Message::Compact(start, dropped));
     }
 
-    /// For tests: how much the journal grows between two droppings of its oldest part, in bytes.
+    /// For tests: sets by how many bytes the journal grows before its oldest part is dropped.
     #[cfg(test)]
     pub fn compact_every(&mut self, bytes: usize) {
         self.compact_every = bytes;
@@ -305,19 +306,22 @@ impl Journal {
         self.shared.acknowledged.load(Ordering::Acquire)
     }
 
-    /// Why nothing is being written, until it is again.
+    /// Why writing fails at present; `None` if it does not.
     pub fn failing(&self) -> Option<String> {
         self.shared.failing()
     }
 
-    /// Waits until all that was taken is on the disk, or tells why it is not.
+    /// Waits until everything queued is on the disk.
+    ///
+    /// # Errors
+    /// Why it is not.
     pub fn flush(&self) -> Result<(), String> {
         let (reply, answer) = mpsc::channel();
         self.send(Message::Flush(reply));
         answer.recv().unwrap_or_else(|_| Err("its writer has ended".into()))
     }
 
-    /// Where it lies.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -334,7 +338,7 @@ impl Drop for Journal {
         self.messages = None;
         let writer = self.thread.take().map(JoinHandle::join);
         if let (true, Some(Ok(writer))) = (self.empty, writer) {
-            // Still under the writer's lock. One that stays says nothing and does no harm.
+            // The writer still has the lock. An empty journal that stays does no harm.
             let _ = disk::remove(&writer.path);
         }
     }

@@ -1,6 +1,6 @@
-//! The journal's own thread: what has gathered is written and synced as one, so that a burst of edits costs one sync and
-//! nobody waits for the disk. All of the journal is kept in memory (it is bounded): after a failure a new file is written
-//! from it, never the failed one again.
+//! The journal's thread: everything queued is written and synced together, so that a burst of edits costs one sync and
+//! nobody waits for the disk. The whole journal is kept in memory (its size is bounded): after a failure a new file is
+//! written from that; the failed one is never written again.
 
 use std::fs::File;
 use std::io;
@@ -13,20 +13,20 @@ use std::time::{Duration, Instant};
 use crate::files::disk;
 use crate::files::temporary::Temporary;
 
-/// How long after a failure the next file is tried.
+/// How long after a failure a new file is tried.
 const TRY_AGAIN: Duration = Duration::from_secs(1);
 
 /// What the thread is asked to do.
 pub(super) enum Message {
-    /// A frame, and the revision that is safe once it is.
+    /// Append a frame; the revision is safe once the frame is.
     Append(Vec<u8>, u64),
-    /// Put this start in the place of the first so many bytes.
+    /// Replace this many first bytes with this start.
     Compact(Vec<u8>, usize),
-    /// Answer once all before is on the disk, or why it is not.
+    /// Answer once everything before is on the disk, or say why it is not.
     Flush(Sender<Result<(), String>>),
 }
 
-/// What both sides see.
+/// State that both threads see.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
     pub acknowledged: AtomicU64,
@@ -45,22 +45,22 @@ impl Shared {
 
 /// A journal being written.
 pub(super) struct Writer {
-    /// Locked; stands at its end.
+    /// Locked, and positioned at its end.
     pub file: File,
     pub path: PathBuf,
-    /// All that the file should hold.
+    /// Everything that should be in the file.
     pub contents: Vec<u8>,
-    /// How much of it is on the disk.
+    /// How many bytes of it are on the disk.
     pub synced: usize,
     pub shared: Arc<Shared>,
-    /// The revision that is safe once all of the contents is.
+    /// The revision that is safe once all contents are on the disk.
     pub revision: u64,
-    /// When the file failed: it is not to be written any more.
+    /// When the file failed: it must not be written any more.
     pub failed: Option<Instant>,
 }
 
 impl Writer {
-    /// Writes what comes until nobody can send any more; gives the journal back.
+    /// Writes what is received until all senders are gone; returns the writer.
     pub fn run(mut self, messages: Receiver<Message>) -> Writer {
         loop {
             let first = match self.failed {
@@ -68,7 +68,7 @@ impl Writer {
                 Some(_) => messages.recv_timeout(TRY_AGAIN),
             };
             if matches!(first, Err(RecvTimeoutError::Disconnected)) {
-                // A last try for what failed before.
+                // A last attempt at what failed before.
                 if self.synced < self.contents.len() {
                     self.commit(true);
                 }
@@ -95,7 +95,7 @@ impl Writer {
             }
             let outcome = self.shared.failing().map_or(Ok(()), Err);
             for reply in waiting {
-                // Whoever asked may have gone.
+                // The requester may be gone.
                 let _ = reply.send(outcome.clone());
             }
         }

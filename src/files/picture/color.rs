@@ -1,4 +1,4 @@
-//! The color that a file says its samples have, turned into linear sRGB light. What is matrix and curves becomes a table of
+//! Turns the color that a file declares for its samples into linear sRGB light. Matrix and curves become a table of
 //! light for every code, and the samples stay as they were; what needs a table of colors (inks, some scanners) becomes
 //! sRGB codes of 16 bits. An sRGB profile changes nothing, to the bit.
 
@@ -12,7 +12,7 @@ use crate::base::maths::{exp, pow};
 use crate::base::picture::{Channels, Light, Picture, SRGB_8, SRGB_16, Samples, table, value_of_half};
 use crate::base::pixels::linear_from_srgb;
 
-/// White of the space in which profiles meet.
+/// The white of the profile connection space, XYZ.
 pub(super) const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
 
 /// x and y of white, red, green and blue.
@@ -21,11 +21,11 @@ type Primaries = [[f64; 2]; 4];
 const D65: [f64; 2] = [0.3127, 0.329];
 const SRGB: Primaries = [D65, [0.64, 0.33], [0.3, 0.6], [0.15, 0.06]];
 
-/// Primaries and a curve, said without a profile.
+/// Primaries and a curve, declared without a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Spoken {
     pub transfer: Transfer,
-    /// Those of sRGB without them.
+    /// `None`: those of sRGB.
     pub primaries: Option<Primaries>,
     /// Whether black and white are at 16 and 235 of 255.
     pub narrow: bool,
@@ -35,11 +35,11 @@ pub(super) struct Spoken {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Transfer {
     Srgb,
-    /// Codes to this power.
+    /// The code to this power.
     Power(f64),
     Bt709,
     Smpte240,
-    /// Logarithmic, over so many decades.
+    /// Logarithmic, over this many decades.
     Log(f64),
     /// The curves of HDR: 203 cd/m² is white.
     Pq,
@@ -54,18 +54,18 @@ pub(super) enum Curve {
     Points(Vec<u16>),
     Parametric([f64; 7]),
     Transfer(Transfer, bool),
-    /// L* of the curve within.
+    /// The inner curve gives L*, as 0 to 1.
     Lightness(Box<Curve>),
 }
 
-/// Curves, then a matrix to XYZ of D50; without one the primaries are those of sRGB.
+/// Curves, then a matrix to D50 XYZ; without a matrix the primaries are those of sRGB.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shaper {
     pub curves: [Curve; 3],
     pub matrix: Option<[[f64; 3]; 3]>,
 }
 
-/// Codes of sRGB, 0 to 1, at the nodes of a grid over device values.
+/// sRGB codes, 0 to 1, at the nodes of a grid over device values.
 pub(super) struct Table {
     inputs: usize,
     nodes: usize,
@@ -73,7 +73,7 @@ pub(super) struct Table {
 }
 
 impl Spoken {
-    /// What the numbers of a cICP chunk mean (ITU-T H.273), `None` if they are reserved or no RGB.
+    /// What the numbers in a cICP chunk mean (ITU-T H.273); `None` if they are reserved or not RGB.
     pub fn of_cicp(primaries: u8, transfer: u8, matrix: u8, full: bool) -> Option<Self> {
         const BT601: [[f64; 2]; 3] = [[0.63, 0.34], [0.31, 0.595], [0.155, 0.07]];
         let with = |white, [r, g, b]: [[f64; 2]; 3]| Some([white, r, g, b]);
@@ -118,7 +118,7 @@ impl Spoken {
 }
 
 impl Transfer {
-    /// The gAMA chunk of PNG; its usual value stands for sRGB, as every writer of it means.
+    /// The gAMA chunk of PNG; its usual value, 45455, means sRGB, which is what every writer means by it.
     pub fn of_png_gamma(gamma: u32) -> Self {
         if gamma.abs_diff(45455) <= 50 { Transfer::Srgb } else { Transfer::Power(100_000.0 / f64::from(gamma)) }
     }
@@ -139,7 +139,7 @@ impl Transfer {
                 let below = (p - 0.8359375).max(0.0);
                 pow(below / (18.8515625 - 18.6875 * p), 8192.0 / 1305.0) * 10_000.0 / 203.0
             }
-            // Three quarters of the codes are white.
+            // White is the light of code 0.75.
             Transfer::Hlg if x <= 0.5 => x * x / 3.0 / 0.265,
             Transfer::Hlg => (exp((x - 0.559_910_73) / 0.178_832_77) + 0.284_668_92) / 12.0 / 0.265,
         }
@@ -164,14 +164,14 @@ impl Curve {
 }
 
 impl Shaper {
-    /// From the light of its channels to that of sRGB; `None` if they are the same.
+    /// The matrix from the light of its channels to that of sRGB; `None` if they are the same.
     fn to_srgb(&self) -> Option<[[f64; 3]; 3]> {
         let rows = times(&FROM_XYZ, &self.matrix?);
         let same = (0..9).all(|i| (rows[i / 3][i % 3] - f64::from(u8::from(i / 3 == i % 3))).abs() < 1e-3);
         (!same).then_some(rows)
     }
 
-    /// Whether its codes are those of sRGB, to less than one of 255.
+    /// Whether its codes are those of sRGB, to within 0.75 of 255.
     fn is_srgb(&self) -> bool {
         let near = |curve: &Curve| {
             (0..=255).all(|code| {
@@ -192,7 +192,7 @@ impl Shaper {
 }
 
 impl Table {
-    /// A table of `nodes` a side whose colors are `xyz` of device values.
+    /// A table with `nodes` per side, of the colors `xyz` of device values.
     pub fn of(inputs: usize, nodes: usize, xyz: impl Fn(&[f64]) -> [f64; 3] + Sync) -> Self {
         let code = |i: usize| {
             let mut device = [0.0; 4];
@@ -216,7 +216,8 @@ impl Table {
     }
 }
 
-/// The picture, its color followed as far as it can be; `None` if its samples cannot be what they are said to be.
+/// The picture, with its declared color applied as far as possible; `None` if its samples do not fit its size and
+/// model.
 pub(super) fn apply(decoded: Decoded) -> Option<Found> {
     let Decoded { size: (width, height), model, samples, color, mut notes } = decoded;
     let profile = profile(&color, model, &samples, &mut notes);
@@ -243,7 +244,7 @@ pub(super) fn apply(decoded: Decoded) -> Option<Found> {
     fits.then(|| Found { picture: Picture::new(width, height, channels, samples), notes })
 }
 
-/// What is to be applied: nothing for sRGB, and nothing that cannot be, of which there is a note.
+/// The profile to apply; `None` for sRGB, and if it cannot be applied, with a note.
 fn profile(color: &Color, model: Model, samples: &Raw, notes: &mut Vec<String>) -> Option<Profile> {
     let profile = match color {
         Color::Untagged => return None,
@@ -309,7 +310,7 @@ fn through<T: Copy + PartialEq + Sync>(
     out
 }
 
-/// Inks of nobody knows which press, as the image crate mixes them.
+/// Inks without a profile, converted as the image crate does.
 fn of_inks(samples: Raw) -> Option<Samples> {
     match samples {
         Raw::Bytes(all) => {
@@ -358,8 +359,8 @@ fn of_lab(samples: Raw) -> Samples {
 /// The largest half float.
 const LARGEST: f32 = 65504.0;
 
-/// Renderers leave NaN and infinite pixels behind: they become 0 and the largest half float, so that no bilinear read
-/// spreads them.
+/// Renderers can leave NaN and infinite pixels: they become 0 and the largest half float, so that bilinear
+/// interpolation does not spread them.
 fn finite(mut values: Vec<f32>, model: Model) -> Vec<f32> {
     values.par_chunks_mut(model.count()).for_each(|cell| {
         for (i, x) in cell.iter_mut().enumerate() {
@@ -387,16 +388,16 @@ fn finite_halves(mut values: Vec<u16>, model: Model) -> Vec<u16> {
     values
 }
 
-/// sRGB code, 0 to 1, of linear light (IEC 61966-2-1).
+/// The sRGB code, 0 to 1, of linear light (IEC 61966-2-1).
 fn srgb_from_linear(light: f64) -> f64 {
     if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * pow(light, 1.0 / 2.4) - 0.055 }
 }
 
-/// From XYZ of D50 to linear sRGB.
+/// From D50 XYZ to linear sRGB.
 static FROM_XYZ: LazyLock<[[f64; 3]; 3]> =
     LazyLock::new(|| to_xyz(SRGB).and_then(|matrix| inverse(&matrix)).unwrap_or_default());
 
-/// From primaries to XYZ, white brought to D50 as Bradford does; `None` if they enclose nothing.
+/// From primaries to XYZ, with white adapted to D50 by the Bradford transform; `None` if they span no area.
 fn to_xyz([white, red, green, blue]: Primaries) -> Option<[[f64; 3]; 3]> {
     const BRADFORD: [[f64; 3]; 3] = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
     let xyz = |[x, y]: [f64; 2]| [x / y, 1.0, (1.0 - x - y) / y];

@@ -1,5 +1,6 @@
-//! OpenEXR: which of its channels are meant, by their names. A path may name a layer after a `#` (`a.exr#beauty`); without
-//! one red, green and blue are taken, else the one layer that has them, else what one or two channels there are.
+//! OpenEXR: chooses channels by their names. A path may name a layer after a `#` (`a.exr#beauty`); without one, red,
+//! green and blue outside layers are used, otherwise those of the only layer that has them, otherwise the only one or
+//! two channels.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -33,7 +34,7 @@ pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
     Ok(Opened { size, orientation: 1, bytes, decode })
 }
 
-/// Two channels of an OpenEXR, as vectors are kept; how many bytes that takes is asked of `allow` first.
+/// Two channels of an OpenEXR, as vectors are stored; `allow` is asked first for the bytes that this takes.
 pub(in crate::files) fn vectors(
     file: File,
     place: &str,
@@ -67,16 +68,16 @@ fn explain(place: &str, error: ExrError) -> Error {
 /// Channels that belong together.
 struct Chosen {
     header: usize,
-    /// Indices of its channels, in the order of samples; one that is not there is 0.
+    /// Indices of its channels, in the order of samples; a missing one counts as 0 everywhere.
     channels: Vec<Option<usize>>,
     /// Whether all of them are half floats.
     half: bool,
 }
 
-/// Which of these channels, told by their names without the layer's, are wanted; in the order of samples.
+/// Chooses channels by their names without the layer; returns their indices in the order of samples.
 type Roles = dyn Fn(&[String]) -> Option<Vec<usize>>;
 
-/// Channels by any of several names, all of a row or none.
+/// The channels of a row, each by any of several names; all of them or `None`.
 fn named(names: &[String], row: &[&[&str]]) -> Option<Vec<usize>> {
     let find = |any: &&[&str]| names.iter().position(|name| any.iter().any(|one| name.eq_ignore_ascii_case(one)));
     row.iter().map(find).collect()
@@ -103,7 +104,7 @@ fn vector_of(names: &[String]) -> Option<Vec<usize>> {
     rows.iter().find_map(|row| named(names, row))
 }
 
-/// A channel's layer and its own name.
+/// Splits a channel's name into its layer and its own name.
 fn parted(header: &Header, name: &str) -> (String, String) {
     let part = header.own_attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
     match name.rsplit_once('.') {
@@ -112,7 +113,7 @@ fn parted(header: &Header, name: &str) -> (String, String) {
     }
 }
 
-/// A layer: its name, whether its channels stand in it without one, its header, and its channels with their names.
+/// A layer: its name, whether its channels have no layer in their names, its header, and its channels with their names.
 struct Layer {
     name: String,
     plain: bool,
@@ -146,7 +147,7 @@ fn choose(headers: &[Header], place: &str, roles: &Roles) -> Result<Chosen> {
     };
     let found = match wanted {
         Some(wanted) => layers.iter().filter(|layer| layer.name == wanted).find_map(take).or_else(|| {
-            // A single channel by its own name, with its layer's or without.
+            // A single channel by its own name, with or without the layer.
             let mut all = layers.iter().flat_map(|layer| layer.channels.iter().map(move |(c, own)| (layer, *c, own)));
             let named = |layer: &Layer, own: &str| own == wanted || format!("{}.{own}", layer.name) == wanted;
             all.find(|(layer, _, own)| named(layer, own))
@@ -174,7 +175,7 @@ fn choose(headers: &[Header], place: &str, roles: &Roles) -> Result<Chosen> {
     Ok(Chosen { header, channels, half })
 }
 
-/// Two channels, where there are no others: red and green of a picture without blue, whatever they are called.
+/// Two channels if there are no others: red and green of a picture without blue, whatever their names.
 fn two(layers: &[Layer], wanted: Option<&str>, roles: &Roles) -> Option<(usize, Vec<Option<usize>>)> {
     let mut fit = layers.iter().filter(|layer| wanted.is_none_or(|wanted| layer.name == wanted));
     let layer = fit.next().filter(|_| fit.next().is_none())?;
@@ -210,7 +211,7 @@ fn window(reader: &Exr, chosen: &Chosen) -> (usize, usize) {
     (size.width(), size.height())
 }
 
-/// The samples of the display window; what lies outside the data is 0.
+/// The samples of the display window; outside the data window they are 0.
 fn samples(reader: Exr, chosen: &Chosen, (width, height): (usize, usize), place: &str) -> Result<Raw> {
     let header = &reader.headers()[chosen.header];
     let offset = header.own_attributes.layer_position - header.shared_attributes.display_window.position;
@@ -244,7 +245,7 @@ fn samples(reader: Exr, chosen: &Chosen, (width, height): (usize, usize), place:
     Ok(out)
 }
 
-/// Puts the samples of a line, in the machine's own order of bytes, where `at` says.
+/// Stores the samples of a line, in native byte order, at the indices that `at` gives.
 fn put(out: &mut Raw, kind: SampleType, bytes: &[u8], at: impl Fn(usize) -> Option<usize>) {
     match (out, kind) {
         (Raw::Halves(out), _) => {

@@ -1,6 +1,6 @@
-//! ICC profiles, versions 2 and 4: matrix and curves, or tables (RGB, grey, CMYK). moxcms reads the profile; what it means
-//! is computed here in double precision, because that crate has no black point compensation and its results depend on the
-//! processor. Relative colorimetric, as everything else in a scene is.
+//! ICC profiles, versions 2 and 4: matrix and curves, or tables (RGB, grey, CMYK). moxcms parses the profile; the
+//! colors are computed here in double precision, because that crate has no black point compensation and its results
+//! depend on the processor. The rendering intent is relative colorimetric, as everywhere in a scene.
 
 use moxcms::{
     ColorProfile, DataColorSpace, LutDataType, LutMultidimensionalType, LutStore, LutWarehouse, ProfileClass,
@@ -10,19 +10,19 @@ use moxcms::{LutType, ToneReprCurve, Xyzd};
 use super::Model;
 use super::color::{Curve, D50, Shaper, Table, multiply};
 
-/// What a profile makes of device values.
+/// The conversion that a profile defines.
 pub(super) enum Profile {
     Shaper(Box<Shaper>),
     Table(Table),
 }
 
-/// The most samples of a pixel, and values of a color.
+/// The most samples per pixel, and values per color.
 const MOST: usize = 4;
 
-/// Nodes a side of the table that is made of a profile's own, by how many samples a pixel has.
+/// Nodes per side of the table made from a profile's table, by the number of samples per pixel.
 const NODES: [usize; MOST] = [256, 65, 33, 17];
 
-/// A profile for pixels of `model`.
+/// The conversion for pixels of `model`.
 ///
 /// # Errors
 /// Why it cannot be applied, as a sentence about the picture.
@@ -39,7 +39,7 @@ pub(super) fn understand(bytes: &[u8], model: Model) -> Result<Profile, String> 
     };
     let lut = profile.lut_a_to_b_colorimetric.as_ref().or(profile.lut_a_to_b_perceptual.as_ref());
     match lut {
-        // A grey picture has one sample for the three that such a table wants: its curves will do.
+        // A grey picture has one sample instead of the three that such a table needs: the curves must do.
         Some(lut) if space != 3 || model.count() >= 3 => table(&profile, lut, space).map(Profile::Table),
         _ => shaper(&profile, space).map(|shaper| Profile::Shaper(Box::new(shaper))),
     }
@@ -58,7 +58,7 @@ fn name(space: DataColorSpace) -> &'static str {
 
 fn shaper(profile: &ColorProfile, space: usize) -> Option<Shaper> {
     if space == 1 {
-        // What it gives is lightness where colors are connected in Lab, light else.
+        // The curve gives lightness if the connection space is Lab, otherwise light.
         let grey = curve(profile.gray_trc.as_ref()?)?;
         let curve = if profile.pcs == DataColorSpace::Lab { Curve::Lightness(Box::new(grey)) } else { grey };
         return Some(Shaper { curves: [curve.clone(), curve.clone(), curve], matrix: None });
@@ -83,7 +83,7 @@ fn curve(trc: &ToneReprCurve) -> Option<Curve> {
         },
         ToneReprCurve::Parametric(p) => {
             let p: Vec<f64> = p.iter().map(|&v| f64::from(v)).collect();
-            // g, a, b, c, d, e, f of (a x + b)^g + e from d on, c x + f below it.
+            // g, a, b, c, d, e, f: (a x + b)^g + e for x >= d, c x + f below.
             let all = match p[..] {
                 [g] => [g, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
                 [g, a, b] if a != 0.0 => [g, a, b, 0.0, -b / a, 0.0, 0.0],
@@ -97,7 +97,7 @@ fn curve(trc: &ToneReprCurve) -> Option<Curve> {
     }
 }
 
-/// The profile's own table, made into one that gives sRGB codes.
+/// The profile's table, converted to one that gives sRGB codes.
 fn table(profile: &ColorProfile, lut: &LutWarehouse, inputs: usize) -> Option<Table> {
     let lut = Lut::of(lut, profile.pcs)?;
     if lut.sizes() != (inputs, 3) {
@@ -106,7 +106,7 @@ fn table(profile: &ColorProfile, lut: &LutWarehouse, inputs: usize) -> Option<Ta
     let black = black_point(profile, &lut, inputs);
     Some(Table::of(inputs, NODES[inputs - 1], |device| {
         let xyz = lut.color(device);
-        // Black point compensation: the darkest that the device can is black, white stays white.
+        // Black point compensation: the darkest color of the device becomes black, white stays white.
         std::array::from_fn(|c| {
             let scale = D50[c] / (D50[c] - black[c]);
             (xyz[c] - black[c]) * scale
@@ -114,8 +114,8 @@ fn table(profile: &ColorProfile, lut: &LutWarehouse, inputs: usize) -> Option<Ta
     }))
 }
 
-/// The darkest color of a device as Little CMS finds it: for inks what the profile itself makes of black, else no light at
-/// all; grey in any case, and not lighter than L* 50.
+/// The darkest color of a device, found as in Little CMS: for inks what the profile's inverse table makes of black,
+/// otherwise that of zero device values; made neutral grey, and no lighter than L* 50.
 fn black_point(profile: &ColorProfile, lut: &Lut, inputs: usize) -> [f64; 3] {
     let darkest = if inputs == 4 && profile.profile_class == ProfileClass::OutputDevice {
         let back = profile.lut_b_to_a_perceptual.as_ref().and_then(|back| Lut::of(back, profile.pcs));
@@ -128,7 +128,7 @@ fn black_point(profile: &ColorProfile, lut: &Lut, inputs: usize) -> [f64; 3] {
             None => return [0.0; 3],
         }
     } else if profile.lut_a_to_b_colorimetric.is_none() {
-        // Little CMS looks for none where the profile does not say that it is colorimetric.
+        // Little CMS uses none if the profile has no colorimetric table.
         return [0.0; 3];
     } else if inputs == 4 {
         [1.0; MOST]
@@ -140,12 +140,12 @@ fn black_point(profile: &ColorProfile, lut: &Lut, inputs: usize) -> [f64; 3] {
     D50.map(|white| white * y)
 }
 
-/// Y of L*.
+/// Y from L*.
 pub(super) fn from_lightness(l: f64) -> f64 {
     from_lab([l, 0.0, 0.0])[1]
 }
 
-/// CIE L*a*b* to XYZ, both of D50.
+/// CIE L*a*b* to XYZ, both relative to D50.
 pub(super) fn from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
     let y = (l + 16.0) / 116.0;
     let back = |t: f64| if t > 24.0 / 116.0 { t * t * t } else { (t - 16.0 / 116.0) * 108.0 / 841.0 };
@@ -155,12 +155,12 @@ pub(super) fn from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
 /// A table of a profile.
 struct Lut<'a> {
     lut: &'a LutWarehouse,
-    /// The space on its side that is no device.
+    /// Its connection space, on the side that is not the device.
     pcs: DataColorSpace,
 }
 
 impl<'a> Lut<'a> {
-    /// `None` if its numbers contradict one another.
+    /// `None` if its numbers are inconsistent.
     fn of(lut: &'a LutWarehouse, pcs: DataColorSpace) -> Option<Self> {
         let sound = match lut {
             LutWarehouse::Lut(lut) => old_is_sound(lut),
@@ -191,7 +191,7 @@ impl<'a> Lut<'a> {
         }
     }
 
-    /// Lab as the table wants it (XYZ tables are asked for black only, which is 0).
+    /// Lab, encoded as input of the table (XYZ tables are only asked for black, which is 0).
     fn connection(&self, [l, a, b]: [f64; 3]) -> [f64; 3] {
         if self.pcs != DataColorSpace::Lab {
             return [0.0; 3];
@@ -200,7 +200,7 @@ impl<'a> Lut<'a> {
         [l / 100.0 * scale, (a + 128.0) / 255.0 * scale, (b + 128.0) / 255.0 * scale]
     }
 
-    /// Tables of 16 bits of version 2 number Lab in their own way.
+    /// Whether it is a 16-bit table of version 2, which encodes Lab differently.
     fn is_old_16(&self) -> bool {
         matches!(self.lut, LutWarehouse::Lut(lut) if lut.lut_type == LutType::Lut16)
     }
@@ -273,7 +273,7 @@ fn run_old(lut: &LutDataType, input: &[f64], out: &mut [f64; MOST]) {
     }
 }
 
-/// From a device the order is A, table, M, matrix, B; from color it is the other way round.
+/// From the device the order is A, table, M, matrix, B; to the device it is reversed.
 fn run_new(lut: &LutMultidimensionalType, input: &[f64], out: &mut [f64; MOST]) {
     let (inputs, outputs) = (input.len(), usize::from(lut.num_output_channels));
     let mut v = [0.0; MOST];
@@ -322,8 +322,8 @@ pub(super) fn between(x: f64, count: usize, value: impl Fn(usize) -> f64) -> f64
     value(below) + (value(above) - value(below)) * (at - below as f64)
 }
 
-/// The nodes around a place in a grid, each with its weight (the corners of the simplex that holds it; in three dimensions
-/// a tetrahedron). The first coordinate is the slowest.
+/// The nodes around a place in a grid, each with its weight (the corners of the simplex that contains it; in three
+/// dimensions a tetrahedron). The first coordinate varies slowest.
 pub(super) fn mix(place: &[f64], nodes: &[usize; MOST], mut each: impl FnMut(usize, f64)) {
     let count = place.len();
     let (mut at, mut parts) = (0, [(0.0, 0); MOST]);
@@ -333,7 +333,7 @@ pub(super) fn mix(place: &[f64], nodes: &[usize; MOST], mut each: impl FnMut(usi
         let x = place[c].clamp(0.0, 1.0) * last as f64;
         let below = (x as usize).min(last);
         at += below * stride;
-        // On the last node there is no next one, and its weight is 0.
+        // The last node has no next one; the weight of that would be 0.
         parts[c] = (x - below as f64, if below < last { stride } else { 0 });
         stride *= nodes[c];
     }

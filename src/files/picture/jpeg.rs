@@ -1,6 +1,6 @@
-//! JPEG. Its markers are walked first: the decoder paints what is missing at the end grey, so a file without its end is
-//! found out here, and the pieces of a color profile are put together. Inks (CMYK, YCCK) stay inks where there is a profile
-//! for them.
+//! JPEG. Its markers are walked first: a truncated file is detected here, because the decoder would paint what is
+//! missing grey; and the pieces of a color profile are joined. Inks (CMYK, YCCK) stay inks if there is a profile for
+//! them.
 
 use std::fs::File;
 use std::io::Read;
@@ -16,7 +16,7 @@ use super::{Color, Decoded, Model, Opened, Raw, icc};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 
-/// Reads the header, and looks whether the file is whole.
+/// Reads the header, and checks that the file is complete.
 pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) -> Result<Opened> {
     within(place, "is", "bytes long", "memory", length, limits.memory)?;
     let mut input = Vec::new();
@@ -36,7 +36,7 @@ pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) ->
     let orientation = walked.exif.and_then(Orientation::from_exif_chunk).map_or(1, Orientation::to_exif);
     let how = How::new(inside, walked.profile());
     let pixels = (size.0 * size.1) as u64;
-    // Those of a progressive file wait as coefficients until the last of them is there.
+    // A progressive file is kept as coefficients until all of them are read.
     let waiting = if walked.progressive { inside.num_components() as u64 * 2 } else { 0 };
     let bytes = length + pixels * (how.out.num_components() as u64 + waiting);
     let place = place.to_owned();
@@ -44,7 +44,7 @@ pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) ->
     Ok(Opened { size, orientation, bytes, decode })
 }
 
-/// The options are those of the image crate, so that pictures without a profile are what they are for everybody.
+/// The options are those of the image crate, so that pictures without a profile look as in other programs.
 fn decoder(input: &[u8], out: ColorSpace) -> JpegDecoder<ZCursor<&[u8]>> {
     let options = DecoderOptions::default()
         .jpeg_set_out_colorspace(out)
@@ -54,7 +54,7 @@ fn decoder(input: &[u8], out: ColorSpace) -> JpegDecoder<ZCursor<&[u8]>> {
     JpegDecoder::new_with_options(ZCursor::new(input), options)
 }
 
-/// What is asked of the decoder, and what to make of it.
+/// What to ask of the decoder, and what to do with its output.
 struct How {
     out: ColorSpace,
     color: Color,
@@ -87,7 +87,7 @@ impl How {
         decoder(input, self.out).decode_into(&mut samples).map_err(|error| explain(place, error))?;
         let model = match self.out {
             ColorSpace::CMYK => {
-                // Every program that writes inks into a JPEG writes them inverted, as Adobe's did first.
+                // Every program writes inks in a JPEG inverted, as Adobe's first did.
                 samples.iter_mut().for_each(|ink| *ink = 255 - *ink);
                 Some(Model::Cmyk)
             }
@@ -102,13 +102,13 @@ impl How {
     }
 }
 
-/// Inks of YCCK.
+/// CMYK of YCCK.
 fn inks([y, cb, cr, k]: [u8; 4]) -> [u8; 4] {
     let [c, m, y] = rgb([y, cb, cr]);
     [c, m, y, 255 - k]
 }
 
-/// Red, green and blue of YCbCr as JFIF has it.
+/// RGB of YCbCr, by JFIF.
 pub(super) fn rgb([y, cb, cr]: [u8; 3]) -> [u8; 3] {
     let (y, cb, cr) = (f32::from(y), f32::from(cb) - 128.0, f32::from(cr) - 128.0);
     [y + 1.402 * cr, y - 0.344_136 * cb - 0.714_136 * cr, y + 1.772 * cb].map(|v| (v + 0.5) as u8)
@@ -122,14 +122,14 @@ fn explain(place: &str, error: DecodeErrors) -> Error {
     }
 }
 
-/// What the markers tell.
+/// What the markers say.
 #[derive(Default)]
 struct Walked<'a> {
     exif: Option<&'a [u8]>,
     /// Pieces of the color profile with their numbers from 1, and how many there should be.
     pieces: Vec<(u8, u8, &'a [u8])>,
     progressive: bool,
-    /// Whether the end was there.
+    /// Whether the end marker was found.
     ended: bool,
 }
 
@@ -143,7 +143,7 @@ impl<'a> Walked<'a> {
                     walked.ended = true;
                     break;
                 }
-                // Restarts and the start have no length.
+                // The restart and start markers have no length.
                 0x01 | 0xd0..=0xd8 => continue,
                 _ => {}
             }
@@ -161,13 +161,13 @@ impl<'a> Walked<'a> {
         walked
     }
 
-    /// The color profile, when all of its pieces are there.
+    /// The color profile; empty if pieces of it are missing, `None` if it has none.
     fn profile(&self) -> Option<Vec<u8>> {
         let mut pieces = self.pieces.clone();
         pieces.sort_by_key(|piece| piece.0);
         pieces.dedup_by_key(|piece| piece.0);
         let all = pieces.iter().map(|piece| piece.0).eq(1..=pieces.first()?.1);
-        // A profile that is not whole is broken: that will be told.
+        // An incomplete profile is empty, and will be reported as broken.
         Some(if all { pieces.iter().flat_map(|piece| piece.2).copied().collect() } else { Vec::new() })
     }
 }

@@ -1,5 +1,5 @@
-//! Which kind of picture a file is, by its first bytes; and for the kinds that Plica does not read the command that
-//! makes one of them that it does. Names of files are believed only where there is nothing else (TGA).
+//! Which kind of picture a file is, by its first bytes; and for the kinds that Plica does not read, the command that
+//! converts them to one that it does. File names are used only where there is nothing else to go by (TGA).
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -8,7 +8,7 @@ use image::ImageFormat;
 
 use crate::base::error::{Error, Result};
 
-/// So many bytes are looked at.
+/// How many first bytes are looked at.
 pub(super) const LOOKED_AT: u64 = 512;
 
 /// A kind that is read.
@@ -18,11 +18,11 @@ pub(super) enum Kind {
     Jpeg,
     Tiff,
     Exr,
-    /// What the image crate reads and nothing is to be added to.
+    /// A kind that the image crate reads completely by itself.
     Plain(ImageFormat),
 }
 
-/// First bytes of what is read.
+/// The first bytes of the kinds that are read.
 const KINDS: &[(&[u8], Kind)] = &[
     (b"\x89PNG\r\n\x1a\n", Kind::Png),
     (b"\xff\xd8\xff", Kind::Jpeg),
@@ -43,7 +43,7 @@ const KINDS: &[(&[u8], Kind)] = &[
 
 const READ: &str = "Plica reads PNG, JPEG, TIFF, WebP, GIF, OpenEXR, Radiance HDR, BMP, TGA, PNM, QOI, DDS and ICO";
 
-/// A kind that is not read: what it is called, and the command that converts `IN` to `OUT` (with its extension).
+/// A kind that is not read: its name, and the command that converts `IN` to `OUT` (with an extension).
 struct Foreign {
     name: &'static str,
     command: &'static str,
@@ -63,7 +63,7 @@ const RAW: Foreign = foreign("a raw photograph", "darktable-cli IN OUT.tif");
 const FILM: Foreign = foreign("a film", "ffmpeg -i IN -frames:v 1 OUT.png");
 const LAYERED: Foreign = foreign("a picture with layers", "magick IN -flatten OUT.png");
 
-/// First bytes of what is not read, from an offset on.
+/// The bytes, at an offset, of the kinds that are not read.
 const FOREIGN: &[(usize, &[u8], Foreign)] = &[
     (0, b"\xff\x0a", JXL),
     (0, b"\0\0\0\x0cJXL ", JXL),
@@ -91,7 +91,7 @@ const FOREIGN: &[(usize, &[u8], Foreign)] = &[
     (0, b"AT&TFORM", foreign("a DjVu document", "ddjvu -format=tiff -page=1 IN OUT.tif")),
 ];
 
-/// Brands of the ISO container (`ftyp`), by how they begin.
+/// Brands of the ISO container (`ftyp`), by their first bytes.
 const BRANDS: &[(&[u8], Foreign)] =
     &[(b"avi", AVIF), (b"he", HEIC), (b"mif1", HEIC), (b"msf1", HEIC), (b"crx ", RAW), (b"jp2", JP2), (b"", FILM)];
 
@@ -125,7 +125,7 @@ pub(super) fn kind(start: &[u8], file: &mut File, place: &str) -> Result<Kind> {
     Err(Error::at(place, "is not a picture of a known kind").cure(READ))
 }
 
-/// The first of the brands that says what it is; the generic ones of HEIF give way to AVIF's.
+/// The kind that the first known brand names; brands of AVIF take precedence over those of HEIF.
 fn brand(start: &[u8]) -> &'static Foreign {
     let length = start.first_chunk::<4>().map_or(0, |bytes| u32::from_be_bytes(*bytes) as usize);
     let brands = start.get(8..length.min(start.len())).unwrap_or_default();
@@ -142,7 +142,7 @@ fn is_svg(start: &[u8]) -> bool {
     text.starts_with("<svg") || text.starts_with("<?xml") && text.contains("<svg") || text.starts_with("<!DOCTYPE svg")
 }
 
-/// TGA has no first bytes of its own: newer files have a footer, older ones only their name.
+/// Whether it is a TGA, which has no magic bytes: newer files have a footer, older ones only their name.
 fn is_tga(start: &[u8], file: &mut File, place: &str) -> bool {
     let mut footer = [0; 18];
     let at_end = file.seek(SeekFrom::End(-18)).and_then(|_| file.read_exact(&mut footer)).is_ok();
@@ -164,18 +164,18 @@ fn word_of(word: &str, place: &str, stem: &str) -> String {
     }
 }
 
-/// As a shell takes it for one word.
+/// Quoted so that a shell takes it as one word.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+,=@%".contains(c);
     if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
-/// A raw photograph that says it is a TIFF.
+/// The error for a raw photograph in a TIFF.
 pub(super) fn raw(place: &str) -> Error {
     convert(place, &RAW)
 }
 
-/// A picture of a known kind in a form that is not read.
+/// The error for a picture of a known kind in a form that is not read.
 pub(super) fn other_kind(place: &str, what: impl std::fmt::Display) -> Error {
     let command = convert(place, &foreign("", "magick IN OUT.png"));
     let cure = match command {

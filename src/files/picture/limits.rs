@@ -1,4 +1,4 @@
-//! What a picture may take, asked of its header; and what decoders say when something is wrong, in our words.
+//! What a picture may take, judged by its header; and the errors of decoders in our words.
 
 use image::ImageError;
 
@@ -6,10 +6,10 @@ use super::kinds;
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 
-/// What a file may take besides its pixels: profiles are made small and then dropped.
+/// Bytes that a file may take besides its pixels: profiles are read, converted to something small and dropped.
 pub(super) const BESIDES_PIXELS: u64 = 32 << 20;
 
-/// Holds the size that a header tells against the limits.
+/// Checks the size in a header against the limits.
 pub(super) fn check_size(place: &str, (width, height): (usize, usize), limits: &Limits) -> Result<()> {
     if width == 0 || height == 0 {
         return Err(Error::at(place, format!("has no pixels: it is {width} x {height}")));
@@ -28,7 +28,7 @@ pub(in crate::files) fn within(place: &str, size: &str, unit: &str, limit: &str,
         .cure(format!("make it smaller, or give --limit {limit}={found}")))
 }
 
-/// What a decoder of the image crate may take.
+/// The limits for a decoder of the image crate.
 pub(super) fn for_decoder(bytes: u64) -> image::Limits {
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(bytes);

@@ -1,10 +1,10 @@
-//! Pictures from files, kept as they were read. The header is read first and held against the limits, so that a huge
+//! Pictures from files, kept as they were read. The header is read first and checked against the limits, so that a huge
 //! picture is refused before memory is taken for it.
 //!
-//! 8 and 16 bits a channel are sRGB with straight alpha unless the file says otherwise; floating point (OpenEXR, HDR,
+//! 8 and 16 bits per channel are sRGB with straight alpha unless the file says otherwise; floating point (OpenEXR, HDR,
 //! TIFF) is linear light, with premultiplied alpha. Color profiles are applied (`color.rs`); what cannot be applied is
-//! told. A photograph is turned upright as its EXIF orientation says, as every viewer shows it. Of an animation the
-//! first frame is taken.
+//! reported. A photograph is turned upright by its EXIF orientation, as in every viewer. Of an animation, the first
+//! frame is read.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -35,22 +35,22 @@ pub(super) use plain::words;
 
 use kinds::Kind;
 
-/// A picture and what of its file could not be followed, in words.
+/// A picture, and what in its file could not be honoured, in words.
 #[derive(Debug)]
 pub struct Found {
     /// The picture, upright.
     pub picture: Picture,
-    /// Each a sentence without its subject, as "its color profile is broken and was not applied".
+    /// Each completes a message that begins with the file, as "its color profile is broken and was not applied".
     pub notes: Vec<String>,
 }
 
-/// A file whose header is read and found within the limits.
+/// A file whose header has been read and is within the limits.
 struct Opened {
-    /// Width and height as the file has them, not turned.
+    /// Width and height as in the file, not turned.
     size: (usize, usize),
-    /// As EXIF numbers them, 1 to 8.
+    /// The orientation by EXIF, 1 to 8.
     orientation: u8,
-    /// Bytes that decoding takes at its most.
+    /// The most bytes that decoding takes.
     bytes: u64,
     decode: Box<dyn FnOnce() -> Result<Decoded>>,
 }
@@ -61,7 +61,7 @@ impl Opened {
     }
 }
 
-/// Samples as a decoder gives them, and what the file says about their color.
+/// Samples as decoded, and what the file says about their color.
 struct Decoded {
     size: (usize, usize),
     model: Model,
@@ -71,7 +71,7 @@ struct Decoded {
 }
 
 impl Decoded {
-    /// Bytes that stand beside the samples while they are turned, or become others.
+    /// Bytes needed in addition to the samples while they are turned or converted.
     fn takes_beside(&self, orientation: u8) -> u64 {
         let turned = if orientation > 1 { self.samples.bytes() } else { 0 };
         let words = matches!(self.color, Color::Icc(_)) || matches!(self.model, Model::Cmyk | Model::Lab);
@@ -87,9 +87,9 @@ enum Model {
     GreyAlpha,
     Rgb,
     Rgba,
-    /// Ink, 0 is none.
+    /// Inks; 0 is none.
     Cmyk,
-    /// CIE L*a*b*, a and b with the zero at half of the codes.
+    /// CIE L*a*b*; zero of a and b is the middle code.
     Lab,
 }
 
@@ -103,7 +103,7 @@ impl Model {
         }
     }
 
-    /// The sample that is alpha.
+    /// The index of the alpha sample.
     fn alpha(self) -> Option<usize> {
         matches!(self, Model::GreyAlpha | Model::Rgba).then(|| self.count() - 1)
     }
@@ -113,7 +113,7 @@ impl Model {
     }
 }
 
-/// Samples row by row. Integers have straight alpha, the others are linear and premultiplied.
+/// Samples row by row. Integers have straight alpha; the others are linear and premultiplied.
 #[derive(Clone, Debug)]
 enum Raw {
     Bytes(Vec<u8>),
@@ -144,20 +144,20 @@ enum Color {
 /// Reads the picture at `path`, within the limits.
 ///
 /// # Errors
-/// One message when it cannot be opened, is no picture, is broken, or is larger than the limits allow.
+/// If it cannot be opened, is no picture, is broken, or is larger than the limits allow.
 pub fn read(path: &Path, limits: &Limits) -> Result<Found> {
     decode(paths::open_named(path)?, &path.display().to_string(), limits, &limits.budget()).map(|(found, _)| found)
 }
 
-/// Width and height of the picture at `path`, as [`read`] would give it; only the header is looked at.
+/// Width and height of the picture at `path`, as [`read`] would return it; only the header is read.
 ///
 /// # Errors
-/// As [`read`], as far as the header tells.
+/// As [`read`], as far as the header shows.
 pub fn size(path: &Path, limits: &Limits) -> Result<(usize, usize)> {
     header(paths::open_named(path)?, &path.display().to_string(), limits)
 }
 
-/// The picture in an open file and the memory that it takes; `place` is what messages call it.
+/// The picture in an open file and the memory that it takes; `place` is its name in messages.
 ///
 /// # Errors
 /// As [`read`].

@@ -1,4 +1,4 @@
-//! The kinds that the image crate reads and nothing is to be added to; PNG goes through here too (`png.rs`).
+//! The kinds that the image crate reads completely by itself; PNG goes through here too (`png.rs`).
 
 use std::io::{BufRead, Seek};
 
@@ -19,7 +19,7 @@ pub(super) fn open(
     let mut decoder = decoder(reader, format, place, limits)?;
     let (width, height) = decoder.dimensions();
     let size = (width as usize, height as usize);
-    // Upright unless the file says otherwise; what it says may well be broken.
+    // Upright if there is no orientation in the file, or a broken one.
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms).to_exif();
     let profile = decoder.icc_profile().ok().flatten();
     let (bytes, place) = (decoder.total_bytes(), place.to_owned());
@@ -48,7 +48,7 @@ fn decoder(
     Ok(Box::new(decoder))
 }
 
-/// The samples as they were decoded.
+/// The samples as decoded.
 fn kept(image: DynamicImage) -> Option<(Model, Raw)> {
     let model = Model::of(image.color().channel_count().into())?;
     let samples = match image {
@@ -67,8 +67,8 @@ fn kept(image: DynamicImage) -> Option<(Model, Raw)> {
     Some((model, samples))
 }
 
-/// The samples of a PNG with red, green and blue of 16 bits each, as KITTI keeps vectors; how many bytes that takes is
-/// asked of `allow` first.
+/// The samples of a PNG with red, green and blue of 16 bits each, as KITTI stores vectors; `allow` is asked first for
+/// the bytes that this takes.
 pub(in crate::files) fn words(
     file: std::fs::File,
     place: &str,

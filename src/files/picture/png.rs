@@ -1,6 +1,6 @@
-//! PNG: its chunks are walked first. Texts, thumbnails and other chunks that change no pixel never reach the decoder, so
-//! that they take no memory; a file that ends before its last chunk is cut short. What the chunks say about color is taken
-//! in the order of the PNG specification: cICP, iCCP, sRGB, then gAMA with cHRM.
+//! PNG: its chunks are walked first. Texts, thumbnails and other chunks that do not affect pixels never reach the
+//! decoder, so that they take no memory; a file without its last chunk is truncated. Color chunks take precedence in
+//! the order of the PNG specification: cICP, iCCP, sRGB, then gAMA with cHRM.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -12,13 +12,13 @@ use super::{Color, Decoded, Opened, limits, plain};
 use crate::base::error::Result;
 use crate::files::Limits;
 
-/// Chunks that change pixels, or how they are held.
+/// Chunks that affect pixels or their orientation.
 const KEPT: [&[u8; 4]; 7] = [b"IHDR", b"PLTE", b"tRNS", b"IDAT", b"IEND", b"iCCP", b"eXIf"];
 
-/// Chunks of color that are read here, and the most bytes that they have.
+/// Color chunks that are read here, and their largest sizes in bytes.
 const READ: [(&[u8; 4], u32); 4] = [(b"cICP", 4), (b"sRGB", 1), (b"gAMA", 4), (b"cHRM", 32)];
 
-/// No EXIF of a camera is larger; a larger one is dropped.
+/// No camera writes larger EXIF data; larger chunks are dropped.
 const MOST_EXIF: u32 = 1 << 20;
 
 /// Reads the header.
@@ -36,7 +36,7 @@ pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
     Ok(Opened { decode, ..opened })
 }
 
-/// What was said about color, the strongest first.
+/// Sets the color of the picture from the chunks, by precedence.
 fn colored(mut decoded: Decoded, said: Said, has_profile: bool) -> Decoded {
     if let Some([primaries, transfer, matrix, full]) = said.cicp {
         match Spoken::of_cicp(primaries, transfer, matrix, full == 1) {
@@ -65,12 +65,12 @@ fn colored(mut decoded: Decoded, said: Said, has_profile: bool) -> Decoded {
     decoded
 }
 
-/// What chunks say about color besides a profile.
+/// What the chunks say about color, besides a profile.
 #[derive(Clone, Debug, Default)]
 struct Said {
     cicp: Option<[u8; 4]>,
     srgb: bool,
-    /// 1/gamma, times 100000.
+    /// 100000 / gamma.
     gamma: Option<u32>,
     /// x and y of white, red, green and blue.
     primaries: Option<[[f64; 2]; 4]>,
@@ -93,15 +93,15 @@ impl Said {
     }
 }
 
-/// The file without the chunks that no pixel needs.
+/// The file without the chunks that the pixels do not need.
 struct Chunks {
     file: File,
-    /// Where each kept part begins for the reader, where it begins in the file, and how long it is.
+    /// Each kept part: its offset for the reader, its offset in the file, its length.
     parts: Vec<(u64, u64, u64)>,
     at: u64,
     said: Said,
     has_profile: bool,
-    /// Whether its last chunk was there.
+    /// Whether the last chunk was found.
     whole: bool,
 }
 
@@ -130,7 +130,7 @@ impl Chunks {
             chunks.has_profile |= &kind == b"iCCP";
             chunks.whole = &kind == b"IEND";
             let known = KEPT.contains(&&kind) && (&kind != b"eXIf" || size <= MOST_EXIF);
-            // An unknown chunk that is critical is for the decoder to refuse.
+            // Unknown critical chunks are for the decoder to refuse.
             if known || kind[0].is_ascii_uppercase() {
                 chunks.keep(from, end - from);
             }

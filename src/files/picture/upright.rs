@@ -1,4 +1,4 @@
-//! Photographs turned upright, as EXIF numbers the eight ways to hold a camera.
+//! Turns photographs upright, by the eight orientations of EXIF.
 
 use super::Raw;
 
@@ -7,7 +7,7 @@ pub(super) fn size((width, height): (usize, usize), orientation: u8) -> (usize, 
     if (5..=8).contains(&orientation) { (height, width) } else { (width, height) }
 }
 
-/// Turns the samples of pixels of `count` each; the new size.
+/// Turns pixels of `count` samples each; returns the new size.
 pub(super) fn turn(samples: &mut Raw, count: usize, from: (usize, usize), orientation: u8) -> (usize, usize) {
     if (2..=8).contains(&orientation) {
         match samples {

@@ -1,5 +1,5 @@
-//! The journal of a session: what it tells when a scene is opened, what is recorded in it, and that it is tried again where
-//! it could not be opened.
+//! The journal of a session: how it is used when a scene is opened, what is recorded in it, and the retries if it could
+//! not be opened.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use crate::files::recovery::{self, Replayed};
 use crate::scene::history::{Applied, Way};
 use crate::scene::{Document, Edit, json, words};
 
-/// How long after a failure a journal is tried again.
+/// How long after a failure to try a journal again.
 const TRY_AGAIN: Duration = Duration::from_secs(1);
 
 /// Where edits are kept until they are saved.
@@ -20,31 +20,31 @@ pub(super) enum Keeping {
     Nowhere,
     /// In a journal.
     Journal(Journal),
-    /// In none yet.
+    /// In no journal yet.
     Waiting(Waiting),
 }
 
 /// A journal that could not be opened.
 #[derive(Debug)]
 pub(super) struct Waiting {
-    /// It, locked; `None` if it could not even be found.
+    /// The journal, locked; `None` if it could not even be found.
     found: Option<Found>,
-    /// The document that it leads to, by so many records.
+    /// The document that its first `records` records lead to.
     leads_to: Document,
     records: usize,
     /// Why it could not be opened.
     why: String,
-    /// When that was tried last.
+    /// When it was last tried.
     tried: Instant,
 }
 
 impl Keeping {
-    /// A journal that could not even be found; `document` is the file's.
+    /// For a journal that could not even be found; `document` is the file's.
     pub fn unfound(why: String, document: Document) -> Keeping {
         Keeping::Waiting(Waiting { found: None, leads_to: document, records: 0, why, tried: Instant::now() })
     }
 
-    /// The journal, where it is open.
+    /// The journal, if it is open.
     pub fn journal(&self) -> Option<&Journal> {
         if let Keeping::Journal(journal) = self { Some(journal) } else { None }
     }
@@ -72,7 +72,7 @@ impl Keeping {
 }
 
 impl Session {
-    /// Goes on from what the journal tells.
+    /// Continues from what is in the journal.
     pub(super) fn take_up(&mut self, mut found: Found, document: Document) {
         let replayed = found.contents.as_ref().and_then(recovery::replay);
         if replayed.is_none() {
@@ -89,7 +89,7 @@ impl Session {
         }
     }
 
-    /// Opens a journal that was found, or lets it wait.
+    /// Opens a journal that was found, or leaves it for later if that fails.
     fn keep_in(&mut self, mut found: Found, leads_to: Document, (records, revision): (usize, u64)) {
         let is_file = self.base.as_ref().is_some_and(|base| json::same(base.json(), leads_to.json()));
         let header = Header { file: self.file.clone(), document: leads_to.json().clone(), is_file };
@@ -105,7 +105,7 @@ impl Session {
         };
     }
 
-    /// The journal goes on in the present version of the format.
+    /// Records that the journal continues in the current version of the format.
     fn record_migration(&mut self, replayed: &Replayed, edit: Edit, inverse: Edit) {
         let Keeping::Journal(journal) = &mut self.keeping else { return };
         let (history, file) = (&replayed.history, &replayed.file);
@@ -137,8 +137,8 @@ impl Session {
         }
     }
 
-    /// Tries a journal again that could not be opened; to be called now and then. What was edited meanwhile enters it as
-    /// one edit.
+    /// Tries again to open a journal that could not be opened; to be called now and then. What was edited meanwhile is
+    /// recorded as one edit.
     pub fn tend(&mut self) {
         let Keeping::Waiting(waiting) = &mut self.keeping else { return };
         if waiting.tried.elapsed() < TRY_AGAIN {
@@ -159,7 +159,7 @@ impl Session {
         }
     }
 
-    /// Records what has become of the document that the journal leads to.
+    /// Records what has changed since the document that the journal leads to.
     fn catch_up(&mut self, leads_to: &Document) {
         let edit = Edit::between(leads_to, self.history.document());
         if edit.is_empty() {
@@ -188,8 +188,8 @@ impl Session {
     }
 }
 
-/// Finds a journal that could not be found before, the document that it leads to, and by how many records. `document` is
-/// what a new one starts from.
+/// Tries again to find a journal; returns it, the document that it leads to, and by how many records. A new journal
+/// starts from `document`.
 fn find_again(path: &std::path::Path, document: Document) -> Result<(Found, Document, usize), String> {
     let mut found = match journal::find(path) {
         Ok(found) => found,

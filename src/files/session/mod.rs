@@ -1,5 +1,5 @@
-//! A scene being edited: the one door for edits at run time. Document, history, journal and file change together here,
-//! whoever asks: a key, a command, a script, `plica set`.
+//! A scene being edited: all edits at run time go through here. Document, history, journal and file change together, no
+//! matter where the edit comes from: a key, a command, a script, `plica set`.
 
 use std::path::{Path, PathBuf};
 
@@ -22,13 +22,13 @@ pub use outside::Taken;
 /// What a session may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Edit and save: nobody else may edit meanwhile.
+    /// Edit and save; nobody else may edit meanwhile.
     Edit,
-    /// The same; where somebody else edits the scene already, look at it: see [`Session::held_by`].
+    /// The same, but read-only if somebody else is editing the scene already: see [`Session::held_by`].
     EditOrLook,
-    /// Edit, also where somebody whose lock cannot be seen may do so too.
+    /// Edit, even if somebody whose lock cannot be seen may be editing too.
     TakeOver,
-    /// Look, and edit in memory at most: no lock, no journal.
+    /// Read-only, with edits at most in memory: no lock, no journal.
     ReadOnly,
 }
 
@@ -41,22 +41,22 @@ impl Mode {
 /// Whether a save may replace what another program wrote meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overwrite {
-    /// It is refused.
+    /// No: the save is refused.
     No,
-    /// It is lost.
+    /// Yes: what the other program wrote is lost.
     Yes,
 }
 
-/// Unsaved edits that a session left behind which did not end well.
+/// Unsaved edits left behind by a session that did not end properly.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recovery {
-    /// How many changes.
+    /// How many changes there are.
     pub changes: usize,
     /// What they change in the file, in words.
     pub words: Vec<String>,
     /// When the last one was made, in milliseconds since the epoch.
     pub time_ms: u64,
-    /// Whether another program changed the file since.
+    /// Whether another program has changed the file since.
     pub file_changed: bool,
 }
 
@@ -70,12 +70,12 @@ impl Recovery {
     }
 }
 
-/// How safe the present document is.
+/// How safe the current document is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Safety {
-    /// It is what was last written to the file.
+    /// Whether it is what was last written to the file.
     pub saved: bool,
-    /// Every change is on the disk, in the journal.
+    /// Whether every change is on the disk, in the journal.
     pub journaled: bool,
     /// Why changes do not reach the journal.
     pub failing: Option<String>,
@@ -92,17 +92,17 @@ pub struct Session {
     aside: Option<PathBuf>,
     /// SHA-256 of the file as last read or written.
     file: String,
-    /// The text of the file as last read or written: what is saved is laid out like it.
+    /// The text of the file as last read or written: a save keeps its layout.
     source: String,
     offer: Option<Offer>,
-    /// What the file held when it was last read or written; `None` if that is not known.
+    /// The document in the file when it was last read or written; `None` if that is not known.
     base: Option<Document>,
-    /// Who edits the scene instead of us.
+    /// Who edits the scene, so that we do not.
     held_by: Option<Holder>,
     _sign: Option<Sign>,
 }
 
-/// Unsaved edits that are offered, and what was known of the file then.
+/// Unsaved edits that are offered, and what was known about the file when they were made.
 #[derive(Debug)]
 struct Offer {
     recovery: Recovery,
@@ -113,17 +113,17 @@ struct Offer {
 
 impl Session {
     /// Opens the scene at `path`, takes its lock and rebuilds its history from the journal. Unsaved edits of a session
-    /// that did not end well are not taken but offered: see [`Session::recovery`].
+    /// that did not end properly are not applied but offered: see [`Session::recovery`].
     ///
     /// # Errors
-    /// When the scene cannot be read or has errors in it, or another process edits it. A journal that cannot be written
-    /// is no error: [`Session::safety`] tells why.
+    /// If the scene cannot be read or contains errors, or another process is editing it. A journal that cannot be
+    /// written is no error: [`Session::safety`] says why.
     pub fn open(path: &Path, options: &Options, mode: Mode) -> Result<Session> {
-        // Nothing is made on the disk for a scene that cannot be opened.
+        // Nothing is created on the disk for a scene that cannot be opened.
         scene::open(path, options)?;
         let path = std::fs::canonicalize(path).map_err(|error| Error::at(path.display(), error))?;
         let (found, held_by) = claim(&path, mode)?;
-        // Under the lock nobody of ours writes any more: this is the text that counts.
+        // With the lock no other Plica writes any more: this is the text that counts.
         if let Some(Ok(_)) = &found {
             through::mend(&path, scene::is_whole)?;
         }
@@ -165,59 +165,60 @@ impl Session {
         self.history.document()
     }
 
-    /// What was done and can be undone.
+    /// Undo and redo.
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// Unsaved edits that are offered; until they are taken or not, the document is the file's.
+    /// Unsaved edits that are offered; until they are accepted or declined, the document is the file's.
     pub fn recovery(&self) -> Option<&Recovery> {
         self.offer.as_ref().map(|offer| &offer.recovery)
     }
 
-    /// Who edits the scene, so that here it may only be looked at.
+    /// Who else edits the scene, so that it is read-only here.
     pub fn held_by(&self) -> Option<&Holder> {
         self.held_by.as_ref()
     }
 
-    /// Whether the scene may only be looked at.
+    /// Whether the scene is read-only.
     pub fn reads_only(&self) -> bool {
         !self.mode.edits()
     }
 
-    /// Where bytes of a damaged journal were kept aside.
+    /// The file that bytes of a damaged journal were moved to.
     pub fn kept_aside(&self) -> Option<&Path> {
         self.aside.as_deref()
     }
 
-    /// Takes the unsaved edits that are offered. Where another program changed the file since, all is as if it had done so
-    /// now: see [`Session::take_in`].
+    /// Accepts the unsaved edits that are offered. If another program has changed the file since, it is as if it had
+    /// done so just now: see [`Session::take_in`].
     pub fn recover(&mut self) {
         let Some(offer) = self.offer.take() else { return };
         (self.history, self.file, self.base) = (offer.history, offer.file, offer.base);
     }
 
-    /// Leaves the unsaved edits that are offered; undo still gives them.
+    /// Declines the unsaved edits that are offered; they are still in the undo history.
     pub fn discard_recovery(&mut self) {
         let Some(offer) = self.offer.take() else { return };
         let file = std::mem::replace(&mut self.history, offer.history).document().clone();
         self.enter(&file);
     }
 
-    /// Refuses to change a document while unsaved edits are offered: what they would be is not known yet.
+    /// Refuses to change the document while unsaved edits are offered: which document to change is not decided yet.
     ///
     /// # Errors
-    /// They are.
+    /// If there is an offer.
     pub fn refuse_undecided(&self) -> std::result::Result<(), Problem> {
         let Some(recovery) = self.recovery() else { return Ok(()) };
         let problem = Problem::error("", format!("{} left behind and wait for an answer", recovery.in_words()));
         Err(problem.hint("keep or drop them first"))
     }
 
-    /// Applies an edit; `held` by a key held down joins the edit before it into one step. `None` if it changes nothing.
+    /// Applies an edit; if `held` (made by a key held down), it joins the step of the edit before it. `None` if it
+    /// changes nothing.
     ///
     /// # Errors
-    /// When the result has errors in it, or unsaved edits are offered; the document stays as it was.
+    /// If the result would contain errors, or unsaved edits are offered; the document stays as it was.
     pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Applied>, Vec<Problem>> {
         self.refuse_undecided().map_err(|problem| vec![problem])?;
         self.tend();
@@ -228,12 +229,12 @@ impl Session {
         Ok(applied)
     }
 
-    /// Ends the step: a held key that follows begins another.
+    /// Ends the step: a held key that follows begins a new one.
     pub fn close_step(&mut self) {
         self.history.close_step();
     }
 
-    /// Takes the last step back; `None` if there is none, or unsaved edits are offered.
+    /// Undoes the last step; `None` if there is none, or unsaved edits are offered.
     pub fn undo(&mut self) -> Option<Applied> {
         self.refuse_undecided().ok()?;
         let applied = self.history.undo()?;
@@ -241,7 +242,7 @@ impl Session {
         Some(applied)
     }
 
-    /// Does again what was undone last; none as for [`Session::undo`].
+    /// Redoes what was undone last; `None` if there is nothing, or unsaved edits are offered.
     pub fn redo(&mut self) -> Option<Applied> {
         self.refuse_undecided().ok()?;
         let applied = self.history.redo()?;
@@ -249,7 +250,7 @@ impl Session {
         Some(applied)
     }
 
-    /// Moves through the history: to a state, or to a time. Nothing where unsaved edits are offered.
+    /// Moves through the history: to a state, or to a time. Does nothing if unsaved edits are offered.
     pub fn travel(&mut self, how: impl FnOnce(&mut History) -> Vec<(Way, Applied)>) -> Vec<(Way, Applied)> {
         if self.offer.is_some() {
             return Vec::new();
@@ -259,7 +260,8 @@ impl Session {
         all
     }
 
-    /// Gives unsaved edits up: the document is the file's again, and the next opening does not ask. Undo still has them.
+    /// Discards unsaved edits: the document is the file's again, and the next opening offers nothing. Undo still has
+    /// them.
     pub fn give_up(&mut self) {
         if self.offer.is_some() || self.history.is_saved() {
             return;
@@ -272,8 +274,8 @@ impl Session {
     /// Writes the document to its file, atomically.
     ///
     /// # Errors
-    /// When it cannot be written: it is not saved then, and stays as it is in memory. When another program changed the
-    /// file meanwhile, unless it may be overwritten; when the session only reads.
+    /// If it cannot be written: then it is not saved, and stays as it is in memory. If another program changed the file
+    /// meanwhile, unless it may be overwritten; if the session is read-only.
     pub fn save(&mut self, overwrite: Overwrite) -> Result<()> {
         let place = self.path.display();
         if self.reads_only() {
@@ -284,8 +286,8 @@ impl Session {
             self.may_overwrite().map_err(|error| error.cure("take its changes in, or overwrite it"))?;
             self.refuse_protected().map_err(|error| error.cure("allow to write it (chmod u+w), or overwrite it"))?;
         }
-        // The edits first: should we die in between, the journal knows what the file has become. Where they cannot be
-        // kept, saving is all the more urgent.
+        // The journal first: if we are killed in between, it explains the new file. If edits do not reach the journal,
+        // saving is all the more urgent.
         self.tend();
         if let Err(reason) = self.keeping.flush() {
             tracing::warn!("saving without a journal: {reason}");
@@ -293,7 +295,7 @@ impl Session {
         let text = self.text();
         let ours = scene::hash(text.as_bytes());
         if let Err(error) = scene::save(&self.path, &text) {
-            // It may have come as far as the file and not be safe there: what is there is ours all the same.
+            // The file may be written without being safe on the disk: it is ours all the same.
             if self.file_holds(&ours) {
                 self.file = ours;
             }
@@ -309,7 +311,7 @@ impl Session {
         layout::rewrite(&self.source, self.document().json())
     }
 
-    /// How safe the present document is.
+    /// How safe the current document is.
     pub fn safety(&self) -> Safety {
         let failing = self.keeping.failing();
         let revision = self.history.revision();
@@ -329,8 +331,8 @@ impl Session {
 /// A journal, or why there is none.
 type Claimed = std::io::Result<Found>;
 
-/// Finds and locks the journal of the scene at `path`. Neither that nor a reason where it may only be looked at: then
-/// perhaps who holds it.
+/// Finds and locks the journal of the scene at `path`; `None` if the session is read-only, then perhaps with who holds
+/// the scene.
 fn claim(path: &Path, mode: Mode) -> Result<(Option<Claimed>, Option<Holder>)> {
     if !mode.edits() {
         return Ok((None, None));

@@ -1,5 +1,6 @@
-//! What other programs do to the file of a session: noticed by its hash, taken in as one edit, merged with what is unsaved
-//! here, or left for somebody to decide. Nothing of either side is lost unasked: undo has it.
+//! Changes to a session's file by other programs: they are noticed by the file's hash and taken in as one edit, merged
+//! with what is unsaved here, or left for the person to decide. Nothing of either side is lost without asking: undo has
+//! it.
 
 use std::io::ErrorKind;
 
@@ -13,25 +14,25 @@ use crate::scene::{Document, Edit, words};
 /// What became of the file's version.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Taken {
-    /// The file is as we left it.
+    /// Nothing: the file is as we left it.
     Nothing,
     /// The file is no longer there; the document counts as unsaved.
     Gone,
-    /// The document is the file's version now.
+    /// The document is now the file's version.
     Whole,
-    /// The document is both; what was unsaved still is.
+    /// The document is now both merged; what was unsaved still is.
     Merged,
-    /// Both changed these places, in words; nothing is done until somebody says which side counts there.
+    /// Both changed these places, in words; nothing is done until somebody says which side wins.
     Asked(Vec<String>),
 }
 
 impl Session {
-    /// Looks whether another program changed the file and takes its version in, as one edit. What is unsaved here is merged
-    /// with it; where both changed the same place, the `prefer`red side counts, and without one nothing is done. Gives the
-    /// edit, where there is one.
+    /// If another program changed the file, takes its version in as one edit. What is unsaved here is merged with it;
+    /// if both changed the same place, the `prefer`red side wins, and if there is none, nothing is done. Returns the
+    /// edit, if there is one.
     ///
     /// # Errors
-    /// When the file cannot be read or has errors in it: the document stays as it is, the last good one.
+    /// If the file cannot be read or contains errors: the document then stays as it is, the last good one.
     pub fn take_in(&mut self, prefer: Option<Side>) -> Result<(Taken, Option<Applied>)> {
         if self.is_gone() {
             self.history.mark_unsaved();
@@ -39,14 +40,14 @@ impl Session {
         }
         let (theirs, file, text) = self.file_version()?;
         if file == self.file {
-            // It may have been away for a moment.
+            // The file may have been missing for a moment.
             if self.history.document().to_text() == theirs.to_text() {
                 self.history.mark_saved();
             }
             return Ok((Taken::Nothing, None));
         }
         if let Some(offer) = &mut self.offer {
-            // What is offered stays offered; until it is taken or not, the document is the file's.
+            // The offer stands; until it is accepted or declined, the document is the file's.
             offer.recovery.file_changed = true;
             self.is_file(theirs.clone(), file, text);
             let edit = Edit::between(self.history.document(), &theirs);
@@ -71,7 +72,7 @@ impl Session {
         Ok((Taken::Merged, applied))
     }
 
-    /// Takes the file's version in the place of the document, as one edit; gives it, where there is a difference.
+    /// Replaces the document with the file's version, as one edit; returns the edit if there is a difference.
     ///
     /// # Errors
     /// As [`Session::take_in`].
@@ -82,7 +83,7 @@ impl Session {
         Ok(self.enter(&theirs))
     }
 
-    /// What the file has otherwise than the document, in words.
+    /// The differences of the file from the document, in words.
     ///
     /// # Errors
     /// As [`Session::take_in`].
@@ -91,7 +92,7 @@ impl Session {
         Ok(words::describe(self.document().json(), &Edit::between(self.document(), &theirs)))
     }
 
-    /// The document and the file's version as one, and where one of them has to give way, in words.
+    /// The document merged with the file's version, and where one of them is overruled, in words.
     fn merged(&self, theirs: &Document, prefer: Side) -> (Document, Vec<String>) {
         let mine = self.document();
         let base = self.base.as_ref().map(Document::json);
@@ -113,12 +114,12 @@ impl Session {
         Ok((scene::parse(&self.path, &text, &self.options)?, scene::hash(text.as_bytes()), text))
     }
 
-    /// The document in the file, where that can be read.
+    /// The document in the file, if that can be read.
     pub(super) fn file_document(&self) -> Option<Document> {
         self.file_version().ok().map(|(document, ..)| document)
     }
 
-    /// This is what the file holds.
+    /// Notes what is in the file.
     fn is_file(&mut self, document: Document, file: String, text: String) {
         (self.file, self.source, self.base) = (file, text, Some(document));
     }
@@ -126,20 +127,20 @@ impl Session {
     /// Refuses to replace a file that is write-protected.
     ///
     /// # Errors
-    /// It is.
+    /// If it is.
     pub fn refuse_protected(&self) -> Result<()> {
         through::refuse_protected(&self.path)
     }
 
-    /// Whether the file was taken away.
+    /// Whether the file was removed.
     pub fn is_gone(&self) -> bool {
         std::fs::metadata(&self.path).is_err_and(|error| error.kind() == ErrorKind::NotFound)
     }
 
-    /// Why the file must not be overwritten unasked; a file that is gone may be written again.
+    /// Refuses to overwrite the file without asking if it was changed; a file that is gone may be written again.
     ///
     /// # Errors
-    /// That reason.
+    /// Why it must not be overwritten.
     pub fn may_overwrite(&self) -> Result<()> {
         match paths::read(&self.path, self.options.limits.scene) {
             Ok(bytes) if scene::hash(&bytes) == self.file => Ok(()),
@@ -149,12 +150,12 @@ impl Session {
         }
     }
 
-    /// Whether the file holds just this, after a save that failed on its way.
+    /// Whether the file has exactly this content; for after a save that failed on the way.
     pub(super) fn file_holds(&self, hash: &str) -> bool {
         paths::read(&self.path, self.options.limits.scene).is_ok_and(|bytes| scene::hash(&bytes) == hash)
     }
 
-    /// The document of the file enters as one edit.
+    /// Takes over the document in the file, as one edit.
     pub(super) fn enter(&mut self, document: &Document) -> Option<Applied> {
         let applied = self.enter_edit(document);
         self.now_saved(true);
@@ -171,7 +172,7 @@ impl Session {
         applied
     }
 
-    /// The document is the file's; the journal is told unless it knows.
+    /// Notes that the document is the file's; with `tell`, in the journal too.
     pub(super) fn now_saved(&mut self, tell: bool) {
         self.history.mark_saved();
         if tell {

@@ -1,4 +1,4 @@
-//! Profiles, written here tag by tag, against what Little CMS makes of them.
+//! Profiles, written here tag by tag, against the results of Little CMS.
 
 use super::super::icc::understand;
 use super::*;
@@ -15,7 +15,7 @@ fn gamma(value: f64) -> Vec<u8> {
     [b"curv\0\0\0\0\0\0\0\x01".to_vec(), ((value * 256.0).round() as u16).to_be_bytes().to_vec(), vec![0; 2]].concat()
 }
 
-/// The curve of sRGB, as version 4 writes it.
+/// The curve of sRGB, as in version 4.
 fn parametric() -> Vec<u8> {
     let numbers = [2.4, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045].map(fixed).concat();
     [b"para\0\0\0\0\0\x03\0\0".to_vec(), numbers].concat()
@@ -60,7 +60,7 @@ fn grey(curve: Vec<u8>) -> Vec<u8> {
     profile(b"GRAY", b"XYZ ", &[(b"kTRC", curve)])
 }
 
-/// What `codes` show under a profile, and what was told.
+/// The color of `codes` under a profile, and the notes.
 fn shown(icc: Vec<u8>, model: Model, codes: &[u8]) -> ([u8; 3], Vec<String>) {
     let decoded =
         Decoded { size: (1, 1), model, samples: Raw::Bytes(codes.to_vec()), color: Color::Icc(icc), notes: Vec::new() };
@@ -117,7 +117,7 @@ fn what_cannot_be_applied_is_told() {
     }
 }
 
-/// A table of 16 bits over four inks to Lab: each ink takes its share of lightness away.
+/// A 16-bit table from four inks to Lab: each ink takes away its share of lightness.
 fn inks() -> Vec<u8> {
     let mut lut = b"mft2\0\0\0\0\x04\x03\x02\0".to_vec();
     lut.extend([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0].map(fixed).concat());
@@ -136,7 +136,7 @@ fn inks() -> Vec<u8> {
 fn tables_of_inks_are_followed() {
     let (paper, notes) = shown(inks(), Model::Cmyk, &[0; 4]);
     assert_eq!((paper, notes.len()), ([255; 3], 0));
-    // All inks are L* 0, three are 25 and two are 50: greys of 59 and 119.
+    // All inks give L* 0, three give 25 and two give 50: greys of 59 and 119.
     for (codes, grey) in [([255; 4], 0), ([255, 255, 255, 0], 59), ([255, 0, 255, 0], 119)] {
         let (found, _) = shown(inks(), Model::Cmyk, &codes);
         assert!(found.iter().all(|v| v.abs_diff(grey) <= 1), "{found:?} for {grey}");
@@ -145,7 +145,7 @@ fn tables_of_inks_are_followed() {
 
 #[test]
 fn no_profile_brings_it_down() {
-    // A table costs much to make ready, so few of its bytes are tried.
+    // Preparing a table takes long, so few of its bytes are tried.
     for (whole, model, step) in [(inks(), Model::Cmyk, 97), (rgb(P3, parametric()), Model::Rgb, 1)] {
         for at in (0..whole.len()).step_by(step) {
             for byte in [0, 1, 0x7f, 0xff] {

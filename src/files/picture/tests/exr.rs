@@ -1,11 +1,11 @@
-//! OpenEXR: channels by their names, layers by theirs.
+//! OpenEXR: channels and layers by their names.
 
 use ::exr::prelude::*;
 
 use super::super::vectors;
 use super::*;
 
-/// An OpenEXR of one pixel whose channels hold 0.5, 1.5, 2.5, …, in the order of their names.
+/// An OpenEXR of one pixel whose channels are 0.5, 1.5, 2.5, …, in the order of their names.
 fn write(path: &Path, names: &[&str]) {
     let channel = |(i, name): (usize, &&str)| AnyChannel::new(*name, FlatSamples::F32(vec![i as f32 + 0.5]));
     let channels = AnyChannels::sort(names.iter().enumerate().map(channel).collect());

@@ -19,7 +19,7 @@ fn refusal(path: &Path, limits: &Limits) -> String {
     read
 }
 
-/// A PNG of one chunk after another, each with its length and checksum.
+/// A PNG made of chunks, each with its length and checksum.
 fn png(chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
     for (kind, data) in chunks {
@@ -101,7 +101,7 @@ fn a_palette_is_looked_up() {
 fn a_photograph_is_turned_upright() {
     let folder = folder();
     let path = folder.path().join("turned.png");
-    // EXIF of one entry: orientation 6, the picture is to be turned clockwise.
+    // EXIF with one entry: orientation 6, the picture must be turned clockwise.
     let exif = b"MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0".to_vec();
     let mut plain = Vec::new();
     let image: DynamicImage = ImageBuffer::from_fn(3, 1, |x, _| Luma([x as u8 * 100])).into();
@@ -150,7 +150,7 @@ fn a_profile_is_not_unpacked_without_end() {
     }
 }
 
-/// A PNG of one white pixel with chunks before its pixels.
+/// A PNG of one white pixel, with `chunks` before its pixels.
 fn write_png(path: &Path, chunks: &[(&[u8; 4], Vec<u8>)]) {
     write_png_of(path, ImageBuffer::from_pixel(1, 1, Luma([255u8])).into(), chunks);
 }
@@ -172,7 +172,7 @@ fn texts_take_no_memory() {
     assert_eq!(read(&path, &limits).unwrap().picture.texel(0, 0)[0], 1.0);
 }
 
-/// Zeros as zlib would pack them, taken from a picture of nothing but zeros.
+/// Zeros compressed by zlib, taken from a picture of nothing but zeros.
 fn deflated_zeros(count: u32) -> Vec<u8> {
     let side = count.isqrt();
     let image: DynamicImage = ImageBuffer::from_pixel(side, side, Luma([0u8])).into();
@@ -242,7 +242,7 @@ fn the_plain_kinds_are_read() {
         for cut in [whole.len() / 4, whole.len() / 2, whole.len() - 3] {
             std::fs::write(&path, &whole[..cut]).unwrap();
             let error = read(&path, &Limits::default()).map(|found| found.notes);
-            // The last bytes of a QOI and a TGA are a mark, no pixels.
+            // The last bytes of a QOI and a TGA are a marker, not pixels.
             let said = error.as_ref().is_err_and(|error| error.to_string().lines().count() == 1);
             assert!(said || cut == whole.len() - 3, "{name} cut at {cut}: {error:?}");
         }
@@ -274,7 +274,7 @@ fn png_says_its_color_in_four_ways() {
     let number = |v: u32| v.to_be_bytes().to_vec();
     let p3 = [31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000].into_iter().flat_map(number).collect::<Vec<_>>();
     let srgb = [31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000].into_iter().flat_map(number).collect::<Vec<_>>();
-    // (200, 60, 60) of Display P3 is (217, 42, 52) in sRGB; a gamma of 1 makes 118 of 46.
+    // (200, 60, 60) in Display P3 is (217, 42, 52) in sRGB; a gamma of 1 turns 46 into 118.
     let (plain, wide) = ([200, 60, 60], [217, 42, 52]);
     type Case<'a> = (&'a [(&'a [u8; 4], Vec<u8>)], [u8; 3]);
     let cases: [Case; 9] = [

@@ -1,5 +1,5 @@
-//! What the journal keeps from one session to the next: every branch of undo, edits that were given up, edits made while
-//! there was no journal.
+//! What the journal keeps from one session to the next: every branch of undo, edits that were discarded, edits made
+//! while there was no journal.
 
 use super::*;
 
@@ -46,7 +46,7 @@ fn edits_that_were_given_up_are_not_asked_about_and_undo_has_them() {
     session.undo().unwrap();
     assert_eq!(shown(&session), "no more");
     drop(session);
-    // Nothing to give up: nothing is recorded.
+    // Nothing to discard: nothing is recorded.
     let mut session = open(&place.scene);
     session.discard_recovery();
     let before = session.history().revision();
@@ -71,7 +71,7 @@ fn nothing_is_changed_or_saved_while_unsaved_edits_wait_for_an_answer() {
     assert_eq!(open(&place.scene).recovery().map(|offer| offer.changes), Some(1));
 }
 
-/// A session whose edits reach the journal again, within a minute.
+/// Waits, at most a minute, until the session's edits reach the journal again.
 fn tend(session: &mut Session) {
     let begun = std::time::Instant::now();
     while session.safety().failing.is_some() {
@@ -125,7 +125,7 @@ fn a_journal_that_could_not_be_found_is_looked_for_again() {
     edit(&mut session, "before");
     session.save(Overwrite::No).unwrap();
     drop(session);
-    // A newer program's, which is gone a moment later.
+    // A journal of a newer program, which is gone a moment later.
     let mut newer = std::fs::read(&path).unwrap();
     let older = std::mem::replace(&mut newer[8], 9);
     std::fs::write(&path, &newer).unwrap();
@@ -142,8 +142,8 @@ fn a_journal_that_could_not_be_found_is_looked_for_again() {
     assert_eq!(undone(&mut session), ["after", "meanwhile", "before", "start"]);
 }
 
-/// Scenes and journals as programs of before left them: both are read for good. `tests/scenes/old` keeps one pair for each
-/// version of the format.
+/// Scenes and journals that earlier versions of the program left: they stay readable for ever. `tests/scenes/old` has
+/// one pair for each version of the format.
 #[test]
 fn scenes_and_journals_of_old_are_read_for_good() {
     let old = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/old");

@@ -1,4 +1,4 @@
-//! A session against every way in which it may end, and against other programs.
+//! Sessions: every way in which one can end, and changes by other programs.
 
 mod keeping;
 mod saving;
@@ -40,7 +40,7 @@ fn shown(session: &Session) -> &str {
     &session.document().scene().title
 }
 
-/// A session that ends as by `kill -9`: what is in the journal stays, nothing else is done.
+/// Ends a session as `kill -9` would: what is in the journal stays, nothing else is done.
 fn kill(session: Session) -> Vec<u8> {
     session.flush().unwrap();
     let journal = std::fs::read(journal::path_beside(session.path())).unwrap();
@@ -186,7 +186,7 @@ fn unsaved_edits_and_a_change_from_outside_are_both_kept() {
 fn what_others_do_to_the_file() {
     let both = "{ \"plica\": 1, \"title\": \"start\", \"timeline\": { \"fps\": 5 } }";
     let theirs = SCENE.replace("start", "theirs");
-    // The title here, the file after, which side counts; what becomes of it, the title, whether it is saved.
+    // The title here, the new file, which side wins; the result, the title, whether it is saved.
     for (ours, file, prefer, taken, title, saved) in [
         (None, Some(SCENE), None, Some("Nothing"), "start", true),
         (None, Some(theirs.as_str()), None, Some("Whole"), "theirs", true),
@@ -220,7 +220,7 @@ fn what_others_do_to_the_file() {
         if file == Some(both) {
             assert_eq!(session.document().scene().timeline.fps, 5.0, "{case}");
         }
-        // All of it is one step at most.
+        // It is at most one step.
         if shown(&session) != ours.unwrap_or("start") {
             session.undo().unwrap();
             assert_eq!(shown(&session), ours.unwrap_or("start"), "{case}");

@@ -1,4 +1,5 @@
-//! What a save leaves as it was: the layout of the text, the file's names, mode and attributes; and whose journal is used.
+//! What a save leaves unchanged: the layout of the text, the file's names, mode and attributes; and whose journal is
+//! used.
 
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 
@@ -28,7 +29,7 @@ fn every_save_changes_only_what_was_edited() {
     session.undo().unwrap();
     session.save(Overwrite::No).unwrap();
     assert_eq!(text(&place.scene), written);
-    // Another program lays it out anew: that is the layout from now on.
+    // Another program changes the layout: that is the layout from now on.
     let other = "{\"plica\":1,\"title\":\"start\",\"timeline\":{\"duration\":2.50,\"fps\":1e1}}";
     std::fs::write(&place.scene, other).unwrap();
     session.take_in(None).unwrap();
