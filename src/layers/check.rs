@@ -1,10 +1,11 @@
-//! Rules that every technique's check shares: names, paths of files, lists that ascend.
+//! Rules shared by the checks of all techniques: names, file paths, ascending lists.
 
 use std::collections::HashMap;
 
 use crate::base::problem::{Problem, quoted};
 
-/// Names of siblings, each with its pointer: not empty, without control characters, none twice.
+/// Problems with the names of siblings, each with its pointer: they must be non-empty, without control characters, and
+/// unique.
 pub fn names<'a>(siblings: impl Iterator<Item = (String, &'a str)>) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut first: HashMap<&str, usize> = HashMap::new();
@@ -19,7 +20,7 @@ pub fn names<'a>(siblings: impl Iterator<Item = (String, &'a str)>) -> Vec<Probl
     problems
 }
 
-/// A name is not empty and has no control characters.
+/// A problem if a name is empty or has control characters.
 pub fn plain_text(text: &str, path: &str) -> Option<Problem> {
     if text.trim().is_empty() {
         Some(Problem::error(path, "a name is empty"))
@@ -30,8 +31,8 @@ pub fn plain_text(text: &str, path: &str) -> Option<Problem> {
     }
 }
 
-/// The path of a file, by its look alone: without control characters, and unless `outside` is allowed relative and not
-/// upwards.
+/// A problem with the path of a file, judged by the text alone: it must have no control characters and, unless
+/// `outside` is allowed, be relative and not lead upwards.
 pub fn file_path(text: &str, path: &str, outside: bool) -> Option<Problem> {
     let upwards = text.split(['/', '\\']).any(|part| part == "..");
     let what = if text.chars().any(char::is_control) {
@@ -49,7 +50,7 @@ pub fn file_path(text: &str, path: &str, outside: bool) -> Option<Problem> {
     Some(Problem::error(path, format!("{} {what}", quoted(text))).hint(hint))
 }
 
-/// Numbers that must ascend strictly; `path(i)` is where number i stands.
+/// Problems with numbers that must strictly ascend; `path(i)` is the path of number i.
 pub fn ascending(what: &str, numbers: impl Iterator<Item = f64>, path: impl Fn(usize) -> String) -> Vec<Problem> {
     let numbers: Vec<f64> = numbers.collect();
     let pairs = numbers.windows(2).enumerate().filter(|(_, pair)| pair[1] <= pair[0]);

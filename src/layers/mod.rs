@@ -1,4 +1,4 @@
-//! One folder a technique, the same file names in each. This file is the only list of them.
+//! One folder per technique, with the same file names in each. This file is the only list of them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub mod timeline;
 
 use technique::{Kind, Technique};
 
-/// What the document's `kind` can be.
+/// The techniques: what `kind` can be in the document.
 pub static KINDS: &[&Kind] = &[&folding::KIND];
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
@@ -27,15 +27,15 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// Everything that a layer can be asked.
+    /// The layer as its technique.
     pub fn technique(&self) -> &dyn Technique {
         match self {
             Layer::Picture(layer) => layer,
         }
     }
 
-    /// The layer that `json` means, where `change` is how that differs from what this one was read from; `None` if it
-    /// must be read as a whole.
+    /// The layer that `json` means, if `change` is how it differs from what this one was read from; `None` if it must
+    /// be read as a whole.
     pub fn reread(&self, json: &Value, change: &Change) -> Option<Layer> {
         match self {
             _ if *change.field("kind") != Change::Same => None,

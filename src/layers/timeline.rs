@@ -1,5 +1,5 @@
-//! Time, shared by every technique (folding.md, section 1): the timeline of a scene and the local time of what plays on
-//! it. All of it in double precision.
+//! Time, shared by all techniques (folding.md, section 1): the timeline of a scene and the local time of what plays on
+//! it, all in double precision.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

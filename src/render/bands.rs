@@ -1,6 +1,6 @@
-//! A frame of a large picture, band by band: each is synthesised, shown and encoded before the next, so that a frame takes
-//! the picture, the codes of the frame and little else. Every band is what [`super::synth`] and [`super::cpu`] make of its
-//! rows, to the bit.
+//! A frame of a large picture, band by band: each band is synthesised, rendered and encoded before the next, so that a
+//! frame needs memory for the picture, its own codes and little else. Every band is the same to the bit as those rows
+//! from [`super::synth`] and [`super::cpu`].
 
 use std::ops::Range;
 
@@ -15,10 +15,10 @@ use crate::layers::parts::moment::CENTRE;
 use crate::layers::ready::Prepared;
 use crate::scene::Scene;
 
-/// Pixels of a band: enough for all cores, and small beside the picture.
+/// Pixels per band: enough for all cores, and small compared with the picture.
 const BAND: usize = 1 << 20;
 
-/// A scene of which parts can be shown, each without the rest.
+/// A scene whose parts can be rendered without the rest.
 pub struct Bands<'a> {
     materials: &'a Materials,
     size: (usize, usize),
@@ -27,7 +27,7 @@ pub struct Bands<'a> {
 }
 
 impl<'a> Bands<'a> {
-    /// Makes everything that all parts share, for n x n samples a pixel.
+    /// Prepares everything that the parts share, for n x n samples per pixel.
     ///
     /// # Errors
     /// As [`super::synth`].
@@ -68,7 +68,7 @@ impl<'a> Bands<'a> {
     /// The finished frame at `time`.
     ///
     /// # Errors
-    /// Nobody wants it any more.
+    /// If it is cancelled.
     pub fn frame(&self, time: f64) -> Result<Frame, Problem> {
         let (width, height) = self.size;
         let mut cells = vec![[0; 4]; width * height];
@@ -88,10 +88,10 @@ impl<'a> Bands<'a> {
         Synth { size: self.size, layers: layers.collect() }
     }
 
-    /// What the pixel in column `x`, row `y` shows at `time`; nothing beyond the frame.
+    /// The color of the pixel in column `x`, row `y` at `time`; transparent beyond the frame.
     ///
     /// # Errors
-    /// Nobody wants it any more.
+    /// If it is cancelled.
     pub fn pixel(&self, time: f64, (x, y): (usize, usize)) -> Result<[u8; 4], Problem> {
         if x >= self.size.0 || y >= self.size.1 {
             return Ok([0; 4]);
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn bands_and_pixels_are_those_of_the_frame() {
-        // Several bands, as wide as a band has pixels in a few rows.
+        // Wide enough that a band is only a few rows, so that there are several.
         let (width, height) = (BAND / 3, 7);
         let cell = |i: usize| [(i % 251) as f32 / 251.0, (i % 17) as f32 / 17.0, (i % 5) as f32 / 5.0, 1.0];
         let picture = Arc::new(Picture::from_cells(width, height, (0..width * height).map(cell).collect()));

@@ -1,5 +1,5 @@
-//! Frames on the CPU: the reference that the GPU agrees with. Rows are made on all cores; a pixel's value does not depend
-//! on which.
+//! Frames on the CPU: the reference for the GPU. Rows are rendered on all cores; a pixel's value does not depend on
+//! which.
 
 use std::ops::Range;
 
@@ -15,12 +15,12 @@ pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
     rows(synth, scene_time, 0..synth.size.1)
 }
 
-/// These rows of it alone.
+/// Only these rows of it.
 fn rows(synth: &Synth, scene_time: f64, rows: Range<usize>) -> Linear {
     lines(synth, scene_time, Columns::All, &rows.collect::<Vec<_>>())
 }
 
-/// These rows, and of them these columns.
+/// Only these columns of these rows.
 fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Linear {
     let width = match columns {
         Columns::All => synth.size.0,
@@ -41,10 +41,10 @@ fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Li
     picture
 }
 
-/// Pixels whose light stands beside their codes at a time: a frame in 32-bit light is four times its codes.
+/// How many pixels are in memory as light at a time: light takes four times the memory of codes.
 const BAND: usize = 1 << 22;
 
-/// The finished frame of several samples of each pixel: sRGB, straight alpha, 8 bits a channel.
+/// The finished frame from several samples per pixel: sRGB, straight alpha, 8 bits per channel.
 pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {
     let (width, height) = samples.first().map_or((0, 0), |synth| synth.size);
     let mut cells = vec![[0; 4]; width * height];
@@ -61,18 +61,18 @@ pub fn finish_rows(samples: &[Synth], scene_time: f64, band: Range<usize>, out: 
     out.par_iter_mut().zip(linear.cells().par_iter()).for_each(|(code, &light)| *code = encode(light));
 }
 
-/// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame), and no others: what a
-/// small view of a large picture costs.
+/// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are
+/// computed, so that a small view of a large picture is cheap.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
     lines(synth, scene_time, Columns::Some(columns), rows)
 }
 
-/// The mean of the frames of several samples of each pixel, in linear light.
+/// The mean of the frames for several samples per pixel, in linear light.
 pub fn mean(samples: &[Synth], scene_time: f64) -> Linear {
     mean_of(samples.iter().map(|synth| linear(synth, scene_time)))
 }
 
-/// The mean of linear frames of one size.
+/// The mean of linear frames of the same size.
 pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Linear>) -> Linear {
     let share = 1.0 / frames.len() as f32;
     let Some(mut sum) = frames.next() else { return Linear::filled(0, 0, [0.0; 4]) };
@@ -86,7 +86,7 @@ pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Linear>) -> Linear {
     sum
 }
 
-/// The finished frame at `scene_time`: sRGB, straight alpha, 8 bits a channel.
+/// The finished frame at `scene_time`: sRGB, straight alpha, 8 bits per channel.
 pub fn frame(synth: &Synth, scene_time: f64) -> Frame {
     frames(std::slice::from_ref(synth), scene_time)
 }
@@ -97,7 +97,8 @@ pub fn finish(picture: &Linear) -> Frame {
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 
-/// Gives clear pixels of a finished frame the colors that their layers have there: straight alpha keeps them.
+/// Gives fully transparent pixels of a finished frame the colors that their layers have there, since straight alpha can
+/// keep them.
 pub fn keep_clear_colors(synth: &Synth, frame: &mut Frame) {
     let width = frame.width().max(1);
     frame.cells_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {

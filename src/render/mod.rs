@@ -1,4 +1,4 @@
-//! Layers over one another: synthesis of a scene, and its frames on the CPU (the reference) and the GPU.
+//! All layers together: the synthesis of a scene, and its frames on the CPU (the reference) and the GPU.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub mod part;
 pub mod reduce;
 pub mod seams;
 
-/// What a frame of a scene needs except the time.
+/// Everything that a frame of a scene needs except the time.
 #[derive(Clone, Debug)]
 pub struct Synth {
     /// Width and height of a frame, in pixels.
@@ -31,21 +31,21 @@ pub struct Synth {
 }
 
 impl Synth {
-    /// What a frame at scene time `t` depends on beside the layers.
+    /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64) -> Moment {
         Moment { t, size_px: self.size }
     }
 }
 
-/// Makes a scene ready to be shown at any time. What `previous` has in common with it is taken over.
+/// Prepares a scene for rendering at any time. What it has in common with `previous` is reused.
 ///
 /// # Errors
-/// There is no layer, or a picture that a layer names is not among the materials.
+/// If there is no layer, or a picture that a layer names is not among the materials.
 pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> Result<Synth, Problem> {
     synth_at(scene, materials, CENTRE, previous)
 }
 
-/// As [`synth`], for n x n places spread evenly over each pixel; [`cpu::picture`] averages their frames.
+/// As [`synth`], for n x n places spread evenly over each pixel; [`cpu::frames`] averages their frames.
 ///
 /// # Errors
 /// As [`synth`].
@@ -53,7 +53,7 @@ pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth
     places(n).map(|place| synth_at(scene, materials, place, None)).collect()
 }
 
-/// Where the n x n samples of a pixel stand.
+/// The places of the n x n samples in a pixel.
 fn places(n: u32) -> impl Iterator<Item = Vec2> {
     let place = move |k: u32| (f64::from(k) + 0.5) / f64::from(n);
     (0..n * n).map(move |k| Vec2::new(place(k % n), place(k / n)))
@@ -76,7 +76,7 @@ fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<
     Ok(Synth { size: frame_size(scene, materials), layers })
 }
 
-/// Width and height of a frame: those of the first picture that a layer gives it, else 1280 x 720.
+/// Width and height of a frame: those of the first picture that a layer gives it, otherwise 1280 x 720.
 pub fn frame_size(scene: &Scene, materials: &Materials) -> (usize, usize) {
     let named = scene.layers.iter().find_map(|layer| layer.technique().frame_of());
     let picture = named.and_then(|name| materials.pictures.get(name));

@@ -1,5 +1,5 @@
-//! A part of a frame at the size of a small screen, made of the pixels that it shows and no others: a 4K picture in a pane
-//! of a terminal costs what the pane costs.
+//! A part of a frame at the size of a small screen. Only the pixels that it shows are computed: for a 4K picture in a
+//! terminal pane, the cost depends only on the size of the pane.
 
 use kurbo::{Point, Vec2};
 
@@ -11,15 +11,15 @@ use crate::base::pixels::{Frame, Linear, Rgba, encode};
 pub struct Part {
     /// The place in the picture at the top left corner, in pixels.
     pub corner: Point,
-    /// Pixels of the picture a dot, both ways; above 0.
+    /// Pixels of the picture per dot, in each direction; above 0.
     pub scale: f64,
     /// Dots across and down.
     pub dots: (usize, usize),
 }
 
-/// The most pixels that are looked at for one view; more a dot than one only as long as they suffice.
+/// The most pixels that are computed for one view; a dot gets more than one only if this is enough for all dots.
 const MOST_PIXELS: usize = 1 << 20;
-/// The most pixels a dot is the mean of, each way.
+/// The most pixels that a dot is the mean of, in each direction.
 const MOST_EACH_WAY: usize = 4;
 
 impl Part {
@@ -28,32 +28,32 @@ impl Part {
         ((at - self.corner) / self.scale).to_point()
     }
 
-    /// The place in the picture that lies `dot` dots from the corner.
+    /// The place in the picture that is `dot` dots from the corner.
     pub fn place_of(&self, dot: Point) -> Point {
         self.corner + dot.to_vec2() * self.scale
     }
 
-    /// Width and height of what is seen, in pixels of the picture.
+    /// Width and height of what is visible, in pixels of the picture.
     pub fn seen(&self) -> Vec2 {
         Vec2::new(self.dots.0 as f64, self.dots.1 as f64) * self.scale
     }
 
-    /// The same part on fewer dots: `by` times fewer each way.
+    /// The same part on fewer dots: `by` times fewer in each direction.
     pub fn reduced(&self, by: usize) -> Part {
         let (w, h) = self.dots;
         Part { scale: self.scale * by as f64, dots: (w.div_ceil(by), h.div_ceil(by)), ..*self }
     }
 
-    /// Pixels a dot is the mean of, each way.
+    /// How many pixels a dot is the mean of, in each direction.
     fn each_way(&self) -> usize {
         let afford = (MOST_PIXELS as f64 / (self.dots.0 * self.dots.1).max(1) as f64).sqrt() as usize;
         (self.scale.ceil() as usize).clamp(1, afford.clamp(1, MOST_EACH_WAY))
     }
 }
 
-/// The part of the frame at `scene_time`. At a scale of 1 or less a dot is exactly the pixel in its middle; above, it is the
-/// mean, in linear light, of up to 4 x 4 pixels spread evenly over it (all of them up to a scale of 4 in a small view).
-/// Dots beyond the picture are transparent.
+/// The part of the frame at `scene_time`. At a scale of 1 or less a dot is exactly the pixel in its middle; above, it
+/// is the mean, in linear light, of up to 4 x 4 pixels spread evenly over it (in a small view, of all its pixels up to
+/// a scale of 4). Dots beyond the picture are transparent.
 pub fn frame(synth: &Synth, scene_time: f64, part: &Part) -> Frame {
     let each = part.each_way();
     let columns = Line::new(part.corner.x, part.scale, part.dots.0, each, synth.size.0);
@@ -76,11 +76,11 @@ fn mean(pixels: &Linear, columns: &[Option<usize>], rows: &[Option<usize>]) -> [
     if count > 0.0 { encode(sum.map(|v| v / count)) } else { [0; 4] }
 }
 
-/// The pixels that one axis of a view looks at.
+/// The pixels that a view uses along one axis.
 struct Line {
-    /// Each once, ascending.
+    /// The pixels, ascending, without duplicates.
     pixels: Vec<usize>,
-    /// For every dot `each` places in `pixels`; none beyond the picture.
+    /// For every dot, `each` indices into `pixels`; `None` beyond the picture.
     places: Vec<Option<usize>>,
     each: usize,
 }

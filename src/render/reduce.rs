@@ -1,4 +1,4 @@
-//! A smaller synthesis for a preview, where a picture is larger than the GPU can hold.
+//! A smaller synthesis for a preview, for pictures that are too large for the GPU.
 
 use super::Synth;
 use crate::base::reduce::Reduced;

@@ -1,5 +1,5 @@
-//! Loops that snap: what jumps where time starts anew, and is seen to. A sampler that jumps where a fold hides it, or over
-//! one color, is told of no one.
+//! Warnings about loops that snap: what visibly jumps when time starts over. A sampler that jumps where a fold hides
+//! it, or within one color, is not reported.
 
 use std::borrow::Borrow;
 
@@ -9,14 +9,14 @@ use crate::base::problem::Problem;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::scene::Scene;
 
-/// Pixels of what jumps that are looked at, each way.
+/// How many pixels of what jumps are compared, at most, in each direction.
 const PLACES: usize = 64;
-/// A channel that differs by more codes than this is seen to jump,
+/// A pixel visibly jumps if a channel differs by more codes than this.
 const SEEN: u8 = 8;
-/// and so is the whole where more than one in so many pixels do.
+/// The whole visibly jumps if more than one in this many pixels does.
 const ONE_IN: usize = 500;
 
-/// A warning for everything that is seen to jump in the loop; `synth` is asked for only where something may.
+/// A warning for everything that visibly jumps in the loop; `synth` is only called if something may jump.
 pub fn warnings<S: Borrow<Synth>>(scene: &Scene, synth: impl FnOnce() -> Option<S>) -> Vec<Problem> {
     if scene.timeline.frames() < 2 {
         return Vec::new();
@@ -32,7 +32,7 @@ pub fn warnings<S: Borrow<Synth>>(scene: &Scene, synth: impl FnOnce() -> Option<
     seen.map(|(i, snap)| warning(scene.timeline.duration, &speeds, snap).under(&format!("/layers/{i}"))).collect()
 }
 
-/// Whether the pixels of what jumps differ before and after.
+/// Whether enough pixels of what jumps differ before and after.
 fn is_seen(synth: &Synth, snap: &Snap) -> bool {
     let places = |low: f64, high: f64, most: usize| -> Vec<usize> {
         let (low, high) = (low.max(0.0) as usize, (high.ceil().max(0.0) as usize).min(most));
@@ -65,8 +65,8 @@ fn warning(duration: f64, speeds: &[f64], snap: &Snap) -> Problem {
     Problem::warning(snap.path.as_str(), message).hint(hint)
 }
 
-/// The least number of timelines after which everything of these speeds has made whole passes; `None` if it is above a
-/// thousand.
+/// The smallest number of timelines in which everything with these speeds makes whole passes; `None` if it is above
+/// 1000.
 fn closing(speeds: &[f64]) -> Option<u32> {
     let whole = |speed: f64, n: f64| ((speed * n).round() - speed * n).abs() < 1e-6;
     (1..=1000).find(|&n| speeds.iter().all(|&speed| whole(speed, f64::from(n))))
@@ -129,7 +129,7 @@ mod tests {
             (json!({}), "ping-pong"),
             (json!({ "position": { "function": "cosine" } }), "repeat"),
             (json!({ "motion": [{ "tool": "translate", "by": [0.01, 0] }] }), "repeat"),
-            // Past a wall: no sampler is within the region at either end of its way.
+            // Past a wall: no sampler is in the region at either end of its path.
             (json!({ "fold": { "rule": "fly-over", "regions": region(200.0, 9.0) } }), "repeat"),
         ] {
             assert_eq!(found(zone.clone(), wrap), [], "{zone} {wrap}");

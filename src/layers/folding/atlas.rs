@@ -1,5 +1,5 @@
-//! The colour atlas: the parts of pictures that samplers can reach, over all s that position functions take, packed into
-//! one texture. A pure function; nothing is encoded here.
+//! The color atlas: the parts of pictures that samplers can reach, over the whole range of s of their position
+//! functions, packed into one texture. A pure function; nothing is encoded here.
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use super::synth::ZoneSynth;
 use crate::base::picture::Picture;
 use crate::base::pixels::{Beyond, Frame, Grid, Linear, Rgba};
 
-/// A part of a picture: columns `x0..x1`, rows `y0..y1`. Where reads beyond the edge give nothing, it may hold one
-/// column or row beyond, which is transparent.
+/// A part of a picture: columns `x0..x1`, rows `y0..y1`. If reads beyond the edge give nothing, it may include one
+/// column or row beyond the edge, which is transparent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
     /// First column.
@@ -24,17 +24,17 @@ pub struct Area {
 }
 
 impl Area {
-    /// All of a picture.
+    /// The whole of a picture.
     pub fn whole(picture: &Picture) -> Self {
         Area { x0: 0, y0: 0, x1: picture.width() as i64, y1: picture.height() as i64 }
     }
 
-    /// Columns.
+    /// The number of columns.
     pub fn width(&self) -> i64 {
         self.x1 - self.x0
     }
 
-    /// Rows.
+    /// The number of rows.
     pub fn height(&self) -> i64 {
         self.y1 - self.y0
     }
@@ -53,14 +53,14 @@ impl Area {
     }
 }
 
-/// A part of a picture that somebody reads.
+/// A part of a picture that samplers read.
 #[derive(Clone, Debug)]
 pub struct Need {
     /// The picture's name in the scene.
     pub image: String,
     /// The picture.
     pub picture: Arc<Picture>,
-    /// What a read beyond its edge gives.
+    /// The result of a read beyond its edge.
     pub beyond: Beyond,
     /// The part.
     pub area: Area,
@@ -69,7 +69,7 @@ pub struct Need {
 /// A need and its place in the atlas.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// What it holds.
+    /// The need.
     pub need: Need,
     /// The atlas column of the first column of its area.
     pub x: usize,
@@ -77,7 +77,7 @@ pub struct Piece {
     pub y: usize,
 }
 
-/// The packed pieces. Around each, where there are several, lies one texel more that repeats its edge.
+/// The packed pieces. If there are several, each has a border of one texel that repeats its edge.
 #[derive(Clone, Debug)]
 pub struct Atlas {
     /// The texels.
@@ -86,12 +86,12 @@ pub struct Atlas {
     pub pieces: Vec<Piece>,
 }
 
-/// What the samplers of a zone can read over all s that its position function takes, one texel more for bilinear reads
-/// included. None for a zone without pixels.
+/// The texels that the samplers of a zone can read over the whole range of s of its position function, including the
+/// extra texel for bilinear reads. `None` for a zone without pixels.
 pub fn reach(zone: &ZoneSynth) -> Option<Area> {
     let field = &*zone.field;
     let (low, high) = zone.clock.position.range();
-    // A sampler under `cover` waits anywhere between its init-position and where it would be.
+    // Under `cover`, a sampler may wait anywhere between its init-position and where it would be.
     let (low, high) = if field.folds.is_some() { (low.min(0.0), high.max(0.0)) } else { (low, high) };
     let width = field.inside.width();
     let pixels = field.inside.cells().iter().zip(field.jumps.cells()).enumerate().filter(|(_, (inside, _))| **inside);
@@ -101,7 +101,7 @@ pub fn reach(zone: &ZoneSynth) -> Option<Area> {
         Rect::from_points(q + jump * low, q + jump * high)
     };
     let all = pixels.map(path).reduce(|a, b| a.union(b))?;
-    // The texels within the picture, and one beyond where that is not the same as the edge.
+    // The texels within the picture, and one beyond the edge if it differs from the edge.
     let margin = if zone.source.beyond == Beyond::Transparent { 1 } else { 0 };
     let clip = |from: f64, to: f64, n: usize| {
         let within = |at: f64| (at.floor() as i64).clamp(-margin, n as i64 - 1 + margin);
@@ -113,7 +113,8 @@ pub fn reach(zone: &ZoneSynth) -> Option<Area> {
 }
 
 impl Atlas {
-    /// Packs what is needed. For each need the index of its piece: needs of one picture share one where that is no larger.
+    /// Packs the needs. Also returns, for each need, the index of its piece: needs of the same picture share one if
+    /// that takes no more room.
     pub fn new(needs: Vec<Need>) -> (Atlas, Vec<usize>) {
         let (merged, piece_of) = merge(needs);
         let gutter = usize::from(merged.len() > 1);
@@ -129,8 +130,8 @@ impl Atlas {
 }
 
 impl Atlas {
-    /// Gives clear texels of the encoded atlas the colors that their pictures have there: engines that filter straight alpha
-    /// draw them into edges.
+    /// Gives fully transparent texels of the encoded atlas the colors that their pictures have there: engines that
+    /// filter straight alpha blend them into edges.
     pub fn keep_clear_colors(&self, codes: &mut Frame) {
         let (width, gutter) = (codes.width(), i64::from(self.pieces.len() > 1));
         for piece in &self.pieces {
@@ -145,7 +146,7 @@ impl Atlas {
 }
 
 impl Piece {
-    /// Adds the whole of the atlas position to turn a position in the piece's picture into one in the atlas.
+    /// The whole-pixel offset from a position in the piece's picture to the position in the atlas.
     pub fn atlas_from_image(&self) -> Vec2 {
         Vec2::new(self.x as f64 - self.need.area.x0 as f64, self.y as f64 - self.need.area.y0 as f64)
     }
@@ -174,7 +175,7 @@ impl Piece {
     }
 }
 
-/// Joins needs of one picture while one area that holds both is no larger than the two.
+/// Joins needs of the same picture while one area around both is no larger than the two together.
 fn merge(mut merged: Vec<Need>) -> (Vec<Need>, Vec<usize>) {
     let mut piece_of: Vec<usize> = (0..merged.len()).collect();
     while let Some((a, b)) = joinable(&merged) {
@@ -195,7 +196,7 @@ fn joinable(needs: &[Need]) -> Option<(usize, usize)> {
     (0..needs.len()).flat_map(|a| (a + 1..needs.len()).map(move |b| (a, b))).find(|&(a, b)| fits(&needs[a], &needs[b]))
 }
 
-/// Places for the areas with `gutter` around each, and the size of it all: the least of a few widths.
+/// Places for the areas with a border of `gutter` each, and the total size: the smallest result over a few widths.
 fn pack(needs: &[Need], gutter: usize) -> (Vec<(usize, usize)>, usize, usize) {
     let size = |need: &Need| (need.area.width() as usize + 2 * gutter, need.area.height() as usize + 2 * gutter);
     let sizes: Vec<_> = needs.iter().map(size).collect();
@@ -205,8 +206,8 @@ fn pack(needs: &[Need], gutter: usize) -> (Vec<(usize, usize)>, usize, usize) {
     packed.min_by_key(|(_, width, height)| width * height).unwrap_or_default()
 }
 
-/// Places on shelves `most` wide, the highest first; and the width and height that this takes. Offline and exact; the
-/// crates for this are made for atlases that change, and hold 65535 texels a side at most.
+/// Places on shelves at most `most` wide, tallest first; and the width and height that this takes. Offline and exact;
+/// the crates for this are made for atlases that change, and allow at most 65535 texels per side.
 fn shelves(sizes: &[(usize, usize)], most: usize) -> (Vec<(usize, usize)>, usize, usize) {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| (std::cmp::Reverse(sizes[i].1), std::cmp::Reverse(sizes[i].0), i));

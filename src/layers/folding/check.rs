@@ -1,4 +1,4 @@
-//! What can be wrong in a picture layer beyond its shape. Paths are relative to the layer.
+//! The checks of a picture layer beyond its shape. Paths are relative to the layer.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -18,22 +18,22 @@ use crate::layers::check as rules;
 use crate::layers::parts::materials::{Materials, Of, Use, What};
 use crate::layers::technique::{Checked, Count};
 
-/// In zones with more anchors than this, coincident ones are not looked for.
+/// In zones with more anchors than this, coincident anchors are not looked for.
 const MAX_COMPARED: f64 = 20_000.0;
 
-/// Anchors nearer to each other than this stand at one place (folding.md, section 4).
+/// Anchors closer to each other than this are at the same place (folding.md, section 4).
 const SAME_PX: f64 = 1e-6;
 
-/// Anchors that spread less than this across their line, as a share of what they spread along it, are nearly on one.
+/// Anchors are nearly on one line if their spread across it is less than this share of their spread along it.
 const NEARLY_STRAIGHT: f64 = 0.05;
 
-/// Places along a path beyond this are a mistake.
+/// Values of s beyond this are a mistake.
 const MOST_S: f64 = 1e15;
 
-/// So many coincident pairs of a zone are named.
+/// At most this many coincident pairs per zone are reported.
 const MAX_PAIRS: usize = 3;
 
-/// Checks the layer by itself: the names of its zones, then each zone, unless it is as in the layer `before`.
+/// Checks the layer on its own: the names of its zones, then each zone, unless it is the same as in the layer `before`.
 pub fn check(layer: &PictureLayer, before: Option<(&PictureLayer, &Checked)>) -> Checked {
     let names = layer.zones.iter().enumerate();
     let names = rules::names(names.map(|(i, zone)| (format!("/zones/{i}/name"), zone.name.as_str())));
@@ -79,7 +79,7 @@ pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
     uses
 }
 
-/// The anchors and outline points that the layer asks for, place by place, told before they are made.
+/// The numbers of anchors and outline points that the layer asks for, place by place, before any are made.
 pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     for (i, zone) in layer.zones.iter().enumerate() {
         let path = || format!("/zones/{i}/outline");
@@ -95,7 +95,7 @@ pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
     }
 }
 
-/// Bytes that the equations of interpolations take, told before they are made.
+/// Bytes that the equations of interpolations will take, before they are made.
 pub fn memory(layer: &PictureLayer) -> Vec<(String, u64)> {
     let bytes = |(i, zone): (usize, &Zone)| {
         let bytes = zone.interpolation.bytes(counts::all_anchors(zone) as u64);
@@ -104,7 +104,8 @@ pub fn memory(layer: &PictureLayer) -> Vec<(String, u64)> {
     layer.zones.iter().enumerate().filter_map(bytes).collect()
 }
 
-/// What pictures and fields say: an outline outside its picture, a mask or a field of another size, a mask without alpha.
+/// Problems that only show with the pictures and fields: an outline outside its picture, a mask or a field of another
+/// size, a mask without alpha.
 pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Problem> {
     let Some(own) = materials.pictures.get(&layer.image) else { return Vec::new() };
     let (width, height) = (own.width(), own.height());
@@ -169,21 +170,21 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
     problems
 }
 
-/// Numbers that are finite one by one, and not together.
+/// A problem if numbers that are finite by themselves give a time or an s that is not.
 fn clock(zone: &Zone) -> Option<Problem> {
     let Zone { speed, shift, .. } = zone;
     if !(speed * (shift.abs() + 1.0)).is_finite() {
         let message = format!("{speed:?} passes at a shift of {shift:?} timelines are no finite time");
         return Some(Problem::error("/shift", message).hint("make the shift or the speed smaller"));
     }
-    // A value that is no number is not within bounds either.
+    // NaN is not within bounds either.
     let within = |tau: f64| (-MOST_S..=MOST_S).contains(&zone.position.eval(tau));
     let tau = telling(&zone.position).into_iter().find(|&tau| !within(tau))?;
     let message = format!("at τ = {tau} the function leads out of all bounds");
     Some(Problem::error("/position", message).hint(format!("keep s between -{MOST_S:e} and {MOST_S:e}")))
 }
 
-/// An outline encloses something; where it crosses itself, that deserves a word.
+/// An error if an outline encloses nothing, a warning if it crosses itself.
 fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
     let polygon = outline.polygon();
     let drawn = matches!(outline, Outline::Polygon { .. } | Outline::Path { .. });
@@ -198,7 +199,8 @@ fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
     crossing.map(|place| Problem::warning(path, message(place)).hint(hint)).into_iter().collect()
 }
 
-/// Anchors at one place, where only the first counts; anchors that make a thin plate swing.
+/// Warnings about anchors at the same place, of which only the first counts, and about anchors that make a thin plate
+/// overshoot.
 fn anchors_of(zone: &Zone) -> Vec<Problem> {
     if counts::all_anchors(zone) > MAX_COMPARED {
         return Vec::new();
@@ -227,7 +229,8 @@ fn anchors_of(zone: &Zone) -> Vec<Problem> {
     problems
 }
 
-/// A thin plate through anchors that are nearly on one line swings far beside it; on one line it would be shepard.
+/// A thin plate through anchors that are nearly on one line overshoots far beside it; if they are exactly on one line,
+/// shepard is used instead.
 fn nearly_straight(zone: &Zone, anchors: &[Anchor]) -> Option<Problem> {
     let plate = matches!(zone.interpolation, Interpolation::ThinPlate { .. });
     let (along, across) = spread(anchors).filter(|(along, across)| plate && across < &(along * NEARLY_STRAIGHT))?;
@@ -240,7 +243,7 @@ fn nearly_straight(zone: &Zone, anchors: &[Anchor]) -> Option<Problem> {
     Some(Problem::warning("/interpolation", message).hint(hint))
 }
 
-/// How far anchors spread along the line that fits them best, and across: standard deviations in pixels.
+/// The spread of anchors along the line that fits them best, and across it: standard deviations in pixels.
 fn spread(anchors: &[Anchor]) -> Option<(f64, f64)> {
     let count = anchors.len() as f64;
     let center = anchors.iter().fold(Vec2::ZERO, |sum, anchor| sum + anchor.at.to_vec2()) / count;
@@ -252,7 +255,7 @@ fn spread(anchors: &[Anchor]) -> Option<(f64, f64)> {
     (anchors.len() > 2).then(|| ((middle + half).sqrt(), (middle - half).max(0.0).sqrt()))
 }
 
-/// Tools whose fields hang together.
+/// Checks of fields in a tool that depend on each other.
 fn motion(zone: &Zone) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (i, tool) in zone.motion.iter().enumerate() {
@@ -264,7 +267,7 @@ fn motion(zone: &Zone) -> Vec<Problem> {
     problems
 }
 
-/// Local times at which a value out of bounds would show.
+/// Local times at which to look for values out of bounds.
 fn telling(position: &Position) -> Vec<f64> {
     const EVEN: u32 = 16;
     let mut taus: Vec<f64> = (0..=EVEN).map(|i| f64::from(i) / f64::from(EVEN)).collect();
@@ -284,7 +287,7 @@ fn telling(position: &Position) -> Vec<f64> {
     taus
 }
 
-/// Numbers of a position function that hang together.
+/// Checks of numbers in a position function that depend on each other.
 fn position(position: &Position) -> Vec<Problem> {
     match position {
         Position::Exponential { rate } | Position::ExponentialInverse { rate } if *rate == 0.0 => {

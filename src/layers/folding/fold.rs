@@ -9,7 +9,8 @@ use super::outline::Outline;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Fold {
-    /// An eyelid over an eyeball: inside a region a sampler waits at the edge where it entered; one that never left keeps still.
+    /// An eyelid over an eyeball: inside a region a sampler waits at the edge where it entered; one that never left
+    /// keeps still.
     #[schemars(extend("formula" = "outside e(s) = s; inside e(s) = the crossing nearest to s where it came in; still if it never was outside"))]
     Cover {
         /// The regions, which count as their union.
@@ -48,7 +49,7 @@ impl Fold {
         }
     }
 
-    /// The fold regions; none under a mask.
+    /// The fold regions; empty for a mask.
     pub fn regions(&self) -> &[Outline] {
         match self {
             Fold::Cover { regions } | Fold::Return { regions } | Fold::FlyOver { regions } => regions,
@@ -57,7 +58,7 @@ impl Fold {
     }
 }
 
-/// A fold rule by regions (folding.md, section 3). A mask needs none: it is only another source to read.
+/// A fold rule that works by regions (folding.md, section 3). A mask needs none: it is only a different source to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Inside a region a sampler waits at the edge where it entered.
@@ -69,9 +70,9 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// The effective place e(s) of an active sampler, `None` if it is still. `inside` tells whether the init-position
-    /// is in a region; `crossings` are the places where that changes on the side of s, from 0 outwards. On a crossing
-    /// itself the state nearer to 0 still holds.
+    /// The effective place e(s) of an active sampler; `None` if it is still. `inside` says whether the init-position is
+    /// in a region; `crossings` are the places where that changes, on the same side of 0 as s, from 0 outwards. Exactly
+    /// on a crossing, the state on the side of 0 applies.
     pub fn effective(self, inside: bool, crossings: &[f64], s: f64) -> Option<f64> {
         let crossed = crossings.iter().take_while(|c| c.abs() < s.abs()).count();
         let inside = inside ^ (crossed % 2 == 1);
@@ -84,7 +85,7 @@ impl Rule {
 }
 
 impl Fold {
-    /// The rule by regions; none under a mask.
+    /// The rule by regions; `None` for a mask.
     pub fn rule(&self) -> Option<Rule> {
         match self {
             Fold::Cover { .. } => Some(Rule::Cover),

@@ -1,4 +1,4 @@
-//! A frame of a picture layer on the CPU: the reference. frame.wgsl has the same names and shape.
+//! A frame of a picture layer on the CPU: the reference. frame.wgsl has the same names and structure.
 
 use kurbo::{Point, Vec2};
 
@@ -30,7 +30,7 @@ impl<'a> Frame<'a> {
     fn all(&self, y: usize, out: &mut [Rgba]) {
         self.synth.picture.row(0, y, out);
         for (zone, s) in self.zones(y) {
-            // A frame may end within the picture.
+            // A frame may be smaller than the picture.
             let end = (zone.field.x0 + zone.field.inside.width()).min(out.len());
             let Some(beneath) = out.get_mut(zone.field.x0..end) else { continue };
             beneath.iter_mut().enumerate().for_each(|(column, still)| zone_pixel(zone, s, (column, y), still));
@@ -64,7 +64,7 @@ impl Still for Frame<'_> {
     }
 }
 
-/// Shows the pixel in column `column` of the zone's box, row `y` of the picture, over what lies beneath.
+/// Draws the pixel in column `column` of the zone's box, row `y` of the picture, over `still`, the color beneath.
 fn zone_pixel(zone: &ZoneSynth, s: f64, (column, y): (usize, usize), still: &mut Rgba) {
     let field = &*zone.field;
     let i = (y - field.y0) * field.inside.width() + column;
@@ -76,7 +76,7 @@ fn zone_pixel(zone: &ZoneSynth, s: f64, (column, y): (usize, usize), still: &mut
     }
 }
 
-/// e(s) of pixel `i` of the box, `None` if its sampler is not active.
+/// e(s) of pixel `i` of the box; `None` if its sampler is not active.
 pub fn effective(field: &Field, i: usize, s: f64) -> Option<f64> {
     match &field.folds {
         None => Some(s),
@@ -90,7 +90,7 @@ fn jump(field: &Field, i: usize) -> Vec2 {
     Vec2::new(x.into(), y.into())
 }
 
-/// What pixel `q` shows when its sampler is `moved` away from it.
+/// The color of pixel `q` when its sampler has `moved` away from it; `still` is the color beneath.
 fn shown(source: &Source, q: Point, moved: Vec2, still: Rgba) -> Rgba {
     let x = q + source.offset + moved;
     let moving = source.picture.read(x.x, x.y, source.beyond);

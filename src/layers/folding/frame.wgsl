@@ -1,9 +1,9 @@
-// One zone of a frame on the GPU: the twin of frame.rs, with the same names and the same shape. Runs once for every
-// pixel of the zone's box. Everything that is decided by time alone arrives as the one number s. The rule and the
-// edge are override constants, never branches on a uniform: those made Mesa rebuild the shader for every frame.
+// One zone of a frame on the GPU: the twin of frame.rs, with the same names and structure. Runs once for every pixel of
+// the zone's box. Everything that depends on time alone is in the number s. The rule and the edge are override
+// constants, never branches on a uniform: those made Mesa rebuild the shader for every frame.
 
 override rule: u32 = 0u; // a RULE_ below, as in texels.rs
-override clamps: bool = true; // what a read beyond the sampler image's edge gives: the edge, or nothing
+override clamps: bool = true; // whether a read beyond the sampler image's edge gives the edge, or nothing
 
 const RULE_NONE = 0u;
 const RULE_COVER = 1u;
@@ -17,23 +17,24 @@ struct Zone {
 }
 
 @group(0) @binding(0) var<uniform> zone: Zone;
-// A texel a pixel of the box, see texels.rs: J.x, J.y, then where its crossings begin, ahead and behind, with flags.
+// One texel per pixel of the box, see texels.rs: J.x, J.y, then where its crossings begin, ahead and behind, with
+// flags.
 @group(0) @binding(1) var pixels: texture_2d<u32>;
-// All lists of crossings as distances from s = 0, ascending, each ended by a number that no s reaches.
+// All lists of crossings as distances from s = 0, ascending; each list ends with a number that no s reaches.
 @group(0) @binding(2) var crossings: texture_2d<f32>;
 @group(0) @binding(3) var picture: texture_2d<f32>;
 
-const MEMBER = 0x80000000u; // of the zone
-const INSIDE = 0x40000000u; // of a fold region, at s = 0
+const MEMBER = 0x80000000u; // is in the zone
+const INSIDE = 0x40000000u; // is in a fold region at s = 0
 const INDEX = 0x3fffffffu;
 
 struct State {
-    inside: bool, // of a fold region, at s
-    entered: f32, // the crossing that was met last between 0 and s
-    met: bool, // whether any was
+    inside: bool, // in a fold region, at s
+    entered: f32, // the last crossing between 0 and s
+    met: bool, // whether there is such a crossing
 }
 
-// What s does to a pixel: whether its sampler is active, and the effective s.
+// The effect of s on a pixel: whether its sampler is active, and the effective s.
 struct Effect {
     shows: bool,
     e: f32,
@@ -45,7 +46,7 @@ fn crossing(i: u32) -> f32 {
     return textureLoad(crossings, vec2u(i % columns, i / columns), 0).x;
 }
 
-// On a crossing itself the state nearer to 0 still holds.
+// Exactly on a crossing, the state on the side of 0 applies.
 fn state_at(texel: vec4u, s: f32) -> State {
     let first = select(texel.w, texel.z, s > 0.0) & INDEX;
     let distance = abs(s);
@@ -87,7 +88,7 @@ fn pixel_of_picture(at: vec2i) -> vec4f {
     return select(vec4f(0.0), color, all(at == edge));
 }
 
-// The bilinear read at q + d for the pixel whose centre is q: only d has a fraction.
+// The bilinear read at q + d for the pixel whose centre is q: only d has a fractional part.
 fn read(pixel: vec2i, d: vec2f) -> vec4f {
     let whole = floor(d);
     let part = d - whole;
@@ -97,8 +98,8 @@ fn read(pixel: vec2i, d: vec2f) -> vec4f {
     return mix(top, bottom, part.y);
 }
 
-// A pixel that shows nothing of the zone is discarded: what lies beneath stays. Blending lays the rest over it where
-// the sampler image is a named one or a mask.
+// A pixel that shows nothing of the zone is discarded: what is beneath stays. The others are blended over it if the
+// sampler image is a named one or a mask.
 @fragment
 fn shown(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let pixel = vec2i(at.xy);

@@ -1,4 +1,4 @@
-//! The picture layer and its zones as they stand in the document. Doc comments become the help of forms and schema.
+//! The picture layer and its zones as in the document. The doc comments become the help texts of forms and schema.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,7 +62,7 @@ pub struct Zone {
 }
 
 impl Zone {
-    /// When its samplers are where.
+    /// The clock of its samplers.
     pub fn clock(&self, wrap: Wrap) -> Clock {
         Clock { position: self.position.clone(), speed: self.speed, shift: self.shift, wrap }
     }

@@ -1,4 +1,4 @@
-//! Outlines of zones and fold regions: as they stand in the document, and as polygons.
+//! Outlines of zones and fold regions: as in the document, and as polygons.
 
 use kurbo::{BezPath, Point, Rect, Shape, Vec2};
 use schemars::JsonSchema;
@@ -71,8 +71,8 @@ fn is_zero(xy: &Xy) -> bool {
 }
 
 impl Outline {
-    /// The outline as a polygon from its first point: a rectangle's top-left corner, an ellipse's rightmost point, then
-    /// clockwise on the screen.
+    /// The outline as a polygon from its first point: for a rectangle the top-left corner, for an ellipse the rightmost
+    /// point, then clockwise on the screen.
     pub fn polygon(&self) -> Polygon {
         match self {
             Outline::Rectangle { x, y, width, height } => {

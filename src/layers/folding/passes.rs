@@ -1,11 +1,11 @@
-//! What the GPU draws of a picture layer: its picture, then its zones in order, each over its box.
+//! What the GPU draws for a picture layer: its picture, then its zones in order, each in its box.
 
 use super::synth::{Synth, ZoneSynth};
 use super::texels::rule_number;
 use crate::base::pixels::Beyond;
 use crate::layers::parts::passes::{Bind, Blend, COMMON, Draw, Plan, Program};
 
-/// The layer's own picture.
+/// Draws the layer's own picture.
 static STILL: Program = Program {
     name: "still.wgsl",
     source: &[COMMON, include_str!("still.wgsl")],
@@ -13,7 +13,7 @@ static STILL: Program = Program {
     fragment: "still",
 };
 
-/// A zone.
+/// Draws a zone.
 static ZONE: Program = Program {
     name: "frame.wgsl",
     source: &[COMMON, include_str!("frame.wgsl")],
@@ -34,7 +34,7 @@ struct ZoneUniform {
     padding: f32,
 }
 
-/// The layer at scene time `t`.
+/// The plan for the layer at scene time `t`.
 pub fn plan(synth: &Synth, t: f64) -> Plan {
     let still = Draw {
         program: &STILL,

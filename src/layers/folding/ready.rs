@@ -1,4 +1,5 @@
-//! What a synthesised layer answers: frames for the CPU and the GPU, a smaller one, a still one.
+//! A synthesised layer as the rest of the program sees it: frames on the CPU and the GPU, a smaller layer, a still
+//! layer.
 
 use std::sync::Arc;
 

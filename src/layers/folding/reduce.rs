@@ -1,5 +1,5 @@
-//! A smaller layer for a preview. Folds, jumps and outlines are those of the pixel in the middle of each block, scaled; the
-//! picture is the mean of the block.
+//! A smaller layer for a preview. Folds, jumps and membership are those of the pixel in the middle of each block,
+//! scaled; the picture is the mean of each block.
 
 use std::sync::Arc;
 
@@ -8,13 +8,13 @@ use super::synth::{Synth, ZoneSynth};
 use crate::base::pixels::Grid;
 use crate::base::reduce::Reduced;
 
-/// The layer, made smaller.
+/// The layer, reduced.
 pub fn layer(synth: &Synth, pictures: &mut Reduced) -> Synth {
     let zones = synth.zones.iter().filter_map(|one| zone(one, pictures)).collect();
     Synth { picture: pictures.picture(&synth.picture), zones }
 }
 
-/// `None` if no block has its middle in the zone's box.
+/// The zone, reduced; `None` if no block has its middle in the zone's box.
 fn zone(zone: &ZoneSynth, pictures: &mut Reduced) -> Option<ZoneSynth> {
     let factor = pictures.by;
     let mut small = zone.clone();
@@ -25,7 +25,7 @@ fn zone(zone: &ZoneSynth, pictures: &mut Reduced) -> Option<ZoneSynth> {
 }
 
 fn field(field: &Field, factor: usize) -> Option<Field> {
-    // Block b stands for the pixel b * factor + factor / 2.
+    // Block b takes the values of pixel b * factor + factor / 2.
     let first = |from: usize| (from + factor - 1 - factor / 2) / factor;
     let blocks = |from: usize, n: usize| first(from)..first(from + n);
     let columns = blocks(field.x0, field.inside.width());

@@ -1,4 +1,4 @@
-//! Where jump paths meet the fold regions. A region's membership along a path changes at the sides that the path
+//! Where jump paths meet the fold regions. Along a path, membership of a region changes at the sides that the path
 //! crosses; the regions count as their union (folding.md, section 3).
 
 use kurbo::{Point, Rect, Vec2};
@@ -7,8 +7,8 @@ use super::outline::Outline;
 use crate::base::chains::{Line, Part};
 use crate::base::geometry::Polygon;
 
-/// Crossings nearer to each other than this, as a share of the path, are one place: regions that share a side leave no
-/// gap between them.
+/// Crossings closer to each other than this, as a share of the path, are the same place: regions that share a side have
+/// no gap between them.
 const SAME: f64 = 1e-9;
 
 /// The fold regions of a zone.
@@ -21,9 +21,9 @@ pub struct Regions {
 pub struct Crossings {
     /// Whether the init-position itself is in a region (s = 0).
     pub inside: bool,
-    /// The places s >= 0 at which that changes, ascending.
+    /// The places s >= 0 at which membership changes, ascending.
     pub ahead: Vec<f64>,
-    /// The places s <= 0 at which it changes, descending.
+    /// The places s <= 0 at which membership changes, descending.
     pub behind: Vec<f64>,
 }
 
@@ -53,7 +53,7 @@ impl Regions {
         self.polygons.iter().enumerate().flat_map(of_region).collect()
     }
 
-    /// Which regions hold each of the `len` places from `first` on, one pixel apart: one list of flags a region.
+    /// Which regions contain each of the `len` places from `first` on, one pixel apart: one list of flags per region.
     pub fn memberships(&self, first: Point, len: usize) -> Vec<Vec<bool>> {
         let mut xs = Vec::new();
         let row = |polygon: &Polygon| {
@@ -63,8 +63,8 @@ impl Regions {
         self.polygons.iter().map(row).collect()
     }
 
-    /// Where the path from `q` along `jump` meets the union, over `low..=high` in s. `sides` holds at least those that
-    /// the path can cross, `member` tells which regions hold `q`.
+    /// Where the path from `q` along `jump` meets the union, for s in `low..=high`. `sides` must include all that the
+    /// path can cross; `member` says which regions contain `q`.
     pub fn crossings(
         &self,
         q: Point,
@@ -103,8 +103,8 @@ impl Regions {
         }
     }
 
-    /// Which regions hold the places just beside an init-position that lies on a side itself: by the parity of the
-    /// crossings further on.
+    /// Which regions contain the places just beside an init-position that is exactly on a side: by the parity of the
+    /// crossings beyond.
     fn member_beside(&self, q: Point, jump: Vec2, sign: f64) -> Vec<bool> {
         let parity = |polygon: &Polygon| {
             let crossings = polygon.line_crossings(q, jump);
@@ -114,8 +114,8 @@ impl Regions {
     }
 }
 
-/// Walks away from s = 0 through `events` (places, and the region that changes there) and lists where the union
-/// changes. `member` tells which regions hold the places just beside s = 0.
+/// Walks from s = 0 outwards through `events` (places, and the region that changes there) and lists where the union
+/// changes. `member` says which regions contain the places just beside s = 0.
 fn changes(inside: bool, mut member: Vec<bool>, events: impl Iterator<Item = (f64, usize)>) -> Vec<f64> {
     let mut found = Vec::new();
     let mut before = inside;
@@ -168,12 +168,12 @@ mod tests {
             (&one, (0.0, 5.0), (0.0, 9.0), (0.0, 1.0), (false, vec![], vec![])),
             (&touching, (0.0, 5.0), (40.0, 0.0), (0.0, 1.0), (false, vec![0.25, 0.75], vec![])),
             (&overlapping, (0.0, 2.5), (50.0, 0.0), (0.0, 1.0), (false, vec![0.2, 0.5], vec![])),
-            // on a left edge, which is in: leaving to the left, staying to the right
+            // on a left edge, which is inside: leaving to the left, staying to the right
             (&one, (10.0, 5.0), (-10.0, 0.0), (-0.5, 1.0), (true, vec![0.0], vec![])),
             (&one, (10.0, 5.0), (10.0, 0.0), (-0.5, 0.5), (true, vec![], vec![0.0])),
-            // on a right edge, which is out
+            // on a right edge, which is outside
             (&one, (20.0, 5.0), (-20.0, 0.0), (0.0, 1.0), (false, vec![0.0, 0.5], vec![])),
-            // through two corners of a diamond-wise path
+            // diagonally through two corners
             (&one, (0.0, -10.0), (40.0, 40.0), (0.0, 1.0), (false, vec![0.25, 0.5], vec![])),
         ] {
             let found = find(regions, q, jump, range);

@@ -1,5 +1,5 @@
-//! A layer after an edit: only what has changed is read again, so that an edit of one anchor costs as much among a
-//! thousand as alone. What it gives is what reading the whole layer gives.
+//! A layer after an edit: only what has changed is read again, so that editing one anchor among a thousand costs no
+//! more than editing a single one. The result is the same as reading the whole layer.
 
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
@@ -7,8 +7,8 @@ use serde_json::{Map, Value};
 use super::model::{PictureLayer, Zone};
 use crate::base::change::{Change, Items};
 
-/// The layer that `json` means, where `change` is how that differs from what `old` was read from; `None` if it must be
-/// read as a whole.
+/// The layer that `json` means, if `change` is how it differs from what `old` was read from; `None` if it must be read
+/// as a whole.
 pub fn layer(old: &PictureLayer, json: &Value, change: &Change) -> Option<PictureLayer> {
     let zones = list(&old.zones, json, change, "zones", zone)?;
     let bare: PictureLayer = without(json, &["kind", "zones"])?;
@@ -25,14 +25,14 @@ fn read<T: DeserializeOwned>(json: &Value) -> Option<T> {
     T::deserialize(json).ok()
 }
 
-/// What an object means without some of its fields.
+/// Reads an object without some of its fields.
 fn without<T: DeserializeOwned>(json: &Value, fields: &[&str]) -> Option<T> {
     let kept = json.as_object()?.iter().filter(|(name, _)| !fields.contains(&name.as_str()));
     let kept: Map<String, Value> = kept.map(|(name, value)| (name.clone(), value.clone())).collect();
     T::deserialize(Value::Object(kept)).ok()
 }
 
-/// The list in the field `name` of `json`: what is the same comes from `old`, `reread` looks at what is partly so.
+/// The list in the field `name` of `json`: unchanged items come from `old`, `reread` reads those that changed in part.
 fn list<T: Clone + DeserializeOwned>(
     old: &[T],
     json: &Value,

@@ -1,16 +1,16 @@
-//! What something new in a picture layer starts as, where the schema has no default: an outline where the old one was,
-//! an anchor in the middle of its zone, a keyframe between its neighbours.
+//! The initial values of new things in a picture layer where the schema has no default: an outline where the old one
+//! was, an anchor in the middle of its zone, a keyframe between its neighbors.
 
 use kurbo::{Point, Rect};
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
 
-/// What stands for a zone where there is none yet.
+/// Used in place of a zone where there is none yet.
 const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 
-/// The place in the picture that something new at `path` (relative to the layer) belongs to: the outline itself, else
-/// the outline of its zone, else what all zones cover; what is new in a list of zones or regions takes the middle of it.
+/// The part of the picture for something new at `path` (relative to the layer): the outline itself, otherwise the
+/// outline of its zone, otherwise what all zones cover; new items in a list of zones or regions get the middle of it.
 pub fn bounds(layer: &PictureLayer, path: &str) -> Rect {
     let mut tokens = path.split('/').skip(1);
     let mut index_after = |list: &str| (tokens.next() == Some(list)).then(|| tokens.next()?.parse::<usize>().ok());
@@ -29,13 +29,14 @@ pub fn bounds(layer: &PictureLayer, path: &str) -> Rect {
     region.map_or(middle(whole), |region| region.polygon().bounds())
 }
 
-/// The middle half of a rectangle, in whole pixels where it is large enough.
+/// The middle half of a rectangle, in whole pixels if it is large enough.
 fn middle(r: Rect) -> Rect {
     let half = r.inset((-r.width() / 4.0, -r.height() / 4.0));
     if half.width().min(half.height()) >= 4.0 { half.round() } else { half }
 }
 
-/// The field `field` of a new `variant` (an outline's kind, a tool, a method, a function); `None` if zeros will do.
+/// The initial value of the field `field` of a new `variant` (a kind of outline, a tool, a method, a function); `None`
+/// if zeros will do.
 pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     let (c, w, h) = (bounds.center(), bounds.width(), bounds.height());
     let [tl, tr, br, bl] = corners(bounds);
@@ -79,7 +80,7 @@ pub fn template(image: &str, (width, height): (usize, usize)) -> Value {
     json!({ "kind": "picture", "name": image, "image": image, "zones": [zone] })
 }
 
-/// What a new item of a list has beyond what must be written: a new zone comes back, so that its loop closes.
+/// An optional field that a new item of a list starts with: a new zone goes there and back, so that its loop closes.
 pub fn beyond(variant: &str, list: &str) -> Option<(&'static str, Value)> {
     ((variant, list) == ("picture", "zones")).then(|| ("position", comes_back()))
 }
@@ -88,7 +89,7 @@ fn comes_back() -> Value {
     json!({ "function": "cosine" })
 }
 
-/// Where in its items a list ascends: the numbers that must grow from one to the next.
+/// The pointer, within its items, to the numbers in which a list must ascend.
 pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
     match (variant, list) {
         ("curve", "jumps") => Some("/along"),
@@ -98,8 +99,8 @@ pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
     }
 }
 
-/// A new item of the list `list` of a `variant`, to stand before item `index`, and the index it gets; `None` if an item
-/// does not depend on its neighbours.
+/// A new item for the list `list` of a `variant`, to go before item `index`, and the index it gets; `None` if items do
+/// not depend on their neighbors.
 pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
     let closed = match (variant, list) {
         ("polygon" | "path" | "lasso", "points" | "nodes" | "vertices") => true,
@@ -131,7 +132,7 @@ pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<
     }
 }
 
-/// Half way between two values of the same build, number by number; handles of curves are left out.
+/// Half way between two values of the same structure, number by number; handles of curves are left out.
 fn between(a: &Value, b: &Value) -> Value {
     match (a, b) {
         (Value::Number(x), Value::Number(y)) => {
@@ -155,7 +156,7 @@ fn pair(x: f64, y: f64) -> Value {
     json!([neat(x), neat(y)])
 }
 
-/// A number as a person would write it: no more than three decimals, and none where it is whole.
+/// A number as a person would write it: at most three decimals, none if it is whole.
 fn neat(x: f64) -> Value {
     let x = (x * 1000.0).round() / 1000.0;
     if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) }

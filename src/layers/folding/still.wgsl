@@ -1,4 +1,4 @@
-// A layer's own picture, pixel by pixel; nothing beyond its edge. Zones are drawn over it.
+// A layer's own picture, pixel by pixel; transparent beyond its edge. Zones are drawn over it.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 

@@ -1,5 +1,6 @@
-//! What `frame.wgsl` reads: a zone's field packed into texels. Crossings stand as distances from s = 0 in one long list,
-//! every pixel's part ended by a number that no s reaches, so that the shader needs neither counts nor a second loop.
+//! A zone's field packed into the textures that `frame.wgsl` reads. Crossings are distances from s = 0 in one long
+//! list; every pixel's part ends with a number that no s reaches, so that the shader needs neither counts nor a second
+//! loop.
 
 use super::field::{Field, Folds, Ragged};
 use super::fold::Rule;
@@ -23,13 +24,14 @@ impl Upload for Field {
 
 /// A field as textures.
 pub struct Texels {
-    /// A texel a pixel of the box: bits of J.x and J.y, index of the first crossing ahead, the same behind with flags.
+    /// One texel per pixel of the box: the bits of J.x and J.y, the index of its first crossing ahead, that behind with
+    /// flags.
     pub pixels: Grid<[u32; 4]>,
-    /// Every list of crossings, in rows of [`COLUMNS`].
+    /// All lists of crossings, in rows of [`COLUMNS`].
     pub crossings: Grid<f32>,
 }
 
-/// The number by which the shader knows a rule.
+/// The number of a rule in the shader.
 pub fn rule_number(folds: Option<&Folds>) -> u32 {
     match folds.map(|f| f.rule) {
         None => 0,
@@ -58,7 +60,7 @@ impl Texels {
     }
 }
 
-/// All lists behind one another. Index 0 is the empty list.
+/// All lists, one after another. Index 0 is the empty list.
 struct Lists {
     values: Vec<f32>,
 }

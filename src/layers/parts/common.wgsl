@@ -1,6 +1,6 @@
-// What the shaders of several techniques share; put before their own text.
+// Code shared by the shaders of all techniques; it is put before their own.
 
-// One triangle over the whole frame, of three vertices.
+// One triangle of three vertices over the whole frame.
 @vertex
 fn whole_frame(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);

@@ -1,11 +1,11 @@
-//! When a layer is shown, and which of its pixels.
+//! When a layer is shown, and which of its pixels are wanted.
 
 use kurbo::Vec2;
 
 /// The centre of a pixel, from its top-left corner.
 pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
 
-/// What a frame depends on beside the layers.
+/// What a frame depends on besides the layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Scene time, in [0, 1].
@@ -17,7 +17,7 @@ pub struct Moment {
 /// Which columns of a row are wanted.
 #[derive(Clone, Copy, Debug)]
 pub enum Columns<'a> {
-    /// Every one of the frame.
+    /// All columns of the frame.
     All,
     /// These, ascending and within the frame.
     Some(&'a [usize]),

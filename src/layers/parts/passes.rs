@@ -1,4 +1,4 @@
-//! What the GPU draws of a layer, as data: a technique says it, and `render/gpu` alone does it.
+//! What the GPU draws for a layer, as data: a technique describes it, and only `render/gpu` executes it.
 
 use std::any::Any;
 use std::fmt;
@@ -8,17 +8,17 @@ use std::sync::Arc;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
 
-/// What the shaders of several techniques share: the triangle over the whole frame, sRGB.
+/// Code shared by the shaders of all techniques: the triangle over the whole frame, and sRGB.
 pub const COMMON: &str = include_str!("common.wgsl");
 
 /// A vertex and a fragment shader. Its bindings are those of group 0, in the order of [`Draw::binds`].
 #[derive(Debug)]
 pub struct Program {
-    /// For error messages.
+    /// Its name in error messages.
     pub name: &'static str,
-    /// WGSL, put together of these.
+    /// The parts of its WGSL.
     pub source: &'static [&'static str],
-    /// The entry point for vertices; three of them are drawn, without buffers.
+    /// The entry point for vertices; three vertices are drawn, without buffers.
     pub vertex: &'static str,
     /// The entry point for pixels.
     pub fragment: &'static str,
@@ -31,7 +31,7 @@ impl Program {
     }
 }
 
-/// All of a layer at one time: draws in order, into a picture of the frame's size that is clear at first.
+/// A whole layer at one time: draws, in order, into a picture of the frame's size that is transparent at first.
 #[derive(Debug, Default)]
 pub struct Plan {
     /// The draws.
@@ -41,33 +41,33 @@ pub struct Plan {
 /// One draw.
 #[derive(Debug)]
 pub struct Draw {
-    /// What is run.
+    /// The program to run.
     pub program: &'static Program,
-    /// Values of `override` constants: they are compiled in, so let there be few.
+    /// Values of `override` constants: they are compiled in, so there should be few different ones.
     pub constants: Vec<(&'static str, f64)>,
-    /// What the program reads, by binding number.
+    /// The resources that the program reads, by binding number.
     pub binds: Vec<Bind>,
-    /// How a pixel is laid on what is there.
+    /// How a pixel is blended with what is there.
     pub blend: Blend,
-    /// The only pixels that are drawn: left, top, width, height, clipped to the frame; `None` if all are.
+    /// The pixels to draw: left, top, width, height, clipped to the frame; `None` for all.
     pub scissor_px: Option<[u32; 4]>,
 }
 
-/// How a drawn pixel, premultiplied by its alpha, is laid on what is there.
+/// How a drawn pixel, with premultiplied alpha, is blended with what is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blend {
-    /// In its place.
+    /// It replaces what is there.
     Replace,
-    /// Over it.
+    /// It is drawn over what is there.
     Over,
 }
 
-/// Something that a program reads.
+/// A resource that a program reads.
 #[derive(Clone)]
 pub enum Bind {
-    /// A uniform, laid out as WGSL wants it.
+    /// A uniform, in the memory layout of WGSL.
     Bytes(Vec<u8>),
-    /// One of the textures that something is packed into.
+    /// One of the textures that an upload is packed into, by its number.
     Upload(Arc<dyn Upload>, usize),
 }
 
@@ -80,26 +80,26 @@ impl fmt::Debug for Bind {
     }
 }
 
-/// Something that is packed into textures once, and stays on the device as long as the same `Arc` is asked for.
+/// Something that is packed into textures once, and stays on the device for as long as the same `Arc` is used.
 pub trait Upload: Any + Send + Sync {
     /// The textures, in the order of their numbers in [`Bind::Upload`].
     fn pack(&self) -> Vec<Packed<'_>>;
 }
 
-/// A texture, ready to be sent.
+/// A texture, ready for upload.
 pub struct Packed<'a> {
     /// Width and height, in texels.
     pub size: (usize, usize),
-    /// What a texel is.
+    /// The format of a texel.
     pub format: Format,
     /// Its bytes.
     pub rows: Rows<'a>,
 }
 
-/// Hands over the bytes of some rows, one row after the other.
+/// Calls back with the bytes of some rows, row by row.
 pub type Rows<'a> = Box<dyn Fn(Range<usize>, &mut dyn FnMut(&[u8])) + 'a>;
 
-/// What a texel is.
+/// The format of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Four floats.
@@ -111,7 +111,7 @@ pub enum Format {
 }
 
 impl Packed<'static> {
-    /// The cells of a grid as texels; a cell has as many bytes as a texel.
+    /// The cells of a grid as texels; a cell must have as many bytes as a texel.
     pub fn grid<T: bytemuck::Pod>(grid: Grid<T>, format: Format) -> Self {
         let (width, height) = (grid.width(), grid.height());
         let rows = move |rows: Range<usize>, take: &mut dyn FnMut(&[u8])| {

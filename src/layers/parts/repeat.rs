@@ -1,11 +1,11 @@
-//! What happens where time starts anew: at the seam of a loop, and wherever a pass ends before.
+//! What happens when time starts over: at the seam of a loop, and at the end of every pass before that.
 
 use kurbo::Rect;
 
-/// How near to a jump it is looked at, in timelines.
+/// How close to a jump it is evaluated, in timelines.
 pub const BESIDE: f64 = 1e-7;
 
-/// Something of a layer that jumps because time starts anew.
+/// Something in a layer that jumps because time starts over.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snap {
     /// What jumps, relative to the layer.
@@ -14,11 +14,11 @@ pub struct Snap {
     pub bounds: Rect,
     /// The scene time at which it happens; 1 is the seam.
     pub time: f64,
-    /// How, in words: "s jumps from 1 to 0".
+    /// What happens, in words: "s jumps from 1 to 0".
     pub what: String,
-    /// What would mend it, by itself.
+    /// What would fix it on its own.
     pub cure: String,
-    /// Whether more timelines, and nothing else, would close the loop.
+    /// Whether repeating the timeline alone would close the loop.
     pub needs_time_alone: bool,
 }
 
@@ -27,6 +27,7 @@ pub struct Snap {
 pub struct Repeat {
     /// What jumps.
     pub snaps: Vec<Snap>,
-    /// Passes in a timeline of everything whose passes end as they begin: where all of them are whole numbers, it closes.
+    /// The speeds, in passes per timeline, of everything whose passes end as they begin: the loop closes if all of them
+    /// are whole numbers.
     pub speeds: Vec<f64>,
 }

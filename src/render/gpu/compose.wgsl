@@ -1,4 +1,5 @@
-// What is no technique's own: a layer's picture laid on those beneath, and a finished frame encoded as pixels.rs does it.
+// What is common to all techniques: drawing a layer's picture over those beneath, and encoding a finished frame as in
+// pixels.rs.
 
 @group(0) @binding(0) var source: texture_2d<f32>;
 

@@ -1,13 +1,13 @@
-//! Cholesky's factors of a symmetric positive definite matrix, U'U, block by block on all cores. Written here and not taken
-//! from a library, because libraries choose their instructions by the processor, and with them the order of their sums: here
-//! each number's sum runs over the rows above it in their order, by multiplications and subtractions alone, so that the bits
+//! Cholesky factorisation U'U of a symmetric positive definite matrix, block by block on all cores. It is not from a
+//! library, because libraries choose their instructions, and with them the order of their sums, by the processor: here
+//! each number's sum runs over the rows above it in order, by multiplications and subtractions alone, so that the bits
 //! are the same on every machine and for any number of threads.
 
 use rayon::prelude::*;
 
-/// Rows of a block that is taken off the rest at once.
+/// Rows per block; a block is eliminated from the rest in one pass.
 const BLOCK: usize = 32;
-/// Rows that one task takes.
+/// Rows per task.
 const TASK: usize = 32;
 /// Rows and columns of a tile, whose sums stay in registers.
 const TILE: usize = 4;
@@ -16,17 +16,17 @@ const TILE: usize = 4;
 pub struct Matrix {
     /// The numbers.
     pub cells: Vec<f64>,
-    /// Numbers a row.
+    /// Numbers per row.
     pub stride: usize,
 }
 
-/// Length of a row of `columns` numbers: tiles fill it.
+/// The length of a row for `columns` numbers: a whole number of tiles.
 pub fn stride(columns: usize) -> usize {
     columns.next_multiple_of(TILE)
 }
 
 impl Matrix {
-    /// Zeros.
+    /// A matrix of zeros.
     pub fn new(rows: usize, columns: usize) -> Self {
         Matrix { cells: vec![0.0; rows * stride(columns)], stride: stride(columns) }
     }
@@ -36,12 +36,13 @@ impl Matrix {
         &self.cells[i * self.stride..][..self.stride]
     }
 
-    /// Puts U over the upper triangle of the first `n` rows and columns, and U'^-1 B over the columns B after them; what is
-    /// below the diagonal is spoilt. None once `stopped` says so.
+    /// Overwrites the upper triangle of the first `n` rows and columns with U, and the columns B after them with U'^-1
+    /// B; what is below the diagonal is left undefined. `None` if `stopped` becomes true.
     pub fn factor(&mut self, n: usize, stopped: &(impl Fn() -> bool + Sync)) -> Option<()> {
         let stride = self.stride;
         let largest = (0..n).map(|i| self.cells[i * stride + i].abs()).fold(0.0, f64::max);
-        // What rounding leaves of two anchors at all but one place: taken as this much, they share what they ask for.
+        // Rounding can leave a pivot near or below 0 for two anchors at almost the same place: with at least this much,
+        // they share the weight.
         let least = (largest * f64::EPSILON).max(f64::MIN_POSITIVE);
         for first in (0..n).step_by(BLOCK) {
             let (above, below) = self.cells[..n * stride].split_at_mut((first + BLOCK).min(n) * stride);
@@ -56,7 +57,7 @@ impl Matrix {
         Some(())
     }
 
-    /// U^-1 of column `column`, which [`Matrix::factor`] has made ready.
+    /// U^-1 times column `column`, after [`Matrix::factor`].
     pub fn solve(&self, n: usize, column: usize) -> Vec<f64> {
         let mut solved = vec![0.0; n];
         for i in (0..n).rev() {
@@ -68,7 +69,7 @@ impl Matrix {
     }
 }
 
-/// The factors of the rows of one block, whose first has number `first`.
+/// Factors the rows of one block, whose first row has number `first`.
 fn factor_block(block: &mut [f64], stride: usize, first: usize, least: f64) {
     for k in 0..block.len() / stride {
         let (done, rest) = block.split_at_mut((k + 1) * stride);
@@ -86,7 +87,7 @@ fn factor_block(block: &mut [f64], stride: usize, first: usize, least: f64) {
     }
 }
 
-/// Takes what the rows of `block` explain off `rows`, of which the first has number `first`.
+/// Eliminates the rows of `block` from `rows`, whose first row has number `first`.
 fn subtract(block: &[f64], rows: &mut [f64], stride: usize, first: usize) {
     let depth = block.len() / stride;
     let mut right = [[0.0; TILE]; BLOCK];
@@ -137,7 +138,7 @@ fn tile<const ROWS: usize>(
 mod tests {
     use super::*;
 
-    /// A positive definite matrix of numbers that a processor may round, and a column beside it.
+    /// A positive definite matrix whose numbers need rounding, and a column beside it.
     fn example(n: usize) -> Matrix {
         let mut matrix = Matrix::new(n, n + 1);
         let number = |i: usize, j: usize| ((i * 7919 + j * 104_729) % 1009) as f64 / 1009.0 - 0.5;

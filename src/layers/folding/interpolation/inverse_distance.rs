@@ -19,7 +19,7 @@ impl Sums {
         Sums { xs: run.xs(), at_y: run.y(), weight: [0.0; RUN], x: [0.0; RUN], y: [0.0; RUN] }
     }
 
-    /// Adds `anchor` with the weight that `weight` gives for a place's number and its squared distance.
+    /// Adds `anchor`; `weight` gives its weight from the index of a place and its squared distance.
     #[inline(always)]
     fn add(&mut self, anchor: &Anchor, weight: impl Fn(usize, f64) -> f64) {
         let dy = self.at_y - anchor.at.y;
@@ -33,7 +33,7 @@ impl Sums {
         }
     }
 
-    /// The weighted means; (0, 0) where all weights are 0.
+    /// Writes the weighted means; (0, 0) where all weights are 0.
     fn write(&self, out: &mut Jumps) {
         for k in 0..RUN {
             let any = self.weight[k] > 0.0;
@@ -43,20 +43,20 @@ impl Sums {
     }
 }
 
-/// Every anchor counts with d^-power.
+/// Every anchor counts with weight d^-power.
 pub struct Shepard {
     /// The power.
     pub power: f64,
 }
 
 impl Method for Shepard {
-    /// Places at an anchor come out odd.
+    /// Places exactly at an anchor get undefined values.
     fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
         let mut sums = Sums::new(run);
         if self.power == 2.0 {
             anchors.iter().for_each(|anchor| sums.add(anchor, |_, d2| 1.0 / d2));
         } else {
-            // Relative to the nearest anchor, so that no power overflows or vanishes.
+            // Relative to the nearest anchor, so that no power overflows or underflows.
             let mut nearest2 = [f64::INFINITY; RUN];
             for anchor in anchors {
                 let dy = run.y() - anchor.at.y;
@@ -77,7 +77,7 @@ impl Method for Shepard {
     }
 }
 
-/// Only anchors within `radius` pixels count; in the outer ring, by chance.
+/// Only anchors within `radius` pixels count; in the outer ring, at random.
 pub struct Modified {
     /// Anchors farther than this do not count, in pixels.
     pub radius: f64,
@@ -86,7 +86,7 @@ pub struct Modified {
 }
 
 impl Method for Modified {
-    /// Looks only at the anchors that reach the run. Places at an anchor come out odd.
+    /// Uses only the anchors that reach the run. Places exactly at an anchor get undefined values.
     fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
         let mut sums = Sums::new(run);
         let radius2 = self.radius * self.radius;
@@ -112,7 +112,7 @@ impl Modified {
     }
 }
 
-/// Whether an anchor counts for a pixel of the ring: k = 1 of equation 4.3.
+/// Whether an anchor counts for a pixel in the ring: k = 1 in equation 4.3.
 fn counts(run: &Run, k: usize, anchor: usize, seed: u32) -> bool {
     let (i, j) = run.pixel;
     pcg3d(i.wrapping_add(k as u32), j, (anchor as u32).wrapping_add(seed.wrapping_mul(0x9E37_79B9)))[0] >> 31 == 1

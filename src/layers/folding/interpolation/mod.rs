@@ -1,8 +1,8 @@
-//! How anchors spread to the pixels between them (folding.md, section 4). A new method is one variant here and one file
-//! beside this one.
+//! How anchors spread to the pixels between them (folding.md, section 4). A new method needs one variant here and one
+//! file beside this one.
 //!
-//! Fields are evaluated in runs of neighbouring pixels of a row: the anchors go in the outer loop and the pixels in the
-//! inner one, which the compiler vectorises without changing the order of any pixel's sum.
+//! Fields are evaluated in runs of neighboring pixels in a row: the outer loop is over anchors, the inner one over
+//! pixels, which the compiler vectorises without changing the order of any pixel's sum.
 
 use kurbo::Vec2;
 use schemars::JsonSchema;
@@ -79,10 +79,10 @@ fn two() -> f64 {
 /// Pixels in the longest [`Run`].
 pub const RUN: usize = 64;
 
-/// Nearer than this to an anchor, in pixels, a pixel takes that anchor's vector.
+/// A pixel closer to an anchor than this, in pixels, takes that anchor's vector.
 const AT_ANCHOR_PX: f64 = 1e-6;
 
-/// A run of neighbouring pixels of a row, and where in them the field is wanted.
+/// A run of neighboring pixels in a row, and the place in each pixel at which the field is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
     /// Column and row of the first pixel.
@@ -99,7 +99,7 @@ impl Run {
         f64::from(self.pixel.0) + k as f64 + self.place.x
     }
 
-    /// Image coordinates x of all places, and of those that would follow.
+    /// Image coordinates x of all places, and of those that would follow up to [`RUN`].
     fn xs(&self) -> [f64; RUN] {
         std::array::from_fn(|k| self.x(k))
     }
@@ -117,7 +117,7 @@ impl Run {
     }
 }
 
-/// Jump vectors of a run, x and y apart.
+/// Jump vectors of a run, x and y separately.
 pub struct Jumps {
     /// x in pixels.
     pub x: [f64; RUN],
@@ -131,25 +131,25 @@ impl Default for Jumps {
     }
 }
 
-/// A method, made ready for the anchors of a zone.
+/// A method, prepared for the anchors of a zone.
 trait Method: Send + Sync {
-    /// Writes the interpolated jump vectors of `run` to the beginning of `out`; there is at least one anchor.
+    /// Writes the interpolated jump vectors of `run` to the beginning of `out`; there is always at least one anchor.
     fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps);
 
-    /// Whether a pixel at an anchor takes its vector, whatever [`Method::run`] gives there.
+    /// Whether a pixel at an anchor takes the anchor's vector, whatever [`Method::run`] writes there.
     fn passes_anchors(&self) -> bool {
         true
     }
 }
 
-/// The anchors of a zone, made ready to be interpolated.
+/// The anchors of a zone, prepared for interpolation.
 pub struct Interpolator {
     anchors: Vec<Anchor>,
     method: Box<dyn Method>,
 }
 
 impl Interpolation {
-    /// Bytes of memory that it takes to make `count` anchors ready, beside the anchors.
+    /// Bytes of memory that preparing `count` anchors takes, besides the anchors.
     pub fn bytes(&self, count: u64) -> u64 {
         match self {
             Interpolation::ThinPlate { .. } => thin_plate::bytes(count),
@@ -162,11 +162,11 @@ impl Interpolation {
 }
 
 impl Interpolator {
-    /// Makes `anchors` ready; for a thin plate this solves its equations, within the memory that is left and for as long as
-    /// somebody wants it.
+    /// Prepares `anchors`; for a thin plate this solves its equations, within the memory that is left and until
+    /// cancelled.
     ///
     /// # Errors
-    /// They need too much memory, or nobody wants them any more; the problem's path is relative to the zone.
+    /// If they need too much memory, or the synthesis is cancelled; the problem's path is relative to the zone.
     pub fn new(
         interpolation: &Interpolation,
         mut anchors: Vec<Anchor>,
@@ -205,7 +205,7 @@ impl Interpolator {
         }
     }
 
-    /// Pixels at an anchor take its vector, the first such anchor's.
+    /// Gives pixels at an anchor its vector; the first anchor there counts.
     fn take_anchors_at(&self, run: &Run, out: &mut Jumps) {
         for anchor in self.anchors.iter().rev() {
             let dy = run.y() - anchor.at.y;

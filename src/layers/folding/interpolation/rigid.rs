@@ -5,14 +5,14 @@ use kurbo::{Point, Vec2};
 use super::{Jumps, Method, Run};
 use crate::layers::folding::anchor::Anchor;
 
-/// Where the weighted anchors agree on no rotation better than this (in square pixels), it is undefined.
+/// If the sum that determines the rotation is no larger than this (in square pixels), the rotation is undefined.
 const UNDEFINED_PX2: f64 = 1e-20;
 
 /// The method; it has no parameters.
 pub struct Rigid;
 
 impl Method for Rigid {
-    /// Places at an anchor come out odd.
+    /// Places exactly at an anchor get undefined values.
     fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
         for k in 0..run.len {
             let jump = at(anchors, Point::new(run.x(k), run.y()));
@@ -27,7 +27,7 @@ fn at(anchors: &[Anchor], q: Point) -> Vec2 {
     for anchor in anchors {
         let w = weight(anchor);
         total += w;
-        // Relative to q: the sums stay small where it matters.
+        // Relative to q, so that the sums stay small where it matters.
         from += (anchor.at - q) * w;
         to += (anchor.at - q + anchor.jump) * w;
     }

@@ -1,4 +1,4 @@
-//! What every method must do, and the values of each against its formula.
+//! What every method must do, and the values of each, checked against its formula.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -1,6 +1,6 @@
-//! The thin-plate spline: r² ln r with an affine part, K c + P a = u with P'c = 0. Three reflections turn P into its last
-//! three rows; what they leave of K is positive definite, so that Cholesky solves it, in half the time of elimination with
-//! pivots and with the same bits everywhere.
+//! The thin-plate spline: r² ln r with an affine part, K c + P a = u with P'c = 0. Three reflections make all but the
+//! last three rows of P zero; the rest of the reflected K is positive definite, so that Cholesky's method solves it, in
+//! half the time of elimination with pivoting and with the same bits everywhere.
 
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
@@ -10,14 +10,14 @@ use super::{Jumps, Method, Run};
 use crate::base::maths;
 use crate::layers::folding::anchor::Anchor;
 
-/// Anchors nearer than this to an earlier one are dropped, in pixels.
+/// Anchors closer than this to an earlier one, in pixels, are dropped.
 const SAME_PX: f64 = 1e-6;
 
 /// Terms of the affine part: constant, along x, along y.
 const AFFINE: usize = 3;
 
-/// A solved plate. Lengths are in units of `scale` about `center`, which leaves the plate as it is and its equations
-/// well conditioned.
+/// A solved plate. Lengths are in units of `scale` about `center`: this does not change the plate, and its equations
+/// are well conditioned.
 pub struct Plate {
     center: Point,
     scale: f64,
@@ -32,20 +32,20 @@ pub fn bytes(count: u64) -> u64 {
     count.saturating_mul(count.saturating_add(6)).saturating_mul(size_of::<f64>() as u64)
 }
 
-/// There is no plate.
+/// Why there is no plate.
 #[derive(Debug, PartialEq, Eq)]
 pub enum NoPlate {
     /// Fewer than three anchors, or all on one line.
     Flat,
-    /// Nobody wants it any more.
+    /// The synthesis was cancelled.
     Stopped,
 }
 
 impl Plate {
-    /// Solves for the plate through [`distinct`] anchors, until `stopped` says so.
+    /// Solves for the plate through [`distinct`] anchors, unless `stopped` becomes true.
     ///
     /// # Errors
-    /// There is none.
+    /// If there is no plate.
     pub fn solve(anchors: &[Anchor], smoothing: f64, stopped: &(impl Fn() -> bool + Sync)) -> Result<Self, NoPlate> {
         let n = anchors.len();
         let sum = anchors.iter().fold(Vec2::ZERO, |sum, anchor| sum + anchor.at.to_vec2());
@@ -65,7 +65,7 @@ impl Plate {
         let mut affine = [Vec2::ZERO; AFFINE];
         for (column, part) in [(n, Vec2::new(1.0, 0.0)), (n + 1, Vec2::new(0.0, 1.0))] {
             let mut solved = equations.solve(bent, column);
-            // The rows below are as they were: they tell the affine part.
+            // The rows below are still unfactored: they determine the affine part.
             let below = equations.cells[bent * equations.stride..].chunks_exact(equations.stride);
             let rest: Vec<f64> = below
                 .map(|row| solved.iter().zip(row).fold(row[column], |rest, (weight, cell)| rest - weight * cell))
@@ -86,7 +86,7 @@ impl Method for Plate {
         false
     }
 
-    /// The plate at the places of the run; its anchors are in its weights.
+    /// Evaluates the plate at the places of the run; it has its own copy of the anchors.
     fn run(&self, _anchors: &[Anchor], run: &Run, out: &mut Jumps) {
         let xs = run.xs().map(|x| (x - self.center.x) / self.scale);
         let y = (run.y() - self.center.y) / self.scale;
@@ -106,7 +106,7 @@ impl Method for Plate {
     }
 }
 
-/// K with the smoothing on its diagonal, and beside it the jump vectors' x and y.
+/// K with the smoothing on its diagonal, and the x and y of the jump vectors as columns beside it.
 fn equations(
     anchors: &[Anchor],
     places: &[Vec2],
@@ -120,7 +120,7 @@ fn equations(
             return None;
         }
         for (j, cell) in row[..n].iter_mut().enumerate() {
-            // Each pair in one order, so that both halves hold the same bits.
+            // Both differences of a pair are taken in the same order, so that both halves have the same bits.
             let apart = if i < j { places[i] - places[j] } else { places[j] - places[i] };
             *cell = if i == j { smoothing } else { kernel(apart.hypot2()) };
         }
@@ -131,11 +131,11 @@ fn equations(
     Some(equations)
 }
 
-/// Three Householder reflections, the first from the last row up.
+/// Three Householder reflections; the first one ends at the last row, the next ones each a row above.
 struct Reflections {
-    /// The mirrors' normals with 2 / v'v.
+    /// The normals v, each with 2 / v'v.
     mirrors: [(Vec<f64>, f64); AFFINE],
-    /// What they make of P's last rows: term by term, row by row.
+    /// The last rows of the reflected P: term by term, row by row.
     ends: [[f64; AFFINE]; AFFINE],
 }
 
@@ -159,7 +159,7 @@ impl Reflections {
         Reflections { mirrors, ends }
     }
 
-    /// Q'KQ in the place of K, and Q' times the two columns beside it.
+    /// Replaces K with Q'KQ, and the two columns beside it with Q' times them.
     fn apply(&self, equations: &mut Matrix, n: usize) {
         let stride = equations.stride;
         for (normal, factor) in &self.mirrors {
@@ -187,7 +187,8 @@ impl Reflections {
         self.mirrors.iter().rev().for_each(|(normal, factor)| reflect(weights, normal, *factor));
     }
 
-    /// The affine part: what P's last rows make of it is `rest`. Term k is 0 above row 2 - k.
+    /// The affine part, from its product `rest` with the last rows of the reflected P. Term k of those is 0 above row 2
+    /// - k.
     fn affine(&self, rest: &[f64]) -> [f64; AFFINE] {
         let mut terms = [0.0; AFFINE];
         for k in (0..AFFINE).rev() {
@@ -208,7 +209,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }
 
-/// r² ln r of r²; 0 at 0.
+/// r² ln r as a function of r²; 0 at 0.
 #[inline(always)]
 fn kernel(r2: f64) -> f64 {
     0.5 * r2 * maths::ln_in_loops(r2)
@@ -225,7 +226,7 @@ pub fn distinct(anchors: &[Anchor]) -> Vec<Anchor> {
     kept
 }
 
-/// Whether all places lie on one line, to a billionth of their spread.
+/// Whether all places are on one line, to within a billionth of their spread.
 fn on_one_line(places: &[Vec2]) -> bool {
     let Some(&first) = places.first() else { return true };
     let from_first = || places.iter().map(|place| *place - first);

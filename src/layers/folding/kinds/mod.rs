@@ -1,6 +1,6 @@
-//! What becomes of a thing whose kind is changed: an outline, a tool, a position function. The shape stays as far as the
-//! new kind can hold it, and what it cannot hold is told. Fields of one name do not always mean the same (a scale's
-//! `factor` is no shear's), so nothing here goes by names.
+//! Changing the kind of a thing: an outline, a tool, a position function. The shape is kept as far as the new kind can
+//! express it, and what is lost is reported. Fields with the same name do not always mean the same (the `factor` of a
+//! scale is not that of a shear), so nothing here goes by names.
 
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -14,8 +14,8 @@ mod positions;
 mod tests;
 mod tools;
 
-/// What the `old` thing at `path` (relative to the layer) becomes as a `to`. `None` if fields of the same name are all
-/// that both kinds can have in common.
+/// The `old` thing at `path` (relative to the layer), turned into a `to`. `None` if there is nothing to do but keep
+/// fields with the same name.
 pub fn turned(layer: &PictureLayer, path: &str, old: &Value, to: &str) -> Option<Turned> {
     let tokens: Vec<&str> = path.split('/').skip(1).collect();
     let ["zones", zone, rest @ ..] = tokens.as_slice() else { return None };
@@ -32,19 +32,19 @@ fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
     T::deserialize(value).ok()
 }
 
-/// A number without the noise of floating point: pixels to a millionth.
+/// A number without floating-point noise: pixels, to a millionth.
 fn px(x: f64) -> Value {
     rounded(x, 1e6)
 }
 
-/// A factor, an angle, a share: to nine decimals.
+/// A factor, an angle or a fraction, to nine decimals.
 fn ratio(x: f64) -> Value {
     rounded(x, 1e9)
 }
 
 fn rounded(x: f64, per: f64) -> Value {
     let near = (x * per).round() / per;
-    // What is as large as this has no such decimals.
+    // Larger numbers have no meaningful decimals that far down.
     let x = if near.is_finite() && x.abs() < 1e6 { near } else { x };
     if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) }
 }
@@ -54,7 +54,7 @@ fn pair(p: impl Into<(f64, f64)>) -> Value {
     json!([px(x), px(y)])
 }
 
-/// A number as it is told.
+/// A number for messages.
 fn told(x: f64) -> String {
     let text = format!("{x:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,5 +1,5 @@
-//! Outlines of another kind. Corners and nodes stay as they are; a curve becomes straight sides no farther from it than
-//! [`WITHIN_PX`], fine enough for a zone's edge and few enough to be edited by hand.
+//! Changing the kind of an outline. Corners and nodes stay as they are; a curve becomes straight sides no farther from
+//! it than [`WITHIN_PX`]: fine enough for a zone's edge, and few enough to be edited by hand.
 
 use kurbo::{PathEl, Point, Rect, Shape};
 use serde_json::{Value, json};
@@ -11,13 +11,13 @@ use crate::base::geometry::{FLATNESS_PX, Polygon};
 use crate::base::maths::{self, TAU};
 use crate::layers::folding::outline::{Outline, bezier, point};
 
-/// How far the straight sides may lie from the curve that they stand for.
+/// How far the straight sides may be from the curve that they replace.
 const WITHIN_PX: f64 = 0.05;
 
-/// The handles of an ellipse's four nodes, as a share of its radii: nowhere farther from it than 0.03 % of them.
+/// The length of the handles of an ellipse's four nodes, as a share of its radii: the error is at most 0.03 % of them.
 const HANDLE: f64 = 0.552_284_749_830_793_6;
 
-/// An outline as one of the kind `to`; `None` if it is of that kind, or there is no such kind.
+/// The outline turned into the kind `to`; `None` if it is of that kind already, or there is no such kind.
 pub fn turned(old: &Outline, to: &str) -> Option<Turned> {
     let there = kind(old);
     Some(match (old, to) {
@@ -60,13 +60,13 @@ fn kind(outline: &Outline) -> &'static str {
     }
 }
 
-/// A position that is kept as it is, to the last bit.
+/// A position, kept to the last bit.
 fn exact([x, y]: Xy) -> Value {
     let number = |x: f64| if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) };
     json!([number(x), number(y)])
 }
 
-/// The box of an outline; of an ellipse and of curves the true one.
+/// The bounding box of an outline; exact for ellipses and curves.
 fn bounds(outline: &Outline) -> Rect {
     match outline {
         Outline::Ellipse { center: [x, y], radii: [w, h] } => Rect::new(x - w, y - h, x + w, y + h),
@@ -84,7 +84,7 @@ fn polygon(points: &[Point]) -> Turned {
     polygon_of(points.iter().map(|&at| pair(at)).collect())
 }
 
-/// A polygon needs three points: a narrower thing has its last one again.
+/// A polygon needs three points: if there are fewer, the last one is repeated.
 fn polygon_of(mut points: Vec<Value>) -> Turned {
     while let (1..3, Some(last)) = (points.len(), points.last().cloned()) {
         points.push(last);
@@ -137,7 +137,7 @@ fn flattened(outline: &Outline) -> Vec<Point> {
     points
 }
 
-/// That no more than something of its box is left, unless it encloses just that.
+/// A message that only `kept` is left, unless the outline enclosed exactly the area `new`.
 fn area_lost(old: &Outline, new: f64, kept: &str) -> Option<String> {
     let polygon = old.polygon();
     let drawn = matches!(old, Outline::Polygon { .. } | Outline::Path { .. });

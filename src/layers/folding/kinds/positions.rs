@@ -1,16 +1,16 @@
-//! Position functions of another kind: the curve stays where the new kind can draw it, else keyframes stand on it.
+//! Changing the kind of a position function: the curve is kept if the new kind can express it; keyframes are put on it.
 
 use serde_json::{Value, json};
 
 use super::{Turned, ratio};
 use crate::layers::folding::position::{Between, Position, Segment};
 
-/// Keyframes that stand on one cycle of a function.
+/// Keyframes per cycle of a function.
 const A_CYCLE: f64 = 8.0;
-/// Keyframes at most.
+/// The most keyframes.
 const MOST: f64 = 64.0;
 
-/// A position function as one of the kind `to`; `None` if the fields that both have say all there is to keep.
+/// The position function turned into the kind `to`; `None` if there is nothing to do but keep common fields.
 pub fn turned(old: &Position, to: &str) -> Option<Turned> {
     match (old, to) {
         (Position::Linear, "keyframes") | (Position::Piecewise { .. }, "piecewise") => None,
@@ -48,7 +48,7 @@ fn keyframes(points: &[[f64; 2]], between: &str) -> Turned {
     Turned::whole(all)
 }
 
-/// A segment between every two keyframes, and one on either side where they do not reach the end.
+/// A segment between every two keyframes, and one at either end if they do not reach it.
 fn segments(points: &[[f64; 2]], between: Between) -> Option<Turned> {
     let (&[first, start], &[last, end]) = (points.first()?, points.last()?);
     if first < 0.0 || last > 1.0 {
@@ -90,7 +90,7 @@ fn ends(segments: &[Segment]) -> Turned {
     keyframes(&points, "linear").but_if(lost.map(str::to_owned))
 }
 
-/// The easing of a function that is one segment from 0 to 1, where it is of that kind.
+/// The easing of a function that is a single segment from 0 to 1, if it is of the kind `to`.
 fn alone(segments: &[Segment], to: &str) -> Option<Turned> {
     let [Segment { from: 0.0, to: 1.0, ease, .. }] = segments else { return None };
     let ease = serde_json::to_value(ease).ok()?;

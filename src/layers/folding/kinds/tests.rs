@@ -13,7 +13,7 @@ fn zone() -> Zone {
     serde_json::from_value(json!({ "name": "z", "outline": outline })).unwrap()
 }
 
-/// The one thing that comes of it, and what is told.
+/// The only resulting thing, and the message about what is lost.
 fn one(turned: Option<Turned>) -> (Value, String) {
     let Turned { items, lost } = turned.unwrap();
     assert_eq!(items.len(), 1, "{items:?}");
@@ -81,7 +81,7 @@ fn outlines_keep_their_shape() {
         assert_near(&found, &new);
         assert_eq!(told, lost, "{old} {to}");
     }
-    // Curves as straight sides: near to them, and few.
+    // Curves as straight sides: close to them, and few.
     for (old, most) in [(&ellipse, 70), (&curved, 30)] {
         let (found, told) = one(outlines::turned(&read(old).unwrap(), "polygon"));
         let (curve, sides) = (read::<Outline>(old).unwrap().polygon(), read::<Outline>(&found).unwrap().polygon());
@@ -259,7 +259,7 @@ fn transforms_stay_the_same_map_where_they_can() {
         assert_near(&found[0], &new);
         assert_eq!(told, lost, "{old} {to}");
     }
-    // Through the matrix and back it is what it was.
+    // To a matrix and back, nothing changes.
     for old in [&scale, &turn, &shear, &move_] {
         let (through, _) = tool(old, "affine");
         let (back, told) = tool(&through[0], old["tool"].as_str().unwrap());

@@ -1,5 +1,6 @@
-//! Tools of another kind. What gives anchors keeps them: each is a point, a vertex of a lasso or a place of a curve. What
-//! gives a dense field keeps its map, as far as the new kind can be that map; between the two kinds some vectors stay.
+//! Changing the kind of a tool. Tools that give anchors keep them: each becomes a point, a vertex of a lasso or a place
+//! on a curve. Tools that give a dense field keep its map, as far as the new kind can express it; between these two
+//! groups, some vectors are kept.
 
 use kurbo::{Affine, Point, Rect, Vec2};
 use serde_json::{Value, json};
@@ -13,13 +14,13 @@ use crate::layers::folding::outline::point;
 use crate::layers::folding::starts;
 use crate::layers::folding::tools::Tool;
 
-/// Points, vertices and places that a tool becomes at most; of more, some are left out evenly.
+/// The most points, vertices or places that a tool becomes; if there are more, some are left out, evenly.
 const MOST: usize = 10_000;
 
-/// Vectors that differ by less than this are the same.
+/// Vectors that differ by less than this count as equal.
 const SAME_PX: f64 = 1e-6;
 
-/// A tool of `zone` as one of the kind `to`; `None` if it is of that kind, or there is no such kind.
+/// The tool of `zone` turned into the kind `to`; `None` if it is of that kind already, or there is no such kind.
 pub fn turned(zone: &Zone, old: &Tool, to: &str) -> Option<Turned> {
     let kind = serde_json::to_value(old).ok()?.get("tool")?.as_str()?.to_owned();
     let turning = Turning { zone, old, kind, bounds: zone.outline.polygon().bounds() };
@@ -39,7 +40,7 @@ struct Turning<'a> {
     zone: &'a Zone,
     old: &'a Tool,
     kind: String,
-    /// The box of the zone.
+    /// The bounding box of the zone.
     bounds: Rect,
 }
 
@@ -47,12 +48,12 @@ struct Turning<'a> {
 type Given = (Point, Vec2);
 
 impl Turning<'_> {
-    /// What a new tool of that kind starts with.
+    /// The initial value of a field of a new tool of that kind.
     fn start(&self, kind: &str, field: &str) -> Value {
         starts::start(kind, field, self.bounds).unwrap_or_default()
     }
 
-    /// One that has nothing to do with the old one.
+    /// A new tool that keeps nothing of the old one.
     fn fresh(&self, to: &str, fields: &[&str]) -> Turned {
         let mut tool = json!({ "tool": to });
         fields.iter().for_each(|field| tool[field] = self.start(to, field));
@@ -65,12 +66,12 @@ impl Turning<'_> {
         Turned::whole(tool).but_if(lost)
     }
 
-    /// The anchors of the old tool, with how many were left out; `None` if it gives none.
+    /// The anchors of the old tool, and how many were left out; `None` if it gives none.
     fn anchors(&self) -> Option<(Vec<Given>, usize)> {
         if counts::anchors(self.old, &self.zone.outline) == 0.0 {
             return None;
         }
-        // A curve of ten million samples is thinned before it is made.
+        // A curve of ten million samples is thinned out before it is evaluated.
         let all = match self.old {
             Tool::Curve { samples, frame, distribution, nodes, jumps } if *samples as usize > MOST => {
                 let samples = MOST as u32;
@@ -86,7 +87,7 @@ impl Turning<'_> {
         Some((kept, left_out))
     }
 
-    /// The centre of a transform that has one.
+    /// The centre of the transform, if it has one.
     fn own_center(&self) -> Option<Point> {
         match self.old {
             Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => {
@@ -102,7 +103,7 @@ impl Turning<'_> {
         }
     }
 
-    /// A point for each anchor.
+    /// One point per anchor.
     fn points(&self) -> Turned {
         let of = |(at, jump): Given| json!({ "tool": "point", "at": pair(at), "jump": pair(jump) });
         if let Some((all, left_out)) = self.anchors() {
@@ -119,7 +120,7 @@ impl Turning<'_> {
         Turned::whole(of((at, map * at - at))).but_if(lost)
     }
 
-    /// A vertex for each anchor; where there are fewer than three, a new lasso that moves as they do.
+    /// A lasso with one vertex per anchor; if there are fewer than three, a new lasso that moves as they do.
     fn lasso(&self) -> Turned {
         let dragged = |all: &[Given]| {
             let vertices = all.iter().map(|&(at, jump)| json!({ "from": pair(at), "to": pair(at + jump) }));
@@ -160,7 +161,8 @@ impl Turning<'_> {
         places.filter_map(|vertex| place(&vertex["from"])).collect()
     }
 
-    /// Through the vertices of a lasso or the places of a border, straight and back to the first; else a new curve.
+    /// A curve through the vertices of a lasso or the places of a border, in straight lines and back to the first;
+    /// otherwise a new curve.
     fn curve(&self) -> Turned {
         if let Some((all, left_out)) = self.anchors().filter(|(all, _)| all.len() >= 3) {
             return self.closed(all, left_out);
@@ -188,7 +190,7 @@ impl Turning<'_> {
         spline(self.start("curve", "samples"), nodes, jumps).but_if(lost)
     }
 
-    /// A curve through vertices and back to the first, as many anchors along it as there were.
+    /// A curve through vertices and back to the first, with as many anchors as there were.
     fn closed(&self, anchors: Vec<Given>, left_out: usize) -> Turned {
         let count = anchors.len();
         let mut corners: Vec<Given> = match self.old {
@@ -209,7 +211,7 @@ impl Turning<'_> {
         let last = corners.len() - 1;
         for (i, step) in steps.iter().enumerate() {
             gone += step;
-            // Places along a curve ascend, also as they are written.
+            // Places along a curve must ascend, even after rounding.
             if i + 1 == last || *step > 2e-9 * whole && whole - gone > 2e-9 * whole {
                 jumps.push(along(if i + 1 == last { 1.0 } else { gone / whole }, corners[i + 1].1));
             }
@@ -227,7 +229,7 @@ impl Turning<'_> {
         spline(json!(count + 1), nodes, jumps).but_if(lost)
     }
 
-    /// A transform: of another one the nearest, of anchors their mean motion.
+    /// A transform: the nearest to another transform, or the mean motion of anchors.
     fn dense(&self, to: &str) -> Turned {
         if let Some(map) = transform(self.old) {
             let tool = nearest(map, to, self.own_center(), self.bounds.center());
@@ -252,7 +254,7 @@ impl Turning<'_> {
         })
     }
 
-    /// Says how far the new transform is from the old one.
+    /// Adds how far the new transform is from the old one.
     fn compared(&self, old: Affine, tool: Value) -> Turned {
         let new = super::read(&tool).and_then(|tool| transform(&tool)).unwrap_or_default();
         let Rect { x0, y0, x1, y1 } = self.bounds;
@@ -260,14 +262,14 @@ impl Turning<'_> {
         let most = corners.into_iter().map(|q| (old * q - new * q).hypot()).fold(0.0, f64::max);
         let kind = tool["tool"].as_str().unwrap_or_default().to_owned();
         let lost = format!("no {kind} is that {}: jump vectors differ by up to {} px", self.kind, told(most));
-        // Numbers are written to a few decimals.
+        // Smaller differences are only rounding: numbers are written with few decimals.
         let told = most > 0.01;
         Turned::whole(tool).but_if(told.then_some(lost))
     }
 }
 
-/// The tool of the kind `to` that comes nearest to a map, about its `own` centre where it has one, else about the place
-/// that the map leaves where it is, or about the `middle`.
+/// The tool of the kind `to` that is nearest to a map, about its `own` centre if it has one, otherwise about the fixed
+/// point of the map, or about the `middle`.
 fn nearest(map: Affine, to: &str, own: Option<Point>, middle: Point) -> Value {
     let [a, c, b, d, tx, ty] = map.as_coeffs();
     let centre = |linear: [f64; 4]| own.unwrap_or_else(|| fixed(linear, Vec2::new(tx, ty), middle));
@@ -290,7 +292,7 @@ fn nearest(map: Affine, to: &str, own: Option<Point>, middle: Point) -> Value {
     }
 }
 
-/// The factors of a linear map along x and y, once what it turns is taken away.
+/// The factors of a linear map along x and y, after its rotation is removed.
 fn stretch(a: f64, b: f64, c: f64, d: f64) -> [f64; 2] {
     if b == 0.0 && c == 0.0 {
         return [a, d];
@@ -300,7 +302,7 @@ fn stretch(a: f64, b: f64, c: f64, d: f64) -> [f64; 2] {
     [cos * a + sin * c, cos * d - sin * b]
 }
 
-/// The place that x -> L x + t leaves where it is; along what it does not move, that of `near`.
+/// The fixed point of x -> L x + t; along directions that are not moved, the coordinate of `near`.
 fn fixed([a, b, c, d]: [f64; 4], t: Vec2, near: Point) -> Point {
     let (p, q, r, s) = (1.0 - a, -b, -c, 1.0 - d);
     let det = p * s - q * r;
@@ -319,7 +321,7 @@ fn is_translation(map: Affine) -> bool {
     [a, b, c, d] == [1.0, 0.0, 0.0, 1.0]
 }
 
-/// The mean place and jump vector, and whether all vectors are that one.
+/// The mean place and jump vector, and whether all vectors are equal to it.
 fn mean(all: &[Given]) -> (Point, Vec2, bool) {
     let n = all.len().max(1) as f64;
     let place = all.iter().fold(Vec2::ZERO, |sum, (at, _)| sum + at.to_vec2()) / n;
