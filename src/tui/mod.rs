@@ -4,6 +4,7 @@
 
 mod commands;
 mod document;
+mod events;
 mod graphics;
 mod keys;
 mod layout;
@@ -13,7 +14,7 @@ mod state;
 mod text;
 mod tutor;
 
-pub use commands::update::Change;
+pub use events::Change;
 pub use keys::{Keymap, manual};
 pub use outside::offscreen::Offscreen;
 pub use outside::runner::{Options, run};

@@ -1,21 +1,20 @@
 //! The cell under the cursor and the selected rows: entries, choices, steps.
 
+use crate::tui::text::numbers::step_of;
 use serde_json::Value;
 
 use super::items::add_here;
-use super::life;
-use super::messages;
-use super::{Call, Command, Done, command, obey, quoted, unquoted};
-use crate::base::{maths, problem};
+use super::{Call, Command, Done, command, life, messages, obey};
+use crate::base::problem;
 use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::sheet::{Cell, Row};
-use crate::tui::state::entry;
 use crate::tui::state::entry::Entry;
-use crate::tui::state::{Mode, State};
+use crate::tui::state::{Mode, State, entry};
 use crate::tui::text::numbers;
+use crate::tui::text::said::{quoted, unquoted};
 
 pub const COMMANDS: &[Command] = &[
     command("enter", "[clear]", "Edit the cell, or go into the node", enter),
@@ -222,12 +221,6 @@ fn step(state: &mut State, call: &Call) -> Done {
     state.edit(edit, true)?;
     entry::skipped(state).into_iter().for_each(|some| state.say(some));
     Ok(())
-}
-
-/// The step of a power of ten.
-pub fn step_of(power: i32) -> f64 {
-    let size = maths::powi(10.0, power.unsigned_abs());
-    if power < 0 { 1.0 / size } else { size }
 }
 
 fn step_size(state: &mut State, call: &Call) -> Done {

@@ -1,10 +1,10 @@
 //! Files, leaving, and what is outside the editor.
 
-use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::files::paths;
 use crate::preview::keys as window;
+use crate::tui::events::Effect;
 use crate::tui::state::State;
 
 pub const COMMANDS: &[Command] = &[

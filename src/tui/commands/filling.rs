@@ -11,8 +11,7 @@ use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
 use crate::tui::document::rows;
 use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
-use crate::tui::state::State;
-use crate::tui::state::entry;
+use crate::tui::state::{State, entry};
 use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] =

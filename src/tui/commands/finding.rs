@@ -1,14 +1,15 @@
 //! Finding: the search over names and values, marks, the jump list, the same place beside this one.
 
-use super::update::Effect;
-use super::{Call, Command, Done, command, unquoted};
+use super::{Call, Command, Done, command};
 use crate::scene::schema::{Body, Place};
 use crate::scene::{address, field, pointer};
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::places::Sought;
 use crate::tui::document::sheet::{Part, is_node, summary};
-use crate::tui::outside::terminal::plain;
+use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pane, State};
+use crate::tui::text::plain;
+use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] = &[
     command("search", "next|previous|TEXT", "Go to the next place of that name or value", search).counted(),

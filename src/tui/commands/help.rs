@@ -8,10 +8,9 @@ use crate::scene::{address, pointer};
 use crate::tui::document::sheet;
 use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::keys::OWN_FILE;
-use crate::tui::outside::terminal::plain;
-use crate::tui::panes::wrapped;
 use crate::tui::state::{Mode, Pages, Pane, State};
-use crate::tui::text::numbers;
+use crate::tui::text::wrap::wrapped;
+use crate::tui::text::{numbers, plain};
 
 pub const COMMANDS: &[Command] = &[
     command("help", "[COMMAND]", "Show what is under the cursor, then keys and commands", help).inside(),

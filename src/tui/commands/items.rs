@@ -4,17 +4,17 @@ use serde_json::{Map, Value, json as value};
 
 use super::naming::unused;
 use super::yanking::stem;
-use super::{Call, Command, Done, command, unquoted};
+use super::{Call, Command, Done, command};
 use crate::base::budget;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::sheet::Cell;
-use crate::tui::state::entry;
 use crate::tui::state::recorder::Work;
-use crate::tui::state::{Mode, Pane, State, first};
+use crate::tui::state::{Mode, Pane, State, entry, first};
 use crate::tui::text::line::Line;
+use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] = &[
     command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add)

@@ -1,10 +1,10 @@
 //! The person's own keys: shown with what is wrong in their file, and read anew.
 
-use super::update::Effect;
 use super::{Call, Command, Done, command};
+use crate::tui::events::Effect;
 use crate::tui::keys::OWN_FILE;
-use crate::tui::outside::terminal::plain;
 use crate::tui::state::{Mode, Pages, State};
+use crate::tui::text::plain;
 
 pub const COMMANDS: &[Command] =
     &[command("keys", "[reload]", "Show your own keys and what is wrong with them, or read them anew", keys).inside()];

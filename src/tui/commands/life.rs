@@ -1,16 +1,16 @@
 //! What happens to a scene outside the editor, and what is asked about it: unsaved edits of a session that did not end
 //! well, somebody else who edits the scene, another program that writes its file.
 
+use crate::tui::text::plain;
 use std::path::PathBuf;
 
-use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::error::Error;
 use crate::files::session::Taken;
 use crate::scene::merge::Side;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::door::Door;
-use crate::tui::outside::terminal::plain;
+use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};
 
 /// So many changes are shown in a question; the rest can be looked at.

@@ -1,8 +1,9 @@
 //! Lines run again: macros, and `.` for the last change. Both are lines that the recorder kept; a line that cannot be done
 //! ends them.
 
-use super::{Call, Command, Done, Said, command, obey};
+use super::{Call, Command, Done, command, obey};
 use crate::tui::state::{Mode, State};
+use crate::tui::text::said::Said;
 
 pub const COMMANDS: &[Command] = &[
     command("record", "[LETTER]", "Record a macro, or end the recording", record).inside(),

@@ -4,9 +4,9 @@ use super::{Call, Command, Done, command, obey};
 use crate::base::problem::{Problem, Severity};
 use crate::scene::{address, pointer};
 use crate::tui::document::choice::{Choice, Then};
-use crate::tui::outside::terminal::plain;
-use crate::tui::panes::folded;
 use crate::tui::state::{Mode, Pages, State};
+use crate::tui::text::plain;
+use crate::tui::text::wrap::folded;
 
 pub const COMMANDS: &[Command] = &[
     command("messages", "", "Show what was said before, to its end", messages).inside(),

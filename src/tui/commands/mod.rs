@@ -1,15 +1,15 @@
 //! The one table of commands: what keys run and what is typed after `:`. What is not here but on the command line of
 //! `plica` (render, synth, ...) runs as there, with the same arguments.
 
-use super::commands::update::Effect;
+use super::events::Effect;
 use super::state::recorder::{Ended, Kept};
 use super::state::{Mode, State};
 use super::tutor;
 use crate::base::problem;
 use crate::ops;
+use crate::tui::text::said::{Said, words};
 
 mod cells;
-pub use cells::step_of;
 mod files;
 mod filling;
 mod finding;
@@ -26,8 +26,6 @@ mod palette;
 mod pasting;
 mod placing;
 mod playing;
-mod said;
-pub use said::{Said, quoted, unquoted, words};
 mod scripts;
 mod seeing;
 mod selecting;

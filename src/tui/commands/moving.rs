@@ -1,9 +1,9 @@
 //! Moving about: in the tree, in forms and tables, between panes, and by search.
 
 use super::finding::leave as leave_place;
-use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::tui::document::tree;
+use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
 
 pub const COMMANDS: &[Command] = &[

@@ -1,13 +1,13 @@
 //! Names: of what carries one, and of pictures, which others name.
 
 use super::items::{go_to, target};
-use super::{Call, Command, Done, command, unquoted};
+use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, address, field, pointer};
-use crate::tui::outside::terminal::plain;
-use crate::tui::state::entry;
-use crate::tui::state::{Mode, State};
+use crate::tui::state::{Mode, State, entry};
 use crate::tui::text::line::Line;
+use crate::tui::text::plain;
+use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] =
     &[command("rename", "[NAME]", "Give the node or row another name, everywhere", rename).change()];

@@ -3,13 +3,12 @@
 use kurbo::{Point, Vec2};
 
 use super::items::go_to;
-use super::update::Effect;
 use super::{Call, Command, Done, command, obey};
 use crate::base::problem::quoted;
 use crate::render::overlay;
+use crate::tui::events::Effect;
 use crate::tui::layout::seeing;
-use crate::tui::state::{Mode, Pane, State};
-use crate::tui::state::{entry, place};
+use crate::tui::state::{Mode, Pane, State, entry, place};
 use crate::tui::text::numbers::short;
 
 pub const COMMANDS: &[Command] = &[

@@ -1,7 +1,7 @@
 //! Time: playing and going from frame to frame.
 
-use super::update::Effect;
 use super::{Call, Command, Done, command};
+use crate::tui::events::Effect;
 use crate::tui::state::State;
 use crate::tui::state::transport::SPEEDS;
 

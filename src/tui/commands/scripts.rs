@@ -1,9 +1,10 @@
 //! Lines that were run, as one thing: the log of the session, and scripts.
 
-use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::files::paths;
+use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};
+use crate::tui::text::plain;
 
 pub const COMMANDS: &[Command] = &[
     command("log", "[FILE]", "Show the lines that this session has run, or write them to a file", log).inside(),
@@ -21,8 +22,7 @@ fn log(state: &mut State, call: &Call) -> Done {
         Some(place) => format!("this log is {}", place.display()),
         None => "this log is only here: :log FILE writes it".into(),
     };
-    let lines =
-        vec![format!("-- {} --", crate::tui::outside::terminal::plain(&place))].into_iter().chain(lines).collect();
+    let lines = vec![format!("-- {} --", plain(&place))].into_iter().chain(lines).collect();
     state.mode = Mode::Pages(Pages { title: "log".into(), lines, scroll: 0 });
     Ok(())
 }

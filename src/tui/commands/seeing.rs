@@ -2,11 +2,10 @@
 
 use kurbo::Vec2;
 
-use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::problem;
-use crate::tui::graphics::Protocol;
-use crate::tui::graphics::sight;
+use crate::tui::events::Effect;
+use crate::tui::graphics::{Protocol, sight};
 use crate::tui::layout::seeing;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::numbers::short;

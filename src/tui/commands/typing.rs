@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use super::finding::{search_left, search_typed};
-use super::update::Effect;
-use super::{Call, Command, Done, command, obey, quoted, unquoted};
+use super::{Call, Command, Done, command, obey};
+use crate::tui::events::Effect;
 use crate::tui::state::{Mode, State};
 use crate::tui::text::input::Text;
 use crate::tui::text::line;
 use crate::tui::text::line::Line;
+use crate::tui::text::said::{quoted, unquoted};
 
 pub const COMMANDS: &[Command] = &[
     command("line", "[/|:TEXT]", "Type a command, one that begins so, or with / a search", |state, call| {

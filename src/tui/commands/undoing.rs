@@ -1,11 +1,11 @@
 //! Undo and redo: by steps and by time, said in words; and the list of the steps.
 
+use crate::tui::text::plain;
 use std::time::Duration;
 
-use super::update::Change;
 use super::{Call, Command, Done, command};
 use crate::tui::document::door::Door;
-use crate::tui::outside::terminal::plain;
+use crate::tui::events::Change;
 use crate::tui::state::{Mode, Pages, State};
 
 pub const COMMANDS: &[Command] = &[

@@ -1,5 +1,6 @@
 //! Values by their paths.
 
+use crate::tui::text::plain;
 use serde_json::Value;
 
 use super::{Call, Command, Done, command};
@@ -37,6 +38,6 @@ fn set(state: &mut State, call: &Call) -> Done {
 fn get(state: &mut State, call: &Call) -> Done {
     let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
     let value = field::value(state.document(), &pointer).unwrap_or(Value::Null);
-    state.say(crate::tui::outside::terminal::plain(&value.to_string()));
+    state.say(plain(&value.to_string()));
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! Yank and paste: a node or rows as JSON, rows as CSV, and both back to where they fit.
 
+use crate::tui::text::plain;
 use serde_json::{Map, Value};
 
 use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, targets};
-use super::update::Effect;
 use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
@@ -11,10 +11,10 @@ use crate::scene::insert::misfit;
 use crate::scene::{Document, Edit, address, json, pointer};
 use crate::tui::document::rows;
 use crate::tui::document::sheet::Sheet;
-use crate::tui::outside::terminal;
-use crate::tui::state::entry;
-use crate::tui::state::{Pane, State};
-use crate::tui::text::clipboard::{MOST_BYTES, Yanked};
+use crate::tui::events::Effect;
+use crate::tui::state::memory::Yanked;
+use crate::tui::state::{Pane, State, entry};
+use crate::tui::text::clipboard::MOST_BYTES;
 use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] = &[
@@ -94,7 +94,7 @@ fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
     let said = field::field(state.document(), &one).map(|field| field.name).filter(|name| !name.is_empty());
     let said = said.map_or("the scene".into(), |name| match name.parse::<usize>() {
         Ok(_) => counted(1, "row"),
-        Err(_) => terminal::plain(&name),
+        Err(_) => plain(&name),
     });
     Ok((Yanked { value, name }, said))
 }
@@ -141,7 +141,7 @@ fn go_to_pasted(state: &mut State, pointer: &str, count: usize) {
         go_to(state, pointer);
     }
     let named = count == 1 && !name.is_empty() && name.parse::<usize>().is_err();
-    let what = if named { terminal::plain(&name) } else { counted(count, "row") };
+    let what = if named { plain(&name) } else { counted(count, "row") };
     state.say(format!("{what} pasted"));
 }
 

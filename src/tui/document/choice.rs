@@ -4,6 +4,7 @@ use super::sheet::Cell;
 use crate::scene::field::{self, Kind};
 use crate::tui::commands::life::Question;
 use crate::tui::state::State;
+use crate::tui::text::plain;
 
 /// A list to choose from.
 #[derive(Clone, Debug)]
@@ -69,7 +70,7 @@ pub fn options(state: &State, kind: &Kind) -> Vec<(String, String)> {
             let entries = field::children(state.document(), &format!("/{list}"));
             let path = |pointer: &str| {
                 let value = field::value(state.document(), &format!("{pointer}/path"));
-                value.and_then(|path| path.as_str().map(crate::tui::outside::terminal::plain)).unwrap_or_default()
+                value.and_then(|path| path.as_str().map(plain)).unwrap_or_default()
             };
             entries.into_iter().map(|entry| (entry.name, path(&entry.pointer))).collect()
         }

@@ -14,7 +14,7 @@ use crate::files::{self, picture, write};
 use crate::scene::history::{Applied, Way};
 use crate::scene::merge::Side;
 use crate::scene::{Document, Edit, History};
-use crate::tui::commands::update::Change;
+use crate::tui::events::Change;
 
 /// What is said where the scene may only be looked at.
 const READ_ONLY: &str = "the scene is open for reading only: :w PATH saves a copy of it";

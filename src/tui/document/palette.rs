@@ -1,19 +1,18 @@
 //! The palette: everything that can be run or gone to, in one list that typing narrows. Keys and commands come from their
 //! tables, nodes and fields from the scene.
 
+use crate::tui::text::plain;
 use std::sync::Arc;
 
 use nucleo_matcher::pattern::{CaseMatching, Normalization, Pattern};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
 
 use super::places::Listed;
-use crate::tui::commands;
 use crate::tui::commands::Command;
-use crate::tui::keys;
-use crate::tui::outside::terminal::plain;
 use crate::tui::state::State;
 use crate::tui::state::recorder::Kept;
 use crate::tui::text::input::Text;
+use crate::tui::{commands, keys};
 
 /// The list, and what is typed over it.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 //! list inside a form stands in it row by row. The panes draw a sheet and the commands edit its cells; neither knows a
 //! field by name, so a new parameter shows up here by itself.
 
+use crate::tui::text::plain;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -339,7 +340,7 @@ pub fn summary(field: &Field, value: &Value) -> String {
     match (&field.kind, value) {
         (_, Value::Null) => "none".into(),
         (Kind::Number { .. }, value) => value.as_f64().map(numbers::shown).unwrap_or_default(),
-        (_, Value::String(text)) => crate::tui::outside::terminal::plain(text),
+        (_, Value::String(text)) => plain(text),
         (_, Value::Bool(on)) => if *on { "yes" } else { "no" }.into(),
         (Kind::Tagged { tag, .. }, value) => value.get(tag).and_then(Value::as_str).unwrap_or("?").into(),
         (Kind::Numbers(_), Value::Array(items)) => {
@@ -347,9 +348,7 @@ pub fn summary(field: &Field, value: &Value) -> String {
         }
         (_, Value::Array(items)) => format!("({})", items.len()),
         (_, Value::Object(fields)) if matches!(field.kind, Kind::Map(_)) => format!("({})", fields.len()),
-        (_, Value::Object(fields)) => {
-            fields.get("name").and_then(Value::as_str).map(crate::tui::outside::terminal::plain).unwrap_or_default()
-        }
+        (_, Value::Object(fields)) => fields.get("name").and_then(Value::as_str).map(plain).unwrap_or_default(),
         (_, value) => value.to_string(),
     }
 }

@@ -1,6 +1,7 @@
 //! The tree of the scene: what has an inside of its own, by name. Lists of named things (layers, zones) show as those
 //! things; other lists are leaves with a count, their items are the rows of a table.
 
+use crate::tui::text::plain;
 use std::collections::BTreeSet;
 
 use kurbo::Point;
@@ -11,7 +12,6 @@ use crate::layers::Layer;
 use crate::scene::Document;
 use crate::scene::field::{self, Child, Kind};
 use crate::scene::schema::Place;
-use crate::tui::outside::terminal::plain;
 
 /// A row of the tree.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -17,6 +17,7 @@ mod diacritics;
 mod encode;
 pub use encode::forget;
 mod ink;
+pub mod probed;
 pub mod sight;
 mod sixel;
 

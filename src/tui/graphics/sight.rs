@@ -3,12 +3,36 @@
 use kurbo::{Point, Vec2};
 
 use crate::render::part::Part;
-use crate::tui::state::place::Placing;
 
 /// The most that a pixel is enlarged, each way, in dots.
 const LARGEST: f64 = 64.0;
 /// The share of what is in sight that one pan goes.
 const PAN: f64 = 0.25;
+
+/// The cursor and the zoom of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placing {
+    /// The cursor, in image pixels; on the centre of a pixel unless set by a number.
+    pub cursor: Point,
+    /// Pixels of the picture a dot; none: as many as show all of it.
+    pub zoom: Option<f64>,
+    /// The middle of what is in sight, as far as the picture and the cursor allow.
+    pub middle: Point,
+}
+
+impl Placing {
+    /// The cursor at a place, all of the picture in sight.
+    pub fn new(cursor: Point) -> Self {
+        Placing { cursor, zoom: None, middle: cursor }
+    }
+
+    /// Moves the cursor, within the picture where its size is known.
+    pub fn step(&mut self, by: Vec2, size: Option<(usize, usize)>) {
+        let moved = self.cursor + by;
+        let (w, h) = size.map_or((1e6, 1e6), |(w, h)| (w as f64, h as f64));
+        self.cursor = Point::new(moved.x.clamp(0.5, (w - 0.5).max(0.5)), moved.y.clamp(0.5, (h - 0.5).max(0.5)));
+    }
+}
 
 /// The scale at which all of the picture fits on so many dots.
 pub fn fit((width, height): (usize, usize), (across, down): (usize, usize)) -> f64 {

@@ -2,6 +2,7 @@
 //! context, `"key sequence" = "line"`; an empty line takes the key away. Every mistake in it is found at once, by its line,
 //! and what is right still holds.
 
+use crate::tui::text::plain;
 use std::borrow::Cow;
 
 use toml::de::{DeTable, DeValue};
@@ -9,7 +10,8 @@ use toml::de::{DeTable, DeValue};
 use super::table::{ENTRY, HELP, KEYS, LINE, LIST, TYPING};
 use super::{Found, LETTERS, continues, line_of, stands_for};
 use crate::base::problem;
-use crate::tui::commands::{self, Said};
+use crate::tui::commands::{self};
+use crate::tui::text::said::Said;
 
 /// One key of the keymap.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -156,7 +158,7 @@ impl Keymap {
 fn help(line: &str) -> Cow<'static, str> {
     let row = KEYS.iter().find(|row| row.command == line).map(|row| row.help);
     let command = || commands::find(line).map(|command| command.help);
-    row.or_else(command).map_or_else(|| Cow::Owned(crate::tui::outside::terminal::plain(line)), Cow::Borrowed)
+    row.or_else(command).map_or_else(|| Cow::Owned(plain(line)), Cow::Borrowed)
 }
 
 /// The bindings of a file that are written as they should be.

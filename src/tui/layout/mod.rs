@@ -1,3 +1,106 @@
-//! Where things stand on the screen.
+//! Where everything stands on the screen: functions of its size and of the state, read by what draws and by what clicks.
 
+use ratatui::layout::{Constraint, Layout, Margin, Rect, Spacing};
+
+use super::state::{Mode, Pane, State};
+
+pub mod lesson;
 pub mod seeing;
+
+/// The least terminal that the editor draws on: a split of a window, less the lines that a multiplexer takes.
+pub const LEAST: (u16, u16) = (60, 20);
+
+/// The terminal that is meant where there is none.
+pub const USUAL: (u16, u16) = (80, 24);
+
+/// From this width on there are panes at the right.
+const WIDE: u16 = 112;
+
+/// Where the panes stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Areas {
+    /// The tree of the scene.
+    pub tree: Rect,
+    /// The form or table.
+    pub table: Rect,
+    /// What is told about the field under the cursor.
+    pub detail: Rect,
+    /// The field, the position function and the picture, where there is room.
+    pub right: Option<[Rect; 3]>,
+    /// The status line.
+    pub status: Rect,
+    /// The command line.
+    pub line: Rect,
+}
+
+/// Rows of what is told about a field, and of the read-out of a pixel that takes its place, with their frames.
+const DETAIL: u16 = 5;
+
+const PROBE: u16 = 9;
+
+/// Whether the editor draws on a terminal of this size; on a smaller one nothing can be edited, for nothing is seen of it.
+pub fn fits((width, height): (u16, u16)) -> bool {
+    width >= LEAST.0 && height >= LEAST.1
+}
+
+/// The areas of a screen, with the read-out of a pixel or without.
+pub fn areas(screen: Rect, probing: bool) -> Areas {
+    let [body, status, line] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
+    let right = if screen.width >= WIDE { screen.width * 2 / 5 } else { 0 };
+    let tree = (screen.width / 5).clamp(24, 30).min(screen.width / 3);
+    let columns = [Constraint::Length(tree), Constraint::Fill(1), Constraint::Length(right)];
+    let columns = &columns[..if right > 0 { 3 } else { 2 }];
+    let columns = Layout::horizontal(columns).spacing(Spacing::Overlap(1)).split(body);
+    let (tree, middle, right) = (columns[0], columns[1], columns.get(2).copied().unwrap_or_default());
+    let [table, detail] =
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(if probing { PROBE } else { DETAIL })])
+            .spacing(Spacing::Overlap(1))
+            .areas(middle);
+    let stack = [Constraint::Fill(3), Constraint::Length((body.height / 5).max(6)), Constraint::Fill(5)];
+    let right = (right.width > 0).then(|| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
+    Areas { tree, table, detail, right, status, line }
+}
+
+/// The screen without the lesson below.
+pub fn screen(state: &State) -> Rect {
+    lesson::above(state, Rect::new(0, 0, state.size.0, state.size.1))
+}
+
+/// Whether the picture stands in the middle, for want of room at the right.
+pub fn picture_in_middle(state: &State, areas: &Areas) -> bool {
+    areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim))
+}
+
+/// The middle column, as far as the read-out leaves it.
+pub fn middle(state: &State, areas: &Areas) -> Rect {
+    if state.seeing.probing { areas.table } else { areas.table.union(areas.detail) }
+}
+
+/// The inside of the picture's pane, where it is on the screen.
+pub fn picture(state: &State) -> Option<Rect> {
+    if !fits(state.size) {
+        return None;
+    }
+    let areas = areas(screen(state), state.seeing.probing);
+    let middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
+    areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
+}
+
+/// The first of `count` rows that is shown in `height` lines, so that row `at` stands in the middle where it can.
+pub fn first_row(at: usize, count: usize, height: u16) -> usize {
+    let height = usize::from(height);
+    at.saturating_sub(height / 2).min(count.saturating_sub(height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_scroll_around_the_cursor() {
+        for (at, count, height, first) in [(0, 100, 10, 0), (50, 100, 10, 45), (99, 100, 10, 90), (3, 5, 10, 0)] {
+            assert_eq!(first_row(at, count, height), first);
+        }
+    }
+}

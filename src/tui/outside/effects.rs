@@ -2,20 +2,19 @@
 
 use std::path::Path;
 
-use super::image_editor;
 use super::runner::{Editor, Options, listen};
-use super::terminal;
 use super::worker::Job;
+use super::{image_editor, terminal};
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
 use crate::files::{lines, paths, picture, write};
 use crate::ops;
-use crate::tui::commands::update::{Effect, Event};
 use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
+use crate::tui::graphics::probed::Request;
 use crate::tui::keys::Keymap;
 use crate::tui::layout::seeing;
-use crate::tui::layout::seeing::Request;
 use crate::tui::state::State;
 
 impl Editor {

@@ -2,6 +2,8 @@
 //! from standard input, answers go to standard output as plain text, mistakes to standard error with the number of the
 //! line. The same commands through the same door; long work runs in the foreground.
 
+use crate::tui::text::plain;
+use crate::tui::text::said::quoted;
 use std::io::{BufRead, IsTerminal, Read, Write, stdin, stdout};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -11,8 +13,8 @@ use super::terminal;
 use crate::base::error::{Error, Result};
 use crate::scene::address;
 use crate::tui::commands;
-use crate::tui::commands::update::Event;
 use crate::tui::document::choice::{Choice, Then};
+use crate::tui::events::Event;
 use crate::tui::state::{Mode, Pane, State};
 
 /// A line may be this long, in bytes.
@@ -54,7 +56,7 @@ impl Editor {
         let mut session = Session { interactive, ..Session::default() };
         if let Some(aside) = self.state.door.kept_aside() {
             let what = "the journal was damaged, what could not be read is in";
-            terminal::remark(&format!("{what} {}", terminal::plain(&aside.display().to_string())));
+            terminal::remark(&format!("{what} {}", plain(&aside.display().to_string())));
         }
         if interactive {
             terminal::print(&format!("{}  (? lists the commands, q leaves)", self.state.door.path().display()));
@@ -99,7 +101,7 @@ impl Editor {
         }
         match &self.state.mode {
             Mode::Choice(choice) if choice.options.iter().any(|(word, _)| word == line) => {
-                self.take(Event::Line(format!("choose {}", commands::quoted(line))));
+                self.take(Event::Line(format!("choose {}", quoted(line))));
             }
             Mode::Choice(_) if line == "cancel" => self.state.mode = Mode::Normal,
             _ if line == "?" || line == "help" => help().iter().for_each(|line| terminal::print(line)),
@@ -182,9 +184,7 @@ impl Session {
     fn see_journal(&mut self, failing: Option<String>) {
         if failing != self.failing {
             match &failing {
-                Some(why) => {
-                    terminal::remark(&format!("no journal: {} (only what is saved is safe)", terminal::plain(why)))
-                }
+                Some(why) => terminal::remark(&format!("no journal: {} (only what is saved is safe)", plain(why))),
                 None => terminal::remark("the journal is written again"),
             }
             self.failing = failing;

@@ -10,4 +10,5 @@ pub mod pace;
 pub mod runner;
 pub mod script;
 pub mod terminal;
+pub mod throttle;
 pub mod worker;

@@ -6,9 +6,11 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use crate::base::error::{Error, Result};
-use crate::files::{self, session::Mode};
-use crate::tui::commands::update::{Change, Effect, Event, update};
+use crate::files::session::Mode;
+use crate::files::{self};
+use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
+use crate::tui::events::{Change, Effect, Event};
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::text::colour::Depth;

@@ -1,14 +1,16 @@
 //! Runs the editor: events in, effects out. The only place that knows the terminal, the threads, the files and the window.
 
+use crate::tui::layout;
+use crate::tui::text::plain;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use super::ask;
 use super::script::Scripts;
+use super::throttle::Throttle;
 use super::worker::{Job, Worker};
-use super::{input, lines, pace, terminal};
+use super::{ask, input, lines, pace, terminal};
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::system::signals::{self, Answer, Signal};
@@ -18,12 +20,12 @@ use crate::files::session::Mode;
 use crate::files::watch::Watch;
 use crate::preview::Reply;
 use crate::preview::editor::{self, Preview, Status};
-use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
 use crate::tui::graphics;
 use crate::tui::graphics::Protocol;
 use crate::tui::layout::seeing;
-use crate::tui::layout::seeing::Eyes;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::state::transport::Stopwatch;
@@ -194,7 +196,7 @@ pub struct Editor {
     /// The log of the session; `None` if there is no folder for it.
     pub(super) log: Option<Log>,
     /// What the panes have asked the worker for.
-    pub(super) eyes: Eyes,
+    pub(super) eyes: Throttle,
     /// Whether it ends.
     pub(super) leaving: bool,
     /// Whether a signal ends it.
@@ -211,7 +213,7 @@ impl Editor {
         sender: mpsc::Sender<Event>,
     ) -> Result<Self> {
         let size = screen.as_ref().map(|screen| screen.size()).transpose().map_err(|e| Error::at("the terminal", e))?;
-        let size = size.map_or(view::USUAL, |size| (size.width, size.height));
+        let size = size.map_or(layout::USUAL, |size| (size.width, size.height));
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
         let mut typed = Vec::new();
         let mut graphics = graphics::Graphics::default();
@@ -242,7 +244,7 @@ impl Editor {
             watch,
             scripts: Scripts::default(),
             log,
-            eyes: Eyes::default(),
+            eyes: Throttle::default(),
             leaving: false,
             interrupted: false,
             drawn: None,
@@ -443,7 +445,7 @@ pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>
 fn begin_log(door: &Door, (width, height): (u16, u16), sender: mpsc::Sender<Event>) -> Option<Log> {
     let header = vec![
         format!("plica {}", env!("CARGO_PKG_VERSION")),
-        format!("scene {}", terminal::plain(&door.path().display().to_string())),
+        format!("scene {}", plain(&door.path().display().to_string())),
         format!("terminal {width} x {height}"),
     ];
     // Nobody listens once the editor has left.

@@ -9,8 +9,8 @@ use super::runner::Editor;
 use super::terminal;
 use crate::base::error::{Error, Result};
 use crate::files::lines;
-use crate::tui::commands::update::Event;
 use crate::tui::document::choice::{Choice, Then};
+use crate::tui::events::Event;
 use crate::tui::state::{Message, Mode};
 
 /// Scripts that run scripts, at most.

@@ -1,6 +1,7 @@
 //! Threads beside the editor: one synthesises the scene and makes its frames, always for the newest request; one runs a
 //! subcommand. Neither ever keeps a key waiting; what they find out comes back as events.
 
+use crate::tui::graphics::probed;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
@@ -13,10 +14,9 @@ use crate::layers::parts::materials::Materials;
 use crate::ops;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
-use crate::tui::commands::update::{Event, Synthesis};
+use crate::tui::events::{Event, Synthesis};
 use crate::tui::graphics::Shown;
-use crate::tui::layout::seeing;
-use crate::tui::layout::seeing::{Probed, Request};
+use crate::tui::graphics::probed::{Probed, Request};
 
 /// The thread that synthesises.
 pub struct Worker {
@@ -119,7 +119,7 @@ impl Studio {
             }
             let ms = begun.elapsed().as_secs_f64() * 1000.0;
             let made = result.map(|(synth, warning)| {
-                let longest = seeing::longest(&synth);
+                let longest = probed::longest(&synth);
                 Synthesis { synth, ms, longest, warning }
             });
             if events.send(Event::Synthesised(made)).is_err() {
@@ -293,6 +293,7 @@ impl ops::Progress for Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::layout::seeing;
 
     #[test]
     fn what_was_only_said_is_one_line_that_begins_with_the_end() {

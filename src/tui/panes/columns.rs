@@ -1,10 +1,10 @@
 //! Where the cells of a form or a table stand. Like rows share their columns; where those do not all fit, whole ones are
 //! left out, the first of a table never: half a number reads as another one.
 
-use super::{clipped, width};
 use crate::scene::field::Kind;
 use crate::tui::document::sheet::{Cell, Row};
 use crate::tui::text::numbers;
+use crate::tui::text::wrap::{clipped, width};
 
 /// Columns between two cells; where some are left out a mark stands between them.
 pub const GAP: i32 = 2;

@@ -1,16 +1,16 @@
 //! Under the form: what the schema says about the cell under the cursor, and what the entry in it comes to.
 
+use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::{wrapped, write};
+use super::write;
 use crate::scene::field::Kind;
 use crate::tui::document::sheet;
 use crate::tui::document::sheet::{Cell, Part};
-use crate::tui::outside::terminal;
-use crate::tui::state::State;
-use crate::tui::state::entry;
+use crate::tui::state::{State, entry};
+use crate::tui::text::wrap::wrapped;
 use crate::tui::text::{colour, numbers};
 
 /// Draws it: name, value, unit and range; help; the value of the entry.
@@ -26,7 +26,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let unit = if cell.part == Part::Degrees { Some("degrees counter-clockwise") } else { cell.field.unit };
     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
     let set = if row.set { "" } else { "   (default)" };
-    let label = terminal::plain(&row.label);
+    let label = plain(&row.label);
     let mut x = write(buffer, area, 0, 0, &format!("{label}{name}"), colour::strong());
     x = write(buffer, area, x, 0, &format!("   {value}{unit}"), Style::new());
     x = write(buffer, area, x, 0, &range, colour::faint());

@@ -9,7 +9,8 @@ use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
 use crate::base::oklab;
-use crate::layers::folding::{self, field::Field};
+use crate::layers::folding::field::Field;
+use crate::layers::folding::{self};
 use crate::tui::document::tree;
 use crate::tui::state::State;
 use crate::tui::text::colour;

@@ -1,15 +1,16 @@
 //! The last line: what is being typed after `:` or `/`, else what was said last. A message that is longer than the line
 //! takes as many rows as it needs, over the panes, until the next key.
 
+use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::widgets::{Clear, Widget};
 
-use super::{folded, typed, width, write};
-use crate::tui::outside::terminal;
+use super::{typed, write};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::colour;
+use crate::tui::text::wrap::{folded, width};
 
 /// Draws it; the cursor is in the line being typed.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -21,7 +22,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
             &line.text,
             Style::new(),
         );
-        let end = 1 + i32::from(width(&terminal::plain(line.text.value())));
+        let end = 1 + i32::from(width(&plain(line.text.value())));
         if let Some((offered, at)) = line.offered() {
             draw_offered(offered, at, area, end + 2, buffer);
         }
@@ -29,7 +30,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     }
     let Some(message) = &state.message else {
         if let Some(problem) = &state.seen.problem {
-            let problem = terminal::plain(problem);
+            let problem = plain(problem);
             let more = if width(&problem) + 2 > area.width { " … (:problems) " } else { "" };
             write(buffer, area, 1, 0, &problem, colour::faint());
             write(buffer, area, i32::from(area.width) - i32::from(width(more)), 0, more, colour::faint());
@@ -65,6 +66,6 @@ fn draw_offered(offered: &[String], at: usize, area: Rect, mut x: i32, buffer: &
             break;
         }
         let style = if i == at { colour::focus() } else { colour::faint() };
-        x = write(buffer, area, x, 0, &terminal::plain(word), style) + 2;
+        x = write(buffer, area, x, 0, &plain(word), style) + 2;
     }
 }

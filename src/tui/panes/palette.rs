@@ -1,16 +1,18 @@
 //! The palette: what is typed, and the rows that match it with their keys, values and help.
 
+use crate::tui::panes::window;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use super::view;
-use super::{clipped, first_row, typed, width, write};
+use super::{typed, write};
 use crate::scene::field;
 use crate::tui::document::palette::{Palette, Row};
 use crate::tui::document::sheet;
+use crate::tui::layout::first_row;
 use crate::tui::state::State;
 use crate::tui::text::colour;
+use crate::tui::text::wrap::{clipped, width};
 
 /// Columns of what a row is.
 const SORT: i32 = 9;
@@ -18,7 +20,7 @@ const SORT: i32 = 9;
 /// Draws it; the cursor is in what is typed.
 pub fn draw(state: &State, palette: &Palette, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = format!("palette: {} found (Enter takes, Esc closes)", palette.len());
-    let area = view::window(screen, (screen.width - 8).min(110), (screen.height - 4).min(30), &title, buffer);
+    let area = window(screen, (screen.width - 8).min(110), (screen.height - 4).min(30), &title, buffer);
     write(buffer, area, 0, 0, ">", colour::strong());
     let line = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
     let cursor = typed(buffer, line, &palette.text, Style::new());

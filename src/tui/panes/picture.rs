@@ -1,20 +1,18 @@
 //! The picture: as pixels where the terminal takes them, else in half-blocks, two dots a cell, with outlines, regions,
 //! anchors and the placing cursor over them. Without colours each cell is a shade.
 
+use crate::tui::layout;
 use kurbo::{Point, Vec2};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 
-use super::view;
 use super::{arrow, write};
 use crate::render::overlay::{self, Dot, Kind, Mark, Shape};
 use crate::render::part::Part;
-use crate::tui::graphics::sight;
-use crate::tui::graphics::{Protocol, Shown};
+use crate::tui::graphics::{Protocol, Shown, sight};
 use crate::tui::layout::seeing;
-use crate::tui::state::place;
-use crate::tui::state::{Mode, Pane, State};
+use crate::tui::state::{Mode, Pane, State, place};
 use crate::tui::text::colour;
 use crate::tui::text::colour::Depth;
 use crate::tui::text::numbers::short;
@@ -60,7 +58,7 @@ fn pixels(state: &State, area: Rect) -> Option<&Buffer> {
 /// Where something was drawn over the pixels, half-blocks take their place: a picture that is sent whole would be painted
 /// over it. Kitty's cells are characters like others and stay.
 pub fn give_way(state: &State, buffer: &mut Buffer) {
-    let Some(area) = view::picture(state).filter(|_| seeing::protocol(state) != Protocol::Kitty) else { return };
+    let Some(area) = layout::picture(state).filter(|_| seeing::protocol(state) != Protocol::Kitty) else { return };
     let (Some(cells), Some(part)) = (pixels(state, area), seeing::part(state)) else { return };
     let free = |(at, cell): &(Position, &_)| buffer.cell(*at) == Some(*cell);
     let free: Vec<Position> = area.positions().zip(cells.content()).filter(free).map(|(at, _)| at).collect();

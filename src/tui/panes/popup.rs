@@ -1,16 +1,18 @@
 //! What lies over the panes: lists to choose from, pages of text, hints after the first key of several.
 
+use crate::tui::panes::window;
+use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 
-use super::view;
-use super::{first_row, folded, width, write};
+use super::write;
 use crate::tui::document::choice::{Choice, Then};
-use crate::tui::outside::terminal;
+use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::colour;
+use crate::tui::text::wrap::{folded, width};
 
 /// Draws what there is; the cursor is in the list.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -30,7 +32,7 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let text: &[String] = if let Then::Answer(question) = &choice.then { &question.text } else { &[] };
     let words = choice.options.iter().map(|(word, _)| width(word)).max().unwrap_or(0);
     let help = choice.options.iter().map(|(_, help)| width(help)).max().unwrap_or(0);
-    let title = terminal::plain(&choice.title);
+    let title = plain(&choice.title);
     let above = text.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
     let wide = (words + help + 6).max(above + 4).clamp(30, screen.width - 8);
     // What is cut is told below the list, for the row under the cursor.
@@ -39,7 +41,7 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let longest = told.max().map_or(0, |help| help.div_ceil((wide - 4).max(1)) + 2);
     let below_ = longest.min(screen.height / 3);
     let tall = (choice.options.len() as u16 + text.len() as u16 + 2 + below_).min(screen.height - 4);
-    let area = view::window(screen, wide, tall, &title, buffer);
+    let area = window(screen, wide, tall, &title, buffer);
     let (area, foot) = (Rect { height: area.height - below_.min(area.height), ..area }, area);
     if let Some((_, help)) = choice.options.get(choice.at).filter(|_| below_ > 0) {
         for (y, line) in folded(help, foot.width.saturating_sub(2)).iter().take(usize::from(below_) - 1).enumerate() {
@@ -55,7 +57,7 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
         choice.options.iter().enumerate().skip(first).take(usize::from(area.height)).enumerate()
     {
         let style = if i == choice.at { colour::focus() } else { Style::new() };
-        write(buffer, area, 1, y as u16, &terminal::plain(word), style);
+        write(buffer, area, 1, y as u16, &plain(word), style);
         write(buffer, area, i32::from(words) + 3, y as u16, &shortened(help, room), colour::faint());
     }
     Position::new(area.x + 1, area.y + (choice.at - first) as u16)
@@ -87,7 +89,7 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     let widest = pages.lines.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
     let wide = (widest + 6).clamp(40, screen.width - 6);
     let tall = (pages.lines.len().min(1000) as u16 + 2).clamp(5, screen.height - 4);
-    let area = view::window(screen, wide, tall, &title, buffer);
+    let area = window(screen, wide, tall, &title, buffer);
     let last = pages.lines.len().saturating_sub(usize::from(area.height));
     for (y, line) in pages.lines.iter().skip(pages.scroll.min(last)).take(usize::from(area.height)).enumerate() {
         let style = if line.starts_with("--") { colour::strong() } else { Style::new() };

@@ -1,19 +1,20 @@
 //! The position functions of all zones of the layer on one time axis: s over the timeline in braille, each zone with a
 //! letter and an ANSI colour of its own, the selected one bold and on top, the present marked.
 
+use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 
 use super::braille::Braille;
-use super::{width, write};
+use super::write;
 use crate::layers::Layer;
 use crate::layers::folding::position::Clock;
 use crate::tui::document::tree;
-use crate::tui::outside::terminal;
 use crate::tui::state::State;
 use crate::tui::text::colour;
 use crate::tui::text::numbers::short;
+use crate::tui::text::wrap::width;
 
 /// The colours of zones, over and over; letters tell what colours repeat.
 const COLOURS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];
@@ -59,7 +60,7 @@ fn curves(state: &State) -> Vec<Curve> {
         let selected = selected == Some(i);
         let style = state.depth.ink(Style::new(), COLOURS[i % COLOURS.len()]);
         Curve {
-            name: terminal::plain(&zone.name),
+            name: plain(&zone.name),
             letter: char::from(b'a' + (i % 26) as u8),
             clock: zone.clock(scene.timeline.wrap),
             selected,

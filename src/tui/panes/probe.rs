@@ -1,15 +1,15 @@
 //! The read-out of one pixel: its zone, its jump vector, its path from 0 to 1 with thresholds, s and e on it, and what it
 //! reads. It follows the cursor and the time; while the worker looks, the last answer stands there, faint.
 
+use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::write;
 use crate::layers::folding::probe::Probe;
+use crate::tui::graphics::probed::Probed;
 use crate::tui::layout::seeing;
-use crate::tui::layout::seeing::Probed;
-use crate::tui::outside::terminal;
 use crate::tui::state::State;
 use crate::tui::text::colour;
 use crate::tui::text::numbers::{polar, short};
@@ -30,7 +30,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         }
         Some(probe) => {
             let active = if probe.active { "active" } else { "not active" };
-            let zone = terminal::plain(&probe.zone);
+            let zone = plain(&probe.zone);
             let after = write(buffer, area, place, 0, &zone, style.patch(colour::strong()));
             write(buffer, area, after, 0, &format!("   {active}"), style);
             draw_path(

@@ -1,17 +1,17 @@
 //! The status line: mode, place, what is not saved, time, the last synthesis, the window, the step.
 
+use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::{clipped, width, write};
+use super::write;
 use crate::layers::Layer;
 use crate::layers::folding::position::Clock;
-use crate::tui::commands::step_of;
 use crate::tui::document::tree;
-use crate::tui::outside::terminal;
 use crate::tui::state::{Mode, Pane, State};
-use crate::tui::text::numbers::short;
+use crate::tui::text::numbers::{short, step_of};
+use crate::tui::text::wrap::{clipped, width};
 
 /// Draws it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
@@ -53,11 +53,11 @@ fn place(state: &State) -> String {
         return "scene".into();
     };
     let zone = zone.and_then(|i| layer.zones.get(i)).map(|zone| format!("/{}", zone.name));
-    terminal::plain(&format!("{}{}", layer.name, zone.unwrap_or_default()))
+    plain(&format!("{}{}", layer.name, zone.unwrap_or_default()))
 }
 
 fn marks(state: &State) -> String {
-    let failing = state.door.failing().map(|why| format!("  no journal: {}", terminal::plain(&why)));
+    let failing = state.door.failing().map(|why| format!("  no journal: {}", plain(&why)));
     let mark = |on: bool, text: &'static str| if on { text } else { "" };
     [
         mark(!state.door.is_saved(), "  *"),
@@ -82,7 +82,7 @@ fn right(state: &State) -> String {
     }
     if let Some(work) = &state.seen.work {
         // What it is about to say counts more than what stands still meanwhile.
-        parts.push(format!("{}  Esc cancels", terminal::plain(work)));
+        parts.push(format!("{}  Esc cancels", plain(work)));
         return parts.join("  ");
     }
     parts.push(format!("{}t {}", if state.playing { "> " } else { "" }, short(state.time)));
@@ -99,7 +99,7 @@ fn right(state: &State) -> String {
         parts.push(format!("at {}, {}", short(x), short(y)));
     }
     if !state.seen.window.is_empty() {
-        parts.push(terminal::plain(&state.seen.window));
+        parts.push(plain(&state.seen.window));
     }
     parts.join("  ")
 }

@@ -1,6 +1,7 @@
 //! The middle: a node as a form or as a table. In a table the cells of like rows stand in columns under their names;
 //! elsewhere each number stands beside its name.
 
+use crate::tui::text::plain;
 use std::ops::Range;
 
 use ratatui::buffer::Buffer;
@@ -8,18 +9,18 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
 use super::columns::{Columns, GAP, Placed, Sight};
-use super::{clipped, first_row, typed, width, write};
+use super::{typed, write};
 use crate::scene::address;
 use crate::tui::document::sheet::Row;
-use crate::tui::outside::terminal;
-use crate::tui::state::entry;
-use crate::tui::state::{Mode, Pane, State};
+use crate::tui::layout::first_row;
+use crate::tui::state::{Mode, Pane, State, entry};
+use crate::tui::text::wrap::{clipped, width};
 use crate::tui::text::{colour, numbers};
 
 /// The node's address.
 pub fn title(state: &State) -> String {
     let address = address::address(state.document(), &state.node);
-    terminal::plain(if address.is_empty() { "scene" } else { &address })
+    plain(if address.is_empty() { "scene" } else { &address })
 }
 
 /// Draws it; the cursor is on the focused cell, or on the entry in it.
@@ -125,7 +126,7 @@ fn style(row: &Row, here: bool, selected: bool) -> Style {
 
 /// A row's label and its indent: items inside a form stand under the name of their list.
 fn label(row: &Row) -> (String, i32) {
-    (terminal::plain(&row.label), if row.item { 1 } else { 0 })
+    (plain(&row.label), if row.item { 1 } else { 0 })
 }
 
 fn draw_label(row: &Row, selected: bool, area: Rect, y: u16, buffer: &mut Buffer) {
@@ -170,7 +171,7 @@ fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
 
 /// The entry stands where its cell does, and moves left where it would not fit. Gives the cursor and the column after it.
 fn draw_entry(text: &crate::tui::text::input::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
-    let wide = width(&terminal::plain(text.value())).max(8) + 1;
+    let wide = width(&plain(text.value())).max(8) + 1;
     let x = at.x.min((cells.x + cells.width).saturating_sub(wide)).max(cells.x);
     let style = if text.is_fresh() { colour::focus() } else { Style::new().add_modifier(Modifier::UNDERLINED) };
     let line = Rect { x, y: at.y, width: cells.right().saturating_sub(x).min(wide), height: 1 };

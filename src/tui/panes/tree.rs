@@ -4,10 +4,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use super::{clipped, first_row, width, write};
+use super::write;
 use crate::tui::document::tree;
+use crate::tui::layout::first_row;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::colour;
+use crate::tui::text::wrap::{clipped, width};
 
 /// Draws it; the cursor is on the node that is shown, where the tree has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {

@@ -4,8 +4,7 @@
 use kurbo::Point;
 use serde_json::Value;
 
-use super::place;
-use super::{Mode, State};
+use super::{Mode, State, place};
 use crate::base::expression::{self, Variables};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};

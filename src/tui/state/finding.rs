@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use super::{Pane, State};
 use crate::scene::Document;
-use crate::tui::commands::update::{Change, Effect};
 use crate::tui::document::places;
 use crate::tui::document::places::Listed;
+use crate::tui::events::{Change, Effect};
 
 /// So many places are kept in the jump list.
 const MOST_JUMPS: usize = 100;

@@ -2,28 +2,30 @@
 
 pub mod entry;
 pub mod finding;
+pub mod memory;
+pub mod picture;
 pub mod place;
 pub mod recorder;
 pub mod transport;
 
+use crate::tui::layout;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use super::commands::life::Life;
-use super::commands::update::{Change, Effect};
 use super::document::choice::Choice;
 use super::document::door::Door;
 use super::document::palette::Palette;
 use super::document::sheet::Sheet;
 use super::document::tree;
+use super::events::{Change, Effect};
+use super::graphics::sight::Placing;
 use super::keys::{self, Keymap};
-use super::layout::seeing::Seeing;
-use super::panes::view;
 use super::state::entry::Entry;
 use super::state::finding::Finding;
-use super::state::place::Placing;
+use super::state::memory::Kept;
+use super::state::picture::Seeing;
 use super::state::recorder::Recorder;
-use super::text::clipboard::Kept;
 use super::text::colour::Depth;
 use super::text::line::Line;
 use super::tutor::Tutor;
@@ -306,7 +308,7 @@ impl State {
 
     /// Whether the terminal is too small to draw on, so that nobody sees what is edited.
     pub fn is_small(&self) -> bool {
-        !view::fits(self.size)
+        !layout::fits(self.size)
     }
 
     /// The contexts of the key table that are in force, the innermost first.

@@ -2,6 +2,7 @@
 //! log of the session keeps all of them, so that they lead to the same scene again; a macro keeps what the person asked for;
 //! `.` keeps the last change. Typing, choosing and the help are not kept, but what came of them is: `put *1.1`.
 
+use crate::tui::text::plain;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +120,7 @@ impl Recorder {
         }
         let Ended { line, kept, refused, asks, changed } = ended;
         if let Some(why) = refused {
-            self.log.push(format!("# {}", crate::tui::outside::terminal::plain(&format!("{line}: {why}"))));
+            self.log.push(format!("# {}", plain(&format!("{line}: {why}"))));
             return;
         }
         match kept {
@@ -196,7 +197,7 @@ impl Recorder {
 
     /// A remark for whoever reads the log.
     pub fn remark(&mut self, text: &str) {
-        self.log.push(format!("# {}", crate::tui::outside::terminal::plain(text)));
+        self.log.push(format!("# {}", plain(text)));
     }
 
     /// The log of the session.

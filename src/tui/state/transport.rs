@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::State;
 use crate::layers::timeline::Wrap;
 use crate::preview::Transport;
-use crate::tui::commands::update::Effect;
+use crate::tui::events::Effect;
 
 /// What keys and windows may set the speed to, in seconds of the scene a second.
 pub const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];

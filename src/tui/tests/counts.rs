@@ -8,9 +8,10 @@ use serde_json::{Value, json};
 use super::support::{press, replayed, state, state_of};
 use super::{MOTION, check, motion, zone};
 use crate::files::session::Mode as Open;
-use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::commands::update::update;
 use crate::tui::commands::{self, Counts, obey};
 use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
 use crate::tui::text::colour::Depth;
 

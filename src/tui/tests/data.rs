@@ -5,8 +5,9 @@ use serde_json::{Value, json};
 use super::support::{press, state, state_of};
 use super::{check, motion, zone};
 use crate::scene::field::{self, Kind};
-use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
 
 fn paste(state: &mut State, text: &str) {

@@ -2,7 +2,7 @@
 
 use super::support::state_of;
 use crate::tui::commands::run;
-use crate::tui::commands::update::Effect;
+use crate::tui::events::Effect;
 
 #[test]
 pub fn a_picture_of_the_scene_is_opened_and_nothing_else() {

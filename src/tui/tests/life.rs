@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use super::support::{SCENE, press};
 use crate::files::Options;
 use crate::files::session::Mode as Open;
-use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::commands::update::update;
 use crate::tui::document::choice::Then;
 use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::colour::Depth;
 

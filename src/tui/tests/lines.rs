@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::support::{press, replayed, state};
 use super::{check, motion, zone};
 use crate::tui::commands::obey;
-use crate::tui::commands::update::{Event, update};
+use crate::tui::commands::update::update;
+use crate::tui::events::Event;
 use crate::tui::state::{Mode, Pane, State};
 
 fn log(state: &State) -> Vec<&str> {

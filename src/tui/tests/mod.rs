@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::commands::update::Effect;
+use super::events::Effect;
 use super::state::Mode;
 use super::tests::support::{press, replayed, state};
 
@@ -240,7 +240,8 @@ fn an_alt_key_that_is_not_bound_is_escape_and_that_key() {
 
 #[test]
 fn nothing_is_edited_on_a_terminal_that_is_too_small() {
-    use super::commands::update::{Event, update};
+    use super::commands::update::update;
+    use super::events::Event;
     let keys = ["d", "o", "+", "D", "p", "P", "u", "Enter", "5", "Alt-d", "Space w", "v", ".", "q a", "Tab", "y"];
     for small in [(59, 24), (60, 19), (1, 1), (0, 0)] {
         let mut state = state();

@@ -1,5 +1,6 @@
 //! The screens of the main states as text, held against tests/screens. PLICA_UPDATE=1 writes them anew.
 
+use crate::tui::graphics::probed;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -9,10 +10,11 @@ use ratatui::backend::TestBackend;
 use super::support::{press, state};
 use crate::base::picture::Picture;
 use crate::layers::parts::materials::Materials;
-use crate::tui::commands::update::{Event, Synthesis, update};
+use crate::tui::commands::update::update;
+use crate::tui::events::{Event, Synthesis};
 use crate::tui::graphics::Shown;
+use crate::tui::graphics::probed::Probed;
 use crate::tui::layout::seeing;
-use crate::tui::layout::seeing::Probed;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 
@@ -58,7 +60,7 @@ pub fn see(state: &mut State) {
     let materials = Materials { pictures: [("cat".to_string(), picture)].into(), ..Materials::default() };
     let request = seeing::request(state);
     let synth = Arc::new(crate::render::synth(&request.scene, &materials, None).unwrap());
-    let longest = seeing::longest(&synth);
+    let longest = probed::longest(&synth);
     update(state, Event::Synthesised(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest, warning: None })));
     if let Some(asked) = request.probe {
         let probed = Probed::new(asked, &request.scene, &synth, &materials).unwrap();

@@ -1,5 +1,6 @@
 //! Seeing without a window: zoom and pan, the picture in every protocol, within its bound of bytes.
 
+use crate::tui::layout;
 use kurbo::Point;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -10,12 +11,12 @@ use serde_json::json;
 
 use super::screens::{STATES, changed, opened, screen, see};
 use super::support::{press, state};
-use crate::tui::commands::update::{Event, update};
+use crate::tui::commands::update::update;
+use crate::tui::events::Event;
 use crate::tui::graphics::Protocol;
 use crate::tui::layout::seeing;
 use crate::tui::panes::view;
-use crate::tui::state::State;
-use crate::tui::state::entry;
+use crate::tui::state::{State, entry};
 use crate::tui::text::colour::Depth;
 
 /// The screen as cells.
@@ -84,7 +85,7 @@ fn every_protocol_fills_its_pane_and_stays_within_its_bytes() {
             let shown = state.seeing.shown.clone().unwrap();
             assert!(shown.bytes <= bytes, "{protocol:?}: {} bytes", shown.bytes);
             assert_eq!(shown.by > 1, bytes == 4_000, "{protocol:?} {bytes}: by {}", shown.by);
-            let area = view::picture(&state).unwrap();
+            let area = layout::picture(&state).unwrap();
             let found = cells(&state);
             let first = found.cell(area.as_position()).unwrap();
             assert!(first.symbol().contains(start), "{protocol:?}: {:.60}", first.symbol());
@@ -121,7 +122,7 @@ fn what_lies_over_a_picture_is_not_painted_over() {
     for protocol in [Protocol::Kitty, Protocol::Iterm2, Protocol::Sixel] {
         let mut state = shown_by(protocol, "");
         press(&mut state, "g");
-        let (found, area) = (cells(&state), view::picture(&state).unwrap());
+        let (found, area) = (cells(&state), layout::picture(&state).unwrap());
         let pixels = area.positions().filter(|&at| {
             let cell = found.cell(at).unwrap();
             cell.diff_option == CellDiffOption::Skip || cell.symbol().contains('\x1b')
@@ -257,7 +258,7 @@ fn every_zone_has_its_curve_and_few_rows_its_place() {
 #[test]
 fn colours_say_nothing_by_themselves() {
     let chrome = |state: &State| {
-        let areas = view::areas(Rect::new(0, 0, 160, 48), state.seeing.probing);
+        let areas = layout::areas(Rect::new(0, 0, 160, 48), state.seeing.probing);
         let [field, _, picture] = areas.right.unwrap();
         let all = cells(state);
         let kept = all.area.positions().filter(|at| !field.contains(*at) && !picture.contains(*at));

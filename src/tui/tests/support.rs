@@ -3,8 +3,9 @@
 use std::sync::LazyLock;
 
 use crate::tui::commands::obey;
-use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
 use crate::tui::text::colour::Depth;
 

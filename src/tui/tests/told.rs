@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::support::{press, replayed, state, state_of};
 use super::{motion, zone};
-use crate::tui::commands::update::{Event, update};
+use crate::tui::commands::update::update;
+use crate::tui::events::Event;
 use crate::tui::panes::view;
 use crate::tui::state::{Mode, State};
 

@@ -5,7 +5,8 @@ use serde_json::json;
 use super::support::{press, state};
 use super::{motion, zone};
 use crate::preview::Transport;
-use crate::tui::commands::update::{Effect, Event, update};
+use crate::tui::commands::update::update;
+use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
 
 fn pass(state: &mut State, seconds: f64) -> Vec<Effect> {

@@ -3,32 +3,9 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use serde_json::Value;
-
-use crate::tui::state::entry::Entry;
 
 /// The longest text that terminals are asked to keep, in bytes.
 pub const MOST_BYTES: usize = 100_000;
-
-/// What is kept from what was done before.
-#[derive(Clone, Debug, Default)]
-pub struct Kept {
-    /// What was yanked last.
-    pub yanked: Option<Yanked>,
-    /// What was being typed when the help was opened over it.
-    pub entry: Option<Entry>,
-    /// The selection that ended last: its node, where it began, where the cursor was.
-    pub selection: Option<(String, usize, usize)>,
-}
-
-/// What `p` pastes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Yanked {
-    /// A value, or several as a list.
-    pub value: Value,
-    /// The name that it had in a map.
-    pub name: Option<String>,
-}
 
 /// What stands between the editor and the terminal, and wants sequences wrapped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,5 +3,9 @@
 pub mod clipboard;
 pub mod colour;
 pub mod input;
+mod plain;
+pub mod said;
+pub mod wrap;
+pub use plain::plain;
 pub mod line;
 pub mod numbers;

@@ -85,6 +85,12 @@ pub fn tidy(value: f64) -> f64 {
     if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
 }
 
+/// The step of a power of ten.
+pub fn step_of(power: i32) -> f64 {
+    let size = maths::powi(10.0, power.unsigned_abs());
+    if power < 0 { 1.0 / size } else { size }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,8 @@
 //! The tutor: a first animation in the real editor, lesson by lesson. Each lesson says what to do and with which keys, and
 //! looks at the state to see that it was done.
 
-use super::commands::update::Effect;
 use super::commands::{Call, Command, Done, command};
+use super::events::Effect;
 use super::state::State;
 
 pub mod lessons;

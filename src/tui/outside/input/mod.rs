@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use terminput::{Event as Input, KeyEventKind, MouseEventKind, ScrollDirection};
 
 use crate::base::{fault, system};
-use crate::tui::commands::update::Event;
+use crate::tui::events::Event;
 use crate::tui::keys;
 
 mod pieces;

@@ -1,0 +1,149 @@
+//! What comes in and what goes out: types only.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::graphics::Shown;
+use super::graphics::probed::Probed;
+use crate::preview::Transport;
+use crate::preview::editor::Asked;
+use crate::render::Synth;
+use crate::scene::{Document, Edit};
+
+/// Something that happened.
+pub enum Event {
+    /// A key, by its name in the table.
+    Key(String),
+    /// A line of a script.
+    Line(String),
+    /// A line of the line mode, none at the end of the input; lines.rs takes it before it comes here.
+    Typed(Option<String>),
+    /// The lines that the one being typed could become.
+    Completed(Vec<String>),
+    /// Text pasted by the terminal.
+    Paste(String),
+    /// The terminal has another size.
+    Resize(u16, u16),
+    /// This much time has passed while playing, in seconds.
+    Tick(f64),
+    /// A synthesis has ended: what it made and how long it took, or what kept it.
+    Synthesised(Result<Synthesis, String>),
+    /// A synthesis has begun.
+    Synthesising,
+    /// What a pixel does.
+    Probed(Arc<Probed>),
+    /// A picture is there.
+    Framed(Arc<Shown>),
+    /// Long work has got on.
+    Progress(String),
+    /// Long work has ended; what it said last.
+    Done(Result<String, String>),
+    /// A save has ended.
+    Saved(Result<String, String>),
+    /// The windows have something new to say about themselves.
+    WindowChanged,
+    /// The pointer in a window, in pixels of the picture.
+    Pointer(f64, f64),
+    /// A window plays or stands like this.
+    Transport(Transport),
+    /// A window asks for a command, by its name in the window's table.
+    Command(String),
+    /// A script asks for an edit.
+    Asked(Asked),
+    /// A thread beside the editor had a fault of its own.
+    Fault(String),
+    /// The log of the session cannot be written.
+    Unlogged(String),
+    /// Files of the scene have changed on the disk.
+    FilesChanged(Vec<PathBuf>),
+    /// The system asks for an end, or the terminal has gone away.
+    End,
+    /// The shell's Ctrl-Z came from outside.
+    Stop,
+    /// A click, in cells of the terminal.
+    Click(u16, u16),
+}
+
+/// What a synthesis has made.
+pub struct Synthesis {
+    /// What a frame needs.
+    pub synth: Arc<Synth>,
+    /// How long it took, in milliseconds.
+    pub ms: f64,
+    /// The longest jump vector of every zone, by layer and zone.
+    pub longest: Vec<(usize, usize, f64)>,
+    /// What of its pictures could not be followed, or is odd about them.
+    pub warning: Option<String>,
+}
+
+/// A change of the document, as the windows want it.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The document after it.
+    pub document: Document,
+    /// Its revision.
+    pub revision: u64,
+    /// What was changed.
+    pub edit: Edit,
+}
+
+/// Something to be done outside.
+#[derive(Clone, Debug)]
+pub enum Effect {
+    /// The document has changed: show it everywhere.
+    Publish(Box<Change>),
+    /// The time or the selection has changed.
+    Show,
+    /// The time has passed, or a window has changed it: the windows know.
+    Pass,
+    /// Write the document; to the scene's own file where no other is given.
+    Save {
+        /// Another file.
+        to: Option<PathBuf>,
+        /// Whether another program's version may be lost.
+        overwrite: bool,
+        /// Whether to leave once it is safe.
+        leave: bool,
+    },
+    /// Write a text to a new file.
+    Write(PathBuf, String),
+    /// Run the lines of a file.
+    Source(PathBuf),
+    /// Read the person's own keys anew.
+    Keymap,
+    /// Open another scene.
+    Open(PathBuf),
+    /// Open this scene to edit it, although somebody may do so elsewhere.
+    TakeOver,
+    /// Begin the tutor, on a scene of its own.
+    Tutor,
+    /// Load the pictures again.
+    Reload,
+    /// The pixel that these arguments of `plica probe` are about was asked for: its read-out is open where there is a screen.
+    Probe(Vec<String>),
+    /// Run a subcommand of the command line with these arguments.
+    Run(Vec<String>),
+    /// Look for the files that a path could become.
+    Complete {
+        /// The command that takes the path.
+        name: String,
+        /// What has been typed of it.
+        path: String,
+        /// The folder it is relative to; the present one where none is given.
+        beside: Option<PathBuf>,
+    },
+    /// Hand a text to the terminal's clipboard.
+    Copy(String),
+    /// End long work.
+    Cancel,
+    /// Open the preview window, or give it a command of its table.
+    View(Option<String>),
+    /// Open a picture in another program.
+    EditImage(PathBuf),
+    /// Draw everything anew.
+    Redraw,
+    /// Stop the process as Ctrl-Z does in a shell.
+    Suspend,
+    /// Leave.
+    Quit,
+}

@@ -1,0 +1,108 @@
+//! Text in so many columns: how wide it is, cut with a mark, in lines at words.
+
+use ratatui::text::Span;
+
+use super::plain;
+
+/// Width of a text in terminal columns.
+pub fn width(text: &str) -> u16 {
+    Span::raw(text).width().min(usize::from(u16::MAX)) as u16
+}
+
+/// `text` in so many columns: whole, else what is left of it before a mark. No number is cut in two.
+pub fn clipped(text: &str, room: usize) -> String {
+    if usize::from(width(text)) <= room {
+        return text.to_owned();
+    }
+    let mut kept = String::new();
+    let mut wide = 0;
+    for c in text.chars() {
+        wide += usize::from(width(c.encode_utf8(&mut [0; 4])));
+        if wide >= room.max(1) {
+            break;
+        }
+        kept.push(c);
+    }
+    let part_of_number = |c: char| c.is_ascii_digit() || ".,-+".contains(c);
+    if text[kept.len()..].starts_with(part_of_number) {
+        let number = kept.trim_end_matches(part_of_number).len();
+        // Digits of a word, as in `kodak04`, are no number.
+        if kept[number..].contains(|c: char| c.is_ascii_digit()) && !kept[..number].ends_with(char::is_alphabetic) {
+            kept.truncate(number);
+        }
+    }
+    if room > 0 { kept + "…" } else { kept }
+}
+
+/// `text` in lines that fit.
+pub fn wrapped(text: &str, room: u16) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().filter(|line| line.is_empty() || width(line) + 1 + width(word) <= room);
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// A text of several lines in lines that fit: at words, and where one is longer than a line inside it. None is empty.
+pub fn folded(text: &str, room: u16) -> Vec<String> {
+    let room = room.max(1);
+    let mut lines = Vec::new();
+    for line in text.lines().filter(|line| !line.trim().is_empty()) {
+        let plain = plain(line);
+        if width(&plain) <= room {
+            lines.push(plain);
+            continue;
+        }
+        for line in wrapped(&plain, room) {
+            let mut rest = String::new();
+            for c in line.chars() {
+                if width(&rest) + width(c.encode_utf8(&mut [0; 4])) > room {
+                    lines.push(std::mem::take(&mut rest));
+                }
+                rest.push(c);
+            }
+            lines.push(rest);
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_is_wrapped_at_words() {
+        assert_eq!(wrapped("one two  three", 8), ["one two", "three"]);
+        assert_eq!(wrapped("", 8), [""]);
+        assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
+        assert_eq!(folded("a-word-too-long x\n\nyes", 6), ["a-word", "-too-l", "ong", "x", "yes"]);
+        assert_eq!(folded("日本語", 4), ["日本", "語"]);
+    }
+
+    #[test]
+    fn no_number_is_cut_in_two() {
+        for (text, room, shown) in [
+            ("at 12,34", 8, "at 12,34"),
+            ("at 12,345", 8, "at …"),
+            ("jump 1, -139.7 px", 13, "jump 1, …"),
+            ("longest 18 px", 12, "longest 18 …"),
+            ("longest 18 px", 10, "longest …"),
+            ("face_kodak04", 12, "face_kodak04"),
+            ("face_kodak04.eye", 12, "face_kodak0…"),
+            ("目目目", 4, "目…"),
+            ("abc", 1, "…"),
+            ("abc", 0, ""),
+        ] {
+            assert_eq!(clipped(text, room), shown, "{text} in {room}");
+        }
+    }
+}
