@@ -1,4 +1,4 @@
-//! From a key pressed to the screen drawn, on a zone of many anchors and a terminal of 160 x 48, without synthesis.
+//! From a key press to the drawn screen, on a zone with many anchors and a terminal of 160 x 48, without synthesis.
 //! `cargo bench --bench keys`
 
 mod scenes;
@@ -17,7 +17,7 @@ fn main() {
     divan::main();
 }
 
-/// What is done, and its keys: each is one press and one drawing. The first ones lead there and are not measured.
+/// What is measured, and its keys: each is one press and one drawing. The first keys lead there and are not measured.
 const KEYS: &[(&str, &[&str])] = &[
     ("move", &["j"]),
     ("scroll", &["Ctrl-d"]),
@@ -38,7 +38,7 @@ fn keys<const ANCHORS: usize>(bencher: Bencher, name: &str) {
     bencher.bench_local(|| keys.iter().for_each(|key| editor.press(key).expect("a screen in memory is drawn")));
 }
 
-/// The editor on the table of anchors, on the x of the first.
+/// The editor at the table of anchors, with the cursor on the x of the first.
 fn opened(folder: &std::path::Path, anchors: usize) -> Offscreen {
     let [width, height] = SIZE.map(|v| v as usize);
     let zone = scenes::zone((width, height), anchors, r#"{"method":"modified-shepard","radius":60}"#);

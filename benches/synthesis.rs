@@ -1,4 +1,4 @@
-//! How long a zone takes to be synthesised, by method and number of anchors: the base that later work is measured by.
+//! How long the synthesis of a zone takes, by method and number of anchors: the baseline for later work.
 //! `cargo bench --bench synthesis`
 
 mod scenes;
@@ -12,7 +12,7 @@ fn main() {
     divan::main();
 }
 
-/// Anchors on a picture of 1920 x 1080 pixels, with a radius that holds 32 of them on average.
+/// Anchors on a picture of 1920 x 1080 pixels, with a radius that contains 32 of them on average.
 #[divan::bench(args = [62, 94, 1000], sample_count = 5)]
 fn shepard_1920x1080(bencher: Bencher, anchors: usize) {
     synthesis(bencher, (1920, 1080), anchors, r#"{"method":"shepard"}"#);
@@ -34,7 +34,7 @@ fn rigid_1920x1080(bencher: Bencher, anchors: usize) {
     synthesis(bencher, (1920, 1080), anchors, r#"{"method":"rigid"}"#);
 }
 
-/// The zone that has to be shown again within 50 ms of a key press.
+/// The zone whose change must be visible within 50 ms of a key press.
 #[divan::bench(args = ["shepard", "modified-shepard"], sample_count = 20)]
 fn edit_512x512_with_94_anchors_and_a_fold(bencher: Bencher, method: &str) {
     let more = if method == "shepard" { "" } else { r#","radius":170"# };

@@ -1,9 +1,9 @@
-//! Nothing acknowledged is lost, and a scene file is the old one or the new one: a process that edits and saves is killed
-//! at random, killed at every system call of an edit and a save, and has every one of them fail once.
+//! Nothing acknowledged is lost, and a scene file is always the old one or the new one: a process that edits and saves
+//! is killed at random, is killed at every system call of an edit and a save, and has each of those calls fail once.
 //!
-//! The process is this test binary again, run as the test `child`. System calls are met by strace, one thread at a time;
-//! where tracing is forbidden or strace is missing, only the file layer's own faults (`files::disk`) do the same. The run
-//! says which.
+//! The process is this test binary again, run as the test `child`. System calls are intercepted by strace, one thread
+//! at a time; where tracing is forbidden or strace is missing, only the file layer's injected faults (`files::disk`) do
+//! the same. The run says which.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where its helpers do")]
 
@@ -24,8 +24,8 @@ const TASK: &str = "PLICA_TEST_TASK";
 const SCENE: &str = "PLICA_TEST_SCENE";
 const FAULT: &str = "PLICA_TEST_FAULT";
 
-/// System calls that a program cannot live without, or that are not about files: they are killed at but do not fail.
-/// (The standard library panics where closing a folder fails; what matters was synced before any close.)
+/// System calls that a program cannot live without, or that are not about files: the process is killed at them, but
+/// they do not fail. (The standard library panics if closing a folder fails; what matters was synced before any close.)
 const NEVER_FAIL: [&str; 17] = [
     "close",
     "futex",
@@ -84,7 +84,7 @@ fn child() {
 fn step(session: &mut Session, n: u64, save: bool) {
     say(&format!("EDIT {n}"));
     session.apply(title(n), false).unwrap();
-    // A failure comes once: the second try stands for the person's next edit, or the writer's own next one.
+    // A failure happens once: the second try is like the person's next edit, or the writer's next attempt.
     let journal = || std::fs::metadata(journal::path_beside(session.path())).map_or(0, |found| found.ino());
     let before = journal();
     if let Err(reason) = session.flush() {
@@ -99,12 +99,12 @@ fn step(session: &mut Session, n: u64, save: bool) {
         if session.save(Overwrite::No).or_else(|_| session.save(Overwrite::No)).is_ok() {
             say(&format!("SAVED {n}"));
         }
-        // Whether this is well is the next edit's concern.
+        // Whether this succeeds is checked by the next edit.
         let _ = session.flush();
     }
 }
 
-/// What is left: the document's number, and how many steps undo takes and where it ends.
+/// Prints what is left: the document's number, how many steps undo has, and the number where it ends.
 fn look(session: &Session) {
     let mut history = session.history().clone();
     let steps = std::iter::from_fn(|| history.undo()).count();
@@ -121,22 +121,22 @@ fn number(session: &Session) -> u64 {
 }
 
 fn say(line: &str) {
-    // This write may be the one that is made to fail: once.
+    // This write may be the one that fails: once.
     let mut out = std::io::stdout();
     let written = (0..2).any(|_| out.write_all(format!("{line}\n").as_bytes()).and_then(|()| out.flush()).is_ok());
     assert!(written);
 }
 
-/// Says where we are and waits for a line, so that a tracer can attach.
+/// Prints `name` and waits for a line, so that a tracer can attach.
 fn gate(name: &str) {
     say(&format!("{name} {}", std::process::id()));
-    // This read may be the one that is made to fail.
+    // This read may be the one that fails.
     let _ = std::io::stdin().read_line(&mut String::new());
 }
 
 // What the parent does.
 
-/// How many names the scene's file has. One with two is written in place.
+/// How many names (hard links) the scene's file has. A file with two is written in place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Names {
     One,
@@ -172,7 +172,7 @@ struct Running {
     from: BufReader<ChildStdout>,
 }
 
-/// What a child said it did.
+/// What a child reported.
 #[derive(Debug, Default)]
 struct Said {
     edited: u64,
@@ -206,7 +206,7 @@ impl Running {
     }
 
     fn go(&mut self) {
-        // A child that was killed meanwhile does not read it.
+        // A child that has been killed does not read it.
         let _ = self.to.write_all(b"\n");
     }
 
@@ -233,8 +233,8 @@ impl Running {
     }
 }
 
-/// The file is whole, old or new; the journal has all that was acknowledged. Gives what is left: the document's number,
-/// the steps of undo, and the number where they lead.
+/// Checks that the file is complete, old or new, and that the journal has everything acknowledged. Returns what is
+/// left: the document's number, the steps of undo, and the number that they lead to.
 fn check(place: &Place, said: &Said, before: u64, context: &str) -> [u64; 3] {
     let document = files::scene::open(&place.scene, &Options::default());
     let in_file: u64 = document.unwrap_or_else(|error| panic!("{context}: {error}")).scene().title.parse().unwrap();
@@ -274,7 +274,7 @@ fn killed_at_random_nothing_acknowledged_is_lost() {
     const KILLS: u32 = 60;
     let place = place(Names::One);
     let (mut before, mut acknowledged) = (0, 0);
-    // Any sequence of pauses will do; this one is the same every time.
+    // Any sequence of pauses will do; this one is the same in every run.
     let mut random = 1u64;
     for round in 0..KILLS {
         let mut running = start("forever", &place, None);
@@ -327,7 +327,7 @@ fn every_system_call_killed_at_and_failing_once() {
         return tell("strace is missing or tracing is forbidden: file operations met by the file layer alone");
     }
     let mut cases = Vec::new();
-    // The journal is the same for a scene of two names.
+    // The journal is the same for a scene with two names.
     for (thread, names) in [(Thread::Main, Names::One), (Thread::Main, Names::Two), (Thread::Journal, Names::One)] {
         let place = place(names);
         let log = place.folder.path().join("log");
@@ -397,7 +397,7 @@ fn traced(place: &Place, thread: Thread, arguments: &[&str]) -> (Said, ExitStatu
     ended
 }
 
-/// The thread that runs the test waits at a gate; the journal's has a name of its own.
+/// The id of a thread: the test's thread waits at a gate; the journal's has its own name.
 fn thread_id(process: u32, thread: Thread) -> String {
     let tasks = PathBuf::from(format!("/proc/{process}/task"));
     let name = |id: &str| std::fs::read_to_string(tasks.join(id).join("comm")).unwrap_or_default();
@@ -406,9 +406,9 @@ fn thread_id(process: u32, thread: Thread) -> String {
         entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
     };
     match thread {
-        // With one test at a time there is no other thread yet, or the test's thread has the test's name.
+        // If tests run one at a time there is no other thread yet; otherwise the test's thread has the test's name.
         Thread::Main => ids().into_iter().find(|id| name(id).trim() == "child").unwrap_or(process.to_string()),
-        // It gives itself its name, a moment after it was started.
+        // The thread sets its name a moment after it is started.
         Thread::Journal => loop {
             match ids().into_iter().find(|id| name(id).trim() == "journal") {
                 Some(id) => break id,
@@ -418,7 +418,7 @@ fn thread_id(process: u32, thread: Thread) -> String {
     }
 }
 
-/// How often each system call was begun.
+/// How often each system call was made.
 fn calls(log: &str) -> BTreeMap<String, usize> {
     let mut calls = BTreeMap::new();
     for line in log.lines().filter(|line| !line.contains(" resumed>")) {
@@ -431,7 +431,7 @@ fn calls(log: &str) -> BTreeMap<String, usize> {
     calls
 }
 
-/// A line that the test harness does not swallow.
+/// Prints a line that the test harness does not capture.
 fn tell(line: &str) {
     let _ = writeln!(std::io::stderr(), "durability: {line}");
 }

@@ -1,5 +1,5 @@
-//! What the fuzz targets check (`fuzz/checks.rs`), for their seeds and for a few changes of each. `scripts/fuzz SECONDS`
-//! looks further.
+//! The checks of the fuzz targets (`fuzz/checks.rs`), on their seeds and on a few changes of each. `scripts/fuzz
+//! SECONDS` goes further.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -11,7 +11,7 @@ use proptest::test_runner::{Config, TestRunner};
 #[path = "../fuzz/checks.rs"]
 mod checks;
 
-/// A change of a seed: where (as a share of its length), how many bytes go, and what comes instead.
+/// A change of a seed: where (as a share of its length), how many bytes are removed, and what replaces them.
 type Change = (f64, usize, Vec<u8>);
 
 fn seeds(name: &str) -> Vec<Vec<u8>> {

@@ -1,4 +1,5 @@
-//! Holds the rules of the house (docs/architecture.md): who may name whom, one door an outside crate, sizes.
+//! Enforces the rules of docs/architecture.md: which module may name which, one door per outside crate, no cycles,
+//! sizes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 const ORDER: [&str; 11] =
     ["base", "layers", "scene", "files", "render", "export", "preview", "ops", "tui", "cli", "main"];
 
-/// Outside crates and where each may be named. Tests may use what they like.
+/// Outside crates and where each may be named. Tests may use any.
 const DOORS: &[(&[&str], &[&str])] = &[
     (&["wgpu"], &["render/gpu", "preview/window"]),
     (&["winit", "raw_window_handle", "x11rb", "x11_dl", "xkbcommon_dl"], &["preview/window"]),
@@ -17,7 +18,7 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["ratatui", "crossterm", "terminput", "tui_input", "nucleo_matcher"], &["tui/"]),
     (&["toml", "base64", "csv"], &["tui/"]),
     (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),
-    // The link keeps the file of its socket; `base/system` makes the user's folders.
+    // The link handles the file of its socket; `base/system` creates the user's folders.
     (&["std::fs"], &["files/", "base/system", "preview/wire/socket"]),
     (&["std::net", "std::os::unix::net"], &["preview/wire/"]),
     (&["rustix", "signal_hook"], &["base/system"]),
@@ -30,17 +31,17 @@ const DOORS: &[(&[&str], &[&str])] = &[
 /// A technique's folder: deleting it must break `layers/mod.rs` and no other slice.
 const SLICES: &str = "layers/";
 
-/// What slices and the rest give one another.
+/// The data that slices and the rest exchange.
 const SHARED: &str = "parts";
 
 const MOST_LINES: usize = 500;
 
-/// Folders that still hold circles of files.
+/// Folders that still have cycles of files.
 const CIRCLES_LEFT: &[&str] = &["files/", "preview/", "tui/"];
 
 const MOST_LINES_OF_A_FUNCTION: usize = 60;
 
-/// Folders that still hold longer functions.
+/// Folders that still have longer functions.
 const LONG_LEFT: &[&str] = &["tui/"];
 
 struct Source {
@@ -59,7 +60,7 @@ impl Source {
         slice.filter(|slice| *slice != SHARED)
     }
 
-    /// Whether it is of the program, not of its tests nor a shader.
+    /// Whether it belongs to the program: not a test, nor a shader.
     fn is_program(&self) -> bool {
         let tests = self.path.ends_with("tests.rs") || self.path.contains("/tests/");
         self.path.ends_with(".rs") && !tests
@@ -94,13 +95,13 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The paths in `text` up to its tests, which come last in a file. Braces of `use` are spread out.
+/// The paths in `text` up to its tests, which come last in a file. Braces in `use` are expanded.
 fn paths(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let mut lines = text.lines().enumerate();
     while let Some((at, line)) = lines.next() {
         if line.trim() == "#[cfg(test)]" {
-            // Tests in a file of their own are one line; else they are the rest.
+            // Tests in a separate file are one line; otherwise they are the rest of this one.
             if lines.next().is_some_and(|(_, line)| line.ends_with(';')) { continue } else { break }
         }
         let code = uncommented(line);
@@ -131,7 +132,7 @@ fn functions(text: &str) -> Vec<(usize, &str, usize)> {
         if line.ends_with(';') {
             continue;
         }
-        // It ends with the first line that goes back to where it began: the brace, or what ends one without a body.
+        // It ends with the first line at its own indentation: the brace, or the end of a declaration without a body.
         let back = |line: &str| {
             line.strip_prefix(indent).is_some_and(|rest| rest.starts_with(['}', ')']) && !rest.ends_with('{'))
         };
@@ -148,13 +149,13 @@ fn uncommented(line: &str) -> &str {
     line.split("//").next().unwrap_or_default()
 }
 
-/// Paths of two parts and more in an ordinary line.
+/// Paths of at least two parts in an ordinary line.
 fn spoken(code: &str) -> Vec<String> {
     let words = code.split(|c: char| !c.is_alphanumeric() && c != '_' && c != ':');
     words.filter(|word| word.contains("::")).map(|word| word.trim_matches(':').to_owned()).collect()
 }
 
-/// The paths of a tree of `use`: `a::{b, c::{d, e}}` is `a::b`, `a::c::d`, `a::c::e`.
+/// The paths in a `use` tree: `a::{b, c::{d, e}}` is `a::b`, `a::c::d`, `a::c::e`.
 fn spread(prefix: &str, tree: &str, line: usize, found: &mut Vec<(usize, String)>) {
     let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
     for (at, c) in tree.char_indices().chain([(tree.len(), ',')]) {
@@ -178,13 +179,13 @@ fn spread(prefix: &str, tree: &str, line: usize, found: &mut Vec<(usize, String)
     }
 }
 
-/// The modules of a file: `layers/folding/mod.rs` is `layers::folding`.
+/// The module of a file: `layers/folding/mod.rs` is `layers::folding`.
 fn module(file: &str) -> Vec<&str> {
     let stem = file.trim_end_matches(".rs");
     stem.strip_suffix("/mod").unwrap_or(stem).split('/').collect()
 }
 
-/// The file, of `known` modules, that a path in a file leads to; `None` if it leads out of the program.
+/// The file, among those of `known` modules, that a path in a file leads to; `None` if it leads out of the program.
 fn leads_to<'a>(file: &str, path: &str, known: &BTreeMap<Vec<&str>, &'a str>) -> Option<&'a str> {
     let own = module(file);
     let mut parts = path.split("::").map(|part| part.split(' ').next().unwrap_or_default()).peekable();
@@ -204,14 +205,15 @@ fn leads_to<'a>(file: &str, path: &str, known: &BTreeMap<Vec<&str>, &'a str>) ->
             part => at.push(part),
         }
     }
-    // What is no module is something in one.
+    // What is not a module is something in one.
     while !at.is_empty() && !known.contains_key(&at) {
         at.pop();
     }
     known.get(&at).copied().filter(|&found| found != file)
 }
 
-/// Groups of files of which each leads to each other, by way of others of the group (Tarjan 1972).
+/// Groups of files that all lead to each other, directly or through others in the group (strongly connected components,
+/// Tarjan 1972).
 fn circles(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<Vec<String>> {
     #[derive(Default)]
     struct Walk<'a> {
@@ -229,7 +231,7 @@ fn circles(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<Vec<String>> {
             if !walk.number.contains_key(to) {
                 visit(to, arrows, walk);
             }
-            // What is no longer on the path belongs to a group that was found.
+            // A file that is no longer on the path belongs to a group that was found already.
             if walk.path.contains(&to) {
                 let low = walk.low[at].min(walk.low[to]);
                 walk.low.insert(at, low);
@@ -304,7 +306,7 @@ fn an_outside_crate_has_one_door() {
 #[test]
 fn slices_never_name_one_another() {
     let sources = sources();
-    // `parts` holds what all of them share, and names none of them.
+    // `parts` is what all slices share, and names none of them.
     let slices: Vec<&str> = sources.iter().filter_map(Source::slice).filter(|&slice| slice != "parts").collect();
     let mut broken = Vec::new();
     for source in &sources {
@@ -326,7 +328,7 @@ fn no_file_names_one_that_names_it() {
     let mut arrows: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for source in program() {
         let to = source.paths().into_iter().filter_map(|(_, path)| leads_to(&source.path, &path, &known));
-        // A folder's `mod.rs` is made of its files: they may use what it declares.
+        // A folder's files are part of its `mod.rs`: they may use what it declares.
         let above = |file: &&str| file.strip_suffix("mod.rs").is_some_and(|folder| source.path.starts_with(folder));
         arrows.insert(&source.path, to.filter(|file| !above(file)).collect());
     }

@@ -1,5 +1,6 @@
-//! kill -9 of a real editor and of its real window, again and again: neither takes the other along, no window is doubled, and
-//! one that was turned off for dying too often comes back by `:view`. `tests/link.rs` has the many rounds without a display.
+//! kill -9 of a real editor and of its real window, again and again: neither takes the other down, no window is opened
+//! twice, and a window that was turned off for dying too often comes back by `:view`. `tests/link.rs` has many more
+//! rounds without a display.
 #![cfg(all(feature = "tui", feature = "window"))]
 #![allow(
     clippy::unwrap_used,
@@ -68,7 +69,7 @@ impl Editor {
         }
     }
 
-    /// Waits for one window that has joined, another than `before`; gives its process.
+    /// Waits until exactly one window has joined, not `before`; returns its process.
     fn window(&self, place: &Place, before: Option<u32>) -> u32 {
         let other = || windows(place).into_iter().find(|&window| Some(window) != before);
         self.wait_for("a window", || other().is_some() && self.says("window: connected"));
@@ -93,7 +94,7 @@ fn kill(process: u32) {
     assert!(Command::new("kill").args(["-9", &process.to_string()]).status().unwrap().success());
 }
 
-/// The living windows of the scene that an editor opened.
+/// The running windows of the scene that were opened by an editor.
 fn windows(place: &Place) -> Vec<u32> {
     let scene = place.scene.display().to_string();
     let is_window = |process: &u32| {

@@ -1,5 +1,5 @@
-//! Scenes over real photographs: `tests/photos/NAME.plica.json`, with the photographs of `shared/data/photos` in any folder
-//! above this one. They are not part of the project; where they are missing, each test says so and is skipped.
+//! Scenes over real photographs: `tests/photos/NAME.plica.json`, with the photographs in `shared/data/photos` of any
+//! folder above this one. They are not part of the project; if they are missing, each test says so and is skipped.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -29,7 +29,7 @@ fn photographs() -> Option<PathBuf> {
     found
 }
 
-/// The scene beside its pictures in a folder of its own.
+/// The scene beside its pictures in a separate folder.
 fn open(name: &str) -> Option<Show> {
     let photographs = photographs()?;
     let folder = tempfile::tempdir().unwrap();
@@ -45,7 +45,7 @@ fn open(name: &str) -> Option<Show> {
     Some(Show::open(&scene))
 }
 
-/// The share of a zone's fold regions that shows what the still picture shows there.
+/// The share of a zone's fold regions that looks as in the still picture.
 fn uncovered(show: &Show, zone: &str, frame: &Frame) -> f64 {
     let zone = show.layer().zones.iter().find(|z| z.name == zone).unwrap();
     let regions: Vec<_> = zone.fold.iter().flat_map(|fold| fold.regions()).map(|region| region.polygon()).collect();
@@ -83,7 +83,7 @@ fn the_cat_squints() {
         assert!((0.2..0.7).contains(&squint), "{eye}: {squint} of it is left");
         assert_eq!(uncovered(&show, eye, &show.frame(0.9)), 1.0);
     }
-    // The pupil of the left eye, where the lid does not reach.
+    // The pupil of the left eye, which the lid does not reach.
     assert_eq!(at(&show.frame(0.34), 169, 120), at(&show.still(), 169, 120));
 }
 
@@ -117,7 +117,7 @@ fn water_covers_the_sand() {
     let Some(show) = open("beach") else { return };
     let (low, high) = (show.frame(0.0), show.frame(0.43));
     let covered = |x: usize, y: usize| at(&low, x, y) != at(&high, x, y);
-    // Beside the waterline, from far to near: wet within the reach of the water, dry beyond it.
+    // Beside the waterline, from far to near: wet where the water reaches, dry beyond.
     for (y, wet, dry) in [(260, 600, 640), (330, 570, 620), (420, 535, 590)] {
         assert!(covered(wet, y) && !covered(dry, y), "row {y}");
     }

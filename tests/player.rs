@@ -1,6 +1,6 @@
-//! A player of the textures, written from the pseudo-code of docs/textures.md and from nothing else: it knows no prose of
-//! the manifest and nothing of the program that wrote the files. What it shows is held against what `render` shows, under
-//! every rule and every position function.
+//! A player of the textures, written from the pseudo-code in docs/textures.md and nothing else: it uses none of the
+//! prose in the manifest and no code of the program that wrote the files. Its frames are compared with those of
+//! `render`, for every rule and every position function.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where its helpers do")]
 
@@ -24,7 +24,7 @@ fn index(value: &Value, name: &str) -> usize {
     number(value, name) as usize
 }
 
-/// A data texture, its codes turned into values.
+/// A data texture, its codes converted to values.
 struct Texture {
     width: usize,
     texels: Vec<Rgba>,
@@ -74,7 +74,7 @@ struct Zone {
     init: Texture,
     jump: Texture,
     thresholds: Option<Texture>,
-    /// What a rounded s0 or s1 may be off.
+    /// How far off a rounded s0 or s1 may be.
     tolerance: f64,
 }
 
@@ -83,7 +83,7 @@ struct Player {
     atlas: Texture,
     function: Texture,
     layers: Vec<Vec<Zone>>,
-    /// Whether places are taken from `origin` instead of init.
+    /// Whether places are computed from `origin` instead of the init texture.
     by_origin: bool,
 }
 
@@ -120,7 +120,7 @@ impl Player {
         Player { layers, function: Texture::read(dir, &manifest["function"]), atlas, manifest, by_origin }
     }
 
-    /// s of a zone at the time of frame or part of a frame `k`.
+    /// s of a zone at the time of frame `k`, which may have a fraction.
     fn s_at(&self, zone: &Value, k: f64) -> f64 {
         let frames = number(&self.manifest, "frames");
         let once = self.manifest["timeline"]["loop"] == "once";

@@ -1,4 +1,4 @@
-//! The process among others: signals, closed and full outputs, the log, and what reaches a terminal.
+//! The process and its surroundings: signals, closed and full outputs, the log, and what reaches a terminal.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where its helpers do")]
 
@@ -16,7 +16,7 @@ fn plica(arguments: &[&str], folder: &Path) -> Command {
     command
 }
 
-/// The exit status, and all that was said on either output.
+/// The exit status, and everything printed on either output.
 fn outcome(mut command: Command) -> (Option<i32>, String) {
     let Output { status, stdout, stderr } = command.output().unwrap();
     (status.code(), String::from_utf8([stderr, stdout].concat()).unwrap())
@@ -27,7 +27,7 @@ fn signal(child: &Child, name: &str) {
     assert!(status.unwrap().success());
 }
 
-/// Waits until the child listens to signals: there is a thread for them.
+/// Waits until the child listens for signals: then there is a thread for them.
 fn listening(child: &Child) {
     let tasks = format!("/proc/{}/task", child.id());
     let named = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("comm")).unwrap_or_default();
@@ -40,7 +40,7 @@ fn listening(child: &Child) {
 fn a_signal_ends_with_130_even_where_work_is_stuck() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["INT", "TERM", "HUP", "QUIT", "ALRM", "USR1", "USR2"] {
-        // A scene from a standard input that never comes.
+        // A scene from standard input that never arrives.
         let mut child = plica(&["check", "-"], folder.path()).stdin(Stdio::piped()).spawn().unwrap();
         listening(&child);
         while child.try_wait().unwrap().is_none() {
@@ -56,7 +56,7 @@ fn an_interrupted_render_leaves_nothing_half_written() {
     let folder = tempfile::tempdir().unwrap();
     let image = image::RgbImage::from_pixel(64, 64, image::Rgb([9, 9, 9]));
     image.save(folder.path().join("cat.png")).unwrap();
-    // An hour of it: nobody waits for the end.
+    // An hour of frames: nobody waits for the end.
     let scene = serde_json::json!({
         "plica": 1, "timeline": { "duration": 3000 }, "images": { "cat": { "path": "cat.png" } },
         "layers": [{ "kind": "picture", "name": "face", "image": "cat" }]
@@ -79,7 +79,7 @@ fn an_interrupted_render_leaves_nothing_half_written() {
             signal(&child, "INT");
         }
         assert_eq!(child.wait().unwrap().code(), Some(130), "{out}");
-        // Numbered frames that are done stay, each of them whole.
+        // Numbered frames that are done stay, and each is complete.
         for name in names().into_iter().filter(|name| out.starts_with('%') && name.starts_with('0')) {
             let path = folder.path().join(name);
             image::open(&path).unwrap();
@@ -140,7 +140,7 @@ fn nothing_from_a_file_steers_the_terminal() {
     assert!(!said.chars().any(|c| c.is_control() && c != '\n'), "{said:?}");
     let (status, said) = outcome(plica(&["check", "missing\x1b[2J"], folder.path()));
     assert!(status == Some(1) && !said.contains('\x1b') && said.contains("no such file"), "{said:?}");
-    // What the parser of the command line quotes, and what stands in a message of ours.
+    // Text that the parser of the command line quotes, and text in our own messages.
     for (line, status) in [
         (&["check", "a", "b\x1b[31mRED\x1b]0;title\x07"][..], 2),
         (&["no\x1bsuch"], 2),

@@ -1,7 +1,8 @@
-//! The demo scenes that ship, over pictures drawn by the project's own code. Beside small golden pictures stand checks that
-//! say what a fold means: the eyeball is covered, nothing moves outside the zones, no seam opens at a zone's edge.
+//! The demo scenes that ship, over pictures drawn by the project's own code. Besides small golden pictures there are
+//! checks of what a fold means: the eyeball is covered, nothing moves outside the zones, no seam opens at a zone's
+//! edge.
 //!
-//! `PLICA_UPDATE=1 cargo test --test profiles` writes pictures, golden frames and the scenes' own form anew.
+//! `PLICA_UPDATE=1 cargo test --test profiles` rewrites pictures, golden frames and the layout of the scenes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::path::PathBuf;
@@ -78,7 +79,7 @@ fn shipped_scenes_are_still_outside_their_zones_and_have_no_seam() {
     }
 }
 
-/// Three frames, 64 pixels wide, against `tests/golden/NAME.png`.
+/// Compares three frames, 64 pixels wide, with `tests/golden/NAME.png`.
 fn golden(name: &str, show: &Show) {
     let (width, height) = show.synth.size;
     let small = (64, (64 * height / width) as u32);
@@ -105,7 +106,7 @@ fn the_lid_covers_the_pupil_and_gives_it_back() {
     let show = shipped("blink");
     let (open, closed) = (show.frame(0.0), show.frame(0.44));
     assert!(at(&open, 243, 190)[..3].iter().all(|&c| c < 40), "the pupil is black");
-    // Lid skin, as it is at its crown above the open eye.
+    // The color of the lid's skin, at its crown above the open eye.
     let skin = at(&show.still(), 243, 120);
     let lid = at(&closed, 243, 190);
     assert!(step(skin, lid) < 60, "at the closed time {lid:?} stands where the pupil was; skin is {skin:?}");
@@ -169,7 +170,7 @@ fn water_covers_the_sand() {
         let (from, to) = (white(&low, x), white(&high, x));
         assert!(to > from + 30, "at {x} the foam goes from {from} to {to} only");
     }
-    // Dry sand beyond the reach of the water keeps still.
+    // Dry sand that the water does not reach keeps still.
     assert!((0..480).all(|x| at(&high, x, 335) == at(&low, x, 335)));
 }
 
@@ -198,7 +199,7 @@ fn the_car_flies_from_left_to_right_behind_the_sign() {
     };
     let places = [0.1, 0.3, 0.5, 0.8].map(middle);
     assert!(places.is_sorted() && places[3] > places[0] + 200, "{places:?}");
-    // The sign stands before it.
+    // The sign is in front of it.
     let passing = show.frame(0.12);
     assert!((140..200).all(|y| at(&passing, 97, y) == at(&still, 97, y)));
 }

@@ -1,5 +1,5 @@
-//! What holds for any input of the parts that examples alone would leave thin: membership in regions, palettes, merges and
-//! the atlas.
+//! Properties that hold for any input, for parts where examples are not enough: membership in regions, palettes, merges
+//! and the atlas.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -18,7 +18,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 
-/// How often the sides turn around `q`, by the sum of the angles under which they are seen.
+/// The winding number of the sides around `q`, by the sum of the angles that they subtend.
 fn turns(vertices: &[Point], q: Point) -> i64 {
     let angle = |i: usize| {
         let (a, b) = (vertices[i] - q, vertices[(i + 1) % vertices.len()] - q);
@@ -27,7 +27,7 @@ fn turns(vertices: &[Point], q: Point) -> i64 {
     ((0..vertices.len()).map(angle).sum::<f64>() / TAU).round() as i64
 }
 
-/// A scene in small: named items, numbers and lists without names.
+/// A miniature scene: named items, numbers and lists without names.
 fn versions() -> impl Strategy<Value = (Value, Value, Value)> {
     let values = || vec(0..4i32, 7);
     (values(), vec(0..3usize, 7), values()).prop_map(|(base, sides, new)| {
@@ -36,13 +36,13 @@ fn versions() -> impl Strategy<Value = (Value, Value, Value)> {
                 (0..4).map(|i| json!({ "name": format!("zone {i}"), "speed": values(i), "at": [i, 7] })).collect();
             json!({ "title": values(4), "zones": zones, "timeline": { "fps": values(5), "duration": values(6) } })
         };
-        // Who changes the value of that number: nobody, the one side, or the other.
+        // Who changes the value with that number: nobody, one side, or the other.
         let side = |own: usize| scene(&|i| if sides[i] == own { new[i] } else { base[i] });
         (scene(&|i| base[i]), side(1), side(2))
     })
 }
 
-/// Objects with any of a few keys.
+/// Objects with any subset of a few keys.
 fn objects() -> impl Strategy<Value = Value> {
     proptest::collection::btree_map("[a-d]", 0..3i32, 0..4).prop_map(|found| {
         Value::Object(found.into_iter().map(|(key, value)| (key, value.into())).collect::<Map<_, _>>())
@@ -134,7 +134,7 @@ proptest! {
 }
 
 proptest! {
-    // k-means takes its time without optimisation.
+    // k-means is slow without optimisation.
     #![proptest_config(ProptestConfig { cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
@@ -143,7 +143,7 @@ proptest! {
         spread in 2..9u8,
     ) {
         let colors: Vec<[u8; 3]> = colors.into_iter().map(|color| color.map(|code| code / spread + 30)).collect();
-        // Three steps along each axis of the box that they fill.
+        // Three steps along each axis of their bounding box.
         let least: [u8; 3] = std::array::from_fn(|axis| colors.iter().map(|color| color[axis]).min().unwrap());
         let most: [u8; 3] = std::array::from_fn(|axis| colors.iter().map(|color| color[axis]).max().unwrap());
         let step = |axis: usize, step: u8| least[axis] + (most[axis] - least[axis]) / 6 * (2 * step + 1);

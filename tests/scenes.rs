@@ -1,5 +1,5 @@
-//! Scenes as files: good ones are read and written back to the letter, bad ones have exactly the problems that stand
-//! beside them. `PLICA_UPDATE=1 cargo test --test scenes` writes what is found.
+//! Scenes as files: good ones are read and written back unchanged, bad ones have exactly the problems in the file
+//! beside them. `PLICA_UPDATE=1 cargo test --test scenes` rewrites those files.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
 
 use std::fs;

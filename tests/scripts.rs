@@ -1,5 +1,5 @@
-//! Scripts without a screen, by the real binary: lines in, answers out; the log of one session is a script that makes the
-//! same scene elsewhere.
+//! Scripts without a screen, with the real binary: lines in, answers out; the log of one session is a script that makes
+//! the same scene elsewhere.
 #![cfg(feature = "tui")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

@@ -1,5 +1,5 @@
-//! Across a real ssh: an sshd on 127.0.0.1 with throw-away keys, an editor in a terminal that came through it, and a window
-//! that types what the editor says. Where sshd is missing the reason is printed; in CI that is a failure.
+//! Across a real ssh: an sshd on 127.0.0.1 with throw-away keys, an editor in a terminal through it, and a window
+//! opened by the line that the editor shows. If sshd is missing the reason is printed; in CI that is a failure.
 #![cfg(all(feature = "tui", feature = "window"))]
 #![allow(
     clippy::unwrap_used,
@@ -39,7 +39,7 @@ fn find(tool: &str) -> Option<PathBuf> {
     found
 }
 
-/// A process that ends with the value.
+/// A process that is killed when the value is dropped.
 struct Running(Child);
 
 impl Drop for Running {
@@ -49,7 +49,7 @@ impl Drop for Running {
     }
 }
 
-/// The machine that is far away: its sshd, its scene, and the program that goes there.
+/// The remote machine: its sshd, its scene, and the program that connects to it.
 struct Far {
     folder: tempfile::TempDir,
     _sshd: Running,
@@ -61,7 +61,7 @@ fn far() -> Option<Far> {
     let (sshd, _, _) = (find("sshd")?, find("ssh")?, find("ssh-keygen")?);
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
-    // sshd started by root wants the folder that its service would have made.
+    // sshd started by root needs the folder that its service would have made.
     let _ = std::fs::create_dir_all("/run/sshd");
     for key in ["host", "user"] {
         let made = Command::new("ssh-keygen").args(["-q", "-t", "ed25519", "-N", "", "-f", &at(key)]).status();
@@ -101,7 +101,7 @@ impl Far {
     }
 }
 
-/// An editor there, in a terminal here, through ssh.
+/// An editor on the remote machine, in a terminal here, through ssh.
 struct Editor {
     child: Box<dyn portable_pty::Child + Send + Sync>,
     keys: Box<dyn Write + Send>,
@@ -152,7 +152,7 @@ impl Drop for Editor {
     }
 }
 
-/// The colour in the middle of what the display shows.
+/// The color in the middle of the display.
 fn middle(display: &Display, shot: &Path) -> [u8; 3] {
     display.tool("import", &["-window", "root", &shot.display().to_string()]);
     let Ok(image) = image::open(shot) else { return [0; 3] };
@@ -177,7 +177,7 @@ fn an_edit_on_a_server_moves_the_window_here() {
     let (_, address) = screen.split_once("plica view ").unwrap();
     let address = address.split([' ', ';']).next().unwrap();
     assert!(address.contains("@127.0.0.1") && address.ends_with("a%20scene.plica.json"), "{address}");
-    // As typed at home, where ssh knows the way.
+    // As a person would type it where ssh is set up.
     let cache = far.folder.path().join("cache");
     let window = Command::new(env!("CARGO_BIN_EXE_plica"))
         .args(["view", address, "--remote-plica", env!("CARGO_BIN_EXE_plica")])
@@ -196,7 +196,7 @@ fn an_edit_on_a_server_moves_the_window_here() {
     editor.wait_for("window: connected");
     editor.press(":set images.cat.path=blue.png\r");
     until("blue in the window", || middle(&display, &shot) == [30, 30, 200]);
-    // Another program saves the picture there.
+    // Another program saves the picture on the remote machine.
     far.paint("new.png", [30, 200, 30]);
     std::fs::rename(far.folder.path().join("new.png"), far.folder.path().join("blue.png")).unwrap();
     until("green in the window", || middle(&display, &shot) == [30, 200, 30]);

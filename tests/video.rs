@@ -1,4 +1,4 @@
-//! Video by ffmpeg, looked at by ffprobe and read back. Left out, with the reason, where there is no ffmpeg.
+//! Video by ffmpeg, inspected with ffprobe and read back. Skipped, with the reason, if there is no ffmpeg.
 
 #![allow(
     clippy::unwrap_used,
@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-/// A scene of half a second at 12 frames a second; the picture stands still but for a spot.
+/// A scene of half a second at 12 frames per second; only a spot of the picture moves.
 const SCENE: &str = r#"{
   "plica": 1, "timeline": { "duration": 0.5, "fps": 12, "loop": "repeat" },
   "images": { "cat": { "path": "cat.png" } },
@@ -53,7 +53,7 @@ fn probed(path: &Path, what: &str) -> String {
     String::from_utf8(command.output().unwrap().stdout).unwrap()
 }
 
-/// The pixels of the first frame, read by the matrix of that name.
+/// The pixels of the first frame, read with the matrix of that name.
 fn first_frame(path: &Path, decoder: &[&str], matrix: &str) -> Vec<u8> {
     let mut command = Command::new("ffmpeg");
     command.args(["-v", "error", "-nostdin"]).args(decoder).arg("-i").arg(path);
@@ -97,9 +97,9 @@ fn videos_say_what_their_numbers_mean_and_are_what_was_seen() {
         let pixels = first_frame(&path, decoder, matrix);
         assert_eq!(pixels.len(), (4 * width * height) as usize, "{name}");
         for (column, color) in COLORS.iter().enumerate() {
-            // In the middle of the column, where the halved chroma of a neighbour does not reach.
+            // In the middle of the column, which subsampled chroma of a neighbor does not reach.
             let at = 4 * ((height / 2 * width) as usize + width as usize * (2 * column + 1) / 8);
-            // Half of blue in linear light on black, where there is no alpha.
+            // Without alpha: half of blue, in linear light, on black.
             let wanted = if alpha || color[3] == 255 { *color } else { [0, 0, 188, 255] };
             let wanted = if alpha { wanted } else { [wanted[0], wanted[1], wanted[2], 255] };
             let near = pixels[at..at + 4].iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 6);

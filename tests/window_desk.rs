@@ -1,5 +1,5 @@
-//! The window among others: a window manager (openbox) that gives the keyboard to new windows and puts windows away. And what
-//! a window says that has nothing to show.
+//! The window among others: with a window manager (openbox) that gives the keyboard to new windows and minimizes
+//! windows. And what a window says when it has nothing to show.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -116,7 +116,7 @@ fn a_window_that_is_put_away_draws_nothing() {
     view.until("something that moves again", |v| v.shot().cells().len() > 1 && v.shot() != shot);
 }
 
-/// Seconds of work of the process so far.
+/// CPU seconds that the process has used so far.
 fn cpu(view: &View<'_>) -> f64 {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", view.process.id())).unwrap();
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
@@ -137,7 +137,7 @@ fn what_keeps_the_first_picture_away_is_said_in_the_window_and_on_standard_error
         let place = Place::new();
         std::fs::write(&place.scene, text).unwrap();
         let mut view = View::of(&display, &mut place.command());
-        // The colour of warnings.
+        // The color of warnings.
         let near = |p: &[u8; 4]| p[0].abs_diff(240) < 16 && p[1].abs_diff(160) < 16 && p[2].abs_diff(40) < 16;
         view.until("the list of problems", |v| v.shot().cells().iter().filter(|p| near(p)).count() > 100);
         view.keys(&["q"]);

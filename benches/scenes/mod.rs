@@ -1,4 +1,4 @@
-//! What the benchmarks work on: anchors from a fixed sequence, 60 of 100 still, jumps of up to 5 % of the width, over
+//! The scenes of the benchmarks: anchors from a fixed sequence, 60 % of them still, jumps of up to 5 % of the width, in
 //! a zone that covers the picture and folds at an ellipse.
 
 use plica::layers::folding::model::Zone;
@@ -26,7 +26,7 @@ pub fn zone((width, height): (usize, usize), anchors: usize, interpolation: &str
     serde_json::from_str(&json).expect("the zone is written as the document wants it")
 }
 
-/// Numbers in 0 to 1 by a linear congruential generator (Knuth's MMIX constants).
+/// Numbers from 0 to 1 by a linear congruential generator (Knuth's MMIX constants).
 struct Sequence(u64);
 
 impl Sequence {

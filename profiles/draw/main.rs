@@ -1,5 +1,6 @@
-//! Draws the pictures of the demo scenes: `cargo run --example draw-profiles [NAME...]`. They are made by arithmetic alone,
-//! so that anyone can see where they come from and change them; a test holds the committed files to this program.
+//! Draws the pictures of the demo scenes: `cargo run --example draw-profiles [NAME...]`. They are made by arithmetic
+//! alone, so that anyone can see where they come from and change them; a test checks the committed files against this
+//! program.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The real binary in a folder of its own, with nothing of the person's: no state, no settings, no input.
+//! The real binary in its own folder, with nothing of the user's: no state, no settings, no input.
 
 use std::ffi::OsStr;
 use std::path::Path;

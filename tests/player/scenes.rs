@@ -1,4 +1,4 @@
-//! Scenes for the player: every position function with its usual and its nasty numbers, every rule, layers of other sizes.
+//! Scenes for the player: every position function with usual and with nasty numbers, every rule, layers of other sizes.
 
 use std::sync::Arc;
 
@@ -104,7 +104,8 @@ pub fn functions() -> Vec<Case> {
     each.chain(plain).collect()
 }
 
-/// Every rule, with functions that go back and forth, overshoot, turn back below 0 and teleport; layers; light above white.
+/// Every rule, with functions that go back and forth, overshoot, turn back below 0 and teleport; layers; light above
+/// white.
 pub fn rules() -> Vec<Case> {
     let regions = json!([
         { "kind": "rectangle", "x": 38, "y": 10, "width": 9.5, "height": 40 },

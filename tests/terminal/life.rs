@@ -1,4 +1,4 @@
-//! Life over a terminal that may go away, beside others: what is acknowledged is never lost.
+//! Terminals that go away, and other processes beside the editor: what is acknowledged is never lost.
 
 use serde_json::json;
 
@@ -113,7 +113,7 @@ fn a_storm_of_sizes_loses_no_key() {
     assert_eq!((editor.end(), saved_speed(&folder)), (0, json!(201)));
 }
 
-/// The terminal here answers no question, so whoever asks it one takes the keys that follow.
+/// The terminal here answers no queries: if the editor sent one, it would take the following keys for the answer.
 #[test]
 fn drawing_anew_loses_no_key() {
     let folder = folder();

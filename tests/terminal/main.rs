@@ -1,4 +1,4 @@
-//! The real binary under a pseudo-terminal: keys in, screen out, and the terminal as it was afterwards.
+//! The real binary in a pseudo-terminal: keys in, screen out, and the terminal restored afterwards.
 #![cfg(feature = "tui")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -122,7 +122,7 @@ fn help_comes_from_the_table_and_small_terminals_are_waited_for() {
     editor.wait_for("made");
     editor.press("?");
     editor.wait_for("-- tree --");
-    // A key that comes at a size too small would count for nothing: the size changes once this is answered.
+    // A key that arrives while the size is too small is ignored, so the size is changed only after this is answered.
     editor.press("q:nosuch\r");
     editor.wait_for("no command");
     let size = |rows, cols| PtySize { rows, cols, pixel_width: 0, pixel_height: 0 };
@@ -155,7 +155,7 @@ fn subcommands_run_beside_the_editor_on_the_scene_as_it_is_there() {
     editor.assert_restored();
 }
 
-/// A terminal that answers nothing gets half-blocks; one that is told to takes pixels, within the bound of bytes.
+/// A terminal that answers nothing gets half-blocks; with `--graphics` it gets pixels, within the limit of bytes.
 #[test]
 fn pictures_come_as_the_protocol_wants_them() {
     for (protocol, start, end) in [

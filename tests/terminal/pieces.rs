@@ -1,4 +1,4 @@
-//! Keys that a slow line brings in pieces.
+//! Keys that arrive in pieces over a slow line.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::support::{Editor, folder, json as read};
 
-/// Sends bytes in two pieces that are `apart`; false where this machine was too busy to do so.
+/// Sends bytes in two pieces that are `apart`; false if this machine was too busy for that.
 fn send_in_pieces(editor: &mut Editor, bytes: &str, cut: usize, apart: Duration) -> bool {
     let begun = Instant::now();
     editor.press(&bytes[..cut]);
@@ -25,7 +25,7 @@ fn a_key_or_a_paste_in_pieces_is_no_command() {
     editor.wait_for("zones.all.motion");
     editor.press("\r\x1b[200~1,1,0,0\r2,2,0,0\r3,3,0,0\r4,4,0,0\r\x1b[201~");
     editor.wait_for("4 rows pasted");
-    // Down and up again and again, cut at every byte; the cursor ends where it began, on the first row.
+    // Down and up, again and again, cut at every byte; the cursor ends where it began, on the first row.
     let mut tries = 0;
     for (down, up) in [("\x1b[B", "\x1b[A"), ("\x1bOB", "\x1bOA"), ("\x1b[<65;5;5M", "\x1b[<64;5;5M")] {
         for cut in 1..down.len() {
@@ -36,7 +36,7 @@ fn a_key_or_a_paste_in_pieces_is_no_command() {
                         eprintln!("this machine is too busy to send keys in pieces: skipped");
                         return;
                     }
-                    // It may have come as several keys: begin again from the first row.
+                    // It may have arrived as several keys: start again from the first row.
                     std::thread::sleep(Duration::from_millis(300));
                     editor.press(":go layers.0.zones.all.motion\rgegg");
                 }
@@ -44,7 +44,7 @@ fn a_key_or_a_paste_in_pieces_is_no_command() {
         }
     }
     editor.press("d");
-    // A paste whose marks are cut, with pauses, is one paste, and its lines are no commands.
+    // A paste whose markers arrive in pieces, with pauses, is one paste, and its lines are not commands.
     for part in ["\x1b[200", "~9,9,0,0\r:q!\r", "dd\x1b[2", "01~"] {
         editor.press(part);
         std::thread::sleep(Duration::from_millis(30));

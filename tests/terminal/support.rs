@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 
-/// Longer than anything here takes on a busy machine.
+/// Longer than anything here takes, even on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The editor in a terminal.
@@ -77,10 +77,10 @@ impl Editor {
         Editor { child, master: Some(pair.master), keys: Some(keys), seen, sent, closing, reader: Some(reader) }
     }
 
-    /// Closes the terminal, as a dropped connection does: nobody sends a signal but the system.
+    /// Closes the terminal, as a dropped connection does: only the system sends a signal.
     pub fn close(&mut self) {
         self.closing.store(true, Ordering::Relaxed);
-        // What is drawn for this key wakes the thread that reads.
+        // The drawing for this key wakes the reading thread.
         self.press("?");
         self.reader.take().unwrap().join().unwrap();
         (self.keys, self.master) = (None, None);
@@ -104,7 +104,7 @@ impl Editor {
         }
     }
 
-    /// Waits until `start` was sent, and gives what followed it up to and with `end`.
+    /// Waits until `start` has been sent; returns what follows it, up to and including `end`.
     pub fn wait_for_sequence(&self, start: &str, end: &str) -> String {
         let begun = Instant::now();
         loop {
@@ -118,7 +118,7 @@ impl Editor {
         }
     }
 
-    /// The screen once it stays as it is for a moment: a drawing comes in pieces.
+    /// The screen, once it has not changed for a moment: a drawing arrives in pieces.
     pub fn settled_screen(&self) -> String {
         let mut screen = self.screen();
         loop {
@@ -131,7 +131,7 @@ impl Editor {
         }
     }
 
-    /// Waits until `text` is on the screen no more.
+    /// Waits until `text` is no longer on the screen.
     pub fn wait_without(&self, text: &str) {
         let begun = Instant::now();
         while self.screen().contains(text) {
@@ -140,7 +140,7 @@ impl Editor {
         }
     }
 
-    /// Waits until every edit is safe in the journal: the mark of what is not has gone.
+    /// Waits until every edit is safe in the journal, that is, until the mark for those that are not is gone.
     pub fn wait_until_synced(&self) {
         self.wait_for("  *");
         self.wait_without("* ~");
@@ -148,7 +148,7 @@ impl Editor {
 
     pub fn resize(&self, rows: u16, cols: u16) {
         let size = PtySize { rows, cols, pixel_width: 0, pixel_height: 0 };
-        // As terminals do it: first the own screen, then the program is told.
+        // As terminals do: first resize the screen, then notify the program.
         self.seen.lock().unwrap().screen_mut().set_size(rows, cols);
         self.master.as_ref().unwrap().resize(size).unwrap();
     }
@@ -169,7 +169,7 @@ impl Editor {
         assert!(std::process::Command::new("kill").args([&format!("-{name}"), &pid]).status().unwrap().success());
     }
 
-    /// Waits for the end; gives the exit status.
+    /// Waits for the end; returns the exit status.
     pub fn end(&mut self) -> u32 {
         let begun = Instant::now();
         loop {
@@ -203,7 +203,7 @@ impl Editor {
 
 impl Drop for Editor {
     fn drop(&mut self) {
-        // It has ended, or the test has failed.
+        // The process has ended, or the test has failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! The whole tutor in the real binary, by the keys that it shows, to the rendered file.
+//! The whole tutor in the real binary, by the keys that it shows, up to the rendered file.
 
 use std::time::Duration;
 
@@ -36,7 +36,7 @@ fn the_tutor_leads_to_a_rendered_animation() {
         for keys in shown(&editor.settled_screen()) {
             editor.press(&keys);
             if keys == "\u{1b}" {
-                // Esc and a letter that come at once are Alt and the letter.
+                // Esc and a letter that arrive together are Alt and the letter.
                 std::thread::sleep(Duration::from_millis(500));
             }
         }

@@ -1,4 +1,4 @@
-//! A tabby's face, hair by hair: each lies away from the nose and takes its colour from the coat beneath.
+//! A tabby's face, hair by hair: each points away from the nose and takes its color from the coat beneath.
 
 use kurbo::{ParamCurve, Point, Vec2};
 use plica::base::maths::{atan2, cos};
@@ -84,7 +84,7 @@ fn coat(p: Point) -> Rgb {
     shadow(p, color)
 }
 
-/// Form: light from the upper right; the cheeks turn away, the eyes lie in hollows.
+/// Shape: light from the upper right; the cheeks turn away, the eyes are in hollows.
 fn shadow(p: Point, color: Rgb) -> Rgb {
     let (dx, dy) = ((p.x - 262.0) / 190.0, (p.y - 190.0) / 180.0);
     let round = 1.08 - 0.36 * ramp(0.35, 1.05, (dx * dx + dy * dy).sqrt());
@@ -98,7 +98,7 @@ fn shadow(p: Point, color: Rgb) -> Rgb {
     times(color, (round * socket * jaw) as f32)
 }
 
-/// Hairs rooted in a shape, the farthest from `source` first, each lying away from it.
+/// Hairs rooted in a shape, the farthest from `source` first, each pointing away from it.
 struct Fur<'a> {
     roots: &'a Mask,
     source: Point,

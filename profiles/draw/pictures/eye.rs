@@ -43,7 +43,7 @@ pub fn lashes() -> Canvas {
 
 fn face(c: &mut Canvas) {
     let soft = |c: &Canvas, svg: &str, blur: f64| Mask::path(c, svg).blur(blur);
-    // The nose falls away on the left, the temple on the right; the socket lies deep, brow bone and cheek catch light.
+    // The nose falls away on the left, the temple on the right; the socket is deep, brow bone and cheek catch light.
     let side = Mask::from_fn(c, |x, y| 0.9 * ramp(120.0, -60.0, x + 0.25 * (y - 180.0)));
     c.glaze(&side, rgb(0xCF9A84), 0.8);
     let temple = Mask::from_fn(c, |x, y| ramp(380.0, 560.0, x + 0.2 * (y - 150.0)));
@@ -110,7 +110,7 @@ fn eyeball(c: &mut Canvas) {
     c.paint_with(&soft_iris, |x, y, _| (iris_color(x - IRIS.0, y - IRIS.1), 1.0));
     let pupil = Mask::ellipse(c, IRIS, (23.0, 23.0)).blur(1.0).and(&opening);
     c.paint(&pupil, rgb(0x0B0908), 1.0);
-    // The lid's shadow on the ball, then what the eye mirrors: a window, its lower rim, a wet line.
+    // The lid's shadow on the ball, then reflections: a window, its lower rim, a wet line.
     let lid =
         Mask::path(c, "M60 220 C140 86 330 70 430 200 L396 214 C330 134 150 140 92 224 Z").blur(7.0).and(&opening);
     c.glaze(&lid, rgb(0x5A3B38), 0.72);
@@ -180,7 +180,7 @@ fn margins(c: &mut Canvas) {
     c.light(&wet, rgb(0xFFFFFF), 0.45);
 }
 
-/// A line of varying width along a lid's edge; `side` -1 lays it above the edge, 1 below, 0 on it.
+/// A line of varying width along a lid's edge; `side` -1 puts it above the edge, 1 below, 0 on it.
 fn rim(c: &mut Canvas, edge: &PathSeg, width: f64, color: [f32; 3], alpha: f64, side: f64) {
     let pen = |t: f64| width * (0.35 + 0.65 * ramp(0.0, 0.35, t) * (1.0 - 0.35 * ramp(0.75, 1.0, t)));
     for i in 0..90 {

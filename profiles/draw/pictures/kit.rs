@@ -1,10 +1,10 @@
-//! The painter's tools: a canvas in display colours, masks that can be blurred (the airbrush), tapered strokes (hair,
-//! lashes, cracks). Shapes are SVG paths; everything is computed with the same bits on every machine.
+//! The painter's tools: a canvas in display colors, masks that can be blurred (the airbrush), tapered strokes (hair,
+//! lashes, cracks). Shapes are SVG paths; all results are the same to the bit on every machine.
 
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 use plica::base::maths::smoothstep;
 
-/// A colour as it is displayed, 0 to 1 a channel.
+/// A color as displayed, 0 to 1 per channel.
 pub type Rgb = [f32; 3];
 
 /// The colour 0xRRGGBB.
@@ -12,7 +12,7 @@ pub fn rgb(hex: u32) -> Rgb {
     [16, 8, 0].map(|shift| ((hex >> shift) & 255) as f32 / 255.0)
 }
 
-/// Between two colours.
+/// The color between two others, at `t`.
 pub fn mix(a: Rgb, b: Rgb, t: f32) -> Rgb {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
 }
@@ -45,7 +45,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// What a closed path covers (nonzero), anti-aliased.
+    /// The coverage of a closed path (nonzero rule), anti-aliased.
     pub fn path(canvas: &Canvas, svg: &str) -> Mask {
         Mask::bez(canvas, &path(svg))
     }
@@ -71,7 +71,7 @@ impl Mask {
         Mask { width: canvas.width, cells }
     }
 
-    /// Softened, about as by a Gaussian of deviation `radius` pixels.
+    /// The mask blurred, approximately by a Gaussian with a standard deviation of `radius` pixels.
     pub fn blur(mut self, radius: f64) -> Mask {
         let height = self.cells.len() / self.width;
         for _ in 0..3 {
@@ -81,13 +81,13 @@ impl Mask {
         self
     }
 
-    /// Where both are.
+    /// The intersection of both.
     pub fn and(mut self, other: &Mask) -> Mask {
         self.cells.iter_mut().zip(&other.cells).for_each(|(a, b)| *a *= b);
         self
     }
 
-    /// The coverage of the pixel that holds a point; 0 outside.
+    /// The coverage of the pixel that contains a point; 0 outside.
     pub fn at(&self, p: Point) -> f32 {
         let (x, y) = (p.x as usize, p.y as usize);
         let within = p.x >= 0.0 && p.y >= 0.0 && x < self.width;
@@ -95,7 +95,7 @@ impl Mask {
     }
 }
 
-/// A box filter along lines of `length` cells `step` apart; `lines` of them, `next` apart.
+/// A box filter along `lines` lines, `next` apart, each of `length` cells, `step` apart.
 fn box_blur(cells: &mut [f32], radius: f64, length: usize, lines: usize, step: usize, next: usize) {
     let r = radius.round().max(1.0) as usize;
     let mut line = vec![0.0f32; length];
@@ -192,7 +192,7 @@ impl Canvas {
         });
     }
 
-    /// Paints through a mask what `color` says of the place and the colour below: a colour and its alpha.
+    /// Paints through a mask; `color` gives the color and its alpha from the place and the color beneath.
     pub fn paint_with(&mut self, mask: &Mask, color: impl Fn(f64, f64, Rgb) -> (Rgb, f64)) {
         for (((x, y), cell), &cover) in self.centers().zip(&mut self.cells).zip(&mask.cells) {
             if cover > 0.0 {
@@ -215,7 +215,7 @@ impl Canvas {
         self.draw(stroke, color, |_| alpha);
     }
 
-    /// Paints a tapered stroke where the mask lets it.
+    /// Paints a tapered stroke through a mask.
     pub fn stroke_within(&mut self, stroke: &Stroke, color: Rgb, alpha: f64, mask: &Mask) {
         self.draw(stroke, color, |cell| alpha * f64::from(mask.cells[cell]));
     }
@@ -243,7 +243,7 @@ impl Canvas {
         }
     }
 
-    /// 8-bit sRGB with straight alpha, four bytes a pixel; without alpha, three.
+    /// 8-bit sRGB with straight alpha, four bytes per pixel; three if everything is opaque.
     pub fn to_bytes(&self) -> (Vec<u8>, bool) {
         let code = |c: f32| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
         let opaque = self.cells.iter().all(|c| c[3] >= 1.0);

@@ -12,7 +12,7 @@ mod road;
 mod skin;
 mod wound;
 
-/// File, from the project's root, and what draws it.
+/// The file, relative to the project's root, and the function that draws it.
 pub const PICTURES: &[(&str, fn() -> Canvas)] = &[
     ("profiles/blink/eye.png", eye::eye),
     ("profiles/blink/lashes.png", eye::lashes),

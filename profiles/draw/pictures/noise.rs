@@ -1,6 +1,6 @@
-//! Procedural noise: the grain of everything drawn. Integer hashes, so the same on every machine.
+//! Procedural noise: the grain of everything drawn. By integer hashes, so the same on every machine.
 
-/// A number in [0, 1) that looks like chance, fixed for its place and seed.
+/// A pseudo-random number in [0, 1), fixed for its place and seed.
 pub fn hash(x: i64, y: i64, seed: u32) -> f64 {
     let mut h =
         (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
@@ -22,7 +22,7 @@ pub fn noise(x: f64, y: f64, seed: u32) -> f64 {
     (top + (bottom - top) * v) * 2.0 - 1.0
 }
 
-/// Noise over `octaves` octaves, each half as wide and half as strong, about in [-1, 1].
+/// Noise over `octaves` octaves, each half as wide and half as strong as the one before, approximately in [-1, 1].
 pub fn fbm(x: f64, y: f64, octaves: u32, seed: u32) -> f64 {
     let (mut sum, mut strength, mut scale) = (0.0, 0.5, 1.0);
     for octave in 0..octaves {
@@ -33,7 +33,7 @@ pub fn fbm(x: f64, y: f64, octaves: u32, seed: u32) -> f64 {
     sum
 }
 
-/// Distances to the nearest and the second nearest of scattered points, about one a unit square.
+/// Distances to the nearest and the second nearest of scattered points, about one per unit square.
 pub fn cells(x: f64, y: f64, seed: u32) -> (f64, f64) {
     let (ix, iy) = (x.floor() as i64, y.floor() as i64);
     let (mut first, mut second) = (9.0f64, 9.0f64);
@@ -48,7 +48,7 @@ pub fn cells(x: f64, y: f64, seed: u32) -> (f64, f64) {
     (first.sqrt(), second.sqrt())
 }
 
-/// A sequence of numbers that look like chance.
+/// A sequence of pseudo-random numbers.
 pub struct Chance(i64, u32);
 
 impl Chance {

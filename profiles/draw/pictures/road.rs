@@ -1,4 +1,4 @@
-//! A desert road at dusk, and the car that flies along it: two pictures, the car on nothing.
+//! A desert road at dusk, and the car that flies along it: two pictures, the car on a transparent background.
 
 use super::kit::{Canvas, Mask, Rgb, Stroke, mix, ramp, rgb, times};
 use super::noise::{Chance, fbm, hash, noise};
@@ -156,7 +156,7 @@ fn sign(c: &mut Canvas) {
     c.light(&lit, rgb(0xFFE0A0), 0.6);
 }
 
-/// The car alone, flying: body, glass, fins, the light it flies on.
+/// The car alone, flying: body, glass, fins, the light below it.
 pub fn car() -> Canvas {
     let mut c = Canvas::clear(220, 110);
     let glow = Mask::ellipse(&c, (112.0, 82.0), (74.0, 6.0)).blur(6.0);
@@ -241,7 +241,7 @@ fn trim(c: &mut Canvas) {
     c.light(&Mask::ellipse(c, (25.0, 56.0), (2.0, 3.0)).blur(1.0), rgb(0xFFC0A0), 0.8);
 }
 
-/// What the car's light leaves on the road below it.
+/// The reflection of the car's light on the road.
 pub fn light() -> Canvas {
     let mut c = Canvas::clear(220, 40);
     c.paint(&Mask::ellipse(&c, (110.0, 20.0), (76.0, 8.0)).blur(5.0), rgb(0x140C20), 0.62);

@@ -1,4 +1,4 @@
-//! Skin, shared by the eye, the wound and the chest: colour that wanders, pores, fine lines and grain.
+//! Skin, shared by the eye, the wound and the chest: varying color, pores, fine lines and grain.
 
 use super::kit::{Rgb, mix, rgb, times};
 use super::noise::{cells, fbm, hash, noise};

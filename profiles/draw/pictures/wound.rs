@@ -31,7 +31,7 @@ pub fn wound() -> Canvas {
     c
 }
 
-/// The inside of a cut alone, to be laid on a photograph; its shape is [`HAND_CUT`].
+/// Only the inside of a cut, to be put on a photograph; its shape is [`HAND_CUT`].
 pub fn flesh_for_hand() -> Canvas {
     let mut c = Canvas::clear(150, 120);
     flesh(&mut c, HAND_CUT, HAND_UPPER, HAND_LOWER);
@@ -94,7 +94,7 @@ fn hairs(c: &mut Canvas) {
     }
 }
 
-/// What a cut lays open: a pale rim of fat, wet muscle fibres, the dark of the depth, light on the wet.
+/// The inside of a cut: a pale rim of fat, wet muscle fibres, dark depth, light on the wet.
 fn flesh(c: &mut Canvas, cut: &str, upper: &str, lower: &str) {
     let inside = Mask::path(c, cut);
     let (upper, lower) = (curve(upper), curve(lower));
