@@ -12,7 +12,7 @@ mod pieces;
 mod support;
 mod tutor;
 
-use support::{Editor, PATIENCE, folder, json};
+use support::{Editor, PATIENCE, folder, json, on_motion};
 
 #[test]
 fn a_picture_becomes_a_scene_that_is_edited_and_saved() {
@@ -66,10 +66,7 @@ fn the_log_of_a_session_is_a_script_that_does_the_same_again() {
 fn rows_are_pasted_and_yanked_through_the_terminal() {
     let folder = folder();
     let scene = folder.path().join("photo.plica.json");
-    let mut editor = Editor::open(folder.path(), &["photo.png"]);
-    editor.wait_for("photo.plica.json: made");
-    editor.press("/motion\r");
-    editor.wait_for("zones.all.motion");
+    let mut editor = on_motion(folder.path());
     editor.press("\x1b[200~x,y,dx,dy\r1,2,3,4\r5,6,7,8\r\x1b[201~");
     editor.wait_for("2 rows pasted");
     editor.press("gtY");

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use crate::support::{Editor, folder, json as read};
+use crate::support::{Editor, folder, json as read, on_motion};
 
 /// Sends bytes in two pieces that are `apart`; false if this machine was too busy for that.
 fn send_in_pieces(editor: &mut Editor, bytes: &str, cut: usize, apart: Duration) -> bool {
@@ -19,10 +19,7 @@ fn send_in_pieces(editor: &mut Editor, bytes: &str, cut: usize, apart: Duration)
 fn a_key_or_a_paste_in_pieces_is_no_command() {
     let folder = folder();
     let scene = folder.path().join("photo.plica.json");
-    let mut editor = Editor::open(folder.path(), &["photo.png"]);
-    editor.wait_for("photo.plica.json: made");
-    editor.press("/motion\r");
-    editor.wait_for("zones.all.motion");
+    let mut editor = on_motion(folder.path());
     editor.press("\r\x1b[200~1,1,0,0\r2,2,0,0\r3,3,0,0\r4,4,0,0\r\x1b[201~");
     editor.wait_for("4 rows pasted");
     // Down and up, again and again, cut at every byte; the cursor ends where it began, on the first row.

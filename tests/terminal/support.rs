@@ -209,6 +209,15 @@ impl Drop for Editor {
     }
 }
 
+/// The editor on the empty table of motion of the scene that is made for the picture in `folder`.
+pub fn on_motion(folder: &Path) -> Editor {
+    let mut editor = Editor::open(folder, &["photo.png"]);
+    editor.wait_for("photo.plica.json: made");
+    editor.press("/motion\r");
+    editor.wait_for("zones.all.motion");
+    editor
+}
+
 /// A folder with a picture in it.
 pub fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
