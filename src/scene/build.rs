@@ -1,5 +1,5 @@
-//! The edits that people ask for: set, insert, duplicate, move, rename. They make what must be there around the new
-//! value: parents that were only defaults, the fields that a new kind of thing needs.
+//! The edits that people ask for: set, insert, duplicate, move, rename. They also create what must exist around the new
+//! value: parents that were only defaults, and the fields that a new kind of thing needs.
 
 use kurbo::Rect;
 use serde_json::{Map, Value, json};
@@ -11,13 +11,14 @@ use crate::layers::KINDS;
 use crate::layers::technique::{Kind, Technique, Turned};
 
 impl Edit {
-    /// Writes `value` at `path`. Missing parents are made from their defaults; `null` takes away what need not be written,
-    /// so that its default counts; a new tag (another kind of outline, another method) keeps what the new kind can hold.
+    /// Writes `value` at `path`. Missing parents are created from their defaults; `null` removes an optional value, so
+    /// that its default applies; a new tag (another kind of outline, another method) keeps what the new kind can
+    /// express.
     pub fn set(document: &Document, path: &str, value: Value) -> Edit {
         Edit::set_told(document, path, value).0
     }
 
-    /// [`Edit::set`], with what a new kind cannot keep, in words.
+    /// As [`Edit::set`]; also returns what a new kind cannot keep, in words.
     pub fn set_told(document: &Document, path: &str, value: Value) -> (Edit, Option<String>) {
         let json = document.json();
         let Some(place) = Place::of(json, path) else { return (Edit::add(path, value), None) };
@@ -44,14 +45,14 @@ impl Edit {
     }
 
     /// Adds a new item with sensible values to the list at `list`, before the one at `index` or as near to it as an
-    /// ascending list allows; and the pointer it gets. `None` if there is no such list.
+    /// ascending list allows; also returns its pointer. `None` if there is no such list.
     pub fn insert_new(document: &Document, list: &str, index: usize) -> Option<(Edit, String)> {
         let (index, item) = new_item(document, list, index)?;
         Some((Edit::insert(document, list, index, item), pointer::join(list, index)))
     }
 
-    /// Adds a copy of the item at `path` after it, under a name of its own; and the pointer it gets. `None` if `path` is
-    /// no item of a list.
+    /// Adds a copy of the item at `path` after it, under a unique name; also returns its pointer. `None` if `path` is
+    /// not an item of a list.
     pub fn duplicate(document: &Document, path: &str) -> Option<(Edit, String)> {
         let (list, last) = pointer::split(path)?;
         let index = pointer::index(&last)?;
@@ -59,7 +60,8 @@ impl Edit {
         Edit::insert_all(document, list, index + 1, vec![copy])
     }
 
-    /// Moves the item at `path` to `index` of its list; and the pointer it gets. `None` if either is no item of a list.
+    /// Moves the item at `path` to `index` in its list; also returns its new pointer. `None` if either is not an item
+    /// of a list.
     pub fn move_item(document: &Document, path: &str, index: usize) -> Option<(Edit, String)> {
         let (list, last) = pointer::split(path)?;
         let items = document.json().pointer(list)?.as_array()?;
@@ -68,7 +70,7 @@ impl Edit {
         (from < items.len() && index < items.len()).then(|| (Edit::moved(path, &to), to))
     }
 
-    /// Gives an image of the scene another name, everywhere.
+    /// Renames an image of the scene, everywhere.
     pub fn rename_image(document: &Document, from: &str, to: &str) -> Edit {
         let named = document.scene().users_of_image(from).map(|path| Edit::replace(&path, to.into()));
         let images = |name| pointer::join("/images", name);
@@ -76,7 +78,7 @@ impl Edit {
     }
 }
 
-/// Makes what stands at `path` a thing of another kind.
+/// Turns the thing at `path` into another kind.
 fn turn(document: &Document, path: &str, place: Place, to: (&str, &str, Shape)) -> (Edit, Option<String>) {
     let (tag, name, variant) = to;
     let old = place.value.filter(|old| old.is_object());
@@ -107,7 +109,7 @@ fn lost(tag: &str, old: &Value, new: &Value) -> Option<String> {
     }
 }
 
-/// Writes `value` at `path`, making the parents that are not written from their defaults.
+/// Writes `value` at `path`, creating parents that are not written from their defaults.
 pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
     let json = document.json();
     if json.pointer(path).is_some() {
@@ -134,7 +136,7 @@ pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
     }
 }
 
-/// A default, with no more written out than what must be.
+/// A default, with only the required fields written.
 fn barest(shape: Shape, default: &Value) -> Value {
     let required = |name: &String| {
         shape.branch(Some(default)).is_some_and(|branch| branch.required().any(|required| required == name))
@@ -147,7 +149,7 @@ fn barest(shape: Shape, default: &Value) -> Value {
     }
 }
 
-/// What a new item of the list at `list` before item `index` starts as, and the index it gets.
+/// A new item for the list at `list`, to go before item `index`, and the index it gets.
 pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize, Value)> {
     let json = document.json();
     let place = Place::of(json, list)?;
@@ -170,7 +172,7 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     Some((index, value))
 }
 
-/// The tag of what stands at a place; empty where it has none.
+/// The tag of the value at a place; empty if it has none.
 pub(super) fn variant_of(place: Place<'_>) -> &str {
     match place.shape.body() {
         Body::Tagged(tag) => place.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default(),
@@ -182,7 +184,7 @@ fn unique(name: &str, items: &[Value]) -> String {
     unique_name(name, |name| items.iter().any(|item| field::name_of(Some(item)).as_deref() == Some(name)))
 }
 
-/// `name`, or the first of `name 2`, `name 3` … that is not taken; a number at its end goes on.
+/// `name`, or the first of `name 2`, `name 3` … that is not taken; a number at its end is counted up.
 pub fn unique_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
     let stem = if stem.is_empty() { name } else { stem };
@@ -190,14 +192,14 @@ pub fn unique_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
 }
 
-/// Makes new values from the schema, at one place of a document.
+/// Makes new values from the schema, for one place in a document.
 #[derive(Clone, Copy)]
 pub(super) struct Fresh<'a> {
     bounds: Rect,
     document: &'a Document,
-    /// The technique of the layer that they belong to.
+    /// The technique of the layer that the values belong to.
     kind: Option<&'static Kind>,
-    /// Whether they are layers themselves, whose variant tells the technique.
+    /// Whether the values are layers themselves, whose variant is the technique.
     layers: bool,
 }
 
@@ -219,7 +221,7 @@ impl<'a> Fresh<'a> {
         Some((layer.technique(), if rest.is_empty() { String::new() } else { format!("/{rest}") }))
     }
 
-    /// What makes the fields of a new `variant`.
+    /// The same for the fields of a new `variant`.
     fn within(&self, variant: &str) -> Self {
         match self.layers {
             true => Fresh { kind: KINDS.iter().find(|kind| kind.name == variant).copied(), layers: false, ..*self },
@@ -233,7 +235,7 @@ impl<'a> Fresh<'a> {
         names.map(String::as_str).min()
     }
 
-    /// A new value of a shape: what must be written, and no more.
+    /// A new value of a shape, with only the required fields.
     fn value(&self, shape: Shape) -> Value {
         let least = |(min, max): (f64, f64)| if (min..=max).contains(&0.0) { json!(0) } else { json!(min) };
         match shape.body() {
@@ -263,7 +265,7 @@ impl<'a> Fresh<'a> {
         Value::Object(required.collect())
     }
 
-    /// `variant` made out of another one: what both have stays, where it may.
+    /// A value of `variant` made from one of another variant: common fields are kept if they fit.
     fn converted(&self, variant: Shape, name: &str, old: Option<&Value>) -> Value {
         let fresh = self.within(name).object(variant, name);
         let mut map = Map::new();

@@ -14,17 +14,17 @@ pub struct Field {
     pub name: String,
     /// One line of help.
     pub help: &'static str,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// Least and greatest number.
     pub range: Option<(f64, f64)>,
     /// The unit of its numbers.
     pub unit: Option<&'static str>,
-    /// The letter that formulae have for its vector: J for a jump.
+    /// The letter for its vector in formulas: J for a jump.
     pub symbol: Option<&'static str>,
-    /// What counts where nothing is written.
+    /// The value if nothing is written.
     pub default: Option<Value>,
-    /// Whether it may be taken away.
+    /// Whether it may be removed.
     pub optional: bool,
 }
 
@@ -33,7 +33,7 @@ pub struct Field {
 pub enum Kind {
     /// A number.
     Number {
-        /// Without a fraction.
+        /// Whether it is a whole number.
         integer: bool,
     },
     /// Text.
@@ -42,11 +42,11 @@ pub enum Kind {
     Bool,
     /// One of several words; also the tag of a tagged object.
     Choice(Vec<Choice>),
-    /// So many numbers, with their names where they have any ("x", "y").
+    /// A fixed number of numbers, with their names if they have any ("x", "y").
     Numbers(Vec<String>),
-    /// A list of such items.
+    /// A list of items of this kind.
     List(Box<Field>),
-    /// An object with names of its own choice and such values.
+    /// An object with arbitrary keys and values of this kind.
     Map(Box<Field>),
     /// An object with known fields.
     Object,
@@ -54,7 +54,7 @@ pub enum Kind {
     Tagged {
         /// Name of the tag.
         tag: &'static str,
-        /// What it may be.
+        /// The values of the tag.
         variants: Vec<Choice>,
     },
     /// The name of one of the entries of this list of the scene ("images").
@@ -77,13 +77,13 @@ pub struct Child {
     pub name: String,
     /// Where it is.
     pub pointer: String,
-    /// Whether it is written in the document; else its default counts.
+    /// Whether it is written in the document; otherwise its default applies.
     pub set: bool,
-    /// What it is.
+    /// Its field.
     pub field: Field,
 }
 
-/// What stands at `pointer`, or could; `None` if the schema knows no such place.
+/// The field at `pointer`, whether written or not; `None` if the schema knows no such place.
 pub fn field(document: &Document, pointer: &str) -> Option<Field> {
     let place = Place::of(document.json(), pointer)?;
     let last = pointer::split(pointer).map(|(_, last)| last).unwrap_or_default();
@@ -98,30 +98,30 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
     place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
 }
 
-/// What the kind of thing at `pointer` computes, by its tag; `None` if it computes nothing.
+/// The formula of the thing at `pointer`, by its tag; `None` if it has none.
 pub fn formula(document: &Document, pointer: &str) -> Option<&'static str> {
     let place = Place::of(document.json(), pointer)?;
     place.shape.branch(place.value)?.formula()
 }
 
-/// Whether something stands at `pointer`, be it by default.
+/// Whether there is a value at `pointer`, written or by default.
 pub fn is_there(document: &Document, pointer: &str) -> bool {
     Place::of(document.json(), pointer).is_some_and(|place| place.value.is_some_and(|value| !value.is_null()))
 }
 
-/// The places directly below `pointer`: the fields of an object in the schema's order, also those that are not written;
-/// the items of a list. None below plain values and lists of numbers.
+/// The places directly below `pointer`: the fields of an object in the schema's order, including those that are not
+/// written; the items of a list. Empty for plain values and lists of numbers.
 pub fn children(document: &Document, pointer: &str) -> Vec<Child> {
     let Some(place) = Place::of(document.json(), pointer) else { return Vec::new() };
     below(place, pointer).into_iter().map(|(child, _)| child).collect()
 }
 
-/// The places directly below `place`, which is at `pointer`: what each is, and its own place for its value.
+/// The places directly below `place`, which is at `pointer`, each with its own place for its value.
 pub fn below<'a>(place: Place<'a>, pointer: &str) -> Vec<(Child, Place<'a>)> {
     steps(place).into_iter().map(|(token, below)| (described(pointer, &token, below), below)).collect()
 }
 
-/// The places directly below `place`, each with its token; without what nobody edits, the version of the format.
+/// The places directly below `place`, each with its token; without the version of the format, which nobody edits.
 pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
     let value = place.value.filter(|value| !value.is_null());
     match place.shape.body() {
@@ -167,7 +167,7 @@ pub fn count(place: Place) -> usize {
     place.value.and_then(Value::as_array).map_or(0, Vec::len)
 }
 
-/// The name that an item of a list carries.
+/// The name of an item of a list, if it has one.
 pub fn name_of(value: Option<&Value>) -> Option<String> {
     Some(value?.as_object()?.get("name")?.as_str()?.to_owned())
 }

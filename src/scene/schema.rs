@@ -1,5 +1,5 @@
-//! The schema of a scene, generated from its types, and the one walker over it: a JSON pointer to the shape of what
-//! stands there. The check of shape, forms, help, completion, edits and `plica schema` all look through this door.
+//! The schema of a scene, generated from its types, and the only walker over it: from a JSON pointer to the shape of
+//! what is there. The check of shape, forms, help, completion, edits and `plica schema` all use it.
 
 use std::sync::LazyLock;
 
@@ -7,12 +7,12 @@ use serde_json::{Map, Value};
 
 use super::pointer;
 
-/// A position, a vector or a plain number without a range of its own lies within this: every sum and product of a few
-/// of them stays finite.
+/// The limit for positions, vectors and plain numbers without a range of their own: every sum and product of a few of
+/// them stays finite.
 const LARGEST: f64 = 1e9;
 
-/// What numbers are measured in, and the widest range of those that have none of their own; `None` if they may be any
-/// finite number. The schema tells the unit of every number.
+/// The units of numbers, each with the range of numbers that have no range of their own; `None` if they may be any
+/// finite number. The schema has the unit of every number.
 const UNITS: [(&str, Option<(f64, f64)>); 8] = [
     (PLAIN, Some((-LARGEST, LARGEST))),
     ("px", Some((-LARGEST, LARGEST))),
@@ -24,14 +24,13 @@ const UNITS: [(&str, Option<(f64, f64)>); 8] = [
     ("timelines", None),
 ];
 
-/// The unit of a fraction, a factor, a count: forms need no word for it.
+/// The unit of fractions, factors and counts; forms show no unit for it.
 const PLAIN: &str = "1";
 
-/// The range of whole numbers that have none of their own.
+/// The range of whole numbers that have no range of their own.
 const WHOLE: (f64, f64) = (0.0, u32::MAX as f64);
 
-/// Whether a range is one of those that numbers have which have none of their own; messages about other things leave it
-/// out.
+/// Whether a range is only the one for numbers without a range of their own; messages about other things leave it out.
 pub fn is_widest(range: (f64, f64)) -> bool {
     range == WHOLE || UNITS.iter().any(|(_, widest)| *widest == Some(range))
 }
@@ -47,7 +46,7 @@ pub fn json_schema() -> &'static Value {
     &SCHEMA
 }
 
-/// Writes a range at every number of the schema that has none.
+/// Adds a range to every number in the schema that has none.
 fn bound(node: &mut Value, unit: Option<&str>) {
     let own = node.get("unit").and_then(Value::as_str).map(str::to_owned);
     let unit = own.as_deref().or(unit);
@@ -86,9 +85,9 @@ pub struct Shape {
     body: &'static Value,
     /// The field whose items these are, for what they inherit from it: help, unit, names of columns.
     outer: Option<&'static Value>,
-    /// Set where this is the tag of the tagged type in `body`.
+    /// Set if this is the tag of the tagged type in `body`.
     tag: Option<&'static str>,
-    /// Whether `null`, or nothing, may stand here.
+    /// Whether it may be `null` or missing.
     pub optional: bool,
 }
 
@@ -97,7 +96,7 @@ pub struct Shape {
 pub enum Body {
     /// A number.
     Number {
-        /// Without a fraction.
+        /// Whether it is a whole number.
         integer: bool,
     },
     /// Text.
@@ -106,11 +105,11 @@ pub enum Body {
     Bool,
     /// One of several words: [`Shape::choices`].
     Choice,
-    /// So many numbers.
+    /// This many numbers.
     Numbers(usize),
-    /// A list of a shape, at least and at most so long.
+    /// A list of items of a shape, with its least and greatest length.
     List(Shape, usize, usize),
-    /// An object with names of its own choice and values of a shape.
+    /// An object with arbitrary keys and values of a shape.
     Map(Shape),
     /// An object with known fields.
     Object,
@@ -139,12 +138,12 @@ impl Shape {
         }
     }
 
-    /// Whether it is not for editing.
+    /// Whether it is read-only.
     pub fn is_fixed(self) -> bool {
         self.site.get("readOnly") == Some(&Value::Bool(true))
     }
 
-    /// What it is.
+    /// Its body.
     pub fn body(self) -> Body {
         if self.tag.is_some() {
             return Body::Choice;
@@ -176,7 +175,7 @@ impl Shape {
         }
     }
 
-    /// The type in JSON's words; "null" beside another type is left out (it makes the shape optional).
+    /// The JSON type; "null" beside another type is left out (it makes the shape optional).
     fn type_name(self) -> &'static str {
         let one = |value: &'static Value| value.as_str().filter(|&name| name != "null");
         match self.body.get("type") {
@@ -186,7 +185,7 @@ impl Shape {
         }
     }
 
-    /// Whether `null`, or nothing, may stand here instead.
+    /// Whether its schema allows `null`.
     pub fn allows_null(self) -> bool {
         let listed = |names: &'static Value| names.as_array().is_some_and(|names| names.iter().any(|n| n == "null"));
         self.optional || self.body.get("type").is_some_and(listed)
@@ -205,7 +204,7 @@ impl Shape {
         self.text("description").unwrap_or_default()
     }
 
-    /// What the branch of a tagged type computes.
+    /// The formula of a branch of a tagged type.
     pub fn formula(self) -> Option<&'static str> {
         self.text("formula")
     }
@@ -215,13 +214,13 @@ impl Shape {
         self.text("unit").filter(|unit| *unit != PLAIN)
     }
 
-    /// Whether the schema says what its numbers are measured in, be it nothing.
+    /// Whether the schema has a known unit for its numbers, even if it is [`PLAIN`].
     #[cfg(test)]
     pub fn has_known_unit(self) -> bool {
         self.text("unit").is_some_and(|unit| UNITS.iter().any(|(name, _)| *name == unit))
     }
 
-    /// The letter that formulae have for its vector.
+    /// The letter for its vector in formulas.
     pub fn symbol(self) -> Option<&'static str> {
         self.text("symbol")
     }
@@ -231,7 +230,7 @@ impl Shape {
         self.text("reference")
     }
 
-    /// Names of the numbers of a pair, where they have any: x and y of what is measured in pixels.
+    /// The names of the numbers of a pair, if they have any: x and y for anything in pixels.
     pub fn column(self, index: usize) -> Option<&'static str> {
         match self.meta("columns") {
             Some(names) => names.get(index).and_then(Value::as_str),
@@ -257,7 +256,7 @@ impl Shape {
         self.body.get("minLength").and_then(Value::as_u64).unwrap_or(0) as usize
     }
 
-    /// What counts where nothing is written.
+    /// The value if nothing is written.
     pub fn default(self) -> Option<&'static Value> {
         self.site.get("default")
     }
@@ -279,7 +278,7 @@ impl Shape {
         branch.map(|branch| Shape { site: self.site, body: branch, outer: None, tag: None, optional: self.optional })
     }
 
-    /// The branch that `value` chooses: itself where there is no tag, `None` if the tag is missing or unknown.
+    /// The branch that `value` chooses: the shape itself if it has no tag, `None` if the tag is missing or unknown.
     pub fn branch(self, value: Option<&Value>) -> Option<Shape> {
         match self.body() {
             Body::Tagged(tag) => self.variant(value?.get(tag)?.as_str()?),
@@ -307,7 +306,7 @@ impl Shape {
         names.into_iter().filter_map(|name| Some((name, self.property(value, name)?))).collect()
     }
 
-    /// What may stand one token deeper, whatever the tag of a tagged type.
+    /// The shapes that may be one token deeper, for any tag of a tagged type.
     pub fn below(self, token: &str) -> Vec<Shape> {
         match self.body() {
             Body::List(item, ..) => pointer::index(token).map(|_| item).into_iter().collect(),
@@ -324,7 +323,7 @@ impl Shape {
         self.fields()?.get(name)?.get("const")
     }
 
-    /// The fields that must be written, of an object whose tag is already chosen.
+    /// The required fields of an object whose tag is already chosen.
     pub fn required(self) -> impl Iterator<Item = &'static str> {
         self.body.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
     }
@@ -335,7 +334,7 @@ impl Shape {
     }
 }
 
-/// The property of a branch of a tagged type that tells it apart.
+/// The property that distinguishes a branch of a tagged type.
 fn tag_of(branch: &'static Value) -> Option<&'static str> {
     let properties = branch.get("properties")?.as_object()?;
     properties.iter().find(|(_, property)| property.get("const").is_some()).map(|(name, _)| name.as_str())
@@ -346,11 +345,11 @@ fn tag_of(branch: &'static Value) -> Option<&'static str> {
 pub struct Place<'a> {
     /// Its shape.
     pub shape: Shape,
-    /// The value written there, else the default; `None` if there is neither.
+    /// The value written there, otherwise the default; `None` if there is neither.
     pub value: Option<&'a Value>,
     /// Whether it is written in the document.
     pub set: bool,
-    /// Whether it must be.
+    /// Whether it must be written.
     pub required: bool,
 }
 
@@ -360,8 +359,8 @@ impl<'a> Place<'a> {
         Place { shape: Shape::root(), value: Some(json), set: true, required: true }
     }
 
-    /// What `pointer` leads to; `None` if the schema knows no such place or a list is not so long. The place just after
-    /// the end of a list, also written `-`, and any name in a map are places without a value.
+    /// What `pointer` leads to; `None` if the schema knows no such place or a list is too short. The place just after
+    /// the end of a list, also written `-`, and any key in a map are places without a value.
     pub fn of(json: &'a Value, pointer: &str) -> Option<Place<'a>> {
         if !pointer.is_empty() && !pointer.starts_with('/') {
             return None;

@@ -1,6 +1,6 @@
-//! The check of shape: walks a document beside its schema, taking a tagged branch by its tag, and lists every unknown or
-//! missing field, wrong type, unknown word and number out of range at once. (Reading into the types would stop at the
-//! first, and would not say where.)
+//! The check of shape: walks a document along its schema, choosing branches by their tags, and lists every unknown or
+//! missing field, wrong type, unknown word and number out of range at once. (Deserialising would stop at the first, and
+//! would not say where.)
 
 use serde_json::{Map, Number, Value};
 
@@ -10,7 +10,7 @@ use super::schema::{Body, Shape, is_widest};
 use crate::base::change::Change;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 
-/// No more problems than this are listed.
+/// At most this many problems are listed.
 const MAX_PROBLEMS: usize = 1000;
 
 /// Every problem of shape in `json`.
@@ -23,7 +23,7 @@ pub fn check(json: &Value) -> Vec<Problem> {
     walk.problems
 }
 
-/// Whether `json` has the right shape, where what it was before `change` had it.
+/// Whether `json` has the right shape, given that it had before `change`.
 pub fn still_fits(json: &Value, change: &Change) -> bool {
     changed_fits(Shape::root(), json, change)
 }
@@ -57,7 +57,7 @@ pub fn fits(shape: Shape, value: &Value) -> bool {
     problems(shape, value).is_empty()
 }
 
-/// Every problem of `value` where this shape is wanted; paths are relative to it.
+/// Every problem of `value` as this shape; paths are relative to it.
 pub fn problems(shape: Shape, value: &Value) -> Vec<Problem> {
     let mut walk = Walk { path: String::new(), problems: Vec::new() };
     walk.value(shape, value);
@@ -77,7 +77,7 @@ impl Walk {
         }
     }
 
-    /// Does `below` one step deeper.
+    /// Runs `below` one step deeper.
     fn under(&mut self, token: &str, below: impl FnOnce(&mut Self)) {
         let length = self.path.len();
         pointer::push(&mut self.path, token);
@@ -185,7 +185,7 @@ impl Walk {
     }
 }
 
-/// What a shape wants, in words.
+/// What a shape expects, in words.
 pub fn expected(shape: Shape) -> String {
     let range = shape.range().filter(|&range| !is_widest(range));
     let range = range_text(range, shape.unit()).map(|range| format!(", {range}")).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What a zone's tools give: anchors, in the order of folding.md section 4, and dense fields.
+//! The results of a zone's tools: anchors, in the order of folding.md section 4, and dense fields.
 
 use std::sync::Arc;
 
@@ -13,12 +13,12 @@ use crate::base::maths;
 use crate::base::pixels::Grid;
 use crate::layers::parts::materials::Materials;
 
-/// A field given everywhere, in pixels.
+/// A field that is defined everywhere, in pixels.
 #[derive(Clone, Debug)]
 pub enum Dense {
     /// J(q) = T(q) - q.
     Transform(Affine),
-    /// A sampled field, read bilinearly and multiplied.
+    /// A sampled field, read bilinearly and multiplied by a factor.
     Sampled(Arc<Grid<[f32; 2]>>, f64),
 }
 
@@ -53,7 +53,7 @@ pub fn given(tool: &Tool, zone: &Zone) -> Vec<(Point, Vec2)> {
     }
 }
 
-/// All dense fields of a zone, tools in list order. A `field` whose file is not among the materials gives none.
+/// All dense fields of a zone, tools in list order. A `field` whose file is not among the materials is left out.
 pub fn dense(zone: &Zone, materials: &Materials) -> Vec<Dense> {
     zone.motion.iter().filter_map(|tool| dense_of(tool, materials)).collect()
 }
@@ -65,7 +65,7 @@ fn dense_of(tool: &Tool, materials: &Materials) -> Option<Dense> {
     }
 }
 
-/// The map T of a transform, of which J(q) = T(q) - q; `None` if the tool is another one.
+/// The map T of a transform, with J(q) = T(q) - q; `None` if the tool is not a transform.
 pub fn transform(tool: &Tool) -> Option<Affine> {
     let about = |center: &[f64; 2], linear: [f64; 4]| {
         let c = vector(*center);
@@ -142,7 +142,7 @@ fn curve(nodes: &[Node], samples: u32, jump_at: impl Fn(f64) -> Vec2, frame: Cur
         .collect()
 }
 
-/// The pieces of a spline with their lengths; pieces of no length are left out.
+/// The pieces of a spline with their lengths; pieces of length 0 are left out.
 struct Pieces {
     start: Point,
     pieces: Vec<(CubicBez, f64)>,
@@ -159,8 +159,8 @@ impl Pieces {
         Pieces { start, pieces: cubics.filter(|(_, length)| *length > ARC_ACCURACY_PX).collect() }
     }
 
-    /// Position and unit tangent at a fraction of the arc length. At a node the piece that starts there counts, at the
-    /// end the one that ends there.
+    /// Position and unit tangent at a fraction of the arc length. At a node, those of the piece that starts there; at
+    /// the end, those of the last piece.
     fn at(&self, along: f64) -> (Point, Vec2) {
         let total: f64 = self.pieces.iter().map(|(_, length)| length).sum();
         let mut rest = along * total;

@@ -9,7 +9,7 @@ use super::position::{Between, Position, Segment};
 pub struct Break {
     /// Local time τ of the jump.
     pub tau: f64,
-    /// Which side's value holds at that τ itself.
+    /// Which side's value applies at exactly that τ.
     pub holds: Side,
 }
 

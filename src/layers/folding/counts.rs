@@ -1,5 +1,5 @@
-//! How many anchors and outline points a zone asks for, told from the document before any of them is made: ten digits in
-//! a file must not cost gigabytes. Estimates from above.
+//! How many anchors and outline points a zone asks for, estimated from the document before any of them is made: ten
+//! digits in a file must not cost gigabytes. The estimates are upper bounds.
 
 use kurbo::Vec2;
 
@@ -9,7 +9,7 @@ use super::tools::Tool;
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::maths::{TAU, pow};
 
-/// Anchors of one tool of a zone with this outline.
+/// The number of anchors of one tool in a zone with this outline.
 pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
     match tool {
         Tool::Point { .. } => 1.0,
@@ -25,12 +25,12 @@ pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
     }
 }
 
-/// Anchors of all tools of a zone.
+/// The number of anchors of all tools of a zone.
 pub fn all_anchors(zone: &Zone) -> f64 {
     zone.motion.iter().map(|tool| anchors(tool, &zone.outline)).sum()
 }
 
-/// Points of an outline: a little more than flattening gives.
+/// The number of points of an outline: slightly more than flattening gives.
 pub fn points(outline: &Outline) -> f64 {
     match outline {
         Outline::Rectangle { .. } => 4.0,
@@ -40,8 +40,9 @@ pub fn points(outline: &Outline) -> f64 {
     }
 }
 
-/// Points of one cubic: it goes through quadratics, by the third difference of its control points and a tenth of the
-/// tolerance, and each becomes straight sides, by the second differences (Wang 1984) and the rest.
+/// The number of points of one cubic: it is first approximated by quadratics, by the third difference of its control
+/// points and a tenth of the tolerance; each of those becomes straight sides, by the second differences (Wang 1984) and
+/// the rest of the tolerance.
 fn flattened_side(a: &Node, b: &Node) -> f64 {
     let (out, back, across) = (vector(a.handle_out), vector(b.handle_in), vector(b.at) - vector(a.at));
     if out == Vec2::ZERO && back == Vec2::ZERO {
@@ -71,7 +72,7 @@ fn sides(nodes: &[Node]) -> impl Iterator<Item = (&Node, &Node)> {
     nodes.iter().zip(nodes.iter().cycle().skip(1))
 }
 
-/// Length of a segment's control polygon: the curve is no longer.
+/// The length of a segment's control polygon: the curve is not longer.
 fn control_length(a: &Node, b: &Node) -> f64 {
     let (out, back, across) = (vector(a.handle_out), vector(b.handle_in), vector(b.at) - vector(a.at));
     out.length() + (across + back - out).length() + back.length()

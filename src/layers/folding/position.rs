@@ -221,14 +221,14 @@ impl Position {
         }
     }
 
-    /// The range over both ends and the given inner places.
+    /// The range of s over both ends and the given inner places.
     fn over(&self, turning: Vec<f64>) -> (f64, f64) {
         hull(turning.into_iter().chain([0.0, 1.0]).map(|tau| self.eval(tau)))
     }
 }
 
 impl Segment {
-    /// s where the easing is at `eased`.
+    /// s when the easing is at `eased`.
     pub fn at(&self, eased: f64) -> f64 {
         self.from + (self.to - self.from) * eased
     }
@@ -249,7 +249,7 @@ fn turning_points(cycles: f64, phase: f64, first: f64) -> Vec<f64> {
     turns.map(|turn| ((turn - phase) / cycles).clamp(0.0, 1.0)).collect()
 }
 
-/// Rates below this bend nothing, and their quotients run out of digits.
+/// Rates below this make no visible curve, and their quotients lose all digits.
 const NO_RATE: f64 = 1e-100;
 
 /// (e^(kτ) - 1) / (e^k - 1) without overflow; its limit τ for k = 0.
@@ -269,7 +269,7 @@ fn sigmoid(k: f64, tau: f64) -> f64 {
     0.5 + tanh(k * (tau - 0.5) / 2.0) / (2.0 * tanh(k / 4.0))
 }
 
-/// CSS easing: y where x(u) = tau. x is monotone, so halving always finds it.
+/// CSS easing: y where x(u) = tau. x is monotone, so bisection always finds it.
 fn cubic_bezier([x1, y1]: [f64; 2], [x2, y2]: [f64; 2], tau: f64) -> f64 {
     let at = |p1: f64, p2: f64, u: f64| {
         let v = 1.0 - u;
@@ -343,7 +343,7 @@ mod tests {
         serde_json::from_str(json).unwrap()
     }
 
-    /// Every function with its default and with odd parameters.
+    /// Every function with its default and with unusual parameters.
     fn all() -> Vec<Position> {
         [
             r#"{"function":"linear"}"#,

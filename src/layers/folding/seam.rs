@@ -1,5 +1,5 @@
-//! Where a zone's sampler jumps because time starts anew: at the seam of a loop, and wherever a pass ends before. Jumps
-//! within a position function are meant; these often are not.
+//! Where a zone's sampler jumps because time starts over: at the seam of a loop, and at the end of every pass before
+//! that. Jumps within a position function are intended; these often are not.
 
 use super::model::{PictureLayer, Zone};
 use super::position::Position;
@@ -7,10 +7,10 @@ use super::tools::Tool;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::layers::timeline::Wrap;
 
-/// The least jump in s.
+/// The smallest jump in s that counts.
 const LEAST: f64 = 0.01;
 
-/// How a layer repeats: the first jump of each zone, and the speeds of those whose passes end as they begin.
+/// How a layer repeats: the first jump of each zone, and the speeds of the zones whose passes end as they begin.
 pub fn repeat(layer: &PictureLayer, wrap: Wrap) -> Repeat {
     let closing = layer.zones.iter().filter(|zone| closes(&zone.position, wrap));
     let speeds = closing.map(|zone| zone.speed).collect();
@@ -29,8 +29,8 @@ pub fn repeat(layer: &PictureLayer, wrap: Wrap) -> Repeat {
     Repeat { snaps: snaps.collect(), speeds }
 }
 
-/// The first jump of a zone while the timeline is played in a loop: its scene time, s before and after. `None` if every
-/// pass ends as it begins.
+/// The first jump of a zone while the timeline is played in a loop: its scene time, and s before and after. `None` if
+/// there is no jump.
 fn snap(zone: &Zone, wrap: Wrap) -> Option<(f64, (f64, f64))> {
     let clock = zone.clock(wrap);
     let still = |tool: &Tool| matches!(tool, Tool::StillBorder { .. });
@@ -41,7 +41,7 @@ fn snap(zone: &Zone, wrap: Wrap) -> Option<(f64, (f64, f64))> {
         let s = (clock.s(before), clock.s(after));
         ((s.0 - s.1).abs() > LEAST).then_some((time, s))
     };
-    // At the seam time goes on at 0; speeds up to a million move less than a tenth of a pass in BESIDE.
+    // At the seam time continues at 0; at speeds up to a million, BESIDE is less than a tenth of a pass.
     let seam = || jump(1.0, 1.0 - BESIDE, BESIDE);
     let within = || {
         let (first, last) = (clock.speed * clock.shift, clock.speed * (1.0 + clock.shift));
@@ -53,7 +53,7 @@ fn snap(zone: &Zone, wrap: Wrap) -> Option<(f64, (f64, f64))> {
     seam().or_else(within)
 }
 
-/// Whether every pass of the zone ends as it begins, so that whole passes are all that a loop needs.
+/// Whether every pass of the zone ends as it begins, so that a whole number of passes closes the loop.
 fn closes(position: &Position, wrap: Wrap) -> bool {
     wrap == Wrap::PingPong || (position.eval(1.0 - BESIDE) - position.eval(BESIDE)).abs() <= LEAST
 }

@@ -1,11 +1,11 @@
-//! Fields and addresses: what forms, help and completion are made from.
+//! Fields and addresses, which forms, help and completion are made from.
 
 use serde_json::{Value, json};
 
 use super::*;
 use crate::scene::schema::{Body, Shape};
 
-/// Calls `each` with every field of the schema, by its name and once a type.
+/// Calls `each` with every field of the schema and its name, once per type.
 fn walk(shape: Shape, name: &str, depth: usize, each: &mut impl FnMut(&str, Shape)) {
     each(name, shape);
     if depth > 12 {
@@ -19,7 +19,7 @@ fn walk(shape: Shape, name: &str, depth: usize, each: &mut impl FnMut(&str, Shap
                 assert!(!help.is_empty(), "{name}: {variant} has no help");
                 let chosen = json!({ tag: variant });
                 for (name, field) in shape.properties(Some(&chosen)) {
-                    // Easing may nest without end.
+                    // Easings can nest without end.
                     let deeper = if name == "ease" { 20 } else { depth + 1 };
                     walk(field, name, deeper, each);
                 }
