@@ -54,7 +54,7 @@ fn room(x: f64, y: f64) -> Rgb {
     times(warm, (0.95 + 0.28 * soft) as f32)
 }
 
-/// The colour of the coat: ginger, pale round mouth and eyes, with a tabby's stripes.
+/// The color of the coat: ginger, pale round mouth and eyes, with a tabby's stripes.
 fn coat(p: Point) -> Rgb {
     let (x, y) = ((p.x - MIDDLE).abs(), p.y);
     let wander = noise(p.x / 24.0, y / 24.0, 17);

@@ -7,7 +7,7 @@ use plica::base::maths::smoothstep;
 /// A color as displayed, 0 to 1 per channel.
 pub type Rgb = [f32; 3];
 
-/// The colour 0xRRGGBB.
+/// The color 0xRRGGBB.
 pub fn rgb(hex: u32) -> Rgb {
     [16, 8, 0].map(|shift| ((hex >> shift) & 255) as f32 / 255.0)
 }
@@ -17,7 +17,7 @@ pub fn mix(a: Rgb, b: Rgb, t: f32) -> Rgb {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
 }
 
-/// A colour made lighter (above 1) or darker.
+/// A color made lighter (above 1) or darker.
 pub fn times(a: Rgb, factor: f32) -> Rgb {
     a.map(|c| c * factor)
 }
@@ -144,7 +144,7 @@ impl Stroke {
     }
 }
 
-/// A picture being painted: display colours, premultiplied by alpha.
+/// A picture being painted: display colors, premultiplied by alpha.
 pub struct Canvas {
     width: usize,
     height: usize,
@@ -152,7 +152,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A canvas of one colour.
+    /// A canvas of one color.
     pub fn new(width: usize, height: usize, [r, g, b]: Rgb) -> Canvas {
         Canvas { width, height, cells: vec![[r, g, b, 1.0]; width * height] }
     }
@@ -167,7 +167,7 @@ impl Canvas {
         (0..h).flat_map(move |y| (0..w).map(move |x| (x as f64 + 0.5, y as f64 + 0.5)))
     }
 
-    /// Changes every pixel's colour; alpha stays.
+    /// Changes every pixel's color; alpha stays.
     pub fn shade(&mut self, change: impl Fn(f64, f64, Rgb) -> Rgb) {
         for ((x, y), cell) in self.centers().zip(&mut self.cells) {
             let [r, g, b] = change(x, y, [cell[0], cell[1], cell[2]]);
@@ -175,17 +175,17 @@ impl Canvas {
         }
     }
 
-    /// Paints one colour through a mask.
+    /// Paints one color through a mask.
     pub fn paint(&mut self, mask: &Mask, color: Rgb, alpha: f64) {
         self.paint_with(mask, |_, _, _| (color, alpha));
     }
 
-    /// Multiplies by a colour through a mask: shadow and glaze.
+    /// Multiplies by a color through a mask: shadow and glaze.
     pub fn glaze(&mut self, mask: &Mask, color: Rgb, alpha: f64) {
         self.paint_with(mask, |_, _, below| (std::array::from_fn(|i| below[i] * color[i]), alpha));
     }
 
-    /// Lightens towards a colour through a mask: the inverse product.
+    /// Lightens towards a color through a mask: the inverse product.
     pub fn light(&mut self, mask: &Mask, color: Rgb, alpha: f64) {
         self.paint_with(mask, |_, _, below| {
             (std::array::from_fn(|i| 1.0 - (1.0 - below[i]) * (1.0 - color[i])), alpha)

@@ -3,7 +3,7 @@
 use super::kit::{Rgb, mix, rgb, times};
 use super::noise::{cells, fbm, hash, noise};
 
-/// The texture of skin laid over a colour: `scale` 1 for a close-up, smaller from farther away.
+/// The texture of skin laid over a color: `scale` 1 for a close-up, smaller from farther away.
 pub fn skin(x: f64, y: f64, below: Rgb, scale: f64) -> Rgb {
     let blotch = fbm(x / (46.0 * scale), y / (46.0 * scale), 3, 3);
     let color = mix(below, rgb(0xC9705C), (0.10 * blotch + 0.04).max(0.0) as f32);

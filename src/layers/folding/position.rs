@@ -238,7 +238,7 @@ fn hull(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)))
 }
 
-/// The τ inside (0, 1) where cycles τ + phase is `first` or a half cycle more, as many as make a difference.
+/// The first two τ in [0, 1] where cycles τ + phase is `first` plus a multiple of 1/2: enough for the range.
 fn turning_points(cycles: f64, phase: f64, first: f64) -> Vec<f64> {
     if cycles == 0.0 {
         return Vec::new();
