@@ -67,7 +67,7 @@ impl Cache {
     /// # Errors
     /// If the hash is not a hash, or the folder cannot be written.
     pub fn begin(&self, wanted: &Contents) -> Result<Incoming> {
-        let path = self.path(&wanted.hash).ok_or_else(|| Error::at("link", "a hash that is none"))?;
+        let path = self.path(&wanted.hash).ok_or_else(|| Error::at("link", "an invalid hash"))?;
         Ok(Incoming { file: Atomic::create(&path)?, path, wanted: wanted.clone(), hash: Sha256::new(), have: 0 })
     }
 
@@ -132,7 +132,7 @@ impl Incoming {
     pub fn add(&mut self, bytes: &[u8]) -> Result<()> {
         self.have += bytes.len() as u64;
         if self.have > self.wanted.bytes {
-            return Err(Error::at("link", "a file that is longer than was said"));
+            return Err(Error::at("link", "a file that is longer than announced"));
         }
         self.hash.update(bytes);
         self.file.write_all(bytes).map_err(|error| Error::at(self.path.display(), error))
@@ -144,7 +144,7 @@ impl Incoming {
     /// If it is not what was announced, or cannot be written.
     pub fn finish(self) -> Result<PathBuf> {
         if hex(&self.hash.finalize()) != self.wanted.hash {
-            return Err(Error::at("link", "a file that is not what was said"));
+            return Err(Error::at("link", "a file that is not what was announced"));
         }
         self.file.commit()?;
         Ok(self.path)

@@ -84,7 +84,7 @@ pub static TABLE: LazyLock<Vec<Limit>> = LazyLock::new(|| {
 const SCENE: [Limit; 5] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
-    limit("memory", "bytes that what is read and made may take, in sum", 4096 * MIB, |l| &mut l.memory),
+    limit("memory", "bytes that everything read and computed may take in total", 4096 * MIB, |l| &mut l.memory),
     limit("scene", "bytes of a scene file", 64 * MIB, |l| &mut l.scene),
     limit("depth", "depth of a scene's JSON", 64, |l| &mut l.depth),
 ];
@@ -96,7 +96,7 @@ const REST: [Limit; 7] = [
     limit("message", "bytes of a message between editor and window", 64 * MIB, |l| &mut l.message),
     limit("paste", "bytes pasted at once", 16 * MIB, |l| &mut l.paste),
     limit("texture", "side of a picture in the window; larger ones are reduced", 1 << 20, |l| &mut l.texture),
-    limit("cache", "bytes of files from other machines that are kept", 1024 * MIB, |l| &mut l.cache),
+    limit("cache", "bytes of cached files from other machines", 1024 * MIB, |l| &mut l.cache),
 ];
 
 const fn limit(name: &'static str, help: &'static str, default: u64, of: fn(&mut Limits) -> &mut u64) -> Limit {

@@ -53,7 +53,7 @@ fn is_seen(synth: &Synth, snap: &Snap) -> bool {
 
 /// The warning about a jump in a timeline of `duration` seconds; its path is relative to the layer.
 fn warning(duration: f64, speeds: &[f64], snap: &Snap) -> Problem {
-    let place = if snap.time == 1.0 { "where it begins anew".into() } else { format!("at t = {:.3}", snap.time) };
+    let place = if snap.time == 1.0 { "where it starts over".into() } else { format!("at t = {:.3}", snap.time) };
     let message = format!("the loop snaps {place}: {}", snap.what);
     let mut hint = snap.cure.clone();
     if snap.needs_time_alone
@@ -112,7 +112,7 @@ mod tests {
             (
                 json!({ "speed": 1.5, "position": { "function": "cosine" } }),
                 "repeat",
-                &["from 1 to 0", "whole number, as 2", "a duration of 4 s", "every speed times 2"],
+                &["from 1 to 0", "whole number, such as 2", "a duration of 4 s", "every speed times 2"],
             ),
         ] {
             let text = text(zone, wrap);

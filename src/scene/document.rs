@@ -114,7 +114,7 @@ impl Document {
         };
         let read = check::reread(&json, &change, &self.read, &self.rules).map_err(errors)?;
         if json.get("plica") != self.json.get("plica") {
-            let problem = Problem::error("/plica", "the version of the format is not for editing");
+            let problem = Problem::error("/plica", "the version of the format cannot be edited");
             return Err(vec![problem.hint("a newer plica brings a scene to its own version by itself")]);
         }
         Ok(Some((Document { json: Arc::new(json), read, rules: self.rules.clone() }, inverse)))

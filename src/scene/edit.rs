@@ -213,8 +213,7 @@ fn add(json: &mut Value, path: &str, value: Value) -> Result<Edit, Problem> {
 /// RFC 6902 `remove`; also returns what was there. The inverse is an `add` if that restores the key to its old place,
 /// otherwise the whole object as it was.
 fn remove(json: &mut Value, path: &str) -> Result<(Value, Edit), Problem> {
-    let (parent, last) =
-        pointer::split(path).ok_or_else(|| Problem::error("", "the whole scene cannot be taken away"))?;
+    let (parent, last) = pointer::split(path).ok_or_else(|| Problem::error("", "the whole scene cannot be removed"))?;
     let whole = json.pointer(parent).filter(|parent| parent.is_object()).cloned();
     let value = match json.pointer_mut(parent).ok_or_else(|| missing(parent))? {
         Value::Object(map) => map.shift_remove(&last).ok_or_else(|| missing(path))?,

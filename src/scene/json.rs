@@ -141,7 +141,7 @@ impl<'de> Visitor<'de> for Seed {
         let mut map = Map::new();
         while let Some(key) = access.next_key::<String>()? {
             if map.contains_key(&key) {
-                return Err(A::Error::custom(format_args!("{} stands twice in one object", Value::from(key))));
+                return Err(A::Error::custom(format_args!("{} appears twice in one object", Value::from(key))));
             }
             let value = access.next_value_seed(inner)?;
             map.insert(key, value);
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn broken_text_is_refused_with_its_place() {
         for (text, expected) in [
-            ("{ \"a\": 1,\n  \"a\": 2 }", "line 2, column 5: \"a\" stands twice in one object"),
+            ("{ \"a\": 1,\n  \"a\": 2 }", "line 2, column 5: \"a\" appears twice in one object"),
             ("[1e999]", "line 1, column 6: the number is too large"),
             ("{ \"a\": NaN }", "line 1, column 8: expected a value: a number, a text in quotes, a list, an object"),
             ("{ \"a\": 1 } x", "line 1, column 12: trailing characters"),

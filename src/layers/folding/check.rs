@@ -153,7 +153,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
         problems.push(Problem::warning("/interpolation/ring", message).hint("every anchor counts by chance"));
     }
     if matches!(zone.fold, Some(Fold::Mask { .. })) && zone.sampler.is_some() {
-        let hint = "take away either the fold or the sampler";
+        let hint = "remove either the fold or the sampler";
         problems.push(Problem::error("/fold", "a mask and a sampler image do not go together").hint(hint));
     }
     if zone.motion.iter().all(|tool| matches!(tool, Tool::StillBorder { .. })) {
@@ -220,7 +220,7 @@ fn anchors_of(zone: &Zone) -> Vec<Problem> {
         let (first, second) = (&anchors[i], &anchors[j]);
         let Point { x, y } = first.at;
         let message = format!(
-            "anchors {i} (of tool {}) and {j} (of tool {}) stand at the same place, ({x}, {y})",
+            "anchors {i} (of tool {}) and {j} (of tool {}) are at the same place, ({x}, {y})",
             first.tool, second.tool
         );
         Problem::warning(format!("/motion/{}", second.tool), message).hint("at that place only the first counts")
@@ -239,7 +239,7 @@ fn nearly_straight(zone: &Zone, anchors: &[Anchor]) -> Option<Problem> {
         "the thin plate's anchors 0 to {last} are nearly on one line: they spread {along:.1} px along it and {across:.1} px \
          across, and jump vectors beside it become far longer than those of the anchors"
     );
-    let hint = "add anchors beside the line (a still border, say), or take another interpolation";
+    let hint = "add anchors beside the line (a still border, say), or use another interpolation";
     Some(Problem::warning("/interpolation", message).hint(hint))
 }
 

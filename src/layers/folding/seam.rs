@@ -61,7 +61,7 @@ fn closes(position: &Position, wrap: Wrap) -> bool {
 fn cure(zone: &Zone, wrap: Wrap) -> String {
     if closes(&zone.position, wrap) {
         let nearest = zone.speed.abs().round().max(1.0).copysign(zone.speed);
-        return format!("set its speed to a whole number, as {nearest}");
+        return format!("set its speed to a whole number, such as {nearest}");
     }
     match &zone.position {
         Position::Sine { .. } | Position::Cosine { .. } => "give it whole cycles".into(),
@@ -73,7 +73,7 @@ fn cure(zone: &Zone, wrap: Wrap) -> String {
         | Position::ExponentialInverse { .. }
         | Position::Sigmoid { .. }
         | Position::CubicBezier { .. } => {
-            "take a function that comes back, as cosine, or set the loop to ping-pong or once".into()
+            "use a function that comes back, such as cosine, or set the loop to ping-pong or once".into()
         }
     }
 }

@@ -190,7 +190,7 @@ fn a_patch_of_somebody_else_is_applied_as_rfc_6902_says() {
         (json!([{ "op": "test", "path": "/title", "value": "a" }, { "op": "remove", "path": "/title" }]), Ok("/plica")),
         (json!([{ "op": "test", "path": "/title", "value": "b" }]), Err("is not what the edit was made for")),
         (json!([{ "op": "replace", "path": "/timeline", "value": {} }]), Err("there is nothing here")),
-        (json!([{ "op": "remove", "path": "" }]), Err("the whole scene cannot be taken away")),
+        (json!([{ "op": "remove", "path": "" }]), Err("the whole scene cannot be removed")),
         (json!([{ "op": "add", "path": "", "value": { "plica": 1 } }]), Ok("/plica")),
     ] {
         let edit: Edit = serde_json::from_value(patch.clone()).unwrap();

@@ -106,5 +106,5 @@ fn sampled(old: &Position) -> Turned {
     let n = (cycles * A_CYCLE).ceil().min(MOST);
     let on = |at: f64| [at, (old.eval(at) * 1e6).round() / 1e6];
     let points: Vec<_> = (0..=n as usize).map(|i| on(i as f64 / n)).collect();
-    keyframes(&points, "smooth").but(format!("{} keyframes stand on it, smooth between them", points.len()))
+    keyframes(&points, "smooth").but(format!("{} keyframes are on it, smooth between them", points.len()))
 }

@@ -158,7 +158,7 @@ fn what_gives_anchors_keeps_them() {
                 "nodes": [{ "at": [0, 0] }, { "at": [3, 0] }, { "at": [3, 4] }, { "at": [0, 0] }],
                 "jumps": [place(0.0, 0.0, 1.0), place(0.25, 0.0, 2.0), place(7.0 / 12.0, 0.0, 0.0),
                     place(1.0, 0.0, 1.0)] })],
-            "the 4 anchors stand evenly along the curve now",
+            "the 4 anchors are now evenly spaced along the curve",
         ),
         (
             &point,
@@ -179,7 +179,7 @@ fn what_gives_anchors_keeps_them() {
             &point,
             "scale",
             vec![json!({ "tool": "scale", "center": [50, 40], "factor": [1, 1] })],
-            "its jump vectors are not kept, only where they stand",
+            "its jump vectors are not kept, only their places",
         ),
         (&lasso, "still-border", vec![json!({ "tool": "still-border", "spacing": 8 })], "nothing of the lasso is kept"),
         (&border, "field", vec![json!({ "tool": "field", "path": "field.flo" })], "its spacing is not kept"),
@@ -317,7 +317,7 @@ fn position_functions_keep_their_curve() {
     }
     for (old, count) in [(json!({ "function": "sigmoid" }), 9), (sine, 17)] {
         let (found, told) = one(positions::turned(&read(&old).unwrap(), "keyframes"));
-        assert_eq!(told, format!("{count} keyframes stand on it, smooth between them"));
+        assert_eq!(told, format!("{count} keyframes are on it, smooth between them"));
         let (old, new): (Position, Position) = (read(&old).unwrap(), read(&found).unwrap());
         let apart = (0..=64).map(|i| f64::from(i) / 64.0).map(|tau| (old.eval(tau) - new.eval(tau)).abs());
         assert!(apart.fold(0.0, f64::max) < 0.1, "{found}");

@@ -223,7 +223,7 @@ impl Turning<'_> {
         let even = steps.iter().all(|step| (step - whole / last as f64).abs() < SAME_PX);
         let lost = match (left_out, even) {
             (0, true) => None,
-            (0, false) => Some(format!("the {} anchors stand evenly along the curve now", count + 1)),
+            (0, false) => Some(format!("the {} anchors are now evenly spaced along the curve", count + 1)),
             _ => Some(format!("{left_out} anchors are left out")),
         };
         spline(json!(count + 1), nodes, jumps).but_if(lost)
@@ -250,7 +250,7 @@ impl Turning<'_> {
             _ if still => None,
             (true, true) => None,
             (true, false) => Some(format!("only the mean of its {} jump vectors is kept", all.len())),
-            (false, _) => Some("its jump vectors are not kept, only where they stand".to_owned()),
+            (false, _) => Some("its jump vectors are not kept, only their places".to_owned()),
         })
     }
 
