@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::parts::materials::Materials;
 use super::parts::moment::{Columns, Moment};
 use super::parts::passes::Plan;
+use super::parts::readout::VectorField;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
@@ -25,6 +26,11 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// The layer of a frame that is [`Reduced::by`] times smaller on each side.
     fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready>;
+
+    /// The vectors that its pixels have, from below to above.
+    fn fields(&self) -> Vec<VectorField<'_>> {
+        Vec::new()
+    }
 
     /// The largest side of any picture that a frame reads, in pixels.
     fn largest_texture(&self) -> usize;

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::parts::materials::{Materials, Use};
 use super::parts::passes::Program;
+use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready};
 use super::timeline::Wrap;
@@ -64,6 +65,25 @@ pub trait Technique: Any + Send + Sync {
     /// The name of the item at `path` of a list whose items have names; `None` if there is none.
     fn item_name(&self, _path: &str) -> Option<&str> {
         None
+    }
+
+    /// What changes in the layer over the scene time, item by item.
+    fn curves(&self, _wrap: Wrap) -> Vec<Curve<'_>> {
+        Vec::new()
+    }
+
+    /// What the pixel (column, row) of the layer does at scene time `t`; `None` if there is nothing to say about pixels.
+    ///
+    /// # Errors
+    /// As [`Technique::synth`].
+    fn probe(
+        &self,
+        _wrap: Wrap,
+        _materials: &Materials,
+        _pixel: (usize, usize),
+        _t: f64,
+    ) -> Result<Option<ReadOut>, Problem> {
+        Ok(None)
     }
 
     /// What happens to the layer where time starts anew.

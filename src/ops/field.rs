@@ -4,15 +4,17 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use serde::Deserialize;
+use serde_json::Value;
+
 use super::writing::Replacing;
 use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::export::field::{arrows, csv, plot, png, svg};
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{self, Kind};
-use crate::layers::Layer;
 use crate::render;
-use crate::scene::Scene;
+use crate::scene::{Document, Scene, field};
 
 /// Plot the jump vectors, or write them as a table
 #[derive(clap::Args)]
@@ -48,7 +50,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     context.say_all(&guard.notes());
     let opened = read.load(context)?;
     let scene = match &args.zone {
-        Some(name) => only_zone(opened.document.scene(), name)?,
+        Some(name) => only_zone(&opened.document, name)?,
         None => Scene::clone(opened.document.scene()),
     };
     let synth = render::synth(&scene, &opened.materials, None).map_err(|problem| opened.failed(problem))?;
@@ -93,20 +95,24 @@ fn kind(path: &Path) -> Result<Kind> {
     }
 }
 
-/// The scene with no zone but the one called `name`.
-fn only_zone(scene: &Scene, name: &str) -> Result<Scene> {
+/// The scene with no zone but the one called `name`: of every layer's list of things with names, only that.
+fn only_zone(document: &Document, name: &str) -> Result<Scene> {
     let called = |layer: &str, zone: &str| zone == name || format!("{layer}.{zone}") == name;
     let mut names = Vec::new();
     let mut found = 0;
-    let mut scene = scene.clone();
-    for layer in &mut scene.layers {
-        let Layer::Picture(layer) = layer;
-        names.extend(layer.zones.iter().map(|zone| zone.name.clone()));
-        layer.zones.retain(|zone| called(&layer.name, &zone.name));
-        found += layer.zones.len();
+    let mut json = document.json().clone();
+    for layer in json.get_mut("layers").and_then(Value::as_array_mut).into_iter().flatten() {
+        let own = field::name_of(Some(layer)).unwrap_or_default();
+        let lists = layer.as_object_mut().into_iter().flat_map(|fields| fields.values_mut());
+        for list in lists.filter_map(Value::as_array_mut) {
+            let all: Option<Vec<String>> = list.iter().map(|item| field::name_of(Some(item))).collect();
+            names.extend(all.into_iter().flatten());
+            list.retain(|item| field::name_of(Some(item)).is_none_or(|zone| called(&own, &zone)));
+            found += list.iter().filter(|item| field::name_of(Some(item)).is_some()).count();
+        }
     }
     match found {
-        1 => Ok(scene),
+        1 => Scene::deserialize(json).map_err(|error| Error::at("--zone", error)),
         0 => Err(Error::Usage(format!("--zone {name}: there is no such zone, only {}", names.join(", ")))),
         _ => Err(Error::Usage(format!("--zone {name}: several layers have one; write LAYER.ZONE"))),
     }

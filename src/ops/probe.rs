@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use super::{Context, opened::Opened, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::maths;
-use crate::layers::Layer;
-use crate::layers::folding::model::PictureLayer;
-use crate::layers::folding::probe::{Probe, probe};
+use crate::layers::parts::readout::{Entry, ReadOut, Value};
+use crate::layers::technique::Technique;
+use crate::render;
 use crate::scene::Scene;
 
 /// Show what a pixel does at a time, and why
@@ -40,25 +40,25 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let layer = find_layer(scene, args.layer.as_deref())?;
     // Only what the pixel needs is computed, not the whole frame.
     let shown = opened.bands(1)?;
-    let picture = opened.materials.picture(&layer.image, "/image").map_err(|e| Error::at(args.scene.display(), e))?;
-    let size = (picture.width(), picture.height());
+    let own = layer.frame_of().and_then(|image| opened.materials.pictures.get(image));
+    let own = own.map(|picture| (picture.width(), picture.height()));
+    let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
     let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
     for pixel in pixels {
-        let probe = probe(layer, scene.timeline.wrap, &opened.materials, pixel, args.time);
-        let probe = probe.map_err(|problem| Error::at(args.scene.display(), problem))?;
+        let read = layer.probe(scene.timeline.wrap, &opened.materials, pixel, args.time);
+        let read = read.map_err(|problem| Error::at(args.scene.display(), problem))?;
         // A layer larger than the first reaches beyond the frame, which shows nothing there.
         let color = shown.pixel(args.time, pixel).map_err(|problem| opened.failed(problem))?;
-        let answer =
-            if args.json { line(probe.as_ref(), color) } else { prose(probe.as_ref(), color, pixel, args.time) };
+        let answer = if args.json { line(read.as_ref(), color) } else { prose(read.as_ref(), color, pixel, args.time) };
         context.print(answer)?;
     }
     Ok(())
 }
 
-fn find_layer<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a PictureLayer> {
+fn find_layer<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a dyn Technique> {
     let found = scene.layers.iter().find(|layer| name.is_none_or(|name| layer.technique().name() == name));
     match found {
-        Some(Layer::Picture(layer)) => Ok(layer),
+        Some(layer) => Ok(layer.technique()),
         None => {
             let names: Vec<&str> = scene.layers.iter().map(|layer| layer.technique().name()).collect();
             let wanted = name.unwrap_or("the first");
@@ -89,38 +89,106 @@ fn pixel_at([x, y]: [f64; 2], (width, height): (usize, usize)) -> Result<(usize,
     }
 }
 
-fn line(probe: Option<&Probe>, color: [u8; 4]) -> String {
-    match probe {
-        None => json!({ "zone": null, "color": color }),
-        Some(p) => json!({
-            "zone": p.zone, "jump": [p.jump.x, p.jump.y], "thresholds": p.thresholds, "tau": p.tau, "s": p.s,
-            "e": p.e, "active": p.active, "read": [p.read.x, p.read.y], "color": color,
-        }),
-    }
-    .to_string()
+fn line(read: Option<&ReadOut>, color: [u8; 4]) -> String {
+    let entries = read.into_iter().flat_map(|read| &read.entries);
+    let mut line: serde_json::Map<String, Json> =
+        entries.map(|entry| (entry.key.to_owned(), value(&entry.value))).collect();
+    line.insert("color".into(), json!(color));
+    Json::Object(line).to_string()
 }
 
-fn prose(probe: Option<&Probe>, [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: f64) -> String {
-    let color = format!("shows #{r:02x}{g:02x}{b:02x}, alpha {a}");
-    let place = format!("pixel {x},{y} at t {time}");
-    let Some(p) = probe else { return format!("{place}: in no zone\n  {color}") };
-    let length = p.jump.hypot2().sqrt();
-    let degrees = maths::atan2(0.0 - p.jump.y, p.jump.x).to_degrees() + 0.0;
-    let thresholds = match &p.thresholds[..] {
-        [] => "none".to_owned(),
-        some => some.iter().map(|t| format!("{t:.4}")).collect::<Vec<_>>().join(", "),
-    };
-    let active = if p.active { "active" } else { "still" };
-    format!(
-        "{place}: zone \"{}\"\n  jump {:.3}, {:.3} px, length {length:.3} px, {degrees:.1} degrees\n  \
-         thresholds {thresholds}\n  τ {:.4}, s {:.4}, e {:.4}, {active}\n  reads {:.3}, {:.3}\n  {color}",
-        p.zone, p.jump.x, p.jump.y, p.tau, p.s, p.e, p.read.x, p.read.y
-    )
+fn value(value: &Value) -> Json {
+    match value {
+        Value::Of(name) => json!(name),
+        Value::Vector(vector) => json!([vector.x, vector.y]),
+        Value::Place(place) => json!([place.x, place.y]),
+        Value::List(numbers) => json!(numbers),
+        Value::Number(number) => json!(number),
+        Value::Flag { on, .. } => json!(on),
+    }
+}
+
+fn prose(read: Option<&ReadOut>, [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: f64) -> String {
+    let mut text = format!("pixel {x},{y} at t {time}");
+    // Numbers and flags that follow one another share a line.
+    let mut shares = false;
+    for Entry { label, value, .. } in read.into_iter().flat_map(|read| &read.entries) {
+        let short = matches!(value, Value::Number(_) | Value::Flag { .. });
+        text += match value {
+            Value::Of(_) => ": ",
+            _ if short && shares => ", ",
+            _ => "\n  ",
+        };
+        text += &said(label, value);
+        shares = short;
+    }
+    text + &format!("\n  shows #{r:02x}{g:02x}{b:02x}, alpha {a}")
+}
+
+/// An entry in words.
+fn said(label: &str, value: &Value) -> String {
+    match value {
+        Value::Of(None) => format!("in no {label}"),
+        Value::Of(Some(name)) => format!("{label} \"{name}\""),
+        Value::Vector(v) => {
+            let length = v.hypot2().sqrt();
+            let degrees = maths::atan2(0.0 - v.y, v.x).to_degrees() + 0.0;
+            format!("{label} {:.3}, {:.3} px, length {length:.3} px, {degrees:.1} degrees", v.x, v.y)
+        }
+        Value::Place(place) => format!("{label} {:.3}, {:.3}", place.x, place.y),
+        Value::List(numbers) if numbers.is_empty() => format!("{label} none"),
+        Value::List(numbers) => {
+            let numbers: Vec<String> = numbers.iter().map(|number| format!("{number:.4}")).collect();
+            format!("{label} {}", numbers.join(", "))
+        }
+        Value::Number(number) => format!("{label} {number:.4}"),
+        Value::Flag { on, off } => if *on { label } else { off }.to_owned(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_read_out_as_json_and_in_words() {
+        let entry = |key, label, value| Entry { key, label, value };
+        let read = |on| {
+            let entries = vec![
+                entry("zone", "zone", Value::Of(Some("eye".into()))),
+                entry("jump", "jump", Value::Vector((3.0, -4.0).into())),
+                entry("thresholds", "thresholds", Value::List(if on { vec![0.25, 0.5] } else { Vec::new() })),
+                entry("tau", "τ", Value::Number(0.125)),
+                entry("active", "active", Value::Flag { on, off: "still" }),
+                entry("read", "reads", Value::Place((1.5, 2.0).into())),
+            ];
+            Some(ReadOut { entries, axis: None })
+        };
+        let outside = Some(ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None });
+        for (read, json, words) in [
+            (
+                read(true),
+                r#"{"zone":"eye","jump":[3.0,-4.0],"thresholds":[0.25,0.5],"tau":0.125,"active":true,"read":[1.5,2.0],"color":[1,2,3,255]}"#,
+                "pixel 7,8 at t 0.5: zone \"eye\"\n  jump 3.000, -4.000 px, length 5.000 px, 53.1 degrees\n  \
+                 thresholds 0.2500, 0.5000\n  τ 0.1250, active\n  reads 1.500, 2.000\n  shows #010203, alpha 255",
+            ),
+            (
+                read(false),
+                r#"{"zone":"eye","jump":[3.0,-4.0],"thresholds":[],"tau":0.125,"active":false,"read":[1.5,2.0],"color":[1,2,3,255]}"#,
+                "pixel 7,8 at t 0.5: zone \"eye\"\n  jump 3.000, -4.000 px, length 5.000 px, 53.1 degrees\n  \
+                 thresholds none\n  τ 0.1250, still\n  reads 1.500, 2.000\n  shows #010203, alpha 255",
+            ),
+            (
+                outside,
+                r#"{"zone":null,"color":[1,2,3,255]}"#,
+                "pixel 7,8 at t 0.5: in no zone\n  shows #010203, alpha 255",
+            ),
+            (None, r#"{"color":[1,2,3,255]}"#, "pixel 7,8 at t 0.5\n  shows #010203, alpha 255"),
+        ] {
+            assert_eq!(line(read.as_ref(), [1, 2, 3, 255]), json);
+            assert_eq!(prose(read.as_ref(), [1, 2, 3, 255], (7, 8), 0.5), words);
+        }
+    }
 
     #[test]
     fn points_name_the_pixel_that_holds_them() {

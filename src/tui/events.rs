@@ -70,8 +70,8 @@ pub struct Synthesis {
     pub synth: Arc<Synth>,
     /// How long it took, in milliseconds.
     pub ms: f64,
-    /// The longest jump vector of every zone, by layer and zone.
-    pub longest: Vec<(usize, usize, f64)>,
+    /// The longest vector of every field, by its pointer.
+    pub longest: Vec<(String, f64)>,
     /// What of its pictures could not be followed, or is odd about them.
     pub warning: Option<String>,
 }

@@ -6,7 +6,7 @@ use kurbo::{Point, Rect, Vec2};
 use crate::base::maths::atan2;
 use crate::base::oklab::hue;
 use crate::base::pixels::Frame;
-use crate::layers::folding::{self, field::Field};
+use crate::layers::parts::readout::{VectorField, vector};
 use crate::render::overlay::{Dot, Shape, View, overlay};
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
@@ -76,33 +76,28 @@ pub struct Arrow {
 
 impl Arrow {
     fn vector(&self) -> Vec2 {
-        Vec2::new(self.jump[0].into(), self.jump[1].into())
+        vector(self.jump)
     }
 }
 
 /// The jump vectors of every `step`-th pixel in both directions, zone after zone, row after row.
 pub fn arrows(synth: &Synth, step: usize) -> Vec<Arrow> {
-    fields(synth).flat_map(|field| arrows_of(field, step.max(1))).collect()
+    fields(synth).flat_map(|field| arrows_of(&field, step.max(1))).collect()
 }
 
-fn fields(synth: &Synth) -> impl Iterator<Item = &Field> {
-    let zones = synth
-        .layers
-        .iter()
-        .filter_map(|layer| layer.downcast::<folding::synth::Synth>())
-        .flat_map(|layer| &layer.zones);
-    zones.map(|zone| &*zone.field)
+fn fields(synth: &Synth) -> impl Iterator<Item = VectorField<'_>> {
+    synth.layers.iter().flat_map(|layer| layer.fields())
 }
 
-fn arrows_of(field: &Field, step: usize) -> Vec<Arrow> {
+fn arrows_of(field: &VectorField, step: usize) -> Vec<Arrow> {
     let on_lattice = move |from: usize, n: usize| (from..from + n).filter(move |i| i % step == step / 2);
     let (width, height) = (field.inside.width(), field.inside.height());
     let mut arrows = Vec::new();
-    for y in on_lattice(field.y0, height) {
-        for x in on_lattice(field.x0, width) {
-            let (i, j) = (x - field.x0, y - field.y0);
+    for y in on_lattice(field.corner.1, height) {
+        for x in on_lattice(field.corner.0, width) {
+            let (i, j) = (x - field.corner.0, y - field.corner.1);
             if *field.inside.get(i, j) {
-                arrows.push(Arrow { at: Point::new(x as f64 + 0.5, y as f64 + 0.5), jump: *field.jumps.get(i, j) });
+                arrows.push(Arrow { at: Point::new(x as f64 + 0.5, y as f64 + 0.5), jump: *field.vectors.get(i, j) });
             }
         }
     }
@@ -147,7 +142,7 @@ pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) ->
 fn shown(synth: &Synth) -> Rect {
     let whole = Rect::new(0.0, 0.0, synth.size.0 as f64, synth.size.1 as f64);
     let bounds = fields(synth).map(|field| {
-        let (x, y) = (field.x0 as f64, field.y0 as f64);
+        let (x, y) = (field.corner.0 as f64, field.corner.1 as f64);
         Rect::new(x, y, x + field.inside.width() as f64, y + field.inside.height() as f64)
     });
     let Some(zones) = bounds.reduce(|a, b| a.union(b)) else { return whole };

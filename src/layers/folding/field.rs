@@ -86,6 +86,11 @@ impl Ragged {
 }
 
 impl Folds {
+    /// Whether pixel `i` of the box lies in a fold region or its path meets one.
+    pub fn meets(&self, i: usize) -> bool {
+        self.inside.cells()[i] || !self.ahead.of(i).is_empty()
+    }
+
     /// The effective place e(s) of pixel `i` of the box, `None` if it is still.
     pub fn effective(&self, i: usize, s: f64) -> Option<f64> {
         let crossings = if s < 0.0 { self.behind.of(i) } else { self.ahead.of(i) };

@@ -38,6 +38,7 @@ use serde_json::Value;
 
 use self::model::PictureLayer;
 use super::parts::materials::{Materials, Use};
+use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready};
 use super::technique::{Checked, Count, Counted, Kind, Technique, Turned};
@@ -108,6 +109,25 @@ impl Technique for PictureLayer {
     fn item_name(&self, path: &str) -> Option<&str> {
         let zone = path.strip_prefix("/zones/")?.parse::<usize>().ok()?;
         self.zones.get(zone).map(|zone| zone.name.as_str())
+    }
+
+    fn curves(&self, wrap: Wrap) -> Vec<Curve<'_>> {
+        let zones = self.zones.iter().enumerate();
+        let curve = zones.map(|(i, zone)| {
+            let clock = zone.clock(wrap);
+            Curve { path: format!("/zones/{i}"), name: &zone.name, symbol: "s", value: Box::new(move |t| clock.s(t)) }
+        });
+        curve.collect()
+    }
+
+    fn probe(
+        &self,
+        wrap: Wrap,
+        materials: &Materials,
+        pixel: (usize, usize),
+        t: f64,
+    ) -> Result<Option<ReadOut>, Problem> {
+        Ok(Some(probe::read_out(probe::probe(self, wrap, materials, pixel, t)?)))
     }
 
     fn repeat(&self, wrap: Wrap) -> Repeat {

@@ -9,6 +9,7 @@ use super::synth::source;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
+use crate::layers::parts::readout::{Axis, Entry, ReadOut, Value};
 use crate::layers::timeline::Wrap;
 
 /// What one pixel of a zone does at one time.
@@ -65,6 +66,26 @@ pub fn probe(
         }
     }
     Ok(None)
+}
+
+/// A probe as everybody reads it; `None` is a pixel outside every zone.
+pub fn read_out(probe: Option<Probe>) -> ReadOut {
+    let entry = |key, label, value| Entry { key, label, value };
+    let Some(probe) = probe else {
+        return ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None };
+    };
+    let entries = vec![
+        entry("zone", "zone", Value::Of(Some(probe.zone))),
+        entry("jump", "jump", Value::Vector(probe.jump)),
+        entry("thresholds", "thresholds", Value::List(probe.thresholds.clone())),
+        entry("tau", "τ", Value::Number(probe.tau)),
+        entry("s", "s", Value::Number(probe.s)),
+        entry("e", "e", Value::Number(probe.e)),
+        entry("active", "active", Value::Flag { on: probe.active, off: "still" }),
+        entry("read", "reads", Value::Place(probe.read)),
+    ];
+    let points = vec![("s", probe.s), ("e", probe.e)];
+    ReadOut { entries, axis: Some(Axis { stretches: probe.active_parts, ticks: probe.thresholds, points }) }
 }
 
 fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Probe {

@@ -10,11 +10,24 @@ use super::synth::Synth;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::passes::Plan;
+use crate::layers::parts::readout::{Flag, VectorField};
 use crate::layers::ready::{Ready, Still};
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
         Box::new(Frame::new(self, moment.t))
+    }
+
+    fn fields(&self) -> Vec<VectorField<'_>> {
+        let zones = self.zones.iter().map(|zone| VectorField {
+            path: format!("/zones/{}", zone.index),
+            name: &zone.name,
+            corner: (zone.field.x0, zone.field.y0),
+            inside: &zone.field.inside,
+            vectors: &zone.field.jumps,
+            flag: zone.field.folds.as_ref().map(|folds| -> Flag<'_> { ("folds", Box::new(|i| folds.meets(i))) }),
+        });
+        zones.collect()
     }
 
     fn plan(&self, moment: &Moment) -> Plan {

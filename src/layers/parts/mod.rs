@@ -3,4 +3,5 @@
 pub mod materials;
 pub mod moment;
 pub mod passes;
+pub mod readout;
 pub mod repeat;

@@ -10,7 +10,6 @@ use super::canvas::Canvas;
 use super::state::State;
 use super::text::Letters;
 use super::{labels, marks};
-use crate::layers::folding;
 use crate::render::Synth;
 use crate::render::overlay::{Samplers, View, field_scale, longest, overlay, samplers};
 use crate::render::reduce::reduced;
@@ -41,17 +40,11 @@ impl Show {
     }
 }
 
-/// The jump vector of the pixel at a place in the picture: that of the topmost zone there.
+/// The jump vector of the pixel at a place in the picture: that of the topmost field there.
 pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
-    let layers = synth.layers.iter().rev().filter_map(|layer| layer.downcast::<folding::synth::Synth>());
-    let zones = layers.flat_map(|layer| layer.zones.iter().rev());
-    zones.map(|zone| &zone.field).find_map(|field| {
-        let inside = |x: f64, from: usize, n: usize| (x as usize).checked_sub(from).filter(|&i| x >= 0.0 && i < n);
-        let i = inside(at.x, field.x0, field.inside.width())?;
-        let j = inside(at.y, field.y0, field.inside.height())?;
-        let [dx, dy] = field.jumps.get(i, j).map(f64::from);
-        field.inside.get(i, j).then_some(Vec2::new(dx, dy))
-    })
+    let pixel = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as usize, at.y as usize))?;
+    let fields = synth.layers.iter().rev().flat_map(|layer| layer.fields().into_iter().rev());
+    fields.into_iter().find_map(|field| field.at(pixel))
 }
 
 /// What a JSON pointer leads to, by the names of the layer and of the item in it: `face/left eye/motion/3`; none for the scene itself.

@@ -8,10 +8,9 @@ use kurbo::Point;
 use serde_json::Value;
 
 use super::sheet;
-use crate::layers::Layer;
-use crate::scene::Document;
 use crate::scene::field::{self, Child, Kind};
 use crate::scene::schema::Place;
+use crate::scene::{Document, pointer};
 
 /// A row of the tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -82,24 +81,32 @@ pub fn row_of(rows: &[TreeRow], pointer: &str) -> usize {
     deepest.map_or(0, |(i, _)| i)
 }
 
-/// The node to begin with: the first zone, else the first layer, else the scene.
+/// The node to begin with: the first thing with a name in the first layer (a zone), else the first layer, else the scene.
 pub fn first(document: &Document) -> String {
-    let there = |pointer: &&str| document.json().pointer(pointer).is_some();
-    ["/layers/0/zones/0", "/layers/0"].iter().find(|p| there(p)).map_or(String::new(), |p| p.to_string())
+    match document.json().pointer(FIRST_LAYER) {
+        Some(_) => first_item(document).unwrap_or_else(|| FIRST_LAYER.into()),
+        None => String::new(),
+    }
 }
 
-/// The index of the layer and of the zone that the node at `pointer` belongs to.
-pub fn place(pointer: &str) -> (Option<usize>, Option<usize>) {
-    let tokens: Vec<&str> = pointer.split('/').skip(1).collect();
-    let layer = tokens.get(1).filter(|_| tokens[0] == "layers").and_then(|i| i.parse().ok());
-    let zone = tokens.get(3).filter(|_| layer.is_some() && tokens[2] == "zones").and_then(|i| i.parse().ok());
-    (layer, zone)
+const FIRST_LAYER: &str = "/layers/0";
+
+/// The first thing with a name in the first layer.
+fn first_item(document: &Document) -> Option<String> {
+    let fields = document.json().pointer(FIRST_LAYER)?.as_object()?;
+    let (list, _) = fields.iter().find(|(_, value)| named(value))?;
+    Some(pointer::join(&pointer::join(FIRST_LAYER, list), 0))
 }
 
-/// Where the cursor of the picture begins: the middle of the first zone.
+/// The index of the layer that the node at `pointer` belongs to.
+pub fn layer_of(pointer: &str) -> Option<usize> {
+    pointer.strip_prefix("/layers/")?.split('/').next()?.parse().ok()
+}
+
+/// Where the cursor of the picture begins: the middle of the first thing with a name in the first layer.
 pub fn picture_centre(document: &Document) -> Point {
-    let Some(Layer::Picture(layer)) = document.scene().layers.first() else { return Point::ZERO };
-    let middle = layer.zones.first().map(|zone| zone.outline.polygon().bounds().center());
+    let layer = document.scene().layers.first().zip(first_item(document));
+    let middle = layer.map(|(layer, item)| layer.technique().bounds(&item[FIRST_LAYER.len()..]).center());
     middle
         .filter(|p| p.x.is_finite() && p.y.is_finite())
         .map_or(Point::ZERO, |p| Point::new(p.x.floor() + 0.5, p.y.floor() + 0.5))

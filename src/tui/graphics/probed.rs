@@ -5,10 +5,8 @@ use std::sync::Arc;
 
 use super::Wanted;
 use crate::base::pixels::encode;
-use crate::layers::Layer;
-use crate::layers::folding::probe::{Probe, probe};
-use crate::layers::folding::{self};
 use crate::layers::parts::materials::Materials;
+use crate::layers::parts::readout::ReadOut;
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
@@ -28,8 +26,8 @@ pub struct Asked {
 pub struct Probed {
     /// What was asked.
     pub asked: Asked,
-    /// What it does; none outside every zone.
-    pub probe: Option<Probe>,
+    /// What it does, if its layer tells.
+    pub read: Option<ReadOut>,
     /// The colour that the frame shows there: sRGB, straight alpha.
     pub colour: [u8; 4],
 }
@@ -37,25 +35,20 @@ pub struct Probed {
 impl Probed {
     /// The answer, as `plica probe` has it; `None` if there is no such pixel.
     pub fn new(asked: Asked, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
-        let Layer::Picture(layer) = scene.layers.get(asked.layer)?;
+        let layer = scene.layers.get(asked.layer)?.technique();
         let (x, y) = asked.pixel;
-        let probe = probe(layer, scene.timeline.wrap, materials, asked.pixel, asked.time).ok()?;
+        let read = layer.probe(scene.timeline.wrap, materials, asked.pixel, asked.time).ok()?;
         let within = x < synth.size.0 && y < synth.size.1;
         let colour = within.then(|| encode(*cpu::lattice(synth, asked.time, &[x], &[y]).get(0, 0)));
-        Some(Probed { asked, probe, colour: colour.unwrap_or_default() })
+        Some(Probed { asked, read, colour: colour.unwrap_or_default() })
     }
 }
 
-/// The longest jump vector of every zone, in pixels.
-pub fn longest(synth: &Synth) -> Vec<(usize, usize, f64)> {
-    let mut all = Vec::new();
-    for (i, layer) in synth.layers.iter().enumerate() {
-        for zone in layer.downcast::<folding::synth::Synth>().iter().flat_map(|layer| &layer.zones) {
-            let squares = zone.field.jumps.cells().iter().map(|&[x, y]| x * x + y * y);
-            all.push((i, zone.index, f64::from(squares.fold(0.0, f32::max)).sqrt()));
-        }
-    }
-    all
+/// The longest vector of every field, in pixels, by its pointer.
+pub fn longest(synth: &Synth) -> Vec<(String, f64)> {
+    let layers = synth.layers.iter().enumerate();
+    let fields = layers.flat_map(|(i, layer)| layer.fields().into_iter().map(move |field| (i, field)));
+    fields.map(|(i, field)| (format!("/layers/{i}{}", field.path), field.longest())).collect()
 }
 
 /// What the panes want to show.

@@ -22,7 +22,7 @@ pub fn request(state: &State) -> Request {
 pub fn asked(state: &State) -> Option<Asked> {
     let at = state.placing.cursor;
     let pixel = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
-    let layer = tree::place(&state.node).0.unwrap_or(0);
+    let layer = tree::layer_of(&state.node).unwrap_or(0);
     state.seeing.probing.then_some(Asked { layer, pixel, time: state.time })
 }
 

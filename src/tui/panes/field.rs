@@ -9,8 +9,8 @@ use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
 use crate::base::oklab;
-use crate::layers::folding::field::Field;
-use crate::layers::folding::{self};
+use crate::layers::parts::readout::{VectorField, vector};
+use crate::scene::words::item_of;
 use crate::tui::document::tree;
 use crate::tui::state::State;
 use crate::tui::text::colour;
@@ -25,7 +25,7 @@ const LONG: f64 = 0.5;
 /// Draws the arrows, and below them the legend and the value under the cursor.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some((field, longest)) = field(state) else {
-        let why = if tree::place(&state.node).1.is_none() { "select a zone" } else { "not there yet" };
+        let why = if item_of(&state.node).is_none() { "select a zone" } else { "not there yet" };
         write(buffer, area, 1, 0, why, colour::faint());
         return;
     };
@@ -40,57 +40,46 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     for (x, y) in (0..rows).flat_map(|y| (0..across).map(move |x| (x, y))) {
         let (i, j) = (((f64::from(x) + 0.5) * step) as usize, ((f64::from(y) + 0.5) * step) as usize);
         if i < width && j < height && *field.inside.get(i, j) {
-            let (text, style) = glyph(state.depth, vector(*field.jumps.get(i, j)), longest);
-            let style = if meets_fold(field, j * width + i) { style.add_modifier(Modifier::UNDERLINED) } else { style };
+            let (text, style) = glyph(state.depth, vector(*field.vectors.get(i, j)), longest);
+            let flagged = field.flag.as_ref().is_some_and(|(_, has)| has(j * width + i));
+            let style = if flagged { style.add_modifier(Modifier::UNDERLINED) } else { style };
             write(buffer, area, i32::from(x) * 2, y, text, style);
         }
     }
-    draw_legend(field, longest, step, Rect { y: area.y + rows, height: 1, ..area }, buffer);
-    write(buffer, area, 0, rows + 1, &under_cursor(state, field), Style::new());
+    draw_legend(&field, longest, step, Rect { y: area.y + rows, height: 1, ..area }, buffer);
+    write(buffer, area, 0, rows + 1, &under_cursor(state, &field), Style::new());
 }
 
 /// How long arrows are, how far they are apart, and what an underline says.
-fn draw_legend(field: &Field, longest: f64, step: f64, area: Rect, buffer: &mut Buffer) {
+fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer: &mut Buffer) {
     let half = short((longest * LONG * 100.0).round() / 100.0);
     let step = short((step * 10.0).round() / 10.0);
     let longest = short(longest);
     let text = format!("longest {longest} px  → to {half}  ⇒ more  · none  every {step} px");
     let x = write(buffer, area, 0, 0, &text, colour::faint());
-    if field.folds.is_some() {
-        write(buffer, area, x + 2, 0, "folds", colour::faint().add_modifier(Modifier::UNDERLINED));
+    if let Some((name, _)) = &field.flag {
+        write(buffer, area, x + 2, 0, name, colour::faint().add_modifier(Modifier::UNDERLINED));
     }
 }
 
 /// The jump vector of the pixel under the picture's cursor.
-fn under_cursor(state: &State, field: &Field) -> String {
+fn under_cursor(state: &State, field: &VectorField) -> String {
     let at = state.placing.cursor;
     let (x, y) = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
-    let within = x >= field.x0 && y >= field.y0;
-    let (i, j) = (x.saturating_sub(field.x0), y.saturating_sub(field.y0));
-    if !within || i >= field.inside.width() || j >= field.inside.height() || !field.inside.get(i, j) {
-        return format!("at {x},{y}: outside the zone");
-    }
-    let jump = vector(*field.jumps.get(i, j));
+    let Some(jump) = field.at((x, y)) else { return format!("at {x},{y}: outside the zone") };
     let (length, degrees) = polar(jump);
     format!("at {x},{y}: {}, {} px  {} px {}°", short(jump.x), short(jump.y), short(length), short(degrees))
 }
 
-/// Whether a pixel of the box lies in a fold region or its path meets one.
-fn meets_fold(field: &Field, i: usize) -> bool {
-    field.folds.as_ref().is_some_and(|folds| folds.inside.cells()[i] || !folds.ahead.of(i).is_empty())
-}
-
-/// The field of the zone that is shown, and its longest vector.
-fn field(state: &State) -> Option<(&Field, f64)> {
-    let (layer, zone) = tree::place(&state.node);
-    let synth = state.seen.synth.as_ref()?.layers.get(layer?)?.downcast::<folding::synth::Synth>()?;
-    let found = synth.zones.iter().find(|one| Some(one.index) == zone)?;
-    let longest = state.seeing.longest.iter().find(|one| Some(one.0) == layer && Some(one.1) == zone);
-    Some((&found.field, longest.map_or(0.0, |one| one.2)))
-}
-
-fn vector([x, y]: [f32; 2]) -> Vec2 {
-    Vec2::new(x.into(), y.into())
+/// The field of the thing that is shown, and its longest vector.
+fn field(state: &State) -> Option<(VectorField<'_>, f64)> {
+    let item = item_of(&state.node)?;
+    let layer = tree::layer_of(item)?;
+    let fields = state.seen.synth.as_ref()?.layers.get(layer)?.fields();
+    let own = |path: &str| item.strip_prefix(&format!("/layers/{layer}")) == Some(path);
+    let field = fields.into_iter().find(|field| own(&field.path))?;
+    let longest = state.seeing.longest.iter().find(|(path, _)| path == item);
+    Some((field, longest.map_or(0.0, |(_, longest)| *longest)))
 }
 
 /// One arrow: a dot where there is next to nothing, a double one where it is long; its colour is its direction.

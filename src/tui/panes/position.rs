@@ -8,8 +8,8 @@ use ratatui::style::{Color, Style};
 
 use super::braille::Braille;
 use super::write;
-use crate::layers::Layer;
-use crate::layers::folding::position::Clock;
+use crate::layers::parts::readout;
+use crate::scene::words::item_of;
 use crate::tui::document::tree;
 use crate::tui::state::State;
 use crate::tui::text::colour;
@@ -19,11 +19,11 @@ use crate::tui::text::wrap::width;
 /// The colours of zones, over and over; letters tell what colours repeat.
 const COLOURS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];
 
-/// The curve of one zone.
-struct Curve {
+/// A curve of one thing in the layer.
+struct Curve<'a> {
     name: String,
     letter: char,
-    clock: Clock,
+    of: readout::Curve<'a>,
     selected: bool,
     style: Style,
 }
@@ -50,24 +50,24 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
 }
 
 /// The curves of the layer that is shown, the first where none is; the selected one last, so that it lies on top.
-fn curves(state: &State) -> Vec<Curve> {
-    let (layer, selected) = tree::place(&state.node);
+fn curves<'a>(state: &'a State) -> Vec<Curve<'a>> {
+    let index = tree::layer_of(&state.node).unwrap_or(0);
     let scene = state.document().scene();
-    let Some(Layer::Picture(layer)) = scene.layers.get(layer.unwrap_or(0)) else { return Vec::new() };
-    let zones = layer.zones.iter().enumerate();
-    let curve = |(i, zone): (usize, &_)| {
-        let zone: &crate::layers::folding::model::Zone = zone;
-        let selected = selected == Some(i);
+    let Some(layer) = scene.layers.get(index) else { return Vec::new() };
+    let selected = item_of(&state.node).and_then(|item| item.strip_prefix(&format!("/layers/{index}")));
+    let curve = |(i, of): (usize, readout::Curve<'a>)| {
+        let selected = selected == Some(&of.path);
         let style = state.depth.ink(Style::new(), COLOURS[i % COLOURS.len()]);
         Curve {
-            name: plain(&zone.name),
+            name: plain(of.name),
             letter: char::from(b'a' + (i % 26) as u8),
-            clock: zone.clock(scene.timeline.wrap),
+            of,
             selected,
             style: if selected { style.patch(colour::strong()) } else { style },
         }
     };
-    let mut curves: Vec<Curve> = zones.map(curve).collect();
+    let mut curves: Vec<Curve> =
+        layer.technique().curves(scene.timeline.wrap).into_iter().enumerate().map(curve).collect();
     curves.sort_by_key(|curve| curve.selected);
     curves
 }
@@ -76,9 +76,9 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     let columns = usize::from(area.width) * 2;
     // Just before the end: at the end itself a function that is repeated begins anew.
     let time_at = |x: f64| (x / (columns - 1) as f64).min(1.0 - 1e-9);
-    let values = |curve: &Curve| -> Vec<f64> { (0..columns).map(|x| curve.clock.s(time_at(x as f64))).collect() };
+    let values = |curve: &Curve| -> Vec<f64> { (0..columns).map(|x| (curve.of.value)(time_at(x as f64))).collect() };
     let all: Vec<Vec<f64>> = curves.iter().map(values).collect();
-    let ends = curves.iter().zip(&all).flat_map(|(curve, values)| ends(&curve.clock, values, &time_at));
+    let ends = curves.iter().zip(&all).flat_map(|(curve, values)| ends(&curve.of, values, &time_at));
     let ends = ends.chain(all.iter().flatten().copied());
     let (mut low, mut high) = ends.fold((0.0f64, 0.0f64), |(low, high), s| (low.min(s), high.max(s)));
     if low == high {
@@ -108,7 +108,7 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         let at = (i + 1) * columns / (curves.len() + 1);
         write(buffer, area, (at / 2) as i32, (row(values[at]) / 4) as u16, &curve.letter.to_string(), curve.style);
         let glyph = if curve.selected { "●" } else { "○" };
-        write(buffer, area, now, (row(curve.clock.s(time)) / 4) as u16, glyph, curve.style);
+        write(buffer, area, now, (row((curve.of.value)(time)) / 4) as u16, glyph, curve.style);
     }
     // Last, so that nothing lies over a digit.
     let label = Style::reset().patch(colour::faint());
@@ -117,17 +117,17 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
 }
 
 /// What a curve comes to on both sides of each place where it jumps: the columns miss its ends there.
-fn ends(clock: &Clock, values: &[f64], time_at: &impl Fn(f64) -> f64) -> Vec<f64> {
+fn ends(of: &readout::Curve, values: &[f64], time_at: &impl Fn(f64) -> f64) -> Vec<f64> {
     const JUMP: f64 = 0.25;
     let jumps = values.windows(2).enumerate().filter(|(_, pair)| (pair[0] - pair[1]).abs() > JUMP);
     let both = jumps.flat_map(|(x, pair)| {
         let (mut from, mut to) = (x as f64, x as f64 + 1.0);
         for _ in 0..40 {
             let middle = (from + to) / 2.0;
-            let s = clock.s(time_at(middle));
+            let s = (of.value)(time_at(middle));
             if (s - pair[0]).abs() <= (s - pair[1]).abs() { from = middle } else { to = middle }
         }
-        [clock.s(time_at(from)), clock.s(time_at(to))]
+        [(of.value)(time_at(from)), (of.value)(time_at(to))]
     });
     both.collect()
 }
@@ -150,7 +150,11 @@ fn draw_axis(time: f64, area: Rect, buffer: &mut Buffer) {
 fn draw_legend(curves: &[Curve], time: f64, alone: bool, area: Rect, buffer: &mut Buffer) {
     let (mut x, mut y) = (0, 0);
     for curve in curves.iter().rev().take_while(|curve| curve.selected).chain(curves.iter().filter(|c| !c.selected)) {
-        let s = if curve.selected || alone { format!(" s {}", short(curve.clock.s(time))) } else { String::new() };
+        let s = if curve.selected || alone {
+            format!(" {} {}", curve.of.symbol, short((curve.of.value)(time)))
+        } else {
+            String::new()
+        };
         let text = format!("{} {}{s}", curve.letter, curve.name);
         if alone && x > 0 && y + 1 < area.height && x + i32::from(width(&text)) > i32::from(area.width) {
             (x, y) = (0, y + 1);

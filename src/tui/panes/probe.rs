@@ -1,5 +1,4 @@
-//! The read-out of one pixel: its zone, its jump vector, its path from 0 to 1 with thresholds, s and e on it, and what it
-//! reads. It follows the cursor and the time; while the worker looks, the last answer stands there, faint.
+//! The read-out of one pixel: what it belongs to, its vectors, its path from 0 to 1 with what is on it, what it reads. It follows the cursor and the time; while the worker looks, the last answer stands there, faint.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -7,7 +6,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::write;
-use crate::layers::folding::probe::Probe;
+use crate::layers::parts::readout::{Axis, Entry, Value};
 use crate::tui::graphics::probed::Probed;
 use crate::tui::layout::seeing;
 use crate::tui::state::State;
@@ -23,42 +22,84 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let style = if seeing::asked(state) == Some(probed.asked) { Style::new() } else { colour::faint() };
     let (x, y) = probed.asked.pixel;
     let place = write(buffer, area, 0, 0, &format!("pixel {x},{y}   "), style);
-    match &probed.probe {
-        None => {
-            write(buffer, area, place, 0, "in no zone: it stays as it is", style);
-            write(buffer, area, 0, 1, &shows(probed), style);
-        }
-        Some(probe) => {
-            let active = if probe.active { "active" } else { "not active" };
-            let zone = plain(&probe.zone);
-            let after = write(buffer, area, place, 0, &zone, style.patch(colour::strong()));
-            write(buffer, area, after, 0, &format!("   {active}"), style);
-            draw_path(
-                probe,
-                Rect { y: area.y + 2, height: area.height.saturating_sub(2).min(2), ..area },
-                style,
-                buffer,
-            );
-            for (row, line) in [(1, jump(probe)), (4, places(probe, probed.asked.time)), (5, reads(probe, probed))] {
-                write(buffer, area, 0, row, &line, style);
-            }
-            write(buffer, area, 0, 6, &thresholds(probe), style);
-        }
+    let entries = probed.read.iter().flat_map(|read| &read.entries);
+    let Some(Some(of)) = entries.clone().find_map(of) else {
+        let outside = entries.map(|entry| format!("in no {}: it stays as it is", entry.label)).next();
+        write(buffer, area, place, 0, &outside.unwrap_or_default(), style);
+        write(buffer, area, 0, 1, &shows(probed), style);
+        return;
+    };
+    let after = write(buffer, area, place, 0, &plain(of), style.patch(colour::strong()));
+    write(buffer, area, after, 0, &flags(entries.clone()), style);
+    let axis = probed.read.as_ref().and_then(|read| read.axis.as_ref());
+    if let Some(axis) = axis {
+        draw_path(axis, Rect { y: area.y + 2, height: area.height.saturating_sub(2).min(2), ..area }, style, buffer);
+    }
+    let lines = [
+        (1, joined(entries.clone().filter_map(vector))),
+        (4, numbers(entries.clone(), axis, probed.asked.time)),
+        (5, joined(entries.clone().filter_map(read).chain([shows(probed)]))),
+        (6, joined(entries.filter_map(list))),
+    ];
+    for (row, line) in lines {
+        write(buffer, area, 0, row, &line, style);
     }
 }
 
-fn jump(probe: &Probe) -> String {
-    let (length, degrees) = polar(probe.jump);
-    let (x, y) = (short(probe.jump.x), short(probe.jump.y));
-    format!("jump {x}, {y} px   length {} px   {}°", short(length), short(degrees))
+fn joined(parts: impl Iterator<Item = String>) -> String {
+    parts.collect::<Vec<_>>().join("   ")
 }
 
-fn places(probe: &Probe, time: f64) -> String {
-    format!("s {}   e {}   τ {}   t {}", short(probe.s), short(probe.e), short(probe.tau), short(time))
+/// What the pixel belongs to, where an entry says so.
+fn of(entry: &Entry) -> Option<Option<&String>> {
+    match &entry.value {
+        Value::Of(name) => Some(name.as_ref()),
+        _ => None,
+    }
 }
 
-fn reads(probe: &Probe, probed: &Probed) -> String {
-    format!("reads {}, {}   {}", short(probe.read.x), short(probe.read.y), shows(probed))
+fn flags<'a>(entries: impl Iterator<Item = &'a Entry>) -> String {
+    let flags = entries.filter_map(|entry| match entry.value {
+        Value::Flag { on: true, .. } => Some(format!("   {}", entry.label)),
+        Value::Flag { on: false, .. } => Some(format!("   not {}", entry.label)),
+        _ => None,
+    });
+    flags.collect()
+}
+
+fn vector(entry: &Entry) -> Option<String> {
+    let Value::Vector(vector) = entry.value else { return None };
+    let (length, degrees) = polar(vector);
+    let (x, y) = (short(vector.x), short(vector.y));
+    Some(format!("{} {x}, {y} px   length {} px   {}°", entry.label, short(length), short(degrees)))
+}
+
+fn read(entry: &Entry) -> Option<String> {
+    let Value::Place(place) = entry.value else { return None };
+    Some(format!("{} {}, {}", entry.label, short(place.x), short(place.y)))
+}
+
+fn list(entry: &Entry) -> Option<String> {
+    match &entry.value {
+        Value::List(numbers) if numbers.is_empty() => Some(format!("no {}", entry.label)),
+        Value::List(numbers) => {
+            let numbers: Vec<String> = numbers.iter().map(|&number| short(number)).collect();
+            Some(format!("{} {}", entry.label, numbers.join(", ")))
+        }
+        _ => None,
+    }
+}
+
+/// The numbers, those first that are places on the path, and the time.
+fn numbers<'a>(entries: impl Iterator<Item = &'a Entry>, axis: Option<&Axis>, time: f64) -> String {
+    let points = axis.map_or(&[] as &[_], |axis| &axis.points);
+    let number = |entry: &Entry| match entry.value {
+        Value::Number(number) => Some((entry.label, number)),
+        _ => None,
+    };
+    let others = entries.filter_map(number).filter(|(label, _)| points.iter().all(|(point, _)| point != label));
+    let all = points.iter().copied().chain(others).chain([("t", time)]);
+    joined(all.map(|(label, number)| format!("{label} {}", short(number))))
 }
 
 fn shows(probed: &Probed) -> String {
@@ -66,16 +107,10 @@ fn shows(probed: &Probed) -> String {
     format!("shows #{r:02x}{g:02x}{b:02x} alpha {a}")
 }
 
-fn thresholds(probe: &Probe) -> String {
-    match &probe.thresholds[..] {
-        [] => "no thresholds".into(),
-        some => format!("thresholds {}", some.iter().map(|&s| short(s)).collect::<Vec<_>>().join(", ")),
-    }
-}
-
-/// The path from 0 to 1: a thick line where the sampler is active, a broken one where not, a bar at every threshold; below
-/// it s and e, at the edge where they lie beyond it.
-fn draw_path(probe: &Probe, area: Rect, style: Style, buffer: &mut Buffer) {
+/// The path from 0 to 1: a thick line in its open stretches, a broken one in the others, a bar at every tick; below it the
+/// points, at the edge where they lie beyond it.
+fn draw_path(axis: &Axis, area: Rect, style: Style, buffer: &mut Buffer) {
+    const POINTS: [&str; 2] = ["●", "◆"];
     let cells = i32::from(area.width) - 4;
     if cells < 10 || area.height < 2 {
         return;
@@ -85,24 +120,26 @@ fn draw_path(probe: &Probe, area: Rect, style: Style, buffer: &mut Buffer) {
     write(buffer, area, cells + 3, 0, "1", style);
     for x in 0..cells {
         let s = f64::from(x) / f64::from(cells - 1);
-        let active = probe.active_parts.iter().any(|&(from, to)| (from..=to).contains(&s));
-        write(buffer, area, x + 2, 0, if active { "━" } else { "┄" }, style);
+        let open = axis.stretches.iter().any(|&(from, to)| (from..=to).contains(&s));
+        write(buffer, area, x + 2, 0, if open { "━" } else { "┄" }, style);
     }
-    probe.thresholds.iter().for_each(|&s| {
+    axis.ticks.iter().for_each(|&s| {
         write(buffer, area, cell(s), 0, "┃", style.patch(colour::strong()));
     });
-    let (s, e) = (cell(probe.s), cell(probe.e));
-    if s == e {
-        write(buffer, area, s.min(cells - 1), 1, "s=e", style);
-        write(buffer, area, s, 0, "●", style.patch(colour::strong()));
+    let Some(&(_, first)) = axis.points.first() else { return };
+    if axis.points.len() > 1 && axis.points.iter().all(|&(_, at)| cell(at) == cell(first)) {
+        let names: Vec<&str> = axis.points.iter().map(|&(name, _)| name).collect();
+        write(buffer, area, cell(first).min(cells - 1), 1, &names.join("="), style);
+        write(buffer, area, cell(first), 0, POINTS[0], style.patch(colour::strong()));
     } else {
-        for (at, glyph, name) in [(e, "◆", "e"), (s, "●", "s")] {
-            write(buffer, area, at, 0, glyph, style.patch(colour::strong()));
-            write(buffer, area, at, 1, name, style);
+        // The first last: it lies over the others.
+        for (i, &(name, at)) in axis.points.iter().enumerate().rev() {
+            write(buffer, area, cell(at), 0, POINTS[i % POINTS.len()], style.patch(colour::strong()));
+            write(buffer, area, cell(at), 1, name, style);
         }
     }
     let beyond = |value: f64| if value < 0.0 { Some((0, "‹")) } else { (value > 1.0).then_some((cells + 3, "›")) };
-    beyond(probe.s).into_iter().for_each(|(x, glyph)| {
+    beyond(first).into_iter().for_each(|(x, glyph)| {
         write(buffer, area, x, 1, glyph, style);
     });
 }

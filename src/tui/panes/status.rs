@@ -6,8 +6,8 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::write;
-use crate::layers::Layer;
-use crate::layers::folding::position::Clock;
+use crate::layers::technique::Technique;
+use crate::scene::words::item_of;
 use crate::tui::document::tree;
 use crate::tui::state::{Mode, Pane, State};
 use crate::tui::text::numbers::{short, step_of};
@@ -46,14 +46,11 @@ fn mode(state: &State) -> &'static str {
     }
 }
 
-/// The layer and the zone that is shown.
+/// The layer that is shown, and the thing with a name in it.
 fn place(state: &State) -> String {
-    let (layer, zone) = tree::place(&state.node);
-    let Some(Layer::Picture(layer)) = layer.and_then(|i| state.document().scene().layers.get(i)) else {
-        return "scene".into();
-    };
-    let zone = zone.and_then(|i| layer.zones.get(i)).map(|zone| format!("/{}", zone.name));
-    plain(&format!("{}{}", layer.name, zone.unwrap_or_default()))
+    let Some((layer, _)) = inside(state, &state.node) else { return "scene".into() };
+    let item = item_of(&state.node).and_then(|item| layer.item_name(inside(state, item)?.1));
+    plain(&[layer.name(), item.map_or("", |_| "/"), item.unwrap_or_default()].concat())
 }
 
 fn marks(state: &State) -> String {
@@ -86,8 +83,8 @@ fn right(state: &State) -> String {
         return parts.join("  ");
     }
     parts.push(format!("{}t {}", if state.playing { "> " } else { "" }, short(state.time)));
-    if let Some(s) = place_on_path(state) {
-        parts.push(format!("s {}", short(s)));
+    if let Some((symbol, value)) = now(state) {
+        parts.push(format!("{symbol} {}", short(value)));
     }
     if state.seeing.synthesising {
         parts.push("field ...".into());
@@ -104,14 +101,17 @@ fn right(state: &State) -> String {
     parts.join("  ")
 }
 
-/// The clock of the zone that is shown.
-pub fn clock(state: &State) -> Option<Clock> {
-    let (layer, zone) = tree::place(&state.node);
-    let scene = state.document().scene();
-    let Layer::Picture(layer) = scene.layers.get(layer?)?;
-    Some(layer.zones.get(zone?)?.clock(scene.timeline.wrap))
+/// What changes over time in the thing that is shown, now: its symbol and value.
+fn now(state: &State) -> Option<(&'static str, f64)> {
+    let item = item_of(&state.node)?;
+    let (layer, path) = inside(state, item)?;
+    let curves = layer.curves(state.document().scene().timeline.wrap);
+    curves.iter().find(|curve| curve.path == path).map(|curve| (curve.symbol, (curve.value)(state.time)))
 }
 
-fn place_on_path(state: &State) -> Option<f64> {
-    clock(state).map(|clock| clock.s(state.time))
+/// The layer that a place belongs to, and the place relative to it.
+fn inside<'a>(state: &'a State, pointer: &'a str) -> Option<(&'a dyn Technique, &'a str)> {
+    let index = tree::layer_of(pointer)?;
+    let layer = state.document().scene().layers.get(index)?.technique();
+    Some((layer, pointer.strip_prefix(&format!("/layers/{index}"))?))
 }

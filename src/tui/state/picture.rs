@@ -16,8 +16,8 @@ pub struct Seeing {
     pub probing: bool,
     /// What the worker said about a pixel last.
     pub probed: Option<Arc<Probed>>,
-    /// The longest jump vector of every zone, by layer and zone.
-    pub longest: Vec<(usize, usize, f64)>,
+    /// The longest vector of every field, by its pointer.
+    pub longest: Vec<(String, f64)>,
     /// Whether the worker synthesises.
     pub synthesising: bool,
 }

@@ -11,6 +11,7 @@ use serde_json::json;
 
 use super::screens::{STATES, changed, opened, screen, see};
 use super::support::{press, state};
+use crate::layers::parts::readout::{Entry, Value};
 use crate::tui::commands::update::update;
 use crate::tui::events::Event;
 use crate::tui::graphics::Protocol;
@@ -215,8 +216,11 @@ fn thresholds_stand_on_the_path() {
         state.edit(edit, false).unwrap();
         press(&mut state, ": \"probe 20,20\" Enter g i");
         see(&mut state);
-        let probe = state.seeing.probed.clone().unwrap().probe.clone().unwrap();
-        assert_eq!((probe.thresholds.len(), probe.active_parts.len(), probe.active), (2, 2, true), "{probe:?}");
+        let read = state.seeing.probed.clone().unwrap().read.clone().unwrap();
+        let axis = read.axis.as_ref().unwrap();
+        assert_eq!((axis.ticks.len(), axis.stretches.len()), (2, 2), "{axis:?}");
+        let active = |entry: &Entry| matches!(entry.value, Value::Flag { on: true, .. });
+        assert!(read.entries.iter().any(active), "{read:?}");
         let text = screen(&state);
         assert!(
             text.contains('┃') && text.contains('━') && text.contains('┄') && text.contains("thresholds 0."),

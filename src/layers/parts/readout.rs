@@ -1,0 +1,110 @@
+//! What a layer can be asked about by those who look at it: a pixel explained, vectors, curves over time. Plain data, for
+//! the command line, the panes and the window.
+
+use kurbo::{Point, Vec2};
+
+use crate::base::pixels::Grid;
+
+/// What one pixel of a layer does at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOut {
+    /// What there is to say, in order. The first says what the pixel belongs to.
+    pub entries: Vec<Entry>,
+    /// Where it is on its way.
+    pub axis: Option<Axis>,
+}
+
+/// One thing that a [`ReadOut`] says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Its key in JSON: "thresholds".
+    pub key: &'static str,
+    /// What people call it: "thresholds", "τ".
+    pub label: &'static str,
+    /// The value.
+    pub value: Value,
+}
+
+/// The value of an [`Entry`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// What the pixel belongs to, by its name; `None` if it belongs to none.
+    Of(Option<String>),
+    /// From here to there, in pixels.
+    Vector(Vec2),
+    /// A place, in pixels.
+    Place(Point),
+    /// Several numbers, ascending.
+    List(Vec<f64>),
+    /// A number.
+    Number(f64),
+    /// Whether it is so.
+    Flag {
+        /// Whether it is.
+        on: bool,
+        /// The word for when it is not.
+        off: &'static str,
+    },
+}
+
+/// A way from 0 to 1.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// The stretches that are open, ascending, each from and to.
+    pub stretches: Vec<(f64, f64)>,
+    /// Where something happens.
+    pub ticks: Vec<f64>,
+    /// Where the pixel is, by the labels of entries; the first counts most. May lie beyond the ends.
+    pub points: Vec<(&'static str, f64)>,
+}
+
+/// Vectors of some of a picture's pixels.
+pub struct VectorField<'a> {
+    /// What has them: a JSON pointer relative to the layer.
+    pub path: String,
+    /// The name of what has them.
+    pub name: &'a str,
+    /// Column and row of the first pixel.
+    pub corner: (usize, usize),
+    /// Which pixels of the box have one.
+    pub inside: &'a Grid<bool>,
+    /// The vectors in pixels, x right and y down.
+    pub vectors: &'a Grid<[f32; 2]>,
+    /// What else is to be seen of some pixels of the box, with its name; `None` if there is nothing.
+    pub flag: Option<Flag<'a>>,
+}
+
+/// The name of something that some pixels have, and whether pixel i of the box, row by row, has it.
+pub type Flag<'a> = (&'static str, Box<dyn Fn(usize) -> bool + 'a>);
+
+impl VectorField<'_> {
+    /// The vector of the pixel in this column and row of the picture, if it has one.
+    pub fn at(&self, (x, y): (usize, usize)) -> Option<Vec2> {
+        let (i, j) = (x.checked_sub(self.corner.0)?, y.checked_sub(self.corner.1)?);
+        let within = i < self.inside.width() && j < self.inside.height() && *self.inside.get(i, j);
+        within.then(|| vector(*self.vectors.get(i, j)))
+    }
+
+    /// The length of the longest, in pixels.
+    pub fn longest(&self) -> f64 {
+        let squares = self.vectors.cells().iter().map(|[x, y]| x * x + y * y);
+        f64::from(squares.fold(0.0, f32::max)).sqrt()
+    }
+}
+
+/// A vector of a field, in double precision.
+pub fn vector([x, y]: [f32; 2]) -> Vec2 {
+    Vec2::new(x.into(), y.into())
+}
+
+/// A number over the scene time.
+pub struct Curve<'a> {
+    /// What has it: a JSON pointer relative to the layer.
+    pub path: String,
+    /// The name of what has it.
+    pub name: &'a str,
+    /// The letter that formulae have for it.
+    pub symbol: &'static str,
+    /// Its value at a scene time.
+    pub value: Box<dyn Fn(f64) -> f64 + 'a>,
+}
