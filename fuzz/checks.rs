@@ -97,7 +97,7 @@ pub fn expression(bytes: &[u8]) {
 #[cfg(feature = "tui")]
 pub fn keymap(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let keymap = plica::tui::Keymap::with("keys.toml", text);
+    let keymap = plica::tui::keymap("keys.toml", text);
     assert!(keymap.mistakes().iter().all(|mistake| mistake.starts_with("keys.toml:")), "{:?}", keymap.mistakes());
     assert!(!keymap.rows().is_empty());
 }

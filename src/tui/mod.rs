@@ -14,8 +14,10 @@ mod state;
 mod text;
 mod tutor;
 
+pub use commands::manual::manual;
+pub use commands::own_keys::read as keymap;
 pub use events::Change;
-pub use keys::{Keymap, manual};
+pub use keys::Keymap;
 pub use outside::offscreen::Offscreen;
 pub use outside::runner::{Options, run};
 

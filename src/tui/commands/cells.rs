@@ -3,15 +3,16 @@
 use crate::tui::text::numbers::step_of;
 use serde_json::Value;
 
+use super::command::{Call, Command, Done, command};
 use super::items::add_here;
-use super::{Call, Command, Done, command, life, messages, obey};
+use super::{life, messages};
 use crate::base::problem;
 use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
+use crate::tui::document::entry::Entry;
 use crate::tui::document::sheet::{Cell, Row};
-use crate::tui::state::entry::Entry;
 use crate::tui::state::{Mode, State, entry};
 use crate::tui::text::numbers;
 use crate::tui::text::said::{quoted, unquoted};
@@ -59,7 +60,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
     let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
     if is_typed(&cell) {
         state.mode = Mode::Entry(Entry::new(state.document(), &cell, call.text == "clear"));
-    } else if let Some(choice) = choice::of_cell(state, &cell, others) {
+    } else if let Some(choice) = choice::of_cell(state.document(), &cell, others) {
         state.mode = Mode::Choice(choice);
     } else {
         return Err(format!("{} cannot be edited here", row.label));
@@ -80,10 +81,10 @@ fn put(state: &mut State, call: &Call) -> Done {
     } else {
         let sheet = state.sheet();
         let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
-        let choice = choice::of_cell(state, &cell, others).filter(|_| !cell.is_node());
+        let choice = choice::of_cell(state.document(), &cell, others).filter(|_| !cell.is_node());
         let choice = choice.ok_or_else(|| format!("{} takes no value: go into it", row.label))?;
         let word = word_of(&choice, &text)?;
-        take(state, choice, &word)?;
+        take(state, call, choice, &word)?;
     }
     state.mode = Mode::Normal;
     Ok(())
@@ -98,11 +99,11 @@ fn is_typed(cell: &Cell) -> bool {
 fn commit(state: &mut State, call: &Call) -> Done {
     let Mode::Entry(typed) = &state.mode else { return Ok(()) };
     let text = quoted(typed.text.value());
-    obey(state, &format!("put {text}"), None)?;
+    call.obey(state, &format!("put {text}"))?;
     if call.text == "next" {
-        obey(state, "move next", None)?;
+        call.obey(state, "move next")?;
         if current(state).is_some_and(|(_, cell)| is_typed(&cell)) {
-            return obey(state, "enter", None);
+            return call.obey(state, "enter");
         }
     }
     Ok(())
@@ -125,13 +126,13 @@ fn choice(state: &mut State, call: &Call) -> Done {
                 let choice = choice.clone();
                 state.mode = Mode::Normal;
                 state.recorder.remark(&format!("{}: {word}", choice.title));
-                return take(state, choice, &word);
+                return take(state, call, choice, &word);
             }
             (Some(word), Then::Go) => {
                 state.mode = Mode::Normal;
-                return messages::go_to(state, &word);
+                return messages::go_to(state, call, &word);
             }
-            (Some(word), _) => return obey(state, &format!("choose {}", quoted(&word)), None),
+            (Some(word), _) => return call.obey(state, &format!("choose {}", quoted(&word))),
             (None, _) => state.mode = Mode::Normal,
         },
         text => {
@@ -164,7 +165,7 @@ fn choose(state: &mut State, call: &Call) -> Done {
     let word = word_of(choice, &unquoted(call.text))?;
     let choice = choice.clone();
     state.mode = Mode::Normal;
-    take(state, choice, &word)
+    take(state, call, choice, &word)
 }
 
 /// The word, where the list has it.
@@ -177,7 +178,7 @@ fn word_of(choice: &Choice, word: &str) -> Result<String, String> {
     Err(format!("{} cannot be {}: {near}", choice.title, problem::quoted(word)))
 }
 
-fn take(state: &mut State, choice: Choice, word: &str) -> Done {
+fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
     let document = state.document();
     let (edit, lost) = match &choice.then {
         Then::Set(pointers) => {
@@ -189,7 +190,7 @@ fn take(state: &mut State, choice: Choice, word: &str) -> Done {
             Some(Kind::Tagged { tag, .. }) => Edit::set_told(document, &format!("{pointer}/{tag}"), word.into()),
             _ => return Err(format!("{pointer} has no kinds")),
         },
-        Then::Go => return messages::go_to(state, word),
+        Then::Go => return messages::go_to(state, call, word),
         Then::Answer(question) => return life::answer(state, question.about, word, choice),
     };
     state.edit(edit, false)?;
@@ -209,10 +210,11 @@ fn step(state: &mut State, call: &Call) -> Done {
     let (_, cell) = current(state).ok_or("there is nothing to step here")?;
     if !cell.is_number() {
         let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
-        let mut choice: Choice = choice::of_cell(state, &cell, others).ok_or("only numbers and choices step")?;
+        let mut choice: Choice =
+            choice::of_cell(state.document(), &cell, others).ok_or("only numbers and choices step")?;
         choice.turn(by);
         let word = choice.taken().unwrap_or_default().to_string();
-        return take(state, choice, &word);
+        return take(state, call, choice, &word);
     }
     let unit = step_of(state.step);
     let edit = entry::each(state, |_, cell, _| {

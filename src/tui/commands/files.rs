@@ -1,6 +1,6 @@
 //! Files, leaving, and what is outside the editor.
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::files::paths;
 use crate::preview::keys as window;

@@ -1,12 +1,13 @@
 //! A pasted table over the selected rows: the columns that it has, from the one under the cursor or by its header, take its
 //! values; the others stay.
 
+use crate::tui::document::sheet::in_range;
 use std::collections::BTreeMap;
 
 use kurbo::Vec2;
 use serde_json::Value;
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
 use crate::tui::document::rows;
@@ -83,7 +84,7 @@ impl Filled<'_> {
             return Ok(());
         }
         let number = rows::number(text).ok_or_else(|| format!("{} is not a number", quoted(text)))?;
-        entry::in_range(&cell.field, cell.part, number)?;
+        in_range(&cell.field, cell.part, number)?;
         let pair = |v: Vec2| Value::from(vec![tidy_json(v.x), tidy_json(v.y)]);
         let vector = || {
             let at = |i: usize| old.as_ref().and_then(|old| old.get(i)).and_then(Value::as_f64).unwrap_or(0.0);

@@ -1,6 +1,6 @@
 //! Finding: the search over names and values, marks, the jump list, the same place beside this one.
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::scene::schema::{Body, Place};
 use crate::scene::{address, field, pointer};
 use crate::tui::document::choice::{Choice, Then};

@@ -2,7 +2,8 @@
 //! from the schema.
 
 use super::cells::number;
-use super::{Call, Command, Done, all, command};
+use super::command::{Call, Command, Done, command};
+use super::contexts::contexts;
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{address, pointer};
 use crate::tui::document::sheet;
@@ -22,9 +23,9 @@ const WIDTH: u16 = 70;
 
 fn help(state: &mut State, call: &Call) -> Done {
     if !call.text.is_empty() {
-        return help_of(state, call.text);
+        return help_of(state, call);
     }
-    let here = state.contexts();
+    let here = contexts(state);
     let mut contexts = here.clone();
     for row in state.keymap.rows() {
         if !contexts.contains(&row.context) {
@@ -44,16 +45,20 @@ fn help(state: &mut State, call: &Call) -> Done {
     lines.extend(entries());
     lines.push(String::new());
     lines.push("-- commands, after : --".into());
-    lines.extend(all().map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)));
-    lines.extend(super::subcommands().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
+    lines.extend(
+        call.table
+            .all()
+            .map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)),
+    );
+    lines.extend(call.table.subcommands().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
     state.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
     Ok(())
 }
 
 /// One command: its line in the table; of what is typed into cells all that may be, of a subcommand what `--help` says.
-fn help_of(state: &mut State, name: &str) -> Done {
-    let name = name.trim_start_matches(':');
-    let lines: Vec<String> = match (super::find(name), super::subcommands().find(|known| known == name)) {
+fn help_of(state: &mut State, call: &Call) -> Done {
+    let name = call.text.trim_start_matches(':');
+    let lines: Vec<String> = match (call.table.find(name), call.table.subcommands().find(|known| known == name)) {
         (Some(command), _) if command.name == "put" => {
             let line = format!(":{} {}", command.name, command.args);
             [line, command.help.to_owned(), String::new()].into_iter().chain(entries()).collect()
@@ -68,7 +73,7 @@ fn help_of(state: &mut State, name: &str) -> Done {
                 .flat_map(|line| if line.len() > 100 { wrapped(line, WIDTH) } else { vec![line.to_owned()] })
                 .collect()
         }
-        (None, None) => return Err(super::unknown(name)),
+        (None, None) => return Err(call.table.unknown(name)),
     };
     // What is being typed is there again once the help is closed.
     if let Mode::Entry(entry) = &state.mode {
@@ -190,7 +195,7 @@ mod tests {
         let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
         let text = pages.lines.join("\n");
         assert!(keys::KEYS.iter().all(|row| text.contains(row.help)));
-        assert!(all().all(|command| text.contains(command.help)));
+        assert!(super::super::all().all(|command| text.contains(command.help)));
         let (node, pane) = (text.find("-- left eye --"), text.find(&format!("-- {} --", keys::TREE)));
         assert!(node == Some(0) && node < pane && pane < text.find(&format!("-- {} --", keys::EVERYWHERE)), "{text}");
     }

@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value, json as value};
 
+use super::command::{Call, Command, Done, command};
 use super::naming::unused;
 use super::yanking::stem;
-use super::{Call, Command, Done, command};
 use crate::base::budget;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
@@ -121,7 +121,7 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
     let end = || state.document().json().pointer(&pointer).and_then(Value::as_array).map_or(0, Vec::len);
     match (&field.kind, there) {
         (Kind::Tagged { .. }, false) => {
-            let options = choice::options(state, &field.kind);
+            let options = choice::options(state.document(), &field.kind);
             state.mode = Mode::Choice(Choice { title: field.name, options, at: 0, then: Then::Become(pointer) });
             Ok(())
         }
@@ -151,7 +151,7 @@ fn add_object(state: &mut State, pointer: &str) -> Done {
     let document = state.document();
     let image = document.scene().images.keys().next().cloned();
     let image = image.ok_or("the scene has no images: add one first")?;
-    let edit = entry::set(document, &format!("{pointer}/image"), image.into());
+    let edit = Edit::set(document, &format!("{pointer}/image"), image.into());
     state.edit(edit, false)
 }
 

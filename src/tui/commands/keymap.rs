@@ -1,6 +1,6 @@
 //! The person's own keys: shown with what is wrong in their file, and read anew.
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::tui::events::Effect;
 use crate::tui::keys::OWN_FILE;
 use crate::tui::state::{Mode, Pages, State};

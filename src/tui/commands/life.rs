@@ -1,49 +1,18 @@
 //! What happens to a scene outside the editor, and what is asked about it: unsaved edits of a session that did not end
 //! well, somebody else who edits the scene, another program that writes its file.
 
+use crate::tui::document::choice::About;
+use crate::tui::state::questions::{about_recovery, few, question};
 use crate::tui::text::plain;
 use std::path::PathBuf;
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::base::error::Error;
 use crate::files::session::Taken;
 use crate::scene::merge::Side;
-use crate::tui::document::choice::{Choice, Then};
-use crate::tui::document::door::Door;
+use crate::tui::document::choice::Choice;
 use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};
-
-/// So many changes are shown in a question; the rest can be looked at.
-const FEW: usize = 5;
-
-/// Something that only the person can decide.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Question {
-    /// What it is about.
-    pub about: About,
-    /// What is to be known, a line each.
-    pub text: Vec<String>,
-}
-
-/// What a question is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum About {
-    /// Unsaved edits that a session left behind.
-    Recovery,
-    /// Somebody else edits the scene.
-    Holder,
-    /// Another program changed in the file what was changed here too.
-    File,
-}
-
-/// What the editor knows about the outside.
-#[derive(Clone, Debug, Default)]
-pub struct Life {
-    /// A question that waits until nothing else is going on.
-    pub waiting: Option<Choice>,
-    /// How the file differs from what it should be, in a word for the status line.
-    pub file: Option<&'static str>,
-}
 
 /// Where both changed the file and nothing was decided.
 const UNDECIDED: &str = "file differs";
@@ -52,60 +21,6 @@ pub const COMMANDS: &[Command] = &[
     command("merge", "[mine|theirs]", "Take in what another program wrote to the file", merge),
     command("recovery", "[keep|drop]", "Answer about unsaved edits that were left behind, or ask again", recovery),
 ];
-
-impl Life {
-    /// What is to be asked when a scene has been opened.
-    pub fn begin(door: &Door) -> Life {
-        let held = door.held_by().map(|holder| {
-            let text = vec![format!("The scene {}.", plain(&holder.in_words()))];
-            let mut options = vec![("look", "Open it to read only; it follows what is saved there")];
-            if !holder.certain {
-                options.push(("edit", "Edit it all the same: nobody is there any more"));
-            }
-            options.push(("quit", "Leave"));
-            question(About::Holder, "the scene is open elsewhere".into(), text, &options)
-        });
-        Life { waiting: held.or_else(|| about_recovery(door)), file: None }
-    }
-}
-
-/// What is asked about unsaved edits that were left behind.
-fn about_recovery(door: &Door) -> Option<Choice> {
-    let offer = door.offered()?;
-    let title = format!("{} left behind, {}", offer.in_words(), door.ago(offer.time_ms));
-    let mut text = few(&offer.words);
-    if offer.file_changed {
-        text.push("Another program has changed the file since.".into());
-    }
-    let options = [
-        ("recover", "Take the changes"),
-        ("leave", "Leave the file as it is; u still gives the changes"),
-        ("difference", "Look at all of them"),
-    ];
-    Some(question(About::Recovery, title, text, &options))
-}
-
-/// A list with what is to be known above it.
-fn question(about: About, title: String, text: Vec<String>, options: &[(&str, &str)]) -> Choice {
-    let options = options.iter().map(|(word, help)| (word.to_string(), help.to_string())).collect();
-    Choice { title, options, at: 0, then: Then::Answer(Question { about, text }) }
-}
-
-/// The first few lines, and how many more there are.
-fn few(lines: &[String]) -> Vec<String> {
-    let mut text: Vec<String> = lines.iter().take(FEW).map(|line| plain(line)).collect();
-    if lines.len() > FEW {
-        text.push(format!("and {} more", lines.len() - FEW));
-    }
-    text
-}
-
-/// Asks what waits, once nothing else is going on.
-pub fn ask(state: &mut State) {
-    if let (Mode::Normal, true) = (&state.mode, state.life.waiting.is_some()) {
-        state.mode = state.life.waiting.take().map_or(Mode::Normal, Mode::Choice);
-    }
-}
 
 /// Does what was chosen; `asked` comes again where something is to be looked at first.
 pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Done {

@@ -1,7 +1,7 @@
 //! Lines run again: macros, and `.` for the last change. Both are lines that the recorder kept; a line that cannot be done
 //! ends them.
 
-use super::{Call, Command, Done, command, obey};
+use super::command::{Call, Command, Done, command};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::said::Said;
 
@@ -39,16 +39,17 @@ fn play(state: &mut State, call: &Call) -> Done {
     let lines = state.recorder.play(letter)?;
     for _ in 0..call.times_of("play-macro")? {
         for (at, line) in lines.iter().enumerate() {
-            repeat(state, line).map_err(|why| format!("macro {letter} stopped at line {} ({line}): {why}", at + 1))?;
+            repeat(state, call, line)
+                .map_err(|why| format!("macro {letter} stopped at line {} ({line}): {why}", at + 1))?;
         }
     }
     Ok(())
 }
 
 /// Runs a line of several; one that is refused leaves no list open.
-fn repeat(state: &mut State, line: &str) -> Done {
+fn repeat(state: &mut State, call: &Call, line: &str) -> Done {
     state.recorder.spend(state.door.document())?;
-    obey(state, line, None).inspect_err(|_| {
+    call.obey(state, line).inspect_err(|_| {
         if matches!(state.mode, Mode::Choice(_)) {
             state.mode = Mode::Normal;
         }
@@ -64,7 +65,7 @@ fn again(state: &mut State, call: &Call) -> Done {
     }
     for _ in 0..call.times_of("again")? {
         for line in &lines {
-            repeat(state, line)?;
+            repeat(state, call, line)?;
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! What was said, to be read again, and what is wrong in the scene, to be gone to.
 
-use super::{Call, Command, Done, command, obey};
+use super::command::{Call, Command, Done, command};
 use crate::base::problem::{Problem, Severity};
 use crate::scene::{address, pointer};
 use crate::tui::document::choice::{Choice, Then};
@@ -71,23 +71,23 @@ fn problem(state: &mut State, call: &Call) -> Done {
     let from = at.map_or(if by > 0 { -1 } else { 0 }, |at| at as i64);
     let to = (from + by).rem_euclid(n) as usize;
     let (path, message) = &found[to];
-    go(state, path)?;
+    go(state, call, path)?;
     state.say(format!("problem {} of {n}: {message}", to + 1));
     Ok(())
 }
 
 /// Goes to a place, or to the nearest that holds it and is there.
-fn go(state: &mut State, path: &str) -> Done {
+fn go(state: &mut State, call: &Call, path: &str) -> Done {
     let mut path = path.to_owned();
     while !path.is_empty() && !crate::scene::field::is_there(state.document(), &path) {
         path = pointer::split(&path).map_or(String::new(), |(holder, _)| holder.to_owned());
     }
-    obey(state, &format!("go {path}"), None)
+    call.obey(state, &format!("go {path}"))
 }
 
 /// Goes to the place of a row of the list.
-pub fn go_to(state: &mut State, place: &str) -> Done {
+pub fn go_to(state: &mut State, call: &Call, place: &str) -> Done {
     let path = if place == "scene" { String::new() } else { place.to_owned() };
     let path = address::resolve(state.document(), &path).unwrap_or_default();
-    go(state, &path)
+    go(state, call, &path)
 }

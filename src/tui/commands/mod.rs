@@ -1,195 +1,41 @@
-//! The one table of commands: what keys run and what is typed after `:`. What is not here but on the command line of
-//! `plica` (render, synth, ...) runs as there, with the same arguments.
+//! The one table of commands: what keys run and what is typed after `:`.
 
-use super::events::Effect;
-use super::state::recorder::{Ended, Kept};
-use super::state::{Mode, State};
-use super::tutor;
-use crate::base::problem;
-use crate::ops;
-use crate::tui::text::said::{Said, words};
+use super::state::State;
+use command::{Command, Done, Table};
 
 mod cells;
+pub mod command;
+mod completing;
+pub mod contexts;
 mod files;
 mod filling;
 mod finding;
-mod help;
-pub use help::entries;
+pub mod help;
 mod items;
 mod keymap;
 pub mod life;
 mod macros;
-mod messages;
+pub mod manual;
+pub mod messages;
 mod moving;
 mod naming;
+pub mod own_keys;
 mod palette;
-mod pasting;
+pub mod pasting;
 mod placing;
 mod playing;
 mod scripts;
 mod seeing;
 mod selecting;
+pub mod tutor;
 mod typing;
 mod undoing;
 pub mod update;
 mod values;
 mod yanking;
-pub use pasting::pasted;
 
-/// How a command ends: what to say where it could not be done.
-pub type Done = Result<(), String>;
-
-/// What a command is given.
-pub struct Call<'a> {
-    /// What stands after its name.
-    pub text: &'a str,
-    /// The count typed before its key.
-    pub count: Option<usize>,
-}
-
-/// Counts go so far: to any row that a scene may have.
-const MOST_COUNT: usize = 1_000_000;
-
-impl Call<'_> {
-    /// The count, 1 where none was typed.
-    pub fn times(&self) -> i64 {
-        self.count.unwrap_or(1) as i64
-    }
-
-    /// The steps of a command that goes so far; no way is longer.
-    pub fn steps(&self) -> std::ops::Range<usize> {
-        0..self.count.unwrap_or(1).min(1000)
-    }
-
-    /// The count of a command that makes something each time.
-    ///
-    /// # Errors
-    /// It is more than anybody means.
-    pub fn times_of(&self, name: &str) -> Result<usize, String> {
-        /// Keys never wait for long.
-        const MOST: usize = 10_000;
-        let times = self.count.unwrap_or(1);
-        if times > MOST { Err(format!("{name} goes {MOST} times at most, not {times}")) } else { Ok(times) }
-    }
-}
-
-/// One command.
-pub struct Command {
-    /// Its name, as typed after `:`.
-    pub name: &'static str,
-    /// Its arguments, for help.
-    pub args: &'static str,
-    /// What it does, in a few words.
-    pub help: &'static str,
-    /// What is kept of it: in the log of the session, in macros, for `.`.
-    pub kept: Kept,
-    /// Whether it takes a count.
-    pub counts: Counts,
-    /// Does it.
-    pub run: fn(&mut State, &Call) -> Done,
-}
-
-/// Where a command does something with a count: repeats itself, or goes so far. Elsewhere the door refuses one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Counts {
-    /// Nowhere.
-    Never,
-    /// Whatever it is told.
-    Always,
-    /// Where its text begins with one of these words; an empty one stands for no text.
-    With(&'static [&'static str]),
-}
-
-impl Command {
-    /// One that changes the scene, which `.` repeats.
-    const fn change(self) -> Command {
-        Command { kept: Kept::Change, ..self }
-    }
-
-    /// One that takes a count.
-    pub const fn counted(self) -> Command {
-        Command { counts: Counts::Always, ..self }
-    }
-
-    /// One that takes a count with these words.
-    pub const fn counted_with(self, words: &'static [&'static str]) -> Command {
-        Command { counts: Counts::With(words), ..self }
-    }
-
-    /// The words that may stand after its name, where there are no others, and whether it can do without.
-    pub fn words(&self) -> Option<(Vec<&'static str>, bool)> {
-        let inside = self.args.strip_prefix('[').and_then(|args| args.strip_suffix(']'));
-        let words: Vec<&str> = inside.unwrap_or(self.args).split('|').filter(|word| !word.is_empty()).collect();
-        let plain = |word: &&str| word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
-        words.iter().all(plain).then(|| (words, inside.is_some() || self.args.is_empty()))
-    }
-
-    /// Refuses what the table says that the command does not take: another word, a count.
-    fn takes(&self, said: &Said) -> Done {
-        if let Some((words, optional)) = self.words()
-            && !words.contains(&said.text)
-            && !(optional && said.text.is_empty())
-        {
-            let found = if said.text.is_empty() { "nothing".into() } else { problem::quoted(said.text) };
-            return Err(match words.as_slice() {
-                [] => format!("{} takes nothing after it, not {found}", self.name),
-                words => format!("{} takes {}, not {found}", self.name, one_of(words)),
-            });
-        }
-        let first = said.text.split(' ').next().unwrap_or_default();
-        let counts = match self.counts {
-            Counts::Never => false,
-            Counts::Always => true,
-            Counts::With(words) => words.contains(&first),
-        };
-        match said.count {
-            Some(_) if !counts => Err(format!("{} takes no count", format!("{} {first}", self.name).trim_end())),
-            _ => Ok(()),
-        }
-    }
-
-    /// Whether it would change the scene.
-    fn edits(&self, said: &Said) -> bool {
-        // `place next` and `place previous` only go to points.
-        self.kept == Kept::Change && !matches!(said.text, "next" | "previous")
-    }
-
-    /// One that answers a list of choices.
-    const fn answer(self) -> Command {
-        Command { kept: Kept::Answer, ..self }
-    }
-
-    /// One that plays lines, which are kept in its place.
-    const fn played(self) -> Command {
-        Command { kept: Kept::Played, ..self }
-    }
-
-    /// One of which only the lines are kept that it runs itself, if any: it types, asks, or only shows.
-    pub const fn inside(self) -> Command {
-        Command { kept: Kept::Inside, ..self }
-    }
-}
-
-/// A command of which the line is kept; [`Command::change`] and [`Command::inside`] say otherwise.
-pub const fn command(
-    name: &'static str,
-    args: &'static str,
-    help: &'static str,
-    run: fn(&mut State, &Call) -> Done,
-) -> Command {
-    Command { name, args, help, kept: Kept::Line, counts: Counts::Never, run }
-}
-
-/// Words as alternatives: `a, b or c`.
-fn one_of(words: &[&str]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [all @ .., last] => format!("{} or {last}", all.join(", ")),
-    }
-}
-
-const TABLES: &[&[Command]] = &[
+/// Every command.
+pub static TABLE: Table = Table(&[
     files::COMMANDS,
     cells::COMMANDS,
     items::COMMANDS,
@@ -213,144 +59,24 @@ const TABLES: &[&[Command]] = &[
     life::COMMANDS,
     keymap::COMMANDS,
     tutor::COMMANDS,
-];
+]);
 
 /// Every command of the editor.
 pub fn all() -> impl Iterator<Item = &'static Command> {
-    TABLES.iter().copied().flatten()
-}
-
-/// Other names of commands, as vim has them.
-const ALIASES: &[(&str, &str)] = &[
-    ("edit", "e"),
-    ("edit!", "e!"),
-    ("h", "help"),
-    ("qa", "q"),
-    ("qa!", "q!"),
-    ("quit", "q"),
-    ("quit!", "q!"),
-    ("quitall", "q"),
-    ("red", "redo"),
-    ("u", "undo"),
-    ("wa", "w"),
-    ("wqa", "wq"),
-    ("write", "w"),
-    ("write!", "w!"),
-    ("x", "wq"),
-    ("xa", "wq"),
-    ("xit", "wq"),
-];
-
-/// The command of this name, or of this other name.
-pub fn find(name: &str) -> Option<&'static Command> {
-    let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
-    all().find(|command| command.name == name)
-}
-
-/// Whether a line only saves or leaves.
-pub fn leaves(line: &str) -> bool {
-    find(Said::parse(line, None).name).is_some_and(|command| matches!(command.name, "q" | "q!" | "w" | "w!" | "wq"))
-}
-
-/// The subcommands of the command line that have a use in the editor.
-pub fn subcommands() -> impl Iterator<Item = String> {
-    const OUTSIDE: &[&str] = &["demo", "new", "edit", "tutor", "attach", "completions", "man"];
-    ops::names().filter(|name| !OUTSIDE.contains(&name.as_str()) && find(name).is_none())
-}
-
-/// That there is no such command, and what may have been meant.
-pub fn unknown(name: &str) -> String {
-    let names = names();
-    let near = problem::nearest(name, names.iter().map(String::as_str));
-    let near = near.filter(|near| near.starts_with("did you mean")).unwrap_or("? lists them".into());
-    format!("there is no command {} ({near})", problem::quoted(name))
-}
-
-/// The names of all commands, those of the command line included, in order.
-pub fn names() -> Vec<String> {
-    let mut names: Vec<String> = all().map(|command| command.name.to_string()).chain(subcommands()).collect();
-    names.sort();
-    names.dedup();
-    names
+    TABLE.all()
 }
 
 /// Runs a line, and says where it could not be done.
 pub fn run(state: &mut State, line: &str, count: Option<usize>) {
-    if let Err(why) = obey(state, line, count) {
-        state.complain(why);
-    }
+    TABLE.run(state, line, count);
 }
 
-/// Runs a line `[COUNT] NAME [ARGS]`: the one door that keys, what is typed after `:`, scripts, macros and windows pass.
+/// Runs a line `[COUNT] NAME [ARGS]`.
 ///
 /// # Errors
 /// What to say where it could not be done.
 pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
-    let said = Said::parse(line, count);
-    if said.name.is_empty() {
-        return Ok(());
-    }
-    if let Some(count) = said.count.filter(|&count| count > MOST_COUNT) {
-        return Err(format!("a count goes to {MOST_COUNT}, not {count}"));
-    }
-    #[cfg(test)]
-    super::tests::coverage::ran(said.name);
-    let command = find(said.name);
-    let kept = command.map_or(Kept::Line, |command| command.kept);
-    let (revision, asked) = (state.door.revision(), asks(state));
-    state.recorder.begin(kept);
-    let done = match command {
-        Some(command) => command.takes(&said).and_then(|()| {
-            // Nothing is typed or chosen that would be refused at its end.
-            if command.edits(&said) {
-                state.door.writable()?;
-            }
-            (command.run)(state, &Call { text: said.text, count: said.count })
-        }),
-        None => subcommand(state, &said),
-    };
-    let asks = asks(state) && !asked;
-    // Only a run of steps joins into one step of undo, whatever was looked at meanwhile.
-    if done.is_ok() && !matches!(kept, Kept::Inside | Kept::Played) && !asks && said.name != "step" {
-        state.door.close_step();
-    }
-    let refused = done.as_ref().err().map(String::as_str);
-    state.recorder.end(Ended {
-        line: said.to_string(),
-        kept,
-        refused,
-        asks,
-        changed: state.door.revision() != revision,
-    });
-    done
-}
-
-/// Whether something is being typed or chosen: a line that answers follows.
-fn asks(state: &State) -> bool {
-    matches!(state.mode, Mode::Entry(_) | Mode::Choice(_) | Mode::Line(_))
-}
-
-/// Asks for a subcommand of the command line, with the same arguments.
-fn subcommand(state: &mut State, said: &Said) -> Done {
-    let name = said.name;
-    if !ops::names().any(|known| known == name) {
-        return Err(unknown(name));
-    }
-    if said.count.is_some() {
-        return Err(format!("{name} takes no count"));
-    }
-    let words = words(&format!("{name} {}", said.text))?;
-    state.ask(Effect::Run(words));
-    Ok(())
-}
-
-/// Runs a command that a window asks for: only marking a point is the editor's.
-pub fn run_of_window(state: &mut State, name: &str) {
-    match name {
-        "mark-point" => run(state, "pointer mark", None),
-        "select-point" => run(state, "pointer select", None),
-        _ => {}
-    }
+    TABLE.obey(state, line, count)
 }
 
 #[cfg(test)]

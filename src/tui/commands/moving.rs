@@ -1,7 +1,7 @@
 //! Moving about: in the tree, in forms and tables, between panes, and by search.
 
+use super::command::{Call, Command, Done, command};
 use super::finding::leave as leave_place;
-use super::{Call, Command, Done, command};
 use crate::tui::document::tree;
 use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
@@ -59,7 +59,11 @@ fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
     let cells = state.sheet().row(state.row).map_or(0, |row| row.cells.len());
     let by = |steps: i64| (state.column as i64 + steps).clamp(0, cells.saturating_sub(1) as i64) as usize;
     state.column = match way {
-        "left" if state.column == 0 => return pane(state, &Call { text: "tree", count: None }),
+        "left" if state.column == 0 => {
+            state.focus = Pane::Tree;
+            state.settle();
+            return Ok(());
+        }
         "left" => by(-times),
         "right" => by(times),
         "start" => 0,
@@ -122,7 +126,9 @@ fn open_once(state: &mut State) -> Done {
         state.folded.remove(&rows[at].pointer);
         return Ok(());
     }
-    pane(state, &Call { text: "table", count: None })
+    state.focus = Pane::Table;
+    state.settle();
+    Ok(())
 }
 
 fn up(state: &mut State, call: &Call) -> Done {

@@ -1,10 +1,10 @@
 //! Names: of what carries one, and of pictures, which others name.
 
+use super::command::{Call, Command, Done, command};
 use super::items::{go_to, target};
-use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, address, field, pointer};
-use crate::tui::state::{Mode, State, entry};
+use crate::tui::state::{Mode, State};
 use crate::tui::text::line::Line;
 use crate::tui::text::plain;
 use crate::tui::text::said::unquoted;
@@ -26,7 +26,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
         return Ok(());
     }
     if image.is_none() {
-        let edit = entry::set(state.document(), &pointer::join(&path, "name"), name.into());
+        let edit = Edit::set(state.document(), &pointer::join(&path, "name"), name.into());
         return state.edit(edit, false);
     }
     if state.document().scene().images.contains_key(&name) {

@@ -1,7 +1,10 @@
 //! The palette and the leader menu: what there is, to be chosen from.
 
-use super::{Call, Command, Done, command, obey};
-use crate::tui::document::palette::Palette;
+use super::command::{Call, Command, Done, command};
+use crate::tui::commands::command::Table;
+use crate::tui::document::palette::{Action, Palette};
+use crate::tui::keys;
+use crate::tui::state::recorder::Kept;
 use crate::tui::state::{Mode, State};
 
 pub const COMMANDS: &[Command] = &[
@@ -17,7 +20,7 @@ pub const COMMANDS: &[Command] = &[
 
 fn palette(state: &mut State, call: &Call) -> Done {
     let Mode::Palette(palette) = &mut state.mode else {
-        state.mode = Mode::Palette(Palette::new(state));
+        state.mode = Mode::Palette(opened(call.table, state));
         return Ok(());
     };
     match call.text {
@@ -27,10 +30,56 @@ fn palette(state: &mut State, call: &Call) -> Done {
             let row = palette.row(palette.at);
             state.mode = Mode::Normal;
             if let Some(row) = row {
-                return obey(state, &row.line, None);
+                return call.obey(state, &row.line);
             }
         }
         _ => {}
     }
     Ok(())
+}
+
+/// The list with everything in it, commands first.
+fn opened(table: &Table, state: &mut State) -> Palette {
+    let document = state.document().clone();
+    let places = state.finding.listed(&document);
+    Palette::new(actions(table, state), places)
+}
+
+/// The lines of keys that work in any pane, then the commands that take arguments or have no key.
+fn actions(table: &Table, state: &State) -> Vec<Action> {
+    let shown = [keys::EVERYWHERE, keys::TREE, keys::TABLE, keys::PICTURE];
+    let mut all: Vec<Action> = Vec::new();
+    for row in state.keymap.rows().iter().filter(|row| shown.contains(&row.context) && !row.command.contains('{')) {
+        let line = row.command.to_string();
+        match all.iter_mut().find(|one| one.line == line) {
+            Some(one) if one.key.len() < 16 => one.key = format!("{}, {}", one.key, row.key),
+            Some(_) => {}
+            None => all.push(Action { name: line.clone(), key: row.key.to_string(), help: row.help.to_string(), line }),
+        }
+    }
+    let only_typing = |name: &str| {
+        let mut rows = state.keymap.rows().iter().filter(|row| row.command.split(' ').next() == Some(name)).peekable();
+        rows.peek().is_some() && rows.all(|row| !shown.contains(&row.context))
+    };
+    let offered = |command: &&Command| command.kept != Kept::Inside && !only_typing(command.name);
+    for command in table.all().filter(offered) {
+        let Command { name, args, help, .. } = command;
+        if args.is_empty() && all.iter().any(|one| one.line == *name) {
+            continue;
+        }
+        let typed = !args.is_empty() && !args.starts_with('[');
+        let line = if typed { format!("line :{name}") } else { name.to_string() };
+        all.push(Action {
+            name: format!("{name} {args}").trim().into(),
+            key: String::new(),
+            help: help.to_string(),
+            line,
+        });
+    }
+    let others = crate::ops::names().filter(|name| table.find(name).is_none());
+    all.extend(others.map(|name| {
+        let help = format!("As `plica {name}` on this scene");
+        Action { line: format!("line :{name}"), name, key: String::new(), help }
+    }));
+    all
 }

@@ -3,8 +3,9 @@
 
 use serde_json::Value;
 
+use super::command::Done;
 use super::yanking::{here, item_of, upward};
-use super::{Done, cells, filling, obey};
+use super::{cells, filling, obey};
 use crate::scene::field::{self, Kind};
 use crate::tui::document::rows;
 use crate::tui::document::rows::Target;

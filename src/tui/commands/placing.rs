@@ -2,8 +2,8 @@
 
 use kurbo::{Point, Vec2};
 
+use super::command::{Call, Command, Done, command};
 use super::items::go_to;
-use super::{Call, Command, Done, command, obey};
 use crate::base::problem::quoted;
 use crate::render::overlay;
 use crate::tui::events::Effect;
@@ -80,7 +80,7 @@ fn placed(state: &mut State, call: &Call) -> Done {
 }
 
 /// Goes to what stands at a place of the picture: an anchor near it, else the zone.
-fn select(state: &mut State, at: Point) -> Done {
+fn select(state: &mut State, call: &Call, at: Point) -> Done {
     if !matches!(state.mode, Mode::Normal) {
         return Err("something is being typed or chosen: end that first (Esc)".into());
     }
@@ -89,7 +89,7 @@ fn select(state: &mut State, at: Point) -> Done {
     let pointer = overlay::pick(state.document().scene(), at, reach_px).ok_or("no zone is there")?;
     // A tool's first cell stands in the table of all tools, beside its numbers.
     let cell = if pointer.contains("/motion/") { "/tool" } else { "" };
-    obey(state, &format!("go {pointer}{cell}"), None)
+    call.obey(state, &format!("go {pointer}{cell}"))
 }
 
 /// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and with it the row
@@ -98,12 +98,12 @@ fn select(state: &mut State, at: Point) -> Done {
 fn pointer(state: &mut State, call: &Call) -> Done {
     let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
     if call.text == "select" {
-        return select(state, (x, y).into());
+        return select(state, call, (x, y).into());
     }
     if matches!(state.mode, Mode::Entry(_)) {
         return entry::offer(state, (x, y).into());
     }
-    obey(state, &format!("cursor at {x} {y}"), None)?;
+    call.obey(state, &format!("cursor at {x} {y}"))?;
     match (call.text, state.focus) {
         ("mark", _) => {
             state.say(format!("marked {}, {}: in the picture (g i) a adds a point there", short(x), short(y)));
@@ -111,11 +111,11 @@ fn pointer(state: &mut State, call: &Call) -> Done {
         }
         (_, Pane::Table) => match place::jump_in_focus(state) {
             Some(Vec2 { x: dx, y: dy }) => {
-                obey(state, "place jump", None)?;
+                call.obey(state, "place jump")?;
                 state.say(format!("jump {}, {}: it ends at the window's pointer", short(dx), short(dy)));
                 Ok(())
             }
-            None => obey(state, "place move", None),
+            None => call.obey(state, "place move"),
         },
         _ => Ok(()),
     }

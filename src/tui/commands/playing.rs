@@ -1,6 +1,6 @@
 //! Time: playing and going from frame to frame.
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::tui::events::Effect;
 use crate::tui::state::State;
 use crate::tui::state::transport::SPEEDS;

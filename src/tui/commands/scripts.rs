@@ -1,6 +1,6 @@
 //! Lines that were run, as one thing: the log of the session, and scripts.
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::files::paths;
 use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};

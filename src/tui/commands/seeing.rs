@@ -2,7 +2,7 @@
 
 use kurbo::Vec2;
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::base::problem;
 use crate::tui::events::Effect;
 use crate::tui::graphics::{Protocol, sight};

@@ -1,7 +1,7 @@
 //! Rows that an edit applies to together.
 
+use super::command::{Call, Command, Done, command};
 use super::items::rows;
-use super::{Call, Command, Done, command};
 use crate::tui::state::State;
 
 pub const COMMANDS: &[Command] =

@@ -1,13 +1,13 @@
 //! Typing: the command line, texts, and the pages of the help.
 
+use crate::tui::commands::completing;
 use std::path::Path;
 
+use super::command::{Call, Command, Done, command};
 use super::finding::{search_left, search_typed};
-use super::{Call, Command, Done, command, obey};
 use crate::tui::events::Effect;
 use crate::tui::state::{Mode, State};
 use crate::tui::text::input::Text;
-use crate::tui::text::line;
 use crate::tui::text::line::Line;
 use crate::tui::text::said::{quoted, unquoted};
 
@@ -77,7 +77,7 @@ fn seek(state: &mut State) {
     }
 }
 
-fn run_typed(state: &mut State, _: &Call) -> Done {
+fn run_typed(state: &mut State, call: &Call) -> Done {
     let Mode::Line(line) = &state.mode else { return Ok(()) };
     let (kind, typed) = (line.kind, line.text.value().trim().to_string());
     state.mode = Mode::Normal;
@@ -86,26 +86,26 @@ fn run_typed(state: &mut State, _: &Call) -> Done {
         return Ok(());
     }
     if kind == '/' && !state.is_small() {
-        return obey(state, &format!("search {}", quoted(&typed)), None);
+        return call.obey(state, &format!("search {}", quoted(&typed)));
     }
-    if state.is_small() && !super::leaves(&typed) {
+    if state.is_small() && !call.table.leaves(&typed) {
         return Err("the terminal is too small for that: :q leaves, :wq saves and leaves".into());
     }
     state.lines.retain(|old| *old != typed);
     state.lines.push(typed.clone());
-    obey(state, &typed, None)
+    call.obey(state, &typed)
 }
 
-fn complete(state: &mut State, _: &Call) -> Done {
+fn complete(state: &mut State, call: &Call) -> Done {
     let Mode::Line(mut line) = state.mode.clone() else { return Ok(()) };
-    let wanted = line::path_of(line.text.value()).filter(|_| line.kind == ':' && line.offered().is_none());
+    let wanted = completing::path_of(line.text.value()).filter(|_| line.kind == ':' && line.offered().is_none());
     if let Some((name, path, beside)) = wanted {
         let beside = beside.then(|| state.door.path().parent().map(Path::to_owned)).flatten();
         state.effects.push_back(Effect::Complete { name: name.into(), path: path.into(), beside });
         return Ok(());
     }
     if line.kind == ':' {
-        line.complete(|typed| line::candidates(state, typed));
+        line.complete(|typed| completing::candidates(call.table, state, typed));
     }
     state.mode = Mode::Line(line);
     Ok(())

@@ -3,7 +3,7 @@
 use crate::tui::text::plain;
 use std::time::Duration;
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::tui::document::door::Door;
 use crate::tui::events::Change;
 use crate::tui::state::{Mode, Pages, State};

@@ -1,18 +1,20 @@
 //! `update` takes an event, changes the state and gives effects, for others to perform.
 
+use crate::tui::commands::contexts::contexts;
+use crate::tui::commands::pasting;
 use crate::tui::events::{Effect, Event, Synthesis};
 use crate::tui::layout;
 use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
-use super::life;
+use super::{life, tutor};
 use crate::preview::editor::Asked;
+use crate::tui::commands;
 use crate::tui::document::tree;
 use crate::tui::keys::Found;
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, State};
-use crate::tui::{commands, tutor};
 
 /// Takes an event and gives what is to be done outside.
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
@@ -62,7 +64,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Pointer(x, y) => state.seen.pointer = Some((x, y)),
         Event::Click(x, y) => click(state, x, y),
         Event::Transport(transport) => state.follow(transport),
-        Event::Command(name) => commands::run_of_window(state, &name),
+        Event::Command(name) => run_of_window(state, &name),
         Event::Asked(asked) => answer(state, asked),
         Event::Fault(fault) => state.complain(fault),
         Event::Unlogged(why) => {
@@ -75,7 +77,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Stop => state.ask(Effect::Suspend),
     }
     tutor::follow(state);
-    life::ask(state);
+    state.ask_waiting();
     state.effects.drain(..).collect()
 }
 
@@ -116,7 +118,7 @@ fn paste(state: &mut State, text: &str) {
     match &state.mode {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_text(state, first),
         Mode::Normal => {
-            if let Err(why) = commands::pasted(state, text) {
+            if let Err(why) = pasting::pasted(state, text) {
                 state.complain(why);
             }
         }
@@ -164,7 +166,7 @@ fn press(state: &mut State, key: &str) {
     }
     let pressed = if state.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.pressed) };
     state.pressed.clear();
-    match state.keymap.find(&state.contexts(), &pressed) {
+    match state.keymap.find(&contexts(state), &pressed) {
         Found::Prefix => state.pressed = pressed,
         Found::Line(line) => {
             let count = state.count.take();
@@ -204,6 +206,15 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         _ if state.is_small() => state.complain(TOO_SMALL),
         Mode::Normal | Mode::Aim => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
+        _ => {}
+    }
+}
+
+/// Runs a command that a window asks for: only marking a point is the editor's.
+fn run_of_window(state: &mut State, name: &str) {
+    match name {
+        "mark-point" => commands::run(state, "pointer mark", None),
+        "select-point" => commands::run(state, "pointer select", None),
         _ => {}
     }
 }

@@ -3,7 +3,7 @@
 use crate::tui::text::plain;
 use serde_json::Value;
 
-use super::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, command};
 use crate::base::error::Error;
 use crate::ops::set;
 use crate::scene::{address, field};

@@ -3,8 +3,8 @@
 use crate::tui::text::plain;
 use serde_json::{Map, Value};
 
+use super::command::{Call, Command, Done, command};
 use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, targets};
-use super::{Call, Command, Done, command};
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::insert::misfit;

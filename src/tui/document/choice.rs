@@ -1,9 +1,8 @@
 //! A list to choose from: the words of a choice, the kinds of a tagged object, the scene's images.
 
 use super::sheet::Cell;
+use crate::scene::Document;
 use crate::scene::field::{self, Kind};
-use crate::tui::commands::life::Question;
-use crate::tui::state::State;
 use crate::tui::text::plain;
 
 /// A list to choose from.
@@ -60,16 +59,16 @@ impl Choice {
 }
 
 /// The words that a cell takes; `None` if it is typed.
-pub fn options(state: &State, kind: &Kind) -> Vec<(String, String)> {
+pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
     match kind {
         Kind::Choice(all) | Kind::Tagged { variants: all, .. } => {
             all.iter().map(|one| (one.name.to_string(), one.help.to_string())).collect()
         }
         Kind::Bool => [("false", "no"), ("true", "yes")].map(|(word, help)| (word.into(), help.into())).to_vec(),
         Kind::Reference(list) => {
-            let entries = field::children(state.document(), &format!("/{list}"));
+            let entries = field::children(document, &format!("/{list}"));
             let path = |pointer: &str| {
-                let value = field::value(state.document(), &format!("{pointer}/path"));
+                let value = field::value(document, &format!("{pointer}/path"));
                 value.and_then(|path| path.as_str().map(plain)).unwrap_or_default()
             };
             entries.into_iter().map(|entry| (entry.name, path(&entry.pointer))).collect()
@@ -79,13 +78,33 @@ pub fn options(state: &State, kind: &Kind) -> Vec<(String, String)> {
 }
 
 /// The list for a cell, the cursor on what it has; `None` if it is typed.
-pub fn of_cell(state: &State, cell: &Cell, others: Vec<String>) -> Option<Choice> {
-    let options = options(state, &cell.field.kind);
+pub fn of_cell(document: &Document, cell: &Cell, others: Vec<String>) -> Option<Choice> {
+    let options = options(document, &cell.field.kind);
     let at = options.iter().position(|(word, _)| *word == cell.text).unwrap_or(0);
     let parent = cell.pointer.rsplit_once('/').map(|(parent, _)| parent.to_string()).unwrap_or_default();
-    let tag = field::field(state.document(), &parent).is_some_and(
+    let tag = field::field(document, &parent).is_some_and(
         |field| matches!(field.kind, Kind::Tagged { tag, .. } if cell.pointer.ends_with(&format!("/{tag}"))),
     );
     let then = if tag { Then::Become(parent) } else { Then::Set(others) };
     (!options.is_empty()).then(|| Choice { title: cell.field.name.clone(), options, at, then })
+}
+
+/// Something that only the person can decide.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Question {
+    /// What it is about.
+    pub about: About,
+    /// What is to be known, a line each.
+    pub text: Vec<String>,
+}
+
+/// What a question is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// Unsaved edits that a session left behind.
+    Recovery,
+    /// Somebody else edits the scene.
+    Holder,
+    /// Another program changed in the file what was changed here too.
+    File,
 }

@@ -2,6 +2,7 @@
 
 pub mod choice;
 pub mod door;
+pub mod entry;
 pub mod palette;
 pub mod places;
 pub mod rows;

@@ -8,11 +8,7 @@ use nucleo_matcher::pattern::{CaseMatching, Normalization, Pattern};
 use nucleo_matcher::{Config, Matcher, Utf32Str};
 
 use super::places::Listed;
-use crate::tui::commands::Command;
-use crate::tui::state::State;
-use crate::tui::state::recorder::Kept;
 use crate::tui::text::input::Text;
-use crate::tui::{commands, keys};
 
 /// The list, and what is typed over it.
 #[derive(Clone, Debug)]
@@ -30,13 +26,15 @@ pub struct Palette {
 
 /// A command or the line of a key.
 #[derive(Clone, Debug)]
-struct Action {
+pub struct Action {
     /// Its name, or the whole line.
-    name: String,
-    key: String,
-    help: String,
+    pub name: String,
+    /// The keys that run it.
+    pub key: String,
+    /// What it does.
+    pub help: String,
     /// What it runs.
-    line: String,
+    pub line: String,
 }
 
 /// One row of the list.
@@ -55,10 +53,8 @@ pub struct Row {
 
 impl Palette {
     /// Everything, commands first.
-    pub fn new(state: &mut State) -> Palette {
-        let document = state.document().clone();
-        let places = state.finding.listed(&document);
-        let commands: Arc<[Action]> = actions(state).into();
+    pub fn new(commands: Vec<Action>, places: Arc<[Listed]>) -> Palette {
+        let commands: Arc<[Action]> = commands.into();
         let found = (0..commands.len() + places.len()).collect();
         Palette { text: Text::default(), at: 0, commands, places, found, sought: String::new() }
     }
@@ -134,43 +130,4 @@ impl Palette {
 
 fn pattern(typed: &str) -> Pattern {
     Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart)
-}
-
-/// The lines of keys that work in any pane, then the commands that take arguments or have no key.
-fn actions(state: &State) -> Vec<Action> {
-    let shown = [keys::EVERYWHERE, keys::TREE, keys::TABLE, keys::PICTURE];
-    let mut all: Vec<Action> = Vec::new();
-    for row in state.keymap.rows().iter().filter(|row| shown.contains(&row.context) && !row.command.contains('{')) {
-        let line = row.command.to_string();
-        match all.iter_mut().find(|one| one.line == line) {
-            Some(one) if one.key.len() < 16 => one.key = format!("{}, {}", one.key, row.key),
-            Some(_) => {}
-            None => all.push(Action { name: line.clone(), key: row.key.to_string(), help: row.help.to_string(), line }),
-        }
-    }
-    let only_typing = |name: &str| {
-        let mut rows = state.keymap.rows().iter().filter(|row| row.command.split(' ').next() == Some(name)).peekable();
-        rows.peek().is_some() && rows.all(|row| !shown.contains(&row.context))
-    };
-    let offered = |command: &&Command| command.kept != Kept::Inside && !only_typing(command.name);
-    for command in commands::all().filter(offered) {
-        let Command { name, args, help, .. } = command;
-        if args.is_empty() && all.iter().any(|one| one.line == *name) {
-            continue;
-        }
-        let typed = !args.is_empty() && !args.starts_with('[');
-        let line = if typed { format!("line :{name}") } else { name.to_string() };
-        all.push(Action {
-            name: format!("{name} {args}").trim().into(),
-            key: String::new(),
-            help: help.to_string(),
-            line,
-        });
-    }
-    let others = crate::ops::names().filter(|name| commands::find(name).is_none());
-    all.extend(others.map(|name| {
-        let help = format!("As `plica {name}` on this scene");
-        Action { line: format!("line :{name}"), name, key: String::new(), help }
-    }));
-    all
 }

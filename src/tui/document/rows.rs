@@ -1,6 +1,7 @@
 //! Tables as text: rows of numbers from a spreadsheet or another program become items of a list, and rows become CSV. The
 //! columns are those that the table shows, read from a new item of the list, so that a new field needs nothing here.
 
+use crate::tui::document::sheet::in_range;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -12,7 +13,6 @@ use super::sheet::{Cell, Part, Sheet, tidy_json};
 use crate::base::problem::{nearest, quoted};
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, pointer};
-use crate::tui::state::entry;
 use crate::tui::text::numbers;
 
 /// Other names of columns, in lower case.
@@ -274,7 +274,7 @@ fn read(column: &Column, text: &str) -> Result<Value, String> {
     let Cell { field, part, .. } = &column.cell;
     if column.cell.is_number() {
         let value = number(text).ok_or_else(|| format!("{} is not a number", quoted(text)))?;
-        return entry::in_range(field, *part, value).map(|()| tidy_json(value));
+        return in_range(field, *part, value).map(|()| tidy_json(value));
     }
     match &field.kind {
         Kind::Text | Kind::Reference(_) => Ok(text.into()),

@@ -328,6 +328,22 @@ fn is_vector(names: &[String]) -> bool {
     names == ["dx", "dy"]
 }
 
+/// Whether a field takes this number; else its range.
+pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
+    let whole = matches!(field.kind, Kind::Number { integer: true });
+    if whole && value != value.trunc() {
+        return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
+    }
+    let counts = !matches!(part, Part::Length | Part::Degrees);
+    match field.range.filter(|(min, max)| counts && !(*min..=*max).contains(&value)) {
+        None => Ok(()),
+        Some(_) => {
+            let range = field.range_text().unwrap_or_default();
+            Err(format!("{} is out of range: {} takes {range}", numbers::exact(value), field.name))
+        }
+    }
+}
+
 /// The range of a field, where it is worth a word: some are as wide as they are only to keep sums finite.
 pub fn told_range(field: &Field) -> Option<String> {
     const UNTOLD: f64 = 1e9;

@@ -12,7 +12,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 
 use super::diacritics::diacritic;
-use super::{Protocol, Wanted, sixel};
+use super::protocol::{Protocol, Wanted};
+use super::sixel;
 use crate::base::pixels::Frame;
 use crate::export::still;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::Wanted;
+use super::protocol::Wanted;
 use crate::base::pixels::encode;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::ReadOut;

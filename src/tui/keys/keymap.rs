@@ -7,10 +7,9 @@ use std::borrow::Cow;
 
 use toml::de::{DeTable, DeValue};
 
+use super::names::{Found, LETTERS, continues, line_of, stands_for};
 use super::table::{ENTRY, HELP, KEYS, LINE, LIST, TYPING};
-use super::{Found, LETTERS, continues, line_of, stands_for};
 use crate::base::problem;
-use crate::tui::commands::{self};
 use crate::tui::text::said::Said;
 
 /// One key of the keymap.
@@ -58,8 +57,9 @@ struct Written {
 }
 
 impl Keymap {
-    /// The table with the person's own keys over it; `file` is named in what is wrong.
-    pub fn with(file: &str, text: &str) -> Keymap {
+    /// The table with the person's own keys over it; `file` is named in what is wrong. `known` are the commands that there
+    /// are, each with its help.
+    pub fn with(file: &str, text: &str, known: &[(String, &'static str)]) -> Keymap {
         let mut map = Keymap::default();
         let mut mistakes = Vec::new();
         let mut written = read(text, &mut mistakes);
@@ -74,7 +74,7 @@ impl Keymap {
             }
         }
         for one in own {
-            if let Err(why) = map.bind(&one) {
+            if let Err(why) = map.bind(&one, known) {
                 mistakes.push((one.line, why));
             }
         }
@@ -127,11 +127,10 @@ impl Keymap {
         self.rows.iter().filter(move |row| contexts.contains(&row.context) && continues(&row.key, pressed))
     }
 
-    fn bind(&mut self, one: &Written) -> Result<(), String> {
+    fn bind(&mut self, one: &Written, known: &[(String, &'static str)]) -> Result<(), String> {
         let name = Said::parse(&one.command, None).name;
-        let names = commands::names();
-        if !names.iter().any(|known| known == name) {
-            let near = problem::nearest(name, names.iter().map(String::as_str)).unwrap_or_default();
+        if !known.iter().any(|(own, _)| own == name) {
+            let near = problem::nearest(name, known.iter().map(|(own, _)| own.as_str())).unwrap_or_default();
             return Err(format!("there is no command {name}: {near}"));
         }
         let others = || self.rows.iter().filter(|row| row.context == one.context);
@@ -146,7 +145,7 @@ impl Keymap {
             let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
             return Err(format!("{} would hide {first}{more}: choose another key, or take those away", one.key));
         }
-        let help = help(&one.command);
+        let help = help(&one.command, known);
         self.rows.retain(|row| (row.context, &*row.key) != (one.context, one.key.as_str()));
         let (key, command) = (one.key.clone().into(), one.command.clone().into());
         self.rows.insert(0, Binding { context: one.context, key, command, help, own: true });
@@ -155,9 +154,9 @@ impl Keymap {
 }
 
 /// What a line does: as the table says, else as its command does.
-fn help(line: &str) -> Cow<'static, str> {
+fn help(line: &str, known: &[(String, &'static str)]) -> Cow<'static, str> {
     let row = KEYS.iter().find(|row| row.command == line).map(|row| row.help);
-    let command = || commands::find(line).map(|command| command.help);
+    let command = || known.iter().find(|(name, _)| name == line).map(|(_, help)| *help).filter(|help| !help.is_empty());
     row.or_else(command).map_or_else(|| Cow::Owned(plain(line)), Cow::Borrowed)
 }
 
@@ -303,11 +302,12 @@ fn check(key: &str) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::commands::own_keys::read;
     use crate::tui::keys::{EVERYWHERE, TREE};
 
     #[test]
     fn own_keys_come_before_the_tables() {
-        let map = Keymap::with(
+        let map = read(
             "keys.toml",
             "[everywhere]\n\"U\" = \"5 undo\"\n\"Ctrl-s\" = \"w\"\n\"u\" = \"\"\n\"F2  {a-z}\" = \"play-macro {a-z}\"\n\
              [\"form and table\"]\n\"+\" = \"10 step 1\"\n",
@@ -352,13 +352,13 @@ mod tests {
             ("[everywhere]\n\"Q\" = \"\"", 2, "is not bound"),
             ("[entry]\n\"j j\" = \"cancel\"", 2, "is typed here"),
         ] {
-            let map = Keymap::with("keys.toml", &format!("{text}\n[tree]\n\"Y\" = \"add\"\n"));
+            let map = read("keys.toml", &format!("{text}\n[tree]\n\"Y\" = \"add\"\n"));
             let told = map.mistakes().join("\n");
             assert!(told.starts_with(&format!("keys.toml:{line}: ")) && told.contains(part), "{text}: {told}");
             assert_eq!(map.mistakes().len(), 1, "{text}: {told}");
             assert_eq!(map.find(&[TREE], "Y"), Found::Line("add".into()), "{text}");
         }
-        let many = Keymap::with("k", "[tree]\n\"Ctrl-i\" = \"x\"\n\"x\" = \"x\"\n[no]\n");
+        let many = read("k", "[tree]\n\"Ctrl-i\" = \"x\"\n\"x\" = \"x\"\n[no]\n");
         let lines: Vec<_> = many.mistakes().iter().map(|told| told[..4].to_owned()).collect();
         assert_eq!(lines, ["k:2:", "k:3:", "k:4:"]);
     }

@@ -1,11 +1,12 @@
 //! The lesson that is on, in lines that fit, and the rows that it takes.
 
+use crate::tui::tutor;
 use ratatui::layout::Rect;
 
 use crate::tui::keys::Keymap;
 use crate::tui::state::State;
+use crate::tui::state::tutor::Tutor;
 use crate::tui::text::wrap::{width, wrapped};
-use crate::tui::tutor::Tutor;
 
 /// Columns that the lines of a lesson have at most as they are; on less they are wrapped.
 const WIDE: u16 = 76;
@@ -31,7 +32,7 @@ pub fn rows(tutor: &Tutor, keymap: &Keymap, screen: Rect) -> u16 {
 /// The lines of the lesson.
 pub fn text(tutor: &Tutor, width: u16) -> Vec<String> {
     let room = width.saturating_sub(4);
-    let lines = tutor.lesson().text.iter();
+    let lines = tutor::lesson(tutor).text.iter();
     if room >= WIDE {
         let mut lines: Vec<String> = lines.map(|line| (*line).to_owned()).collect();
         lines.resize(ROWS.max(lines.len()), String::new());
@@ -44,7 +45,7 @@ pub fn text(tutor: &Tutor, width: u16) -> Vec<String> {
 pub fn keys(tutor: &Tutor, keymap: &Keymap, wide: u16) -> Vec<Vec<String>> {
     let mut rows = vec![Vec::new()];
     let mut x = LABELS;
-    for label in tutor.lesson().keys.iter().map(|press| press.label(keymap)) {
+    for label in tutor::lesson(tutor).keys.iter().map(|press| press.label(keymap)) {
         if x + width(&label) > wide.saturating_sub(2) && x > LABELS {
             rows.push(Vec::new());
             x = LABELS;

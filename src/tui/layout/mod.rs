@@ -1,17 +1,12 @@
 //! Where everything stands on the screen: functions of its size and of the state, read by what draws and by what clicks.
 
+use super::state::fits;
 use ratatui::layout::{Constraint, Layout, Margin, Rect, Spacing};
 
 use super::state::{Mode, Pane, State};
 
 pub mod lesson;
 pub mod seeing;
-
-/// The least terminal that the editor draws on: a split of a window, less the lines that a multiplexer takes.
-pub const LEAST: (u16, u16) = (60, 20);
-
-/// The terminal that is meant where there is none.
-pub const USUAL: (u16, u16) = (80, 24);
 
 /// From this width on there are panes at the right.
 const WIDE: u16 = 112;
@@ -37,11 +32,6 @@ pub struct Areas {
 const DETAIL: u16 = 5;
 
 const PROBE: u16 = 9;
-
-/// Whether the editor draws on a terminal of this size; on a smaller one nothing can be edited, for nothing is seen of it.
-pub fn fits((width, height): (u16, u16)) -> bool {
-    width >= LEAST.0 && height >= LEAST.1
-}
 
 /// The areas of a screen, with the read-out of a pixel or without.
 pub fn areas(screen: Rect, probing: bool) -> Areas {

@@ -1,5 +1,6 @@
 //! What `update` asks for, done: the editor's hands in files, threads, window and terminal.
 
+use crate::tui::commands::own_keys;
 use std::path::Path;
 
 use super::runner::{Editor, Options, listen};
@@ -93,7 +94,7 @@ impl Editor {
         let path = folders::config().map(|folder| folder.join("keys.toml")).filter(|path| path.exists());
         let Some(path) = path else { return self.state.keymap = Keymap::default() };
         self.state.keymap = match lines::read(&path) {
-            Ok(text) => Keymap::with(&path.display().to_string(), &text),
+            Ok(text) => own_keys::read(&path.display().to_string(), &text),
             Err(error) => Keymap::unread(error.to_string()),
         };
         match self.state.keymap.mistakes() {

@@ -237,7 +237,7 @@ fn question(choice: &Choice) -> Vec<String> {
 /// Every command, as plain text.
 fn help() -> Vec<String> {
     let commands = commands::all().map(|one| format!("{:<34} {}", format!("{} {}", one.name, one.args), one.help));
-    let ops = commands::subcommands().map(|name| format!("{name:<34} As `plica {name}` on this scene"));
+    let ops = commands::TABLE.subcommands().map(|name| format!("{name:<34} As `plica {name}` on this scene"));
     commands.chain(ops).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Runs the editor: events in, effects out. The only place that knows the terminal, the threads, the files and the window.
 
-use crate::tui::layout;
+use crate::tui::state::USUAL;
 use crate::tui::text::plain;
 use std::io::Write;
 use std::path::PathBuf;
@@ -29,8 +29,8 @@ use crate::tui::layout::seeing;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::state::transport::Stopwatch;
+use crate::tui::state::tutor::Tutor;
 use crate::tui::text::colour::Depth;
-use crate::tui::tutor::Tutor;
 use crate::{files, ops};
 
 /// How the editor is opened.
@@ -213,7 +213,7 @@ impl Editor {
         sender: mpsc::Sender<Event>,
     ) -> Result<Self> {
         let size = screen.as_ref().map(|screen| screen.size()).transpose().map_err(|e| Error::at("the terminal", e))?;
-        let size = size.map_or(layout::USUAL, |size| (size.width, size.height));
+        let size = size.map_or(USUAL, |size| (size.width, size.height));
         let depth = Depth::of_environment(|name| std::env::var(name).ok());
         let mut typed = Vec::new();
         let mut graphics = graphics::Graphics::default();

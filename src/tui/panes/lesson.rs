@@ -9,9 +9,9 @@ use ratatui::widgets::{Block, Clear, Widget};
 
 use super::write;
 use crate::tui::keys::Keymap;
+use crate::tui::state::tutor::Tutor;
 use crate::tui::text::colour;
 use crate::tui::text::wrap::width;
-use crate::tui::tutor::Tutor;
 use crate::tui::tutor::lessons::LESSONS;
 
 /// Draws it.
@@ -19,7 +19,7 @@ pub fn draw(tutor: &Tutor, keymap: &Keymap, screen: Rect, buffer: &mut Buffer) {
     let rows = lesson::rows(tutor, keymap, screen);
     let area = Rect { y: screen.bottom() - rows, height: rows, ..screen };
     Clear.render(area, buffer);
-    let on = tutor.lesson();
+    let on = crate::tui::tutor::lesson(tutor);
     let title = format!(" lesson {} of {}: {} ", tutor.at + 1, LESSONS.len(), on.title);
     let block =
         Block::bordered().title(title).title_bottom(" :tutor next | back | quit ").title_style(colour::strong());

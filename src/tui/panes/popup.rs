@@ -1,5 +1,6 @@
 //! What lies over the panes: lists to choose from, pages of text, hints after the first key of several.
 
+use crate::tui::commands::contexts::contexts;
 use crate::tui::panes::window;
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -104,7 +105,7 @@ const MENUS: &[(&str, &str)] =
 
 /// The keys that may follow, above the status line; in as many columns as they need.
 fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
-    let contexts = state.contexts();
+    let contexts = contexts(state);
     let rest = |key: &str| key.strip_prefix(&state.pressed).unwrap_or(key).trim().to_owned();
     let rows: Vec<_> = state.keymap.continuations(&contexts, &state.pressed).collect();
     let keys = rows.iter().map(|row| width(&rest(&row.key))).max().unwrap_or(0);

@@ -1,7 +1,8 @@
 //! The screen: where the panes stand, at every size from 60 x 20 on. Draws the state and changes nothing.
 
 use crate::tui::layout;
-use crate::tui::layout::{LEAST, areas, fits, middle, picture_in_middle};
+use crate::tui::layout::{areas, middle, picture_in_middle};
+use crate::tui::state::{LEAST, fits};
 use ratatui::Frame;
 use ratatui::layout::{Alignment, Position, Rect};
 use ratatui::symbols::merge::MergeStrategy;

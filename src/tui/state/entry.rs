@@ -1,35 +1,19 @@
 //! A value being typed into a cell. The raw text is kept until it is taken; what it says is computed over the columns of
 //! the row, once for every selected row, and all of it is one edit.
 
+use crate::base::expression;
+use crate::tui::document::entry::Entry;
+use crate::tui::document::sheet::in_range;
 use kurbo::Point;
 use serde_json::Value;
 
 use super::{Mode, State, place};
-use crate::base::expression::{self, Variables};
-use crate::scene::field::{self, Field, Kind};
+use crate::base::expression::Variables;
+use crate::scene::field::{Field, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
 use crate::tui::text::input::Text;
 use crate::tui::text::numbers;
-
-/// A value being typed.
-#[derive(Clone, Debug)]
-pub struct Entry {
-    /// What has been typed.
-    pub text: Text,
-}
-
-impl Entry {
-    /// Begins with the cell's value, all of its decimals; or from nothing.
-    pub fn new(document: &Document, cell: &Cell, clear: bool) -> Self {
-        let text = match cell.number(document) {
-            _ if clear => String::new(),
-            Some(number) if cell.is_number() => numbers::exact(number),
-            _ => field::value(document, &cell.pointer).and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default(),
-        };
-        Entry { text: Text::new(text, true) }
-    }
-}
 
 /// The rows that an edit applies to: the selection, else the row under the cursor.
 pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
@@ -91,7 +75,7 @@ pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
         return each(state, |row, cell, place| evaluate(state, &sheet, row, cell, place, text));
     }
     let cells = cells(state, &sheet).into_iter();
-    Ok(Edit::all(cells.map(|(_, cell)| set(state.document(), &cell.pointer, Value::from(text)))))
+    Ok(Edit::all(cells.map(|(_, cell)| Edit::set(state.document(), &cell.pointer, Value::from(text)))))
 }
 
 /// The edit that gives every number of the selection its value, told from its row, its cell and its place among them.
@@ -195,23 +179,7 @@ fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> 
         return Err(format!("a vector without a length has no direction: set {length} first"));
     }
     let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
-    Ok(set(document, &pointer, value))
-}
-
-/// Whether a field takes this number; else its range.
-pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
-    let whole = matches!(field.kind, Kind::Number { integer: true });
-    if whole && value != value.trunc() {
-        return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
-    }
-    let counts = !matches!(part, Part::Length | Part::Degrees);
-    match field.range.filter(|(min, max)| counts && !(*min..=*max).contains(&value)) {
-        None => Ok(()),
-        Some(_) => {
-            let range = field.range_text().unwrap_or_default();
-            Err(format!("{} is out of range: {} takes {range}", numbers::exact(value), field.name))
-        }
-    }
+    Ok(Edit::set(document, &pointer, value))
 }
 
 fn length(document: &Document, cell: &Cell) -> f64 {
@@ -246,9 +214,4 @@ pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
     }
     state.say(format!("the window's pointer is at {x}, {y}: Enter takes it"));
     Ok(())
-}
-
-/// The edit that sets one place. A pair inside a list of numbers is set as a whole.
-pub fn set(document: &Document, pointer: &str, value: Value) -> Edit {
-    Edit::set(document, pointer, value)
 }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::entry::Entry;
+use crate::tui::document::entry::Entry;
 
 /// What is kept from what was done before.
 #[derive(Clone, Debug, Default)]

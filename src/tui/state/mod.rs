@@ -5,33 +5,46 @@ pub mod finding;
 pub mod memory;
 pub mod picture;
 pub mod place;
+pub mod questions;
 pub mod recorder;
+pub mod spots;
 pub mod transport;
+pub mod tutor;
 
-use crate::tui::layout;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-use super::commands::life::Life;
 use super::document::choice::Choice;
 use super::document::door::Door;
+use super::document::entry::Entry;
 use super::document::palette::Palette;
 use super::document::sheet::Sheet;
 use super::document::tree;
 use super::events::{Change, Effect};
 use super::graphics::sight::Placing;
-use super::keys::{self, Keymap};
-use super::state::entry::Entry;
+use super::keys::Keymap;
 use super::state::finding::Finding;
 use super::state::memory::Kept;
 use super::state::picture::Seeing;
+use super::state::questions::Life;
 use super::state::recorder::Recorder;
+use super::state::tutor::Tutor;
 use super::text::colour::Depth;
 use super::text::line::Line;
-use super::tutor::Tutor;
 use crate::base::problem::Problem;
 use crate::render::Synth;
 use crate::scene::{Document, Edit, address, field};
+
+/// The least terminal that the editor draws on: a split of a window, less the lines that a multiplexer takes.
+pub const LEAST: (u16, u16) = (60, 20);
+
+/// The terminal that is meant where there is none.
+pub const USUAL: (u16, u16) = (80, 24);
+
+/// Whether the editor draws on a terminal of this size; on a smaller one nothing can be edited, for nothing is seen of it.
+pub fn fits((width, height): (u16, u16)) -> bool {
+    width >= LEAST.0 && height >= LEAST.1
+}
 
 /// Messages that are kept.
 const MOST_SAID: usize = 200;
@@ -208,7 +221,7 @@ impl State {
             seeing: Seeing::default(),
             effects: VecDeque::new(),
         };
-        super::commands::life::ask(&mut state);
+        state.ask_waiting();
         state
     }
 
@@ -244,6 +257,13 @@ impl State {
         }
         self.said.push_back(message.clone());
         self.message = Some(message);
+    }
+
+    /// Asks the question that waits, once nothing else is going on.
+    pub fn ask_waiting(&mut self) {
+        if matches!(self.mode, Mode::Normal) {
+            self.mode = self.life.waiting.take().map_or(Mode::Normal, Mode::Choice);
+        }
     }
 
     /// Asks for something outside.
@@ -308,30 +328,7 @@ impl State {
 
     /// Whether the terminal is too small to draw on, so that nobody sees what is edited.
     pub fn is_small(&self) -> bool {
-        !layout::fits(self.size)
-    }
-
-    /// The contexts of the key table that are in force, the innermost first.
-    pub fn contexts(&self) -> Vec<&'static str> {
-        if self.is_small() && !matches!(self.mode, Mode::Line(_)) {
-            return vec![keys::SMALL];
-        }
-        let mut contexts = match (&self.mode, self.focus) {
-            (Mode::Entry(_), _) if entry::of_number(self) => vec![keys::NUMBER, keys::ENTRY, keys::TYPING],
-            (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
-            (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
-            (Mode::Choice(_), _) => vec![keys::LIST],
-            (Mode::Palette(_), _) => vec![keys::PALETTE, keys::TYPING],
-            (Mode::Pages(_), _) => vec![keys::HELP],
-            (Mode::Aim, _) => vec![keys::AIM, keys::PICTURE],
-            (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
-            (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
-            (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],
-        };
-        if matches!(self.mode, Mode::Normal) && self.recorder.recording().is_some() {
-            contexts.insert(0, keys::RECORDING);
-        }
-        contexts
+        !fits(self.size)
     }
 
     /// The frame that is shown, and how many there are.

@@ -4,7 +4,7 @@
 use kurbo::{Point, Vec2};
 use serde_json::Value;
 
-use super::{State, entry};
+use super::State;
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::document::sheet::tidy_json;
@@ -46,9 +46,9 @@ fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
 fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
     let (x, y) = (tidy_json(tidy(to.x)), tidy_json(tidy(to.y)));
     match place {
-        Place::Pair(pointer) => entry::set(document, pointer, Value::from(vec![x, y])),
+        Place::Pair(pointer) => Edit::set(document, pointer, Value::from(vec![x, y])),
         Place::Apart(pointer) => Edit::all(
-            [("x", x), ("y", y)].map(|(name, value)| entry::set(document, &format!("{pointer}/{name}"), value)),
+            [("x", x), ("y", y)].map(|(name, value)| Edit::set(document, &format!("{pointer}/{name}"), value)),
         ),
     }
 }
@@ -103,7 +103,7 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
         }
     };
     let value = vec![tidy_json(tidy(value.x)), tidy_json(tidy(value.y))];
-    Ok(entry::set(document, &target.pointer, Value::from(value)))
+    Ok(Edit::set(document, &target.pointer, Value::from(value)))
 }
 
 /// Adds a point at the cursor to the list in focus; with it, the pointer of the point.

@@ -1,5 +1,6 @@
 //! Lines: what keys do can be said, and the log of a session leads to the same scene.
 
+use crate::tui::commands::contexts::contexts;
 use serde_json::{Value, json};
 
 use super::support::{press, replayed, state};
@@ -134,7 +135,7 @@ fn any_key(state: &State, next: &mut impl FnMut(usize) -> usize) -> String {
         Mode::Line(_) => &["\"motion\" Enter", "\"radius\" Enter", "\"outline\" Enter", "\"speed\" Enter"],
         _ => &[],
     };
-    let contexts = state.contexts();
+    let contexts = contexts(state);
     let rows = state.keymap.rows().iter().filter(|row| contexts.contains(&row.context) && row.command != "q");
     let keys: Vec<String> = rows.map(|row| row.key.replace("{a-z}", "a")).collect();
     match next(3) {

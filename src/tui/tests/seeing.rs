@@ -1,5 +1,6 @@
 //! Seeing without a window: zoom and pan, the picture in every protocol, within its bound of bytes.
 
+use crate::scene::Edit;
 use crate::tui::layout;
 use kurbo::Point;
 use ratatui::Terminal;
@@ -17,7 +18,7 @@ use crate::tui::events::Event;
 use crate::tui::graphics::Protocol;
 use crate::tui::layout::seeing;
 use crate::tui::panes::view;
-use crate::tui::state::{State, entry};
+use crate::tui::state::State;
 use crate::tui::text::colour::Depth;
 
 /// The screen as cells.
@@ -212,7 +213,7 @@ fn thresholds_stand_on_the_path() {
         let mut state = opened(size);
         let region = json!({"kind": "rectangle", "x": 15, "y": 10, "width": 20, "height": 4});
         let fold = json!({"rule": "return", "regions": [region]});
-        let edit = entry::set(state.document(), "/layers/0/zones/0/fold", fold);
+        let edit = Edit::set(state.document(), "/layers/0/zones/0/fold", fold);
         state.edit(edit, false).unwrap();
         press(&mut state, ": \"probe 20,20\" Enter g i");
         see(&mut state);

@@ -9,8 +9,8 @@ use crate::tui::document::door::Door;
 use crate::tui::events::{Effect, Event};
 use crate::tui::keys::Keymap;
 use crate::tui::state::State;
+use crate::tui::state::tutor::Tutor;
 use crate::tui::text::colour::Depth;
-use crate::tui::tutor::Tutor;
 use crate::tui::tutor::lessons::LESSONS;
 
 /// The tutor's scene with its first lesson.

@@ -71,6 +71,15 @@ pub fn words(line: &str) -> Result<Vec<String>, String> {
     if quoted { Err("a \" is not closed".into()) } else { Ok(words) }
 }
 
+/// Words as alternatives: `a, b or c`.
+pub fn one_of(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [all @ .., last] => format!("{} or {last}", all.join(", ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

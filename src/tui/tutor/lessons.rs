@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 
-use super::has_ended;
 use crate::tui::keys::{ENTRY, EVERYWHERE, HELP, Keymap, LINE, LIST, TABLE, TREE, TYPING};
 use crate::tui::state::{Mode, Pane, State};
 
@@ -262,7 +261,7 @@ pub const LESSONS: &[Lesson] = &[
             "Render a GIF; the status line shows how far it is (.webp and .png work too).",
         ],
         keys: &[Key(EVERYWHERE, "line"), Text("render -o first.gif"), Key(LINE, "run")],
-        done: |state| has_ended(state, "render"),
+        done: |state| state.tutor.as_ref().is_some_and(|tutor| tutor.has_ended("render")),
     },
     Lesson {
         title: "leaving",

@@ -1,0 +1,27 @@
+//! Which keys are in force.
+
+use crate::tui::keys;
+use crate::tui::state::{Mode, Pane, State, entry};
+
+/// The contexts of the key table that are in force, the innermost first.
+pub fn contexts(state: &State) -> Vec<&'static str> {
+    if state.is_small() && !matches!(state.mode, Mode::Line(_)) {
+        return vec![keys::SMALL];
+    }
+    let mut contexts = match (&state.mode, state.focus) {
+        (Mode::Entry(_), _) if entry::of_number(state) => vec![keys::NUMBER, keys::ENTRY, keys::TYPING],
+        (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
+        (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
+        (Mode::Choice(_), _) => vec![keys::LIST],
+        (Mode::Palette(_), _) => vec![keys::PALETTE, keys::TYPING],
+        (Mode::Pages(_), _) => vec![keys::HELP],
+        (Mode::Aim, _) => vec![keys::AIM, keys::PICTURE],
+        (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
+        (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
+        (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],
+    };
+    if matches!(state.mode, Mode::Normal) && state.recorder.recording().is_some() {
+        contexts.insert(0, keys::RECORDING);
+    }
+    contexts
+}

@@ -1,0 +1,118 @@
+//! How pictures reach the terminal, and what of one is wanted.
+
+use kurbo::Point;
+
+use crate::render::overlay::View;
+use crate::render::part::Part;
+use crate::tui::text::colour::Depth;
+
+/// How the picture reaches the terminal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Protocol {
+    /// Half-blocks: two dots a cell, in any terminal.
+    #[default]
+    Blocks,
+    /// The kitty graphics protocol.
+    Kitty,
+    /// iTerm2's inline images.
+    Iterm2,
+    /// Sixel graphics.
+    Sixel,
+}
+
+impl Protocol {
+    /// Every protocol by its name in commands and options; `auto` is none of them.
+    pub const NAMES: [(&str, Protocol); 4] = [
+        ("kitty", Protocol::Kitty),
+        ("iterm2", Protocol::Iterm2),
+        ("sixel", Protocol::Sixel),
+        ("blocks", Protocol::Blocks),
+    ];
+
+    /// The protocol of that name; none for `auto`.
+    pub fn named(name: &str) -> Option<Protocol> {
+        Protocol::NAMES.iter().find(|(known, _)| *known == name).map(|(_, protocol)| *protocol)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Protocol::NAMES.iter().find(|(_, one)| *one == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// What pictures the terminal takes, and what the person wants of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Graphics {
+    /// What the person wants; none: what the terminal answered.
+    pub forced: Option<Protocol>,
+    /// What the terminal answered.
+    pub found: Protocol,
+    /// Width and height of a cell, in pixels of the screen.
+    pub cell: (u16, u16),
+    /// Whether tmux stands between, which lets sequences through in an envelope only.
+    pub tmux: bool,
+    /// The most bytes a frame: while playing, and of a still picture.
+    pub bytes: (usize, usize),
+}
+
+/// The most bytes a frame, while playing and still, until `:graphics bytes` says otherwise.
+const BYTES: (usize, usize) = (64_000, 256_000);
+
+impl Default for Graphics {
+    fn default() -> Self {
+        Graphics { forced: None, found: Protocol::Blocks, cell: (8, 16), tmux: false, bytes: BYTES }
+    }
+}
+
+impl Graphics {
+    /// The protocol in force. A picture of kitty is named by a colour: there is none without colours.
+    pub fn protocol(&self, depth: Depth) -> Protocol {
+        match self.forced.unwrap_or(self.found) {
+            Protocol::Kitty if depth == Depth::None => Protocol::Blocks,
+            protocol => protocol,
+        }
+    }
+
+    /// Dots of a cell, across and down.
+    pub fn dots_a_cell(&self, protocol: Protocol) -> (usize, usize) {
+        match protocol {
+            Protocol::Blocks => (1, 2),
+            _ => (self.cell.0.max(1).into(), self.cell.1.max(1).into()),
+        }
+    }
+
+    /// Dots of a pane of so many cells. Sixels come in bands of six rows: no band may hang over the pane's edge.
+    pub fn dots(&self, protocol: Protocol, (columns, rows): (u16, u16)) -> (usize, usize) {
+        let (width, height) = self.dots_a_cell(protocol);
+        let tall = usize::from(rows) * height;
+        (usize::from(columns) * width, if protocol == Protocol::Sixel { (tall / 6 * 6).max(1) } else { tall })
+    }
+}
+
+/// A picture that a pane wants to show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// Which part, on how many dots.
+    pub part: Part,
+    /// Columns and rows of the pane.
+    pub cells: (u16, u16),
+    /// How it reaches the terminal.
+    pub protocol: Protocol,
+    /// Whether tmux stands between.
+    pub tmux: bool,
+    /// The most bytes.
+    pub bytes: usize,
+    /// What is drawn into the pixels; half-blocks have their marks over them instead.
+    pub marks: Option<Marks>,
+}
+
+/// What is drawn over a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marks {
+    /// What of the overlay.
+    pub view: View,
+    /// The cursor.
+    pub cursor: Point,
+    /// Where a jump vector that is being set begins.
+    pub aim: Option<Point>,
+}

@@ -1,0 +1,97 @@
+//! A picture, made to fit its bound of bytes.
+
+use std::sync::Arc;
+
+use kurbo::Point;
+use ratatui::buffer::Buffer;
+
+use super::protocol::Wanted;
+use super::{encode, ink};
+use crate::base::pixels::Frame;
+use crate::render::Synth;
+use crate::render::overlay::overlay;
+use crate::render::part::{self, Part};
+use crate::scene::Scene;
+
+/// A picture as it can be shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// What it was made for.
+    pub wanted: Wanted,
+    /// The dots, fewer by `by` each way; transparent beyond the picture.
+    pub frame: Frame,
+    /// How many times fewer dots it has than the pane, to stay within the bound of bytes.
+    pub by: usize,
+    /// The cells of the pane with the picture in them, where the terminal takes pixels.
+    pub cells: Option<Buffer>,
+    /// Bytes that it takes to the terminal (of half-blocks: at most).
+    pub bytes: usize,
+}
+
+/// No picture is reduced further than this, whatever the bound.
+const MOST_REDUCED: usize = 64;
+
+impl Shown {
+    /// The picture at `time`, reduced until it fits its bound of bytes. `before` is the picture that was shown last: its
+    /// size is the first guess.
+    pub fn new(synth: &Synth, scene: &Scene, time: f64, wanted: Wanted, before: Option<&Shown>) -> Arc<Shown> {
+        let mut by = before.map_or(1, |before| guess(before, &wanted));
+        loop {
+            let shown = Shown::reduced(synth, scene, time, &wanted, by);
+            if shown.bytes <= wanted.bytes || by >= MOST_REDUCED {
+                return Arc::new(shown);
+            }
+            by = (guess(&shown, &wanted)).max(by + 1);
+        }
+    }
+
+    fn reduced(synth: &Synth, scene: &Scene, time: f64, wanted: &Wanted, by: usize) -> Shown {
+        let part = wanted.part.reduced(by);
+        let mut frame = part::frame(synth, time, &part);
+        ground(&mut frame, synth.size, &part);
+        if let Some(marks) = &wanted.marks {
+            let mut ink = ink::Ink { frame: &mut frame, part: &part, by };
+            ink.draw(&overlay(scene, Some(synth), &marks.view));
+            marks.aim.iter().for_each(|&from| ink.aim(from, marks.cursor));
+            ink.cross(marks.cursor);
+        }
+        let (cells, bytes) = encode::encode(&frame, by, wanted);
+        Shown { wanted: wanted.clone(), frame, by, cells, bytes }
+    }
+
+    /// The colour that a place of the picture has in it; none beyond the picture, or where it was not in sight.
+    pub fn colour_at(&self, place: Point) -> Option<[u8; 3]> {
+        let dot = self.wanted.part.reduced(self.by).dot_of(place);
+        let within =
+            dot.x >= 0.0 && dot.y >= 0.0 && dot.x < self.frame.width() as f64 && dot.y < self.frame.height() as f64;
+        let [r, g, b, a] = within.then(|| *self.frame.get(dot.x as usize, dot.y as usize))?;
+        (a > 0).then_some([r, g, b])
+    }
+}
+
+/// How many times a picture must be reduced, after how many bytes one like it took.
+fn guess(before: &Shown, wanted: &Wanted) -> usize {
+    let (old, new) = (&before.wanted, wanted);
+    // Once playing has ended a picture becomes as sharp as it can be.
+    if (old.protocol, old.part.dots, old.bytes) != (new.protocol, new.part.dots, new.bytes) {
+        return 1;
+    }
+    let more = (before.bytes as f64 / wanted.bytes.max(1) as f64).sqrt();
+    // Nine tenths: a picture that would just fit is not made twice.
+    ((before.by as f64 * more / 0.9).ceil() as usize).clamp(1, MOST_REDUCED)
+}
+
+/// Lays what is transparent on a checkerboard of the picture's pixels, as the window does; what lies beyond the picture
+/// stays transparent.
+fn ground(frame: &mut Frame, (w, h): (usize, usize), part: &Part) {
+    let width = frame.width();
+    for (i, cell) in frame.cells_mut().iter_mut().enumerate().filter(|(_, cell)| cell[3] < 255) {
+        let at = part.place_of(Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5));
+        if at.x >= 0.0 && at.y >= 0.0 && at.x < w as f64 && at.y < h as f64 {
+            let ground = if (at.x as usize / 8 + at.y as usize / 8).is_multiple_of(2) { 96 } else { 160 };
+            let alpha = u32::from(cell[3]);
+            let laid = |code: u8| ((u32::from(code) * alpha + ground * (255 - alpha)) / 255) as u8;
+            *cell = [laid(cell[0]), laid(cell[1]), laid(cell[2]), 255];
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Keys by name, and what a row of the table stands for.
+
+use terminput::{KeyCode, KeyEvent, KeyModifiers};
+
+/// Where the person's own keys stand.
+pub const OWN_FILE: &str = "$XDG_CONFIG_HOME/plica/keys.toml (else ~/.config/plica/keys.toml)";
+
+/// Stand in a row for any small and for any capital letter.
+pub const LETTERS: [&str; 2] = ["{a-z}", "{A-Z}"];
+
+/// What the keys pressed so far mean.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// This line is to be run.
+    Line(String),
+    /// The beginning of several.
+    Prefix,
+    /// Nothing.
+    Nothing,
+}
+
+/// The line that a row runs where the keys pressed are its own. A key of [`LETTERS`] at the end stands for any letter, and in
+/// the line for the one that was pressed.
+pub fn line_of(key: &str, command: &str, pressed: &str) -> Option<String> {
+    if key == pressed {
+        return Some(command.to_owned());
+    }
+    let any = LETTERS.into_iter().find(|any| key.ends_with(any))?;
+    let letter = pressed.strip_prefix(key.strip_suffix(any)?)?;
+    stands_for(any, letter).then(|| command.replace(any, letter))
+}
+
+/// Whether a key of a row is one of [`LETTERS`] and stands for this key.
+pub fn stands_for(any: &str, key: &str) -> bool {
+    let fits = |c: char| (any == LETTERS[0] && c.is_ascii_lowercase()) || (any == LETTERS[1] && c.is_ascii_uppercase());
+    key.len() == 1 && key.starts_with(fits)
+}
+
+/// Whether the keys of a row go on from those pressed.
+pub fn continues(key: &str, pressed: &str) -> bool {
+    key.strip_prefix(pressed).is_some_and(|rest| rest.starts_with(' '))
+}
+
+/// The name of a key in the table; `None` where it has none.
+pub fn name(event: KeyEvent) -> Option<String> {
+    let shift = event.modifiers.contains(KeyModifiers::SHIFT);
+    let plain = match event.code {
+        KeyCode::Char(' ') => "Space".to_string(),
+        KeyCode::Char(c) if shift => c.to_uppercase().to_string(),
+        KeyCode::Char(c) => c.to_string(),
+        KeyCode::Enter => "Enter".into(),
+        KeyCode::Esc => "Esc".into(),
+        KeyCode::Tab if shift => return Some("Shift-Tab".into()),
+        KeyCode::Tab => "Tab".into(),
+        KeyCode::Backspace => "Backspace".into(),
+        KeyCode::Delete => "Delete".into(),
+        KeyCode::Up => "Up".into(),
+        KeyCode::Down => "Down".into(),
+        KeyCode::Left => "Left".into(),
+        KeyCode::Right => "Right".into(),
+        KeyCode::Home => "Home".into(),
+        KeyCode::End => "End".into(),
+        KeyCode::F(n) => format!("F{n}"),
+        KeyCode::PageUp => return Some("Ctrl-u".into()),
+        KeyCode::PageDown => return Some("Ctrl-d".into()),
+        _ => return None,
+    };
+    let control = event.modifiers.contains(KeyModifiers::CTRL).then_some("Ctrl-");
+    let alt = event.modifiers.contains(KeyModifiers::ALT).then_some("Alt-");
+    // Terminals without the newer protocols send Ctrl-h for Backspace and Ctrl-j for Enter.
+    match (control, plain.as_str()) {
+        (Some(_), "h") => Some("Backspace".into()),
+        (Some(_), "j" | "m") => Some("Enter".into()),
+        _ => Some(format!("{}{}{plain}", control.unwrap_or_default(), alt.unwrap_or_default())),
+    }
+}
