@@ -23,7 +23,7 @@ pub struct Probe {
     pub thresholds: Vec<f64>,
     /// Local time.
     pub tau: f64,
-    /// Place along the path.
+    /// The place along the path.
     pub s: f64,
     /// Effective place: s without a fold; 0 where `cover` is still.
     pub e: f64,
@@ -35,7 +35,7 @@ pub struct Probe {
     pub active_parts: Vec<(f64, f64)>,
 }
 
-/// What the pixel in column `x`, row `y` of the layer does at `time`; none outside every zone.
+/// What the pixel in column `x`, row `y` of the layer does at `time`; `None` outside every zone.
 ///
 /// # Errors
 /// As [`super::synth::synth`].
@@ -49,7 +49,7 @@ pub fn probe(
     let own = materials.picture(&layer.image, "/image")?;
     let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
     for (index, zone) in layer.zones.iter().enumerate().rev() {
-        // Making a zone ready is work: only the one that may answer is.
+        // Preparing a zone is expensive, so it is done only for one that may contain the pixel.
         if !zone.outline.polygon().bounds().contains(centre) {
             continue;
         }
@@ -113,8 +113,8 @@ fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Pr
     }
 }
 
-/// The stretches between neighbouring thresholds (0 and 1 with them) in whose middle the sampler is active; those that
-/// touch are one.
+/// The stretches between neighboring thresholds (including 0 and 1) in whose middle the sampler is active; adjacent
+/// stretches
 fn active_parts(thresholds: &[f64], active: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
     let ends = thresholds.iter().copied().chain([1.0]);
     let (mut from, mut parts): (f64, Vec<(f64, f64)>) = (0.0, Vec::new());

@@ -1,5 +1,5 @@
-//! What a layer can be asked about by those who look at it: a pixel explained, vectors, curves over time. Plain data, for
-//! the command line, the panes and the window.
+//! Views into a layer: a pixel explained, vectors, curves over time. Plain data, for the command line, the panes and
+//! the window.
 
 use kurbo::{Point, Vec2};
 
@@ -8,18 +8,18 @@ use crate::base::pixels::Grid;
 /// What one pixel of a layer does at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOut {
-    /// What there is to say, in order. The first says what the pixel belongs to.
+    /// The entries, in order. The first says what the pixel belongs to.
     pub entries: Vec<Entry>,
-    /// Where it is on its way.
+    /// Where it is along its path.
     pub axis: Option<Axis>,
 }
 
-/// One thing that a [`ReadOut`] says.
+/// One entry of a [`ReadOut`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Its key in JSON: "thresholds".
     pub key: &'static str,
-    /// What people call it: "thresholds", "τ".
+    /// Its label for people: "thresholds", "τ".
     pub label: &'static str,
     /// The value.
     pub value: Value,
@@ -30,7 +30,7 @@ pub struct Entry {
 pub enum Value {
     /// What the pixel belongs to, by its name; `None` if it belongs to none.
     Of(Option<String>),
-    /// From here to there, in pixels.
+    /// A vector, in pixels.
     Vector(Vec2),
     /// A place, in pixels.
     Place(Point),
@@ -38,43 +38,43 @@ pub enum Value {
     List(Vec<f64>),
     /// A number.
     Number(f64),
-    /// Whether it is so.
+    /// Something that is true or false.
     Flag {
-        /// Whether it is.
+        /// Whether it is true.
         on: bool,
-        /// The word for when it is not.
+        /// The word if it is false.
         off: &'static str,
     },
 }
 
-/// A way from 0 to 1.
+/// A path from 0 to 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Axis {
-    /// The stretches that are open, ascending, each from and to.
+    /// The active stretches, ascending, each as (from, to).
     pub stretches: Vec<(f64, f64)>,
-    /// Where something happens.
+    /// Where something changes.
     pub ticks: Vec<f64>,
-    /// Where the pixel is, by the labels of entries; the first counts most. May lie beyond the ends.
+    /// Where the pixel is, with the labels of entries; the first is the most important. May be beyond the ends.
     pub points: Vec<(&'static str, f64)>,
 }
 
-/// Vectors of some of a picture's pixels.
+/// Vectors of some pixels of a picture.
 pub struct VectorField<'a> {
-    /// What has them: a JSON pointer relative to the layer.
+    /// What the vectors belong to: a JSON pointer relative to the layer.
     pub path: String,
-    /// The name of what has them.
+    /// The name of what they belong to.
     pub name: &'a str,
     /// Column and row of the first pixel.
     pub corner: (usize, usize),
-    /// Which pixels of the box have one.
+    /// Which pixels of the box have a vector.
     pub inside: &'a Grid<bool>,
     /// The vectors in pixels, x right and y down.
     pub vectors: &'a Grid<[f32; 2]>,
-    /// What else is to be seen of some pixels of the box, with its name; `None` if there is nothing.
+    /// Another property that some pixels of the box have, with its name; `None` if there is none.
     pub flag: Option<Flag<'a>>,
 }
 
-/// The name of something that some pixels have, and whether pixel i of the box, row by row, has it.
+/// The name of a property, and whether pixel i of the box, row by row, has it.
 pub type Flag<'a> = (&'static str, Box<dyn Fn(usize) -> bool + 'a>);
 
 impl VectorField<'_> {
@@ -85,7 +85,7 @@ impl VectorField<'_> {
         within.then(|| vector(*self.vectors.get(i, j)))
     }
 
-    /// The length of the longest, in pixels.
+    /// The length of the longest vector, in pixels.
     pub fn longest(&self) -> f64 {
         let squares = self.vectors.cells().iter().map(|[x, y]| x * x + y * y);
         f64::from(squares.fold(0.0, f32::max)).sqrt()
@@ -97,13 +97,13 @@ pub fn vector([x, y]: [f32; 2]) -> Vec2 {
     Vec2::new(x.into(), y.into())
 }
 
-/// A number over the scene time.
+/// A number as a function of scene time.
 pub struct Curve<'a> {
-    /// What has it: a JSON pointer relative to the layer.
+    /// What it belongs to: a JSON pointer relative to the layer.
     pub path: String,
-    /// The name of what has it.
+    /// The name of what it belongs to.
     pub name: &'a str,
-    /// The letter that formulae have for it.
+    /// Its letter in formulas.
     pub symbol: &'static str,
     /// Its value at a scene time.
     pub value: Box<dyn Fn(f64) -> f64 + 'a>,
