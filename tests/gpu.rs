@@ -13,11 +13,13 @@ use std::sync::Arc;
 
 use plica::base::maths;
 use plica::base::picture::Picture;
-use plica::base::pixels::{Frame, decode};
+use plica::base::pixels::{Frame, Grid, decode, encode};
 use plica::files;
 use plica::layers::KINDS;
-use plica::layers::parts::materials::Materials;
-use plica::render::{self, Synth, cpu, gpu::Gpu};
+use plica::layers::parts::materials::{Materials, Of, Use, What};
+use plica::layers::technique::Kind;
+use plica::render::{self, Synth, bands::Bands, cpu, gpu::Gpu, reduce::reduced};
+use plica::scene::Scene;
 use serde_json::{Value, json};
 
 /// Times on frames and between them; s goes below 0 and above 1.
@@ -130,13 +132,11 @@ fn difference(a: &Frame, b: &Frame) -> (u8, f64) {
     (all.iter().copied().max().unwrap_or(0), more as f64 / all.len() as f64)
 }
 
-fn check(gpu: &mut Gpu, name: &str, synth: &Synth) {
-    for time in TIMES {
-        let (largest, share) = difference(&gpu.frame(synth, time).unwrap(), &cpu::frame(synth, time));
-        println!("{name} at {time}: {:.3} % differ, by up to {largest}", share * 100.0);
-        assert!(share <= 0.001, "{name} at {time}: {:.3} % differ, by up to {largest}", share * 100.0);
-        assert!(largest <= 2 || !WITHOUT_SILHOUETTES.contains(&name), "{name} at {time}: {largest}");
-    }
+fn check(gpu: &mut Gpu, name: &str, synth: &Synth, time: f64) {
+    let (largest, share) = difference(&gpu.frame(synth, time).unwrap(), &cpu::frame(synth, time));
+    println!("{name} at {time}: {:.3} % differ, by up to {largest}", share * 100.0);
+    assert!(share <= 0.001, "{name} at {time}: {:.3} % differ, by up to {largest}", share * 100.0);
+    assert!(largest <= 2 || !WITHOUT_SILHOUETTES.contains(&name), "{name} at {time}: {largest}");
 }
 
 #[test]
@@ -145,7 +145,70 @@ fn the_gpu_shows_what_the_cpu_shows() {
     let scenes = scenes();
     assert!(WITHOUT_SILHOUETTES.iter().all(|name| scenes.iter().any(|(known, _)| known == name)));
     for (name, synth) in &scenes {
-        check(&mut gpu, name, synth);
+        TIMES.into_iter().for_each(|time| check(&mut gpu, name, synth, time));
+    }
+}
+
+/// The example of each technique, with pictures of 96 x 64 for the images that it names.
+fn examples() -> Vec<(&'static str, Scene, Materials)> {
+    let example = |kind: &&'static Kind| {
+        let scene: Scene = serde_json::from_str(kind.example).unwrap();
+        let mut materials = Materials::default();
+        let uses = scene.layers.iter().flat_map(|layer| layer.technique().uses());
+        for (seed, Use { of, what, .. }) in uses.enumerate() {
+            match of {
+                Of::Image(name) => {
+                    let picture = waves(96, 64, seed + 1, what != What::Picture || seed > 0);
+                    drop(materials.pictures.insert(name.to_owned(), picture));
+                }
+                Of::Path(path) => {
+                    let vector = |i: usize| [(i % 96) as f32 / 12.0, (i / 96) as f32 / -9.0];
+                    let field = Grid::from_cells(96, 64, (0..96 * 64).map(vector).collect());
+                    drop(materials.fields.insert(path.to_owned(), Arc::new(field)));
+                }
+            }
+        }
+        (kind.name, scene, materials)
+    };
+    KINDS.iter().map(example).collect()
+}
+
+#[test]
+fn every_technique_answers_everything() {
+    let mut gpu = gpu();
+    for (kind, scene, materials) in examples() {
+        assert!(scene.layers.iter().any(|layer| layer.technique().kind().name == kind));
+        let problems: Vec<_> = scene.layers.iter().map(|layer| layer.technique()).collect();
+        let problems = problems.iter().flat_map(|layer| layer.problems(&layer.check(None)));
+        assert_eq!(problems.collect::<Vec<_>>(), [], "{kind}");
+        let synth = render::synth(&scene, &materials, None).unwrap();
+        let again = render::synth(&scene, &materials, Some(&synth)).unwrap();
+        let samples = render::samples(&scene, &materials, 2).unwrap();
+        let small = reduced(&synth, 4);
+        let still =
+            Synth { layers: synth.layers.iter().map(|layer| layer.clone().unmoved()).collect(), ..synth.clone() };
+        for time in TIMES {
+            let frame = cpu::frame(&synth, time);
+            assert_eq!(cpu::frame(&again, time), frame, "{kind} at {time}: made from the one before");
+            let bands = Bands::new(&scene, &materials, 1).unwrap();
+            assert_eq!(bands.frame(time).unwrap(), frame, "{kind} at {time}: in bands");
+            let rows: Vec<usize> = (0..synth.size.1).step_by(7).collect();
+            let columns: Vec<usize> = (3..synth.size.0).step_by(5).collect();
+            let some = cpu::lattice(&synth, time, &columns, &rows);
+            let at = |(i, j): (usize, usize)| encode(*some.get(i, j)) == *frame.get(columns[i], rows[j]);
+            let places = (0..rows.len()).flat_map(|j| (0..columns.len()).map(move |i| (i, j)));
+            assert!(places.into_iter().all(at), "{kind} at {time}: some columns");
+            assert_eq!(cpu::frame(&still, time), cpu::frame(&still, 0.0), "{kind} at {time}: still");
+            let (_, share) = difference(&cpu::frames(&samples, time), &frame);
+            assert!(share < 0.5, "{kind} at {time}: {share} differ between samples and the middle of each pixel");
+            assert_eq!(cpu::frame(&small, time).width(), synth.size.0.div_ceil(4));
+            if let Some(gpu) = &mut gpu {
+                check(gpu, kind, &synth, time);
+                check(gpu, &format!("{kind}, reduced"), &small, time);
+                check(gpu, &format!("{kind}, still"), &still, time);
+                samples.iter().for_each(|sample| check(gpu, &format!("{kind}, a sample"), sample, time));
+            }
+        }
     }
 }
 
@@ -161,7 +224,7 @@ fn the_gpu_shows_the_demo_scenes_as_the_cpu_does() {
         let document = files::scene::open(&path, &options).unwrap();
         let (loaded, _) = files::materials::load(&path, document.scene(), &options, &mut Default::default()).unwrap();
         let synth = render::synth(document.scene(), &loaded, None).unwrap();
-        check(&mut gpu, &path.display().to_string(), &synth);
+        TIMES.into_iter().for_each(|time| check(&mut gpu, &path.display().to_string(), &synth, time));
         checked += 1;
     }
     assert!(checked > 0);

@@ -11,7 +11,7 @@ use super::parts::materials::{Materials, Use};
 use super::parts::passes::Program;
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
-use super::ready::{Prepared, Ready};
+use super::ready::{Prepared, Ready, Whole};
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
@@ -27,8 +27,10 @@ pub trait Technique: Any + Send + Sync {
     /// found there.
     fn check(&self, before: Option<(&dyn Technique, &Checked)>) -> Checked;
 
-    /// Every problem that a check has found.
-    fn problems(&self, checked: &Checked) -> Vec<Problem>;
+    /// Every problem that a check has found; without parts, what it holds.
+    fn problems(&self, checked: &Checked) -> Vec<Problem> {
+        checked.0.iter().flat_map(|part| part.iter().cloned()).collect()
+    }
 
     /// Calls `each` with what the layer asks for, place by place, before any of it is made.
     fn counts(&self, _each: &mut dyn FnMut(Count)) {}
@@ -87,7 +89,9 @@ pub trait Technique: Any + Send + Sync {
     }
 
     /// What happens to the layer where time starts anew.
-    fn repeat(&self, wrap: Wrap) -> Repeat;
+    fn repeat(&self, _wrap: Wrap) -> Repeat {
+        Repeat::default()
+    }
 
     /// Makes the layer ready to be shown at any time. What `previous` has in common with it is taken over. `place` is the
     /// place in each pixel that is looked at: its centre, or another for supersampling.
@@ -102,11 +106,13 @@ pub trait Technique: Any + Send + Sync {
         previous: Option<&dyn Ready>,
     ) -> Result<Arc<dyn Ready>, Problem>;
 
-    /// Makes what all parts of the layer share.
+    /// Makes what all parts of the layer share; without a shortcut, all of it.
     ///
     /// # Errors
     /// As [`Technique::synth`].
-    fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem>;
+    fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem> {
+        Ok(Box::new(Whole(self.synth(wrap, materials, place, None)?)))
+    }
 }
 
 /// What is known of a technique without a layer of it.
@@ -130,6 +136,8 @@ pub struct Kind {
     /// A new item of the list `list` of a `variant` before item `index`, and the index it gets; `None` if an item does
     /// not depend on its neighbours.
     pub item: fn(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)>,
+    /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
+    pub example: &'static str,
 }
 
 /// A kind of thing that a scene may not have too much of: a row of `--limit`.

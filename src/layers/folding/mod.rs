@@ -58,6 +58,7 @@ pub static KIND: Kind = Kind {
     beyond: starts::beyond,
     ascending: starts::ascending,
     item: starts::item,
+    example: include_str!("example.json"),
 };
 
 impl Technique for PictureLayer {
