@@ -34,6 +34,12 @@ const SLICES: &str = "layers/";
 /// The data that slices and the rest exchange.
 const SHARED: &str = "parts";
 
+/// The only list of them.
+const LIST: &str = "layers/mod.rs";
+
+/// What still names a technique.
+const NAMES_LEFT: &[&str] = &["export/", "ops/", "preview/", "render/overlay/", "tui/"];
+
 const MOST_LINES: usize = 500;
 
 /// Folders that still have cycles of files.
@@ -185,7 +191,13 @@ fn module(file: &str) -> Vec<&str> {
     stem.strip_suffix("/mod").unwrap_or(stem).split('/').collect()
 }
 
-/// The file, among those of `known` modules, that a path in a file leads to; `None` if it leads out of the program.
+/// The files of all modules.
+fn modules(sources: &[Source]) -> BTreeMap<Vec<&str>, &str> {
+    let program = sources.iter().filter(|source| source.path.ends_with(".rs"));
+    program.map(|source| (module(&source.path), source.path.as_str())).collect()
+}
+
+/// The file, of `known` modules, that a path in a file leads to; `None` if it leads out of the program.
 fn leads_to<'a>(file: &str, path: &str, known: &BTreeMap<Vec<&str>, &'a str>) -> Option<&'a str> {
     let own = module(file);
     let mut parts = path.split("::").map(|part| part.split(' ').next().unwrap_or_default()).peekable();
@@ -303,30 +315,73 @@ fn an_outside_crate_has_one_door() {
     report("one door an outside crate", &broken);
 }
 
+/// The folders that hold a technique.
+fn techniques(sources: &[Source]) -> Vec<&str> {
+    let holds = |source: &&Source| source.path.ends_with("/mod.rs") && source.text.contains("pub static KIND: Kind");
+    sources.iter().filter(holds).filter_map(Source::slice).collect()
+}
+
 #[test]
-fn slices_never_name_one_another() {
+fn techniques_name_neither_one_another_nor_their_list() {
     let sources = sources();
-    // `parts` is what all slices share, and names none of them.
-    let slices: Vec<&str> = sources.iter().filter_map(Source::slice).filter(|&slice| slice != "parts").collect();
+    let techniques = techniques(&sources);
+    assert!(techniques.len() > 1, "{techniques:?}");
+    let known = modules(&sources);
     let mut broken = Vec::new();
     for source in &sources {
-        let Some(own) = source.slice() else { continue };
+        // `parts` and what else stands beside them names none of them.
+        if !source.path.starts_with(SLICES) || source.path == LIST {
+            continue;
+        }
+        let own = source.slice().filter(|slice| techniques.contains(slice));
         for (line, path) in source.paths() {
-            let other = after(&path, "crate::layers::").filter(|name| *name != own && slices.contains(name));
-            broken.extend(other.map(|other| format!("src/{}:{line} names {other}", source.path)));
+            let Some(file) = leads_to(&source.path, &path, &known) else { continue };
+            let to = file.strip_prefix(SLICES).and_then(|rest| rest.split_once('/')).map(|(slice, _)| slice);
+            let other = to.is_some_and(|to| techniques.contains(&to) && Some(to) != own);
+            if other || (own.is_some() && file == LIST) {
+                broken.push(format!("src/{}:{line} names {file}", source.path));
+            }
         }
     }
-    report("slices never name one another", &broken);
+    report("deleting a technique's folder breaks its list and nothing else of layers/", &broken);
+}
+
+#[test]
+fn nobody_outside_names_a_technique() {
+    let sources = sources();
+    let techniques = techniques(&sources);
+    let list = sources.iter().find(|source| source.path == LIST).map_or("", |source| &source.text);
+    // `    Picture(folding::model::PictureLayer),`
+    let variant = |line: &str| {
+        let (name, rest) = line.trim().split_once('(')?;
+        let known = techniques.iter().any(|technique| rest.starts_with(&format!("{technique}::")));
+        (known && rest.ends_with("),")).then(|| format!("Layer::{name}"))
+    };
+    let variants: Vec<String> = list.lines().filter_map(variant).collect();
+    assert_eq!(variants.len(), techniques.len(), "{variants:?}");
+    let (mut broken, mut left) = (Vec::new(), BTreeSet::new());
+    for source in sources.iter().filter(|source| !source.path.starts_with(SLICES)) {
+        for (line, path) in source.paths() {
+            let folder = techniques.iter().any(|technique| path.contains(&format!("layers::{technique}")));
+            if folder || variants.iter().any(|variant| path.ends_with(variant.as_str())) {
+                match NAMES_LEFT.iter().find(|left| source.path.starts_with(**left)) {
+                    Some(room) => drop(left.insert(*room)),
+                    None => broken.push(format!("src/{}:{line} names {path}", source.path)),
+                }
+            }
+        }
+    }
+    report("only layers/mod.rs names a technique", &broken);
+    let mended: Vec<String> = NAMES_LEFT.iter().filter(|room| !left.contains(*room)).map(|s| (*s).into()).collect();
+    report("NAMES_LEFT names what names none", &mended);
 }
 
 #[test]
 fn no_file_names_one_that_names_it() {
     let sources = sources();
-    let program = || sources.iter().filter(|source| source.path.ends_with(".rs"));
-    let known: BTreeMap<Vec<&str>, &str> =
-        program().map(|source| (module(&source.path), source.path.as_str())).collect();
+    let known = modules(&sources);
     let mut arrows: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for source in program() {
+    for source in &sources {
         let to = source.paths().into_iter().filter_map(|(_, path)| leads_to(&source.path, &path, &known));
         // A folder's files are part of its `mod.rs`: they may use what it declares.
         let above = |file: &&str| file.strip_suffix("mod.rs").is_some_and(|folder| source.path.starts_with(folder));

@@ -42,7 +42,7 @@ fn shows_what_the_cpu_shows_and_follows_keys_and_file() {
     view.until("a larger picture", |v| v.shot() != bare);
     view.keys(&["1", "s"]);
     let mut still = place.scene();
-    let plica::layers::Layer::Picture(layer) = &mut still.layers[0];
+    let plica::layers::Layer::Picture(layer) = &mut still.layers[0] else { panic!() };
     layer.zones.clear();
     std::fs::write(&place.scene, serde_json::to_string(&still).unwrap()).unwrap();
     let picture = place.frame(0);

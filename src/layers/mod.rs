@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::base::change::Change;
 
 pub mod check;
+pub mod fill;
 pub mod folding;
 pub mod parts;
 pub mod ready;
@@ -16,7 +17,7 @@ pub mod timeline;
 use technique::{Kind, Technique};
 
 /// The techniques: what `kind` can be in the document.
-pub static KINDS: &[&Kind] = &[&folding::KIND];
+pub static KINDS: &[&Kind] = &[&folding::KIND, &fill::KIND];
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -24,6 +25,8 @@ pub static KINDS: &[&Kind] = &[&folding::KIND];
 pub enum Layer {
     /// A still picture whose motion zones fold over time.
     Picture(folding::model::PictureLayer),
+    /// A color or a gradient over the whole frame.
+    Fill(fill::model::FillLayer),
 }
 
 impl Layer {
@@ -31,6 +34,7 @@ impl Layer {
     pub fn technique(&self) -> &dyn Technique {
         match self {
             Layer::Picture(layer) => layer,
+            Layer::Fill(layer) => layer,
         }
     }
 
@@ -40,6 +44,7 @@ impl Layer {
         match self {
             _ if *change.field("kind") != Change::Same => None,
             Layer::Picture(layer) => folding::reread::layer(layer, json, change).map(Layer::Picture),
+            Layer::Fill(_) => None,
         }
     }
 }

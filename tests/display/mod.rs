@@ -114,7 +114,8 @@ impl Place {
     /// The picture with nothing moving.
     pub fn still(&self) -> Frame {
         let mut scene = self.scene();
-        for plica::layers::Layer::Picture(layer) in &mut scene.layers {
+        for layer in &mut scene.layers {
+            let plica::layers::Layer::Picture(layer) = layer else { continue };
             layer.zones.clear();
         }
         let loaded = materials::load(&self.scene, &scene, &Options::default(), &mut materials::Cache::default());

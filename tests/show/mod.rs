@@ -38,7 +38,7 @@ impl Show {
 
     /// Its only layer.
     pub fn layer(&self) -> &PictureLayer {
-        let Layer::Picture(layer) = &self.document.scene().layers[0];
+        let Layer::Picture(layer) = &self.document.scene().layers[0] else { panic!("no picture") };
         layer
     }
 

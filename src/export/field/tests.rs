@@ -65,7 +65,7 @@ fn the_png_shows_arrows_and_picture() {
 #[test]
 fn nothing_reaches_out_of_the_picture() {
     let (mut scene, synth) = scene();
-    let crate::layers::Layer::Picture(layer) = &mut scene.layers[0];
+    let crate::layers::Layer::Picture(layer) = &mut scene.layers[0] else { panic!() };
     layer.zones[0].outline =
         serde_json::from_str(r#"{"kind":"rectangle","x":-99,"y":-99,"width":150,"height":115}"#).unwrap();
     let image = image::load_from_memory(&png(&plot(&scene, &synth, None, false)).unwrap()).unwrap().to_rgba8();

@@ -112,7 +112,8 @@ impl<'a> Plan<'a> {
     fn new(scene: &'a Scene, synth: &'a Synth) -> Self {
         let (mut needs, mut zones) = (Vec::new(), Vec::new());
         let mut layer_needs = Vec::new();
-        for (index, (Layer::Picture(model), layer)) in scene.layers.iter().zip(&synth.layers).enumerate() {
+        for (index, (model, layer)) in scene.layers.iter().zip(&synth.layers).enumerate() {
+            let Layer::Picture(model) = model else { continue };
             let Some(layer) = layer.downcast::<folding::synth::Synth>() else { continue };
             let area = Area::whole(&layer.picture);
             let picture = layer.picture.clone();

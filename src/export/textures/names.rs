@@ -30,8 +30,11 @@ impl Names {
     /// Those of `scene` at this depth.
     pub fn of(scene: &Scene, depth: Depth) -> Names {
         let several = scene.layers.len() > 1;
-        let stems = scene.layers.iter().flat_map(|layer| {
-            let Layer::Picture(picture) = layer;
+        let pictures = scene.layers.iter().filter_map(|layer| match layer {
+            Layer::Picture(picture) => Some(picture),
+            _ => None,
+        });
+        let stems = pictures.flat_map(|picture| {
             picture.zones.iter().map(move |zone| stem(several.then_some(&*picture.name), &zone.name))
         });
         let extension = depth.extension();

@@ -99,7 +99,7 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
         drawing.pixels(synth);
     }
     for (i, layer) in scene.layers.iter().enumerate() {
-        let Layer::Picture(layer) = layer;
+        let Layer::Picture(layer) = layer else { continue };
         drawing.layer(layer, i);
     }
     drawing.marks.sort_by_key(|mark| mark.kind);

@@ -11,8 +11,12 @@ use crate::scene::Scene;
 /// `reach_px`; else the topmost zone that holds it; else none.
 pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<String> {
     let zones = || {
-        scene.layers.iter().enumerate().rev().flat_map(|(l, Layer::Picture(layer))| {
-            let zones = layer.zones.iter().enumerate().rev();
+        scene.layers.iter().enumerate().rev().flat_map(|(l, layer)| {
+            let zones = match layer {
+                Layer::Picture(layer) => layer.zones.as_slice(),
+                _ => &[],
+            };
+            let zones = zones.iter().enumerate().rev();
             zones.map(move |(z, zone)| (super::zone_pointer(l, z), zone))
         })
     };

@@ -1,0 +1,112 @@
+//! A color or a gradient over the whole frame: a ground beneath transparent pictures, a veil over them.
+
+pub mod frame;
+pub mod model;
+pub mod synth;
+
+use std::sync::Arc;
+
+use kurbo::{Rect, Vec2};
+use serde_json::{Value, json};
+
+use self::model::FillLayer;
+use super::parts::materials::Materials;
+use super::ready::Ready;
+use super::technique::{Checked, Kind, Technique};
+use super::timeline::Wrap;
+use crate::base::problem::Problem;
+
+/// What is known of fills without a layer of one.
+pub static KIND: Kind = Kind {
+    name: "fill",
+    programs: &[&synth::PROGRAM],
+    counted: &[],
+    template: None,
+    start,
+    beyond: |_, _| None,
+    ascending,
+    item,
+    example: include_str!("example.json"),
+};
+
+impl Technique for FillLayer {
+    fn kind(&self) -> &'static Kind {
+        &KIND
+    }
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, _before: Option<(&dyn Technique, &Checked)>) -> Checked {
+        Checked(vec![FillLayer::check(self).into()])
+    }
+
+    fn bounds(&self, _path: &str) -> Rect {
+        let line = self.gradient.as_ref().map(|line| {
+            let ([x0, y0], [x1, y1]) = (line.from, line.to);
+            Rect::from_points((x0, y0), (x1, y1))
+        });
+        line.unwrap_or(Rect::new(0.0, 0.0, 100.0, 100.0))
+    }
+
+    fn synth(
+        &self,
+        _wrap: Wrap,
+        _materials: &Materials,
+        place: Vec2,
+        _previous: Option<&dyn Ready>,
+    ) -> Result<Arc<dyn Ready>, Problem> {
+        Ok(Arc::new(synth::Synth::new(self, place)))
+    }
+}
+
+/// A gradient starts from black above to white below.
+fn start(_variant: &str, field: &str, bounds: Rect) -> Option<Value> {
+    match field {
+        "from" => Some(json!([bounds.x0, bounds.y0])),
+        "to" => Some(json!([bounds.x0, bounds.y1])),
+        "stops" => Some(json!([{ "along": 0, "color": "#000000" }, { "along": 1, "color": "#ffffff" }])),
+        "color" => Some(json!("#808080")),
+        _ => None,
+    }
+}
+
+fn ascending(_variant: &str, list: &str) -> Option<&'static str> {
+    (list == "stops").then_some("/along")
+}
+
+/// A color half way between its neighbours, with that of the one before.
+fn item(_variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
+    let along = |i: usize| items.get(i)?.get("along")?.as_f64();
+    // Nothing stands before the first nor behind the last where those are the ends of the line.
+    let index = if along(0) == Some(0.0) { index.max(1) } else { index };
+    let index = if along(items.len().checked_sub(1)?) == Some(1.0) { index.min(items.len() - 1) } else { index };
+    let before = index.checked_sub(1);
+    let middle = (before.and_then(along).unwrap_or(0.0) + along(index).unwrap_or(1.0)) / 2.0;
+    let mut item = items.get(before.unwrap_or(0))?.clone();
+    item["along"] = json!(middle);
+    (list == "stops").then_some((index, item))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_new_is_right_and_stands_between_its_neighbours() {
+        let field = |name: &str| start("", name, Rect::new(2.0, 3.0, 8.0, 9.0)).unwrap_or_default();
+        let gradient = json!({ "from": field("from"), "to": field("to"), "stops": field("stops") });
+        let layer: FillLayer = serde_json::from_value(json!({ "name": "f", "gradient": gradient })).unwrap();
+        assert_eq!(FillLayer::check(&layer), []);
+        let stops = field("stops");
+        for (index, at) in [(0, 1), (1, 1), (2, 1)] {
+            let (found, new) = item("", "stops", stops.as_array().unwrap(), index).unwrap();
+            assert_eq!((found, new), (at, json!({ "along": 0.5, "color": "#000000" })), "{index}");
+        }
+        let one = [json!({ "along": 0.5, "color": "#ffffff" })];
+        let along = |index| item("", "stops", &one, index).map(|(at, new)| (at, new["along"].as_f64()));
+        assert_eq!((along(0), along(1)), (Some((0, Some(0.25))), Some((1, Some(0.75)))));
+        assert_eq!(item("", "other", &one, 0), None);
+    }
+}

@@ -1,0 +1,142 @@
+//! The fill layer as it stands in the document. Doc comments become the help of forms and schema.
+
+use kurbo::Vec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::base::geometry::Xy;
+use crate::base::pixels::{Rgba, decode};
+use crate::base::problem::{Problem, quoted};
+use crate::layers::check;
+
+/// Stops of a gradient at most: the shader reads them one after the other.
+pub const MOST_STOPS: usize = 64;
+
+/// A color or a gradient over the whole frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FillLayer {
+    /// Unique among the layers.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// The color where there is no gradient: sRGB with straight alpha, #rrggbb or #rrggbbaa.
+    #[serde(default = "white")]
+    pub color: String,
+    /// A gradient in place of the color.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gradient: Option<Gradient>,
+}
+
+/// Colors that change along a line and are constant across it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gradient {
+    /// Where the line begins; the first color goes on before it.
+    #[schemars(extend("unit" = "px"))]
+    pub from: Xy,
+    /// Where it ends; the last color goes on behind it.
+    #[schemars(extend("unit" = "px"))]
+    pub to: Xy,
+    /// Colors along the line, ascending; between two of them light changes evenly.
+    #[schemars(length(min = 1))]
+    pub stops: Vec<Stop>,
+}
+
+/// A color of a gradient.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// Its place, as a share of the line.
+    #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
+    pub along: f64,
+    /// sRGB with straight alpha: #rrggbb or #rrggbbaa.
+    pub color: String,
+}
+
+fn white() -> String {
+    "#ffffff".into()
+}
+
+impl FillLayer {
+    /// Everything that can be wrong beyond shape.
+    pub fn check(&self) -> Vec<Problem> {
+        let mut problems: Vec<Problem> = color_problem(&self.color, "/color").into_iter().collect();
+        let Some(Gradient { from, to, stops }) = &self.gradient else { return problems };
+        if from == to {
+            let hint = "give its line a direction, or take a color alone";
+            problems.push(Problem::error("/gradient/to", "the gradient ends where it begins").hint(hint));
+        }
+        if stops.len() > MOST_STOPS {
+            let message = format!("{} colors of a gradient, at most {MOST_STOPS} are shown", stops.len());
+            problems.push(Problem::error("/gradient/stops", message));
+        }
+        let at = |i: usize| format!("/gradient/stops/{i}");
+        let ascending = check::ascending("places of colors", stops.iter().map(|stop| stop.along), |i| at(i) + "/along");
+        let colors = stops.iter().enumerate();
+        let colors = colors.filter_map(|(i, stop)| color_problem(&stop.color, &(at(i) + "/color")));
+        problems.into_iter().chain(ascending).chain(colors).collect()
+    }
+
+    /// Colors along a line, one alone where there is no gradient; what no color is counts as clear.
+    pub fn stops(&self) -> Vec<(f64, Rgba)> {
+        let light = |text: &str| parse(text).map_or([0.0; 4], decode);
+        match &self.gradient {
+            None => vec![(0.0, light(&self.color))],
+            Some(gradient) => gradient.stops.iter().map(|stop| (stop.along, light(&stop.color))).collect(),
+        }
+    }
+
+    /// Where the line begins, and its direction divided by its length: what is `from + v` stands at `axis.dot(v)`.
+    pub fn line(&self) -> (Vec2, Vec2) {
+        let Some(Gradient { from, to, .. }) = &self.gradient else { return (Vec2::ZERO, Vec2::ZERO) };
+        let (from, to) = (Vec2::from((from[0], from[1])), Vec2::from((to[0], to[1])));
+        (from, (to - from) / (to - from).hypot2())
+    }
+}
+
+fn color_problem(text: &str, path: &str) -> Option<Problem> {
+    let problem = || Problem::error(path, format!("{} is no color", quoted(text))).hint("as #20304a, or #20304a80");
+    parse(text).is_none().then(problem)
+}
+
+/// Red, green, blue and straight alpha of `#rrggbb` or `#rrggbbaa`.
+fn parse(text: &str) -> Option<[u8; 4]> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit()))?;
+    let code = |i: usize| u8::from_str_radix(digits.get(2 * i..2 * i + 2)?, 16).ok();
+    match digits.len() {
+        6 => Some([code(0)?, code(1)?, code(2)?, 255]),
+        8 => Some([code(0)?, code(1)?, code(2)?, code(3)?]),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colors_are_six_or_eight_digits() {
+        for (text, color) in [
+            ("#20304a", Some([0x20, 0x30, 0x4a, 255])),
+            ("#20304A80", Some([0x20, 0x30, 0x4a, 0x80])),
+            ("20304a", None),
+            ("#20304", None),
+            ("#20304ag0", None),
+            ("#+1+1+1", None),
+            ("#äöü", None),
+        ] {
+            assert_eq!(parse(text), color, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place() {
+        let layer: FillLayer = serde_json::from_str(
+            r##"{"name": "f", "color": "red", "gradient": {"from": [1, 2], "to": [1, 2],
+                "stops": [{"along": 0.5, "color": "#000000"}, {"along": 0.5, "color": "#00"}]}}"##,
+        )
+        .unwrap();
+        let paths: Vec<String> = layer.check().into_iter().map(|problem| problem.path).collect();
+        assert_eq!(paths, ["/color", "/gradient/to", "/gradient/stops/1/along", "/gradient/stops/1/color"]);
+    }
+}

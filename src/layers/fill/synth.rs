@@ -1,0 +1,95 @@
+//! A fill, ready to be shown at any time: it is the same at all of them.
+
+use std::sync::Arc;
+
+use kurbo::Vec2;
+
+use super::model::{FillLayer, MOST_STOPS};
+use crate::base::pixels::Rgba;
+use crate::base::reduce::Reduced;
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::passes::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::ready::{Ready, Still};
+
+/// The shader.
+pub static PROGRAM: Program =
+    Program { name: "fill", source: &[COMMON, include_str!("frame.wgsl")], vertex: "whole_frame", fragment: "color" };
+
+/// What a frame needs.
+#[derive(Clone, Debug)]
+pub struct Synth {
+    /// Colors and where along the line they stand, ascending.
+    pub stops: Vec<(f64, Rgba)>,
+    /// Where the line begins, in pixels.
+    pub from: Vec2,
+    /// Its direction divided by its length.
+    pub axis: Vec2,
+    /// The place in each pixel that is looked at.
+    pub place: Vec2,
+}
+
+impl Synth {
+    /// The layer with this place in each pixel looked at.
+    pub fn new(layer: &FillLayer, place: Vec2) -> Self {
+        let (from, axis) = layer.line();
+        Synth { stops: layer.stops(), from, axis, place }
+    }
+}
+
+/// `Stop` of frame.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
+struct Stop {
+    color: [f32; 4],
+    along: f32,
+    padding: [f32; 3],
+}
+
+/// `Fill` of frame.wgsl behind its stops.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Line {
+    origin: [f32; 2],
+    axis: [f32; 2],
+    place: [f32; 2],
+    count: u32,
+    padding: u32,
+}
+
+impl Ready for Synth {
+    fn at<'a>(&'a self, _moment: &'a Moment) -> Box<dyn Still + 'a> {
+        Box::new(self)
+    }
+
+    fn plan(&self, _moment: &Moment) -> Plan {
+        let stop = |&(along, color): &(f64, Rgba)| Stop { color, along: along as f32, padding: [0.0; 3] };
+        let mut stops: Vec<Stop> = self.stops.iter().map(stop).collect();
+        let count = stops.len() as u32;
+        stops.resize(MOST_STOPS, Stop::default());
+        let pair = |v: Vec2| [v.x as f32, v.y as f32];
+        let line = Line { origin: pair(self.from), axis: pair(self.axis), place: pair(self.place), count, padding: 0 };
+        let bytes = [bytemuck::cast_slice(&stops), bytemuck::bytes_of(&line)].concat();
+        Plan {
+            draws: vec![Draw {
+                program: &PROGRAM,
+                constants: Vec::new(),
+                binds: vec![Bind::Bytes(bytes)],
+                blend: Blend::Replace,
+                scissor_px: None,
+            }],
+        }
+    }
+
+    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
+        self
+    }
+
+    fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
+        let by = pictures.by as f64;
+        Arc::new(Synth { from: self.from / by, axis: self.axis * by, ..self.clone() })
+    }
+
+    fn largest_texture(&self) -> usize {
+        0
+    }
+}
