@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::position::{Between, Position, Segment};
+use super::position::{Between, Pieces, Position, Segment};
 
 /// A jump in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -26,28 +26,21 @@ pub enum Side {
 impl Position {
     /// Where s jumps, ascending in τ.
     pub fn breaks(&self) -> Vec<Break> {
-        match self {
-            Position::Keyframes { points, between: Between::Step } => {
+        match self.pieces() {
+            Pieces::Points(points, Between::Step) => {
                 let jumps = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
                 jumps.map(|pair| Break { tau: pair[1][0], holds: Side::After }).collect()
             }
-            Position::Piecewise { segments } => piecewise_breaks(segments),
-            Position::Keyframes { between: Between::Linear | Between::Smooth, .. }
-            | Position::Linear
-            | Position::Exponential { .. }
-            | Position::ExponentialInverse { .. }
-            | Position::Sigmoid { .. }
-            | Position::Sine { .. }
-            | Position::Cosine { .. }
-            | Position::CubicBezier { .. } => Vec::new(),
+            Pieces::Segments(segments) => piecewise_breaks(segments),
+            Pieces::Whole | Pieces::Points(_, Between::Linear | Between::Smooth) => Vec::new(),
         }
     }
 
     /// Where s may bend or jump, ascending in τ.
     pub fn corners(&self) -> Vec<f64> {
-        match self {
-            Position::Keyframes { points, .. } => points.iter().map(|point| point[0]).collect(),
-            Position::Piecewise { segments } => {
+        match self.pieces() {
+            Pieces::Points(points, _) => points.iter().map(|point| point[0]).collect(),
+            Pieces::Segments(segments) => {
                 let mut corners = Vec::new();
                 let mut start = 0.0;
                 for segment in segments {
@@ -57,13 +50,7 @@ impl Position {
                 }
                 corners
             }
-            Position::Linear
-            | Position::Exponential { .. }
-            | Position::ExponentialInverse { .. }
-            | Position::Sigmoid { .. }
-            | Position::Sine { .. }
-            | Position::Cosine { .. }
-            | Position::CubicBezier { .. } => Vec::new(),
+            Pieces::Whole => Vec::new(),
         }
     }
 }

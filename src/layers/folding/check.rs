@@ -8,7 +8,7 @@ use kurbo::{Point, Rect, Vec2};
 use super::anchor::Anchor;
 use super::anchors;
 use super::interpolation::Interpolation;
-use super::position::Position;
+use super::position::{Pieces, Position};
 use super::{counts, fold::Fold, outline::Outline};
 use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
@@ -271,16 +271,10 @@ fn motion(zone: &Zone) -> Vec<Problem> {
 fn telling(position: &Position) -> Vec<f64> {
     const EVEN: u32 = 16;
     let mut taus: Vec<f64> = (0..=EVEN).map(|i| f64::from(i) / f64::from(EVEN)).collect();
-    let inner: Vec<f64> = match position {
-        Position::Keyframes { points, .. } => points.iter().map(|point| point[0]).collect(),
-        Position::Piecewise { segments } => segments.iter().map(|segment| segment.until).collect(),
-        Position::Linear
-        | Position::Exponential { .. }
-        | Position::ExponentialInverse { .. }
-        | Position::Sigmoid { .. }
-        | Position::Sine { .. }
-        | Position::Cosine { .. }
-        | Position::CubicBezier { .. } => Vec::new(),
+    let inner: Vec<f64> = match position.pieces() {
+        Pieces::Whole => Vec::new(),
+        Pieces::Points(points, _) => points.iter().map(|point| point[0]).collect(),
+        Pieces::Segments(segments) => segments.iter().map(|segment| segment.until).collect(),
     };
     taus.extend(inner.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
     taus.extend(inner);
@@ -289,14 +283,15 @@ fn telling(position: &Position) -> Vec<f64> {
 
 /// Checks of numbers in a position function that depend on each other.
 fn position(position: &Position) -> Vec<Problem> {
-    match position {
-        Position::Exponential { rate } | Position::ExponentialInverse { rate } if *rate == 0.0 => {
-            vec![Problem::error("/rate", "a rate of 0 has no curve").hint("the nearest is the function linear")]
-        }
-        Position::Keyframes { points, .. } => {
+    if let Position::Exponential { rate: 0.0 } | Position::ExponentialInverse { rate: 0.0 } = position {
+        return vec![Problem::error("/rate", "a rate of 0 has no curve").hint("the nearest is the function linear")];
+    }
+    match position.pieces() {
+        Pieces::Whole => Vec::new(),
+        Pieces::Points(points, _) => {
             rules::ascending("τ", points.iter().map(|point| point[0]), |i| format!("/points/{i}/0"))
         }
-        Position::Piecewise { segments } => {
+        Pieces::Segments(segments) => {
             let path = |i| format!("/segments/{i}/until");
             let untils = segments.iter().map(|segment| segment.until);
             let mut problems = rules::ascending("the ends of segments", untils, path);
@@ -306,22 +301,15 @@ fn position(position: &Position) -> Vec<Problem> {
             }
             for (i, segment) in segments.iter().enumerate() {
                 let prefix = format!("/segments/{i}/ease");
-                let ease = match &*segment.ease {
-                    Position::Piecewise { .. } => {
+                let ease = match segment.ease.pieces() {
+                    Pieces::Segments(_) => {
                         vec![Problem::error("", "an ease cannot itself be piecewise").hint("split the segment instead")]
                     }
-                    ease => self::position(ease),
+                    Pieces::Whole | Pieces::Points(..) => self::position(&segment.ease),
                 };
                 problems.extend(ease.into_iter().map(|problem| problem.under(&prefix)));
             }
             problems
         }
-        Position::Linear
-        | Position::Exponential { .. }
-        | Position::ExponentialInverse { .. }
-        | Position::Sigmoid { .. }
-        | Position::Sine { .. }
-        | Position::Cosine { .. }
-        | Position::CubicBezier { .. } => Vec::new(),
     }
 }

@@ -5,23 +5,16 @@ use kurbo::Vec2;
 
 use super::model::Zone;
 use super::outline::{Node, Outline, vector};
-use super::tools::Tool;
+use super::tools::{Gives, Tool};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::maths::{TAU, pow};
 
 /// The number of anchors of one tool in a zone with this outline.
 pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
-    match tool {
-        Tool::Point { .. } => 1.0,
-        Tool::Curve { samples, .. } => f64::from(*samples),
-        Tool::Lasso { samples, vertices } => vertices.len() as f64 * (1.0 + f64::from(*samples)),
-        Tool::StillBorder { spacing } => perimeter(outline) / spacing + 1.0,
-        Tool::Translate { .. }
-        | Tool::Scale { .. }
-        | Tool::Rotate { .. }
-        | Tool::Shear { .. }
-        | Tool::Affine { .. }
-        | Tool::Field { .. } => 0.0,
+    match tool.gives() {
+        Gives::Anchors(count) => count,
+        Gives::AnchorsAlong(spacing) => perimeter(outline) / spacing + 1.0,
+        Gives::Field => 0.0,
     }
 }
 

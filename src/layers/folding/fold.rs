@@ -70,6 +70,15 @@ pub enum Rule {
 }
 
 impl Rule {
+    /// The number by which frame.wgsl knows it; 0 is no rule.
+    pub fn number(self) -> u32 {
+        match self {
+            Rule::Cover => 1,
+            Rule::Return => 2,
+            Rule::FlyOver => 3,
+        }
+    }
+
     /// The effective place e(s) of an active sampler; `None` if it is still. `inside` says whether the init-position is
     /// in a region; `crossings` are the places where that changes, on the same side of 0 as s, from 0 outwards. Exactly
     /// on a crossing, the state on the side of 0 applies.

@@ -2,7 +2,7 @@
 // the zone's box. Everything that depends on time alone is in the number s. The rule and the edge are override
 // constants, never branches on a uniform: those made Mesa rebuild the shader for every frame.
 
-override rule: u32 = 0u; // a RULE_ below, as in texels.rs
+override rule: u32 = 0u; // a RULE_ below, as in fold.rs
 override clamps: bool = true; // whether a read beyond the sampler image's edge gives the edge, or nothing
 
 const RULE_NONE = 0u;

@@ -1,7 +1,6 @@
 //! What the GPU draws for a picture layer: its picture, then its zones in order, each in its box.
 
 use super::synth::{Synth, ZoneSynth};
-use super::texels::rule_number;
 use crate::base::pixels::Beyond;
 use crate::layers::parts::passes::{Bind, Blend, COMMON, Draw, Plan, Program};
 
@@ -61,7 +60,10 @@ fn zone(zone: &ZoneSynth, t: f64) -> Draw {
     let size = [field.x0, field.y0, field.inside.width(), field.inside.height()];
     Draw {
         program: &ZONE,
-        constants: vec![("rule", f64::from(rule_number(field.folds.as_ref()))), ("clamps", clamps)],
+        constants: vec![
+            ("rule", f64::from(field.folds.as_ref().map_or(0, |folds| folds.rule.number()))),
+            ("clamps", clamps),
+        ],
         binds: vec![
             Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
             Bind::Upload(field.clone(), 0),

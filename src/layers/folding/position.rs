@@ -182,7 +182,46 @@ impl Clock {
     }
 }
 
+/// What a position function is made of.
+pub enum Pieces<'a> {
+    /// One curve.
+    Whole,
+    /// Points [τ, s], and what happens between two of them.
+    Points(&'a [[f64; 2]], Between),
+    /// Segments.
+    Segments(&'a [Segment]),
+}
+
 impl Position {
+    /// What it is made of.
+    pub fn pieces(&self) -> Pieces<'_> {
+        match self {
+            Position::Keyframes { points, between } => Pieces::Points(points, *between),
+            Position::Piecewise { segments } => Pieces::Segments(segments),
+            Position::Linear
+            | Position::Exponential { .. }
+            | Position::ExponentialInverse { .. }
+            | Position::Sigmoid { .. }
+            | Position::Sine { .. }
+            | Position::Cosine { .. }
+            | Position::CubicBezier { .. } => Pieces::Whole,
+        }
+    }
+
+    /// Cycles in one pass; `None` if the function has none.
+    pub fn cycles(&self) -> Option<f64> {
+        match self {
+            Position::Sine { cycles, .. } | Position::Cosine { cycles, .. } => Some(*cycles),
+            Position::Linear
+            | Position::Exponential { .. }
+            | Position::ExponentialInverse { .. }
+            | Position::Sigmoid { .. }
+            | Position::CubicBezier { .. }
+            | Position::Keyframes { .. }
+            | Position::Piecewise { .. } => None,
+        }
+    }
+
     /// s at local time `tau` in [0, 1].
     pub fn eval(&self, tau: f64) -> f64 {
         match self {

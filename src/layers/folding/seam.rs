@@ -2,7 +2,7 @@
 //! that. Jumps within a position function are intended; these often are not.
 
 use super::model::{PictureLayer, Zone};
-use super::position::Position;
+use super::position::{Pieces, Position};
 use super::tools::Tool;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::layers::timeline::Wrap;
@@ -63,17 +63,13 @@ fn cure(zone: &Zone, wrap: Wrap) -> String {
         let nearest = zone.speed.abs().round().max(1.0).copysign(zone.speed);
         return format!("set its speed to a whole number, such as {nearest}");
     }
-    match &zone.position {
-        Position::Sine { .. } | Position::Cosine { .. } => "give it whole cycles".into(),
-        Position::Keyframes { .. } | Position::Piecewise { .. } => {
+    match (zone.position.cycles(), zone.position.pieces()) {
+        (Some(_), _) => "give it whole cycles".into(),
+        (None, Pieces::Points(..) | Pieces::Segments(_)) => {
             "let its last s be its first, or set the loop to ping-pong".into()
         }
-        Position::Linear
-        | Position::Exponential { .. }
-        | Position::ExponentialInverse { .. }
-        | Position::Sigmoid { .. }
-        | Position::CubicBezier { .. } => {
-            "use a function that comes back, such as cosine, or set the loop to ping-pong or once".into()
+        (None, Pieces::Whole) => {
+            "take a function that comes back, as cosine, or set the loop to ping-pong or once".into()
         }
     }
 }

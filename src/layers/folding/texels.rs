@@ -2,8 +2,7 @@
 //! list; every pixel's part ends with a number that no s reaches, so that the shader needs neither counts nor a second
 //! loop.
 
-use super::field::{Field, Folds, Ragged};
-use super::fold::Rule;
+use super::field::{Field, Ragged};
 use crate::base::pixels::Grid;
 use crate::layers::parts::passes::{Format, Packed, Upload};
 
@@ -29,16 +28,6 @@ pub struct Texels {
     pub pixels: Grid<[u32; 4]>,
     /// All lists of crossings, in rows of [`COLUMNS`].
     pub crossings: Grid<f32>,
-}
-
-/// The number of a rule in the shader.
-pub fn rule_number(folds: Option<&Folds>) -> u32 {
-    match folds.map(|f| f.rule) {
-        None => 0,
-        Some(Rule::Cover) => 1,
-        Some(Rule::Return) => 2,
-        Some(Rule::FlyOver) => 3,
-    }
 }
 
 impl Texels {
@@ -86,6 +75,8 @@ impl Lists {
 
 #[cfg(test)]
 mod tests {
+    use super::super::field::Folds;
+    use super::super::fold::Rule;
     use super::*;
 
     #[test]

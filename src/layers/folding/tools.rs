@@ -162,7 +162,47 @@ fn one() -> f64 {
     1.0
 }
 
+/// What a tool gives.
+pub enum Gives {
+    /// So many anchors.
+    Anchors(f64),
+    /// Anchors along the zone's outline, so many pixels apart.
+    AnchorsAlong(f64),
+    /// A dense field.
+    Field,
+}
+
 impl Tool {
+    /// What it gives: the anchors are counted before any of them is made.
+    pub fn gives(&self) -> Gives {
+        match self {
+            Tool::Point { .. } => Gives::Anchors(1.0),
+            Tool::Curve { samples, .. } => Gives::Anchors(f64::from(*samples)),
+            Tool::Lasso { samples, vertices } => Gives::Anchors(vertices.len() as f64 * (1.0 + f64::from(*samples))),
+            Tool::StillBorder { spacing } => Gives::AnchorsAlong(*spacing),
+            Tool::Translate { .. }
+            | Tool::Scale { .. }
+            | Tool::Rotate { .. }
+            | Tool::Shear { .. }
+            | Tool::Affine { .. }
+            | Tool::Field { .. } => Gives::Field,
+        }
+    }
+
+    /// The centre that it turns or stretches the samplers' places about, if it does.
+    pub fn center(&self) -> Option<Xy> {
+        match self {
+            Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => Some(*center),
+            Tool::Point { .. }
+            | Tool::Curve { .. }
+            | Tool::Lasso { .. }
+            | Tool::Translate { .. }
+            | Tool::Affine { .. }
+            | Tool::StillBorder { .. }
+            | Tool::Field { .. } => None,
+        }
+    }
+
     /// The file that it reads, if it reads one: its field depends on more than the document.
     pub fn file(&self) -> Option<&str> {
         match self {

@@ -99,10 +99,7 @@ fn alone(segments: &[Segment], to: &str) -> Option<Turned> {
 
 /// Keyframes on a function, smooth between them.
 fn sampled(old: &Position) -> Turned {
-    let cycles = match old {
-        Position::Sine { cycles, .. } | Position::Cosine { cycles, .. } => cycles.abs().max(1.0),
-        _ => 1.0,
-    };
+    let cycles = old.cycles().map_or(1.0, |cycles| cycles.abs().max(1.0));
     let n = (cycles * A_CYCLE).ceil().min(MOST);
     let on = |at: f64| [at, (old.eval(at) * 1e6).round() / 1e6];
     let points: Vec<_> = (0..=n as usize).map(|i| on(i as f64 / n)).collect();

@@ -89,18 +89,7 @@ impl Turning<'_> {
 
     /// The centre of the transform, if it has one.
     fn own_center(&self) -> Option<Point> {
-        match self.old {
-            Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => {
-                Some(point(*center))
-            }
-            Tool::Point { .. }
-            | Tool::Curve { .. }
-            | Tool::Lasso { .. }
-            | Tool::Translate { .. }
-            | Tool::Affine { .. }
-            | Tool::StillBorder { .. }
-            | Tool::Field { .. } => None,
-        }
+        self.old.center().map(point)
     }
 
     /// One point per anchor.
