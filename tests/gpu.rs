@@ -181,6 +181,9 @@ fn every_technique_answers_everything() {
         let problems: Vec<_> = scene.layers.iter().map(|layer| layer.technique()).collect();
         let problems = problems.iter().flat_map(|layer| layer.problems(&layer.check(None)));
         assert_eq!(problems.collect::<Vec<_>>(), [], "{kind}");
+        for layer in &scene.layers {
+            layer.technique().probe(scene.timeline.wrap, &materials, (40, 28), 0.5).unwrap();
+        }
         let synth = render::synth(&scene, &materials, None).unwrap();
         let again = render::synth(&scene, &materials, Some(&synth)).unwrap();
         let samples = render::samples(&scene, &materials, 2).unwrap();

@@ -38,7 +38,7 @@ const SHARED: &str = "parts";
 const LIST: &str = "layers/mod.rs";
 
 /// What still names a technique.
-const NAMES_LEFT: &[&str] = &["export/", "ops/", "preview/", "render/overlay/", "tui/"];
+const NAMES_LEFT: &[&str] = &["export/textures/", "render/overlay/"];
 
 const MOST_LINES: usize = 500;
 
