@@ -78,6 +78,41 @@ fn lines_edit_answer_and_fail_by_their_numbers() {
 }
 
 #[test]
+fn a_copy_is_written_where_it_is_asked_for_and_nowhere_else() {
+    // Lines; what is said; whether the scene has the edit, whether the copy has it; whether it succeeds.
+    for (lines, said, scene, copy, succeeds) in [
+        ("w copy.json\nq!", "is there already (choose another name, or replace it with :w! PATH)", false, false, false),
+        ("w! copy.json\nq!", "copy.json is written", false, true, true),
+        ("write! \"copy.json\"\nq!", "copy.json is written", false, true, true),
+        ("wq new.json", "new.json is written", false, false, true),
+        ("x copy.json\nq!", "is there already", false, false, false),
+        ("w! cat.png\nq!", "is read by", false, false, false),
+        ("w! .cat.journal\nq!", "belongs to the journal", false, false, false),
+        ("set images.cat.path=\"dog.png\"\nw! cat.png\nq!", "is read by", false, false, false),
+        ("w! ./cat.plica.json", "cat.plica.json is saved", true, false, true),
+        ("w cat.plica.json", "cat.plica.json is saved", true, false, true),
+        ("w! link.json\nq!", "is the scene itself", false, false, false),
+        ("w! sub\nq!", "is not a regular file", false, false, false),
+        ("q! now\nq!", "q! takes nothing after it, not \"now\"", false, false, false),
+    ] {
+        let folder = folder();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("copy.json"), "a letter").unwrap();
+        std::fs::create_dir(at("sub")).unwrap();
+        std::os::unix::fs::symlink("cat.plica.json", at("link.json")).unwrap();
+        let output = run(folder.path(), &[], &format!("set title=EXPERIMENT\n{lines}\n"));
+        let told = text(&output.stdout) + &text(&output.stderr);
+        assert!(told.contains(said), "{lines}: {told}");
+        let has = |name: &str| std::fs::read_to_string(at(name)).is_ok_and(|text| text.contains("EXPERIMENT"));
+        assert_eq!((has("cat.plica.json"), has("copy.json")), (scene, copy), "{lines}: {told}");
+        assert_eq!(output.status.success(), succeeds, "{lines}: {told}");
+        assert_eq!(has("new.json"), lines.contains("new.json"), "{lines}");
+        let again = run(folder.path(), &[], "get title\n");
+        assert!(!text(&again.stderr).contains("left behind"), "{lines}: {}", text(&again.stderr));
+    }
+}
+
+#[test]
 fn long_work_runs_in_the_foreground() {
     let folder = folder();
     let output = run(folder.path(), &[], "render -o out.gif\nset title=after\nw\n");

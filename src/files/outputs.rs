@@ -259,6 +259,12 @@ fn in_the_way(path: &Path, what: String) -> Error {
     Error::at(path.display(), what).cure("name another one, or give --force to replace it")
 }
 
+/// Whether two paths name one file by the same name.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    let folder = |path: &Path| fs::canonicalize(disk::folder_of(path)).ok();
+    one.file_name() == other.file_name() && folder(one).is_some() && folder(one) == folder(other)
+}
+
 fn identity(found: &Metadata) -> (u64, u64) {
     (found.dev(), found.ino())
 }

@@ -1,7 +1,10 @@
 //! What a command is, and the one door that lines of them pass. What is not in the table but on the command line of `plica`
 //! (render, synth, ...) runs as there, with the same arguments.
 
+use std::path::PathBuf;
+
 use crate::base::problem;
+use crate::files::paths;
 use crate::ops;
 use crate::tui::events::Effect;
 use crate::tui::state::recorder::{Ended, Kept};
@@ -25,6 +28,22 @@ pub struct Call<'a> {
 const MOST_COUNT: usize = 1_000_000;
 
 impl Call<'_> {
+    /// The path that it is given, as words of a command line are: double quotes keep spaces, `~` is the home folder.
+    ///
+    /// # Errors
+    /// It is given more than one, or a program to run.
+    pub fn path(&self) -> Result<Option<PathBuf>, String> {
+        match words(self.text)?.as_slice() {
+            [] => Ok(None),
+            [one] if one.is_empty() => Err("a path is empty".into()),
+            [first, ..] if self.text.starts_with('!') => {
+                Err(format!("programs are not run from here; a file of that name is ./{first}"))
+            }
+            [one] => Ok(Some(paths::typed(one))),
+            several => Err(format!("one path is taken, not {}; in double quotes it may have spaces", several.len())),
+        }
+    }
+
     /// The count, 1 where none was typed.
     pub fn times(&self) -> i64 {
         self.count.unwrap_or(1) as i64

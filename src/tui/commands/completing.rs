@@ -5,12 +5,22 @@ use crate::scene::field;
 use crate::tui::state::State;
 
 /// Commands that take the path of a file, and whether it is meant relative to the scene.
-const PATHS: &[(&str, bool)] =
-    &[("add", true), ("e", false), ("e!", false), ("log", false), ("source", false), ("w", false)];
+const PATHS: &[(&str, bool)] = &[
+    ("add", true),
+    ("e", false),
+    ("e!", false),
+    ("log", false),
+    ("source", false),
+    ("w", false),
+    ("w!", false),
+    ("wq", false),
+];
 
-/// The command, the path typed so far and whether it is relative to the scene, where `typed` asks for a file.
+/// The command, the path typed so far (without the quote that it may begin with) and whether it is relative to the scene,
+/// where `typed` asks for a file.
 pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
     let (name, path) = typed.split_once(' ')?;
+    let path = path.strip_prefix('"').unwrap_or(path);
     PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
 }
 

@@ -8,11 +8,16 @@ use crate::tui::events::Effect;
 use crate::tui::state::State;
 
 pub const COMMANDS: &[Command] = &[
-    command("w", "[PATH]", "Save; with a path, save elsewhere", |state, call| save(state, call.text, false, false)),
-    command("w!", "", "Save over what another program wrote, or a read-only file", |state, _| {
-        save(state, "", true, false)
+    command("w", "[PATH]", "Save; with a path, save a copy there", |state, call| save(state, call, false, false)),
+    command(
+        "w!",
+        "[PATH]",
+        "Save over what another program wrote, a read-only file, or what is at the path",
+        |state, call| save(state, call, true, false),
+    ),
+    command("wq", "[PATH]", "Save, or save a copy at the path, and leave", |state, call| {
+        save(state, call, false, true)
     }),
-    command("wq", "", "Save and leave", |state, _| save(state, "", false, true)),
     command("q", "", "Leave; refused with unsaved edits", quit),
     command("q!", "", "Leave without saving; undo still has the edits", |state, _| {
         state.door.give_up();
@@ -45,8 +50,8 @@ fn refuse_unsaved(state: &State, instead: &str) -> Done {
     Err(format!("there are unsaved edits: :w saves them, {instead} leaves them"))
 }
 
-fn save(state: &mut State, path: &str, overwrite: bool, leave: bool) -> Done {
-    let to = (!path.is_empty()).then(|| paths::typed(path));
+fn save(state: &mut State, call: &Call, overwrite: bool, leave: bool) -> Done {
+    let to = call.path()?;
     if state.door.read_only() && to.is_none() {
         return state.door.writable();
     }
@@ -61,8 +66,8 @@ fn quit(state: &mut State, _: &Call) -> Done {
 }
 
 fn open(state: &mut State, call: &Call) -> Done {
-    if !call.text.is_empty() {
-        state.ask(Effect::Open(paths::typed(call.text)));
+    if let Some(path) = call.path()? {
+        state.ask(Effect::Open(path));
     } else if let Some(change) = state.door.revert().map_err(|error| error.to_string())? {
         state.changed(change);
         state.say("the scene is as its file has it; u takes it back");

@@ -89,9 +89,9 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
 }
 
 fn add(state: &mut State, call: &Call) -> Done {
-    match call.text {
-        "" => add_here(state, call.times_of("add")?),
-        path => add_picture(state, &unquoted(path)),
+    match call.path()? {
+        None => add_here(state, call.times_of("add")?),
+        Some(path) => add_picture(state, &path.to_string_lossy()),
     }
 }
 

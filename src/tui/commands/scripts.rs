@@ -1,7 +1,6 @@
 //! Lines that were run, as one thing: the log of the session, and scripts.
 
 use super::command::{Call, Command, Done, command};
-use crate::files::paths;
 use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::plain;
@@ -13,9 +12,9 @@ pub const COMMANDS: &[Command] = &[
 
 fn log(state: &mut State, call: &Call) -> Done {
     let lines = state.recorder.log().to_vec();
-    if !call.text.is_empty() {
+    if let Some(path) = call.path()? {
         let text = lines.iter().map(|line| format!("{line}\n")).collect();
-        state.ask(Effect::Write(paths::typed(call.text), text));
+        state.ask(Effect::Write(path, text));
         return Ok(());
     }
     let place = match state.recorder.place() {
@@ -28,9 +27,7 @@ fn log(state: &mut State, call: &Call) -> Done {
 }
 
 fn source(state: &mut State, call: &Call) -> Done {
-    if call.text.is_empty() {
-        return Err("source takes a FILE of lines".into());
-    }
-    state.ask(Effect::Source(paths::typed(call.text)));
+    let path = call.path()?.ok_or("source takes a FILE of lines")?;
+    state.ask(Effect::Source(path));
     Ok(())
 }

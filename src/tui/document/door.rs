@@ -233,19 +233,14 @@ impl Door {
         self.session.close_step();
     }
 
-    /// Saves; to another file where one is given, which must not be there yet. Gives what to say.
+    /// Saves; a copy at `to` where that is another file. What is there is overwritten only where that is allowed, and never
+    /// what the scene reads. Gives what to say.
     ///
     /// # Errors
     /// It is not saved then.
     pub fn save(&mut self, to: Option<&Path>, overwrite: bool) -> Result<String> {
-        if let Some(to) = to {
-            let mut guard = Guard::default();
-            guard.protect(self.path(), self.document().scene());
-            guard.spare(to)?;
-            write::write_new(to, self.session.text().as_bytes())?;
-            let missing = outputs::missing(to, self.document().scene()).join(", ");
-            let but = if missing.is_empty() { missing } else { format!(", but lacks what it reads there: {missing}") };
-            return Ok(format!("{} is written{but}", to.display()));
+        if let Some(to) = to.filter(|to| !outputs::is_same(to, self.path())) {
+            return self.save_copy(to, overwrite);
         }
         if !overwrite && let Err(why) = self.session.may_overwrite() {
             tracing::warn!("not saved: {why}");
@@ -258,6 +253,28 @@ impl Door {
         }
         self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
         Ok(format!("{} is saved", self.path().display()))
+    }
+
+    fn save_copy(&self, to: &Path, overwrite: bool) -> Result<String> {
+        let scene = self.document().scene();
+        let mut guard = Guard::default();
+        guard.protect(self.path(), scene);
+        // What the file names stays too: whoever leaves without saving has that again.
+        let saved = files::scene::open(self.path(), &self.options).ok();
+        saved.iter().for_each(|saved| guard.protect(self.path(), saved.scene()));
+        guard.spare(to)?;
+        let text = self.session.text();
+        match to.symlink_metadata() {
+            Err(_) => write::write_new(to, text.as_bytes())?,
+            Ok(_) if overwrite => files::scene::save(to, &text)?,
+            Ok(_) => {
+                let error = Error::at(to.display(), "is there already");
+                return Err(error.cure("choose another name, or replace it with :w! PATH"));
+            }
+        }
+        let missing = outputs::missing(to, scene).join(", ");
+        let but = if missing.is_empty() { missing } else { format!(", but lacks what it reads there: {missing}") };
+        Ok(format!("{} is written{but}", to.display()))
     }
 
     /// The scene as its file has it, as one edit. `None` if there is no difference.

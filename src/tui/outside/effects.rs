@@ -35,6 +35,10 @@ impl Editor {
             Effect::Save { to, overwrite, leave } => {
                 let result = self.state.door.save(to.as_deref(), overwrite);
                 self.leaving = leave && result.is_ok();
+                if self.leaving {
+                    // The copy has the edits: the scene itself is left as its file has it.
+                    self.state.door.give_up();
+                }
                 self.take(Event::Saved(result.map_err(|error| error.to_string())));
             }
             Effect::Write(path, text) => {
@@ -61,7 +65,9 @@ impl Editor {
             Effect::Probe(_) => {}
             Effect::Complete { name, path, beside } => {
                 let found = paths::complete(beside.as_deref().unwrap_or(Path::new(".")), &path);
-                self.take(Event::Completed(found.into_iter().map(|path| format!("{name} {path}")).collect()));
+                self.take(Event::Completed(
+                    found.into_iter().map(|path| format!("{name} {}", said::one_word(&path))).collect(),
+                ));
             }
             Effect::Copy(text) => match &mut self.screen {
                 Some(screen) => terminal::copy(screen, &text),

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use super::support::{press, replayed, state};
 use super::{check, motion, zone};
-use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
+use crate::tui::commands::{self, obey};
 use crate::tui::events::Event;
 use crate::tui::state::{Mode, Pane, State};
 
@@ -63,7 +63,11 @@ pub fn what_is_outside_is_asked_for() {
         ("w!", "Save { to: None, overwrite: true, leave: false }"),
         ("wq", "Save { to: None, overwrite: false, leave: true }"),
         ("e b.json", "Open(\"b.json\")"),
-        ("source a b", "Source(\"a b\")"),
+        ("w! b.json", "Save { to: Some(\"b.json\"), overwrite: true, leave: false }"),
+        ("write! \"a b.json\"", "Save { to: Some(\"a b.json\"), overwrite: true, leave: false }"),
+        ("wq b.json", "Save { to: Some(\"b.json\"), overwrite: false, leave: true }"),
+        ("x b.json", "Save { to: Some(\"b.json\"), overwrite: false, leave: true }"),
+        ("source \"a b\"", "Source(\"a b\")"),
         ("keys reload", "Keymap"),
         ("log a", "Write(\"a\", \"\")"),
         ("view", "View(None)"),
@@ -73,6 +77,35 @@ pub fn what_is_outside_is_asked_for() {
         let mut state = state();
         obey(&mut state, line, None).unwrap();
         assert_eq!(state.effects.iter().map(|effect| format!("{effect:?}")).collect::<Vec<_>>(), [effect], "{line}");
+    }
+}
+
+#[test]
+fn a_command_that_takes_nothing_says_so_where_it_is_given_something() {
+    let (names, others): (Vec<_>, Vec<_>) = commands::TABLE.all().partition(|command| command.args.is_empty());
+    assert!(names.len() > 15 && others.len() > 40);
+    for line in names.iter().map(|command| format!("{} x y", command.name)).chain(["quit! now".into()]) {
+        let mut state = state();
+        let refused = obey(&mut state, &line, None).unwrap_err();
+        assert!(refused.contains(" takes nothing after it, not \""), "{line}: {refused}");
+        assert!(state.effects.is_empty() && state.door.revision() == 0, "{line}");
+    }
+}
+
+#[test]
+fn a_path_is_one_word_or_in_quotes_and_no_program() {
+    for name in ["w", "w!", "wq", "e", "e!", "log", "source", "add"] {
+        for (path, refusal) in [
+            ("a b", "one path is taken, not 2"),
+            ("!cat", "programs are not run from here"),
+            ("\"a", "a \" is not closed"),
+            ("\"\"", "a path is empty"),
+        ] {
+            let mut state = state();
+            let refused = obey(&mut state, &format!("{name} {path}"), None).unwrap_err();
+            assert!(refused.contains(refusal), "{name} {path}: {refused}");
+            assert!(state.effects.is_empty() && state.door.revision() == 0, "{name} {path}");
+        }
     }
 }
 

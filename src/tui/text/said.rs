@@ -52,13 +52,17 @@ pub fn unquoted(text: &str) -> String {
     serde_json::from_str(text).ok().filter(|_| text.starts_with('"')).unwrap_or_else(|| text.to_owned())
 }
 
-/// The words of a line; double quotes keep spaces.
+/// The words of a line; double quotes keep spaces, and within them a backslash keeps a quote and itself.
 pub fn words(line: &str) -> Result<Vec<String>, String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
     let mut quoted = false;
-    for c in line.chars() {
+    let mut all = line.chars().peekable();
+    while let Some(c) = all.next() {
         match c {
+            '\\' if quoted && all.peek().is_some_and(|next| matches!(next, '"' | '\\')) => {
+                word.get_or_insert_default().extend(all.next());
+            }
             '"' => {
                 quoted = !quoted;
                 word.get_or_insert_default();
@@ -78,6 +82,12 @@ pub fn one_of(words: &[&str]) -> String {
         [one] => (*one).to_owned(),
         [all @ .., last] => format!("{} or {last}", all.join(", ")),
     }
+}
+
+/// The line that is read as this one word.
+pub fn one_word(word: &str) -> String {
+    let bare = !word.is_empty() && !word.contains([' ', '"']) && !word.starts_with('!');
+    if bare { word.to_owned() } else { format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\"")) }
 }
 
 #[cfg(test)]
@@ -106,6 +116,17 @@ mod tests {
             Ok(vec!["render".into(), "-o".into(), "my file.gif".into(), "x".into()])
         );
         assert!(words("a \"b").is_err());
+        for (word, line) in [
+            ("a.gif", "a.gif"),
+            ("a b.gif", "\"a b.gif\""),
+            ("a\"b\\.gif", "\"a\\\"b\\\\.gif\""),
+            ("a\\b", "a\\b"),
+            ("", "\"\""),
+            ("!a", "\"!a\""),
+        ] {
+            assert_eq!(one_word(word), line);
+            assert_eq!(words(line), Ok(vec![word.to_owned()]));
+        }
     }
 
     #[test]
