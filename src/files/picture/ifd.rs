@@ -11,8 +11,11 @@ const MOST_PAGES: usize = 64;
 const MOST_VALUES: u64 = 4 << 20;
 
 pub(super) const SUBFILE: u16 = 254;
+pub(super) const BITS: u16 = 258;
 pub(super) const COMPRESSION: u16 = 259;
 pub(super) const PHOTOMETRIC: u16 = 262;
+pub(super) const SAMPLES: u16 = 277;
+pub(super) const PLANES: u16 = 284;
 pub(super) const COLOR_MAP: u16 = 320;
 pub(super) const SUB_PAGES: u16 = 330;
 pub(super) const EXTRA_SAMPLES: u16 = 338;

@@ -9,7 +9,10 @@ use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-use super::ifd::{self, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, PROFILE, Page, SUBFILE, Told};
+use super::ifd::{
+    self, BITS, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, PLANES, PROFILE, Page, SAMPLES, SUBFILE,
+    Told,
+};
 use super::limits::{self, check_size};
 use super::{Color, Decoded, Model, Opened, Raw, jpeg, kinds};
 use crate::base::error::{Error, Result};
@@ -32,10 +35,19 @@ struct About {
     palette: Option<Vec<u16>>,
     /// The zero of a and b is code 0 (signed), or the middle one; none for what is no Lab.
     lab: Option<bool>,
-    /// Whether alpha is the first extra sample, and multiplied into the others.
+    /// Whether alpha is among the extra samples, and multiplied into the others.
     associated: Option<bool>,
+    /// Where only some samples are used.
+    picked: Option<Picked>,
     /// The decoder refuses a profile that is large beside its picture.
     profile: Option<Vec<u8>>,
+}
+
+/// The samples of a pixel that are used, and what they are. The decoder is told that all of them are bands: by itself it
+/// leaves extra samples out before it adds up the differences that a predictor has made of all.
+struct Picked {
+    samples: Vec<usize>,
+    color: fn(u8) -> ColorType,
 }
 
 /// Reads the header.
@@ -95,18 +107,47 @@ fn choose<'a>(file: &mut File, form: Form, pages: &'a [Page], place: &str) -> Re
     whole.or(pages.first()).ok_or_else(|| limits::broken(place, &"it has no pages"))
 }
 
-fn about(file: &mut File, form: Form, page: &Page) -> (About, Vec<(u64, Vec<u8>)>) {
-    const GREY: u16 = 1;
-    const RGB: u16 = 2;
-    let photometric = page.value(file, form, PHOTOMETRIC);
-    let associated = match page.value(file, form, EXTRA_SAMPLES) {
-        Some(1) => Some(true),
-        Some(2) => Some(false),
-        _ => None,
+const GREY: u16 = 1;
+const RGB: u16 = 2;
+const CMYK: u64 = 5;
+
+/// Which samples are used of those that extra samples follow, where the decoder would lose its way.
+fn picked(file: &mut File, form: Form, page: &Page, photometric: u64) -> Option<Picked> {
+    const PLANAR: u64 = 2;
+    const JPEG: [u64; 2] = [6, 7];
+    let one = |file: &mut File, tag, default| page.value(file, form, tag).unwrap_or(default);
+    let extra = page.values(file, form, EXTRA_SAMPLES);
+    let alpha = extra.iter().position(|&kind| matches!(kind, 1 | 2));
+    let (count, color, with_alpha): (usize, fn(u8) -> ColorType, Option<fn(u8) -> ColorType>) = match photometric {
+        v if v == u64::from(GREY) => (1, ColorType::Gray, Some(ColorType::GrayA)),
+        v if v == u64::from(RGB) => (3, ColorType::RGB, Some(ColorType::RGBA)),
+        CMYK => (4, ColorType::CMYK, None),
+        CIE_LAB | ICC_LAB if alpha.is_none() => (3, ColorType::RGB, None),
+        _ => return None,
     };
+    let simple = extra.is_empty() || extra.len() == 1 && alpha.is_some();
+    let all = one(file, SAMPLES, 1) == (count + extra.len()) as u64;
+    let whole = matches!(one(file, BITS, 1), 8 | 16 | 32 | 64);
+    let apart = one(file, PLANES, 1) == PLANAR || JPEG.contains(&one(file, COMPRESSION, 1));
+    if simple || !all || !whole || apart {
+        return None;
+    }
+    let (alpha, color) = match (alpha, with_alpha) {
+        (Some(at), Some(with_alpha)) => (Some(count + at), with_alpha),
+        _ => (None, color),
+    };
+    Some(Picked { samples: (0..count).chain(alpha).collect(), color })
+}
+
+fn about(file: &mut File, form: Form, page: &Page) -> (About, Vec<(u64, Vec<u8>)>) {
+    let photometric = page.value(file, form, PHOTOMETRIC);
+    let extra = page.values(file, form, EXTRA_SAMPLES);
+    let associated = extra.iter().find(|kind| matches!(kind, 1 | 2)).map(|&kind| kind == 1);
     let profile = page.has(PROFILE).then(|| page.values(file, form, PROFILE).iter().map(|&v| v as u8).collect());
-    let mut about = About { palette: None, lab: None, associated, profile };
+    let picked = photometric.and_then(|photometric| picked(file, form, page, photometric));
+    let mut about = About { palette: None, lab: None, associated, picked, profile };
     let mut changes = vec![page.first(form)];
+    let samples_are = if about.picked.is_some() { GREY } else { RGB };
     match photometric {
         Some(PALETTE) => {
             about.palette = Some(page.values(file, form, COLOR_MAP).iter().map(|&v| v as u16).collect());
@@ -114,8 +155,9 @@ fn about(file: &mut File, form: Form, page: &Page) -> (About, Vec<(u64, Vec<u8>)
         }
         Some(CIE_LAB | ICC_LAB) => {
             about.lab = Some(photometric == Some(CIE_LAB));
-            changes.extend(page.told(form, PHOTOMETRIC, RGB));
+            changes.extend(page.told(form, PHOTOMETRIC, samples_are));
         }
+        _ if about.picked.is_some() => changes.extend(page.told(form, PHOTOMETRIC, GREY)),
         _ => {}
     }
     (about, changes)
@@ -130,7 +172,11 @@ fn decode(mut decoder: Tiff, color: ColorType, size: (usize, usize), about: Abou
     }
     let raw = raw(result, color.bit_depth(), &layout, size, color.num_samples().into());
     let raw = raw.ok_or_else(|| unknown(place, color))?;
-    let raw = if layout.planes > 1 { interleaved(raw, layout.planes) } else { raw };
+    let (raw, color) = match &about.picked {
+        Some(picked) => (some(raw, color.num_samples().into(), &picked.samples), (picked.color)(color.bit_depth())),
+        None if layout.planes > 1 => (interleaved(raw, layout.planes), color),
+        None => (raw, color),
+    };
     let (model, samples) = shaped(raw, color, &about).ok_or_else(|| unknown(place, color))?;
     let color = about.profile.map_or(Color::Untagged, Color::Icc);
     Ok(Decoded { size, model, samples, color, notes: Vec::new() })
@@ -236,24 +282,25 @@ fn shaped(raw: Raw, color: ColorType, about: &About) -> Option<(Model, Raw)> {
         ColorType::RGB(_) => (Model::Rgb, spread(raw)),
         ColorType::RGBA(_) => with_alpha(Model::Rgba, raw),
         ColorType::CMYK(_) => (Model::Cmyk, raw),
-        ColorType::CMYKA(_) => (Model::Cmyk, first(raw, 5, 4)),
+        ColorType::CMYKA(_) => (Model::Cmyk, some(raw, 5, &[0, 1, 2, 3])),
         ColorType::YCbCr(8) => (Model::Rgb, of_ycbcr(raw)?),
         ColorType::GrayA(_) => with_alpha(Model::GreyAlpha, raw),
         ColorType::Multiband { num_samples: 2, .. } if about.associated.is_some() => with_alpha(Model::GreyAlpha, raw),
-        ColorType::Multiband { num_samples, .. } => (Model::Grey, spread(first(raw, num_samples.into(), 1))),
+        ColorType::Multiband { num_samples, .. } => (Model::Grey, spread(some(raw, num_samples.into(), &[0]))),
         _ => return None,
     })
 }
 
-fn first(raw: Raw, count: usize, wanted: usize) -> Raw {
-    fn some<T: Copy>(all: Vec<T>, count: usize, wanted: usize) -> Vec<T> {
-        all.chunks_exact(count).flat_map(|cell| cell[..wanted].iter().copied()).collect()
+/// The samples of each pixel that are at these places.
+fn some(raw: Raw, count: usize, places: &[usize]) -> Raw {
+    fn of<T: Copy>(all: &[T], count: usize, places: &[usize]) -> Vec<T> {
+        all.chunks_exact(count).flat_map(|cell| places.iter().map(|&place| cell[place])).collect()
     }
     match raw {
-        Raw::Bytes(all) => Raw::Bytes(some(all, count, wanted)),
-        Raw::Words(all) => Raw::Words(some(all, count, wanted)),
-        Raw::Halves(all) => Raw::Halves(some(all, count, wanted)),
-        Raw::Floats(all) => Raw::Floats(some(all, count, wanted)),
+        Raw::Bytes(all) => Raw::Bytes(of(&all, count, places)),
+        Raw::Words(all) => Raw::Words(of(&all, count, places)),
+        Raw::Halves(all) => Raw::Halves(of(&all, count, places)),
+        Raw::Floats(all) => Raw::Floats(of(&all, count, places)),
     }
 }
 

@@ -171,3 +171,100 @@ fn what_is_wrong_with_a_tiff_is_told_truly() {
         assert!(read_bytes(&whole[..cut]).is_err(), "cut at {cut}");
     }
 }
+
+/// Bytes as deflate stores them uncompressed, with the head and the sum of zlib.
+fn stored(bytes: &[u8]) -> Vec<u8> {
+    let length = bytes.len() as u16;
+    let (a, b) = bytes.iter().fold((1u32, 0u32), |(a, b), &byte| {
+        let a = (a + u32::from(byte)) % 65521;
+        (a, (b + a) % 65521)
+    });
+    [&[0x78, 1, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes(), bytes, &(b << 16 | a).to_be_bytes()].concat()
+}
+
+/// Bytes as LZW has them where it has learnt nothing: codes of 9 bits, forgotten before they would be longer.
+fn lzw(bytes: &[u8]) -> Vec<u8> {
+    let codes = bytes.chunks(200).flat_map(|part| std::iter::once(256).chain(part.iter().map(|&b| u32::from(b))));
+    let bits: Vec<u32> = codes.chain([257]).flat_map(|code| (0..9).rev().map(move |bit| code >> bit & 1)).collect();
+    bits.chunks(8).map(|byte| byte.iter().enumerate().fold(0, |sum, (i, bit)| sum | (*bit as u8) << (7 - i))).collect()
+}
+
+/// Rows of samples as differences from the pixel before (predictor 2).
+fn differences(samples: &[u32], row: usize, count: usize) -> Vec<u32> {
+    let before = |i: usize| if i % row < count { 0 } else { samples[i - count] };
+    (0..samples.len()).map(|i| samples[i].wrapping_sub(before(i))).collect()
+}
+
+/// Floats with their bytes set apart in each row, and those as differences (predictor 3).
+fn apart(samples: &[u32], row: usize, count: usize) -> Vec<u8> {
+    let of_row = |samples: &[u32]| {
+        let bytes: Vec<u32> = (0..4).flat_map(|b| samples.iter().map(move |v| u32::from(v.to_be_bytes()[b]))).collect();
+        differences(&bytes, bytes.len(), count).iter().map(|&v| v as u8).collect::<Vec<_>>()
+    };
+    samples.chunks(row).flat_map(of_row).collect()
+}
+
+#[test]
+fn extra_samples_are_left_out_after_differences_are_added_up() {
+    const SIZE: (u32, u32) = (5, 3);
+    // Photometric, extra samples; the samples that are used, and the extra samples of a file that has no others.
+    let kinds: [(u32, &[u32], &[usize], &[u32]); 11] = [
+        (2, &[0], &[0, 1, 2], &[]),
+        (2, &[0, 0], &[0, 1, 2], &[]),
+        (2, &[2], &[0, 1, 2, 3], &[2]),
+        (2, &[2, 0], &[0, 1, 2, 3], &[2]),
+        (2, &[0, 2], &[0, 1, 2, 4], &[2]),
+        (2, &[1, 0, 0], &[0, 1, 2, 3], &[1]),
+        (1, &[0], &[0], &[]),
+        (1, &[0, 2], &[0, 2], &[2]),
+        (5, &[0], &[0, 1, 2, 3], &[]),
+        (8, &[0], &[0, 1, 2], &[]),
+        (9, &[0, 0], &[0, 1, 2], &[]),
+    ];
+    for (photometric, extra, used, kept) in kinds {
+        let count = used.len() - kept.len() + extra.len();
+        let row = SIZE.0 as usize * count;
+        for (bits, compression, predictor) in
+            [(8, 1, 1), (8, 8, 1), (8, 8, 2), (8, 5, 2), (16, 8, 2), (16, 5, 2), (16, 1, 1), (32, 8, 3), (32, 8, 2)]
+        {
+            let is_float = predictor == 3;
+            if bits == 32 && photometric != 2 {
+                continue;
+            }
+            let code = |i: usize| ((i * 2_654_435_761 + 77) >> 7) as u32 & (u32::MAX >> (32 - bits));
+            let sample = |i: usize| if is_float { (i as f32 / 7.0).to_bits() } else { code(i) };
+            let samples: Vec<u32> = (0..row * SIZE.1 as usize).map(sample).collect();
+            let bytes = |all: &[u32]| all.iter().flat_map(|v| v.to_le_bytes()[..bits as usize / 8].to_vec()).collect();
+            let entries = |count: usize, extra: &[u32]| {
+                let mut entries = page(SIZE, &vec![bits; count], photometric);
+                if !extra.is_empty() {
+                    entries.push((338, 3, extra.to_vec()));
+                }
+                entries.push((339, 3, vec![if is_float { 3 } else { 1 }; count]));
+                entries
+            };
+            let plain = samples.chunks(count).flat_map(|cell| used.iter().map(|&i| cell[i])).collect::<Vec<_>>();
+            let plain = tiff(&[(entries(used.len(), kept), bytes(&plain))]);
+            let mut with = entries(count, extra);
+            with[3].2 = vec![compression];
+            with.push((317, 3, vec![predictor]));
+            let bytes: Vec<u8> = match predictor {
+                1 => bytes(&samples),
+                2 => bytes(&differences(&samples, row, count)),
+                _ => apart(&samples, row, count),
+            };
+            let bytes = match compression {
+                8 => stored(&bytes),
+                5 => lzw(&bytes),
+                _ => bytes,
+            };
+            let what =
+                format!("{photometric} with {extra:?}, {bits} bits, compression {compression}, predictor {predictor}");
+            let (found, plain) = (read_bytes(&tiff(&[(with, bytes)])), read_bytes(&plain).unwrap().picture);
+            let found = found.unwrap_or_else(|error| panic!("{what}: {error}")).picture;
+            for (x, y) in (0..SIZE.1 as usize).flat_map(|y| (0..SIZE.0 as usize).map(move |x| (x, y))) {
+                assert_eq!(found.texel(x, y), plain.texel(x, y), "{what} at {x}, {y}");
+            }
+        }
+    }
+}
