@@ -12,7 +12,7 @@ use zune_core::options::DecoderOptions;
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
 use super::limits::{self, within};
-use super::{Color, Decoded, Model, Opened, Raw, icc};
+use super::{Color, Decoded, Model, Opened, Raw, icc, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 
@@ -22,6 +22,9 @@ pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) ->
     let mut input = Vec::new();
     file.read_to_end(&mut input).map_err(|error| limits::reading(place, &error))?;
     let walked = Walked::of(&input);
+    if let Some((_, what)) = walked.form.and_then(|form| FORMS.iter().find(|(marker, _)| *marker == form)) {
+        return Err(kinds::other_kind(place, what));
+    }
     let mut decoder = decoder(&input, ColorSpace::RGB);
     if let Err(error) = decoder.decode_headers() {
         return Err(if walked.ended { explain(place, error) } else { limits::cut_short(place) });
@@ -117,10 +120,25 @@ pub(super) fn rgb([y, cb, cr]: [u8; 3]) -> [u8; 3] {
 fn explain(place: &str, error: DecodeErrors) -> Error {
     match error {
         DecodeErrors::ExhaustedData => limits::cut_short(place),
-        DecodeErrors::Unsupported(what) => super::kinds::other_kind(place, limits::one_line(&format!("{what:?}"))),
+        DecodeErrors::Unsupported(what) => kinds::other_kind(place, limits::one_line(&format!("{what:?}"))),
         error => limits::broken(place, &format!("{error:?}").replace('"', "")),
     }
 }
+
+/// Forms of JPEG that are not read, by the marker of the frame.
+const FORMS: &[(u8, &str)] = &[
+    (0xc3, "a lossless JPEG"),
+    (0xc5, "a hierarchical JPEG"),
+    (0xc6, "a hierarchical JPEG"),
+    (0xc7, "a hierarchical JPEG"),
+    (0xc9, "a JPEG with arithmetic coding"),
+    (0xca, "a JPEG with arithmetic coding"),
+    (0xcb, "a JPEG with arithmetic coding"),
+    (0xcd, "a JPEG with arithmetic coding"),
+    (0xce, "a JPEG with arithmetic coding"),
+    (0xcf, "a JPEG with arithmetic coding"),
+    (0xf7, "a JPEG-LS picture"),
+];
 
 /// What the markers say.
 #[derive(Default)]
@@ -129,6 +147,8 @@ struct Walked<'a> {
     /// Pieces of the color profile with their numbers from 1, and how many there should be.
     pieces: Vec<(u8, u8, &'a [u8])>,
     progressive: bool,
+    /// The marker of the first frame: which form of JPEG it is.
+    form: Option<u8>,
     /// Whether the end marker was found.
     ended: bool,
 }
@@ -150,6 +170,10 @@ impl<'a> Walked<'a> {
             let Some(&[high, low]) = input.get(at..at + 2).and_then(|b| b.first_chunk()) else { break };
             let length = usize::from(high) << 8 | usize::from(low);
             let data = input.get(at + 2..at + length.max(2)).unwrap_or_default();
+            // Not among them: tables (c4, c8, cc) stand beside the frames.
+            if matches!(marker, 0xc0..=0xcf | 0xf7) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
+                walked.form = walked.form.or(Some(marker));
+            }
             match marker {
                 0xe1 => walked.exif = walked.exif.or_else(|| data.strip_prefix(b"Exif\0\0")),
                 0xe2 => walked.pieces.extend(piece(data)),

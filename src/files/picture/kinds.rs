@@ -146,7 +146,7 @@ fn is_svg(start: &[u8]) -> bool {
 fn is_tga(start: &[u8], file: &mut File, place: &str) -> bool {
     let mut footer = [0; 18];
     let at_end = file.seek(SeekFrom::End(-18)).and_then(|_| file.read_exact(&mut footer)).is_ok();
-    let plausible = matches!(start, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..]) && start.len() >= 18;
+    let plausible = matches!(start, [_, 0 | 1, 1 | 2 | 3 | 9 | 10 | 11, ..]);
     let named = place.to_ascii_lowercase().ends_with(".tga");
     plausible && (named || at_end && footer == *b"TRUEVISION-XFILE.\0")
 }

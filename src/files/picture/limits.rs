@@ -55,7 +55,21 @@ pub(super) fn cut_short(place: &str) -> Error {
     Error::at(place, "is cut short").cure("copy it again from where it came")
 }
 
+/// How decoders say that bytes are missing at the end, where they do not say it by an I/O error.
+const CUT: &[&str] = &[
+    "unexpected end of",
+    "image truncated",
+    "failed to fill whole buffer",
+    "reference to missing bytes",
+    "not enough data was provided",
+];
+
+/// What a decoder says of bytes that it can make nothing of: some are missing, or they are wrong.
 pub(super) fn broken(place: &str, error: &dyn std::fmt::Display) -> Error {
+    let said = one_line(error).to_lowercase();
+    if CUT.iter().any(|words| said.contains(words)) {
+        return cut_short(place);
+    }
     Error::at(place, format!("cannot be decoded: {}", one_line(error))).cure("save it again from another program")
 }
 

@@ -1,13 +1,16 @@
 //! The kinds that the image crate reads completely by itself; PNG goes through here too (`png.rs`).
 
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Read, Seek, SeekFrom};
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
 
 use super::limits::{self, BESIDES_PIXELS};
-use super::{Color, Decoded, Model, Opened, Raw};
+use super::{Color, Decoded, Model, Opened, Raw, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
+
+/// So many bytes hold what is looked at before a decoder is.
+const HEAD: u64 = 128;
 
 /// Reads the header.
 pub(super) fn open(
@@ -16,6 +19,8 @@ pub(super) fn open(
     place: &str,
     limits: &Limits,
 ) -> Result<Opened> {
+    let mut reader = reader;
+    look(&mut reader, format, place)?;
     let mut decoder = decoder(reader, format, place, limits)?;
     let (width, height) = decoder.dimensions();
     let size = (width as usize, height as usize);
@@ -31,6 +36,33 @@ pub(super) fn open(
         Ok(Decoded { size, model, samples, color, notes: Vec::new() })
     });
     Ok(Opened { size, orientation, bytes, decode })
+}
+
+/// What the decoders do not tell rightly of the kinds themselves.
+fn look(reader: &mut (impl BufRead + Seek), format: ImageFormat, place: &str) -> Result<()> {
+    let failed = |error| limits::reading(place, &error);
+    let length = reader.seek(SeekFrom::End(0)).map_err(failed)?;
+    reader.rewind().map_err(failed)?;
+    let mut head = Vec::new();
+    reader.take(HEAD).read_to_end(&mut head).map_err(failed)?;
+    reader.rewind().map_err(failed)?;
+    let number = |at: usize| head.get(at..at + 4).and_then(|b| b.first_chunk()).map(|b| u32::from_le_bytes(*b));
+    match format {
+        // A WebP says how long it is.
+        ImageFormat::WebP if number(4).is_some_and(|rest| length < u64::from(rest) + 8) => {
+            Err(limits::cut_short(place))
+        }
+        ImageFormat::Dds => match (head.get(84..88), number(12), number(16)) {
+            (Some(b"DXT1" | b"DXT3" | b"DXT5" | b"DX10"), Some(height), Some(width)) => {
+                let odd = width % 4 != 0 || height % 4 != 0;
+                let what = format!("a DDS of {width} x {height}, whose sides are no multiples of 4");
+                if odd { Err(kinds::other_kind(place, what)) } else { Ok(()) }
+            }
+            (None, ..) => Err(limits::cut_short(place)),
+            _ => Err(kinds::other_kind(place, "a DDS that is not compressed as DXT1, DXT3 or DXT5")),
+        },
+        _ => Ok(()),
+    }
 }
 
 fn decoder(

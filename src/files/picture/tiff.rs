@@ -61,6 +61,9 @@ pub(super) fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opene
     let size = (width as usize, height as usize);
     check_size(place, size, limits)?;
     let color = decoder.colortype().map_err(failed)?;
+    if !matches!(color.bit_depth(), 1 | 2 | 4 | 8 | 16 | 32 | 64) {
+        return Err(kinds::other_kind(place, format!("a TIFF of {} bits a sample", color.bit_depth())));
+    }
     let layout = decoder.image_buffer_layout().map_err(failed)?;
     // What is decoded, and what becomes of it, stand beside one another for a moment.
     let samples = size.0 as u64 * size.1 as u64 * u64::from(color.num_samples());

@@ -68,3 +68,16 @@ fn vectors_are_two_channels() {
     let error = vectors(File::open(&path).unwrap(), "a.exr", &Limits::default(), |_| Ok(())).unwrap_err();
     assert!(error.to_string().contains("the channels Z"), "{error}");
 }
+
+#[test]
+fn one_that_is_cut_short_is_called_so() {
+    let folder = folder();
+    let path = folder.path().join("a.exr");
+    write(&path, &["R", "G", "B"]);
+    let whole = std::fs::read(&path).unwrap();
+    for cut in [30, whole.len() / 2, whole.len() - 5] {
+        std::fs::write(&path, &whole[..cut]).unwrap();
+        let error = refusal(&path, &Limits::default());
+        assert!(error.contains("is cut short (copy it again"), "cut at {cut}: {error}");
+    }
+}

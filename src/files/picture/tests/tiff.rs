@@ -155,6 +155,11 @@ fn a_thumbnail_is_not_the_picture() {
 fn what_is_wrong_with_a_tiff_is_told_truly() {
     let whole = tiff(&[(page((8, 8), &[8], 1), vec![5; 64])]);
     let odd = tiff(&[(page((1, 1), &[8; 3], 10), vec![1, 2, 3])]);
+    for bits in [3, 10, 12, 24] {
+        let odd = tiff(&[(page((8, 1), &[bits; 3], 2), vec![1; 96])]);
+        let error = read_bytes(&odd).unwrap_err().to_string();
+        assert!(error.contains(&format!("a TIFF of {bits} bits a sample (convert it: magick")), "{error}");
+    }
     let error = read_bytes(&odd).unwrap_err().to_string();
     assert!(error.contains("in a form that Plica does not read") && error.contains("magick"), "{error}");
     // Any byte may be any other: a message, or a picture, and no panic.
