@@ -144,6 +144,47 @@ fn new_makes_a_scene_and_never_overwrites() {
 }
 
 #[test]
+fn new_takes_a_layer_of_a_picture_and_names_its_cures() {
+    use exr::prelude::*;
+    let folder = folder();
+    let channel = |name: &&str| AnyChannel::new(*name, FlatSamples::F32(vec![0.5]));
+    let channels = AnyChannels::sort(["near.u", "near.v", "far.u", "far.v"].iter().map(channel).collect());
+    Image::from_channels((1, 1), channels).write().to_file(folder.path().join("f.exr")).unwrap();
+    let run = |name: &str| plica(folder.path(), &["new", name]);
+    assert!(run("f.exr").messages.contains("has several layers: far, near (name one, as f.exr#far)"));
+    assert_eq!(ok(run("f.exr#far")), "f.plica.json\n");
+    assert_eq!(ok(plica(folder.path(), &["get", "f.plica.json", "images"])).matches("f.exr#far").count(), 1);
+    assert!(ok(plica(folder.path(), &["check", "f.plica.json", "--lenient"])).contains("nothing moves"));
+    ok(plica(folder.path(), &["new", "f.exr#far", "f.exr#near", "-o", "both.plica.json"]));
+    assert!(ok(plica(folder.path(), &["get", "both.plica.json", "images.f-near.path"])).contains("f.exr#near"));
+    std::fs::create_dir(folder.path().join("other")).unwrap();
+    ok(plica(folder.path(), &["new", "f.exr#near", "-o", "other/copy.plica.json"]));
+    assert!(folder.path().join("other/f.exr").exists());
+    let long = format!("{}.png", "x".repeat(245));
+    let red = "red\u{1b}[31m.png";
+    for name in [long.as_str(), red] {
+        std::fs::copy(folder.path().join("cat.png"), folder.path().join(name)).unwrap();
+    }
+    for (name, wanted) in [
+        (
+            "cat.png#x",
+            "cat.png#x: there is no such file, and only an OpenEXR has layers to name after a # (leave #x out)",
+        ),
+        ("f.exr#", "f.exr#: has no name of a layer after the # (name the layer, or leave the # out)"),
+        ("no.exr#x", "no.exr#x: there is no such file"),
+        ("f.exr#middle", "has no layer middle"),
+        (&long, "is too long a name for a file (name the scene with -o)"),
+        (red, "has control characters in its name (rename it)"),
+    ] {
+        let fresh = ["new", name, "-o", "fresh.plica.json"];
+        let refused = plica(folder.path(), if name == long { &fresh[..2] } else { &fresh });
+        assert_eq!((refused.status, refused.messages.lines().count()), (1, 1), "{refused:?}");
+        assert!(refused.messages.contains(wanted), "{refused:?}");
+    }
+    ok(plica(folder.path(), &["new", &long, "-o", "long.plica.json"]));
+}
+
+#[test]
 fn new_copies_pictures_of_other_folders() {
     let folder = folder();
     let scenes = folder.path().join("scenes");

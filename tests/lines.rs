@@ -31,7 +31,11 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn run(folder: &Path, arguments: &[&str], lines: &str) -> Output {
-    let mut command = binary::plica(folder, ["edit", "cat.plica.json"]);
+    edit(folder, "cat.plica.json", arguments, lines)
+}
+
+fn edit(folder: &Path, path: &str, arguments: &[&str], lines: &str) -> Output {
+    let mut command = binary::plica(folder, ["edit", path]);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     // One that refuses to begin reads nothing.
@@ -110,6 +114,59 @@ fn a_copy_is_written_where_it_is_asked_for_and_nowhere_else() {
         let again = run(folder.path(), &[], "get title\n");
         assert!(!text(&again.stderr).contains("left behind"), "{lines}: {}", text(&again.stderr));
     }
+}
+
+#[test]
+fn the_file_that_is_named_is_the_one_that_is_edited() {
+    let titled = |title: &str| SCENE.replacen("\"plica\": 1", &format!("\"plica\": 1, \"title\": \"{title}\""), 1);
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    for (name, title) in [("q", "file q"), ("q.plica.json", "beside q"), ("s.png", "a scene"), ("bom", "bom")] {
+        std::fs::write(at(name), titled(title)).unwrap();
+    }
+    std::fs::write(at("bom"), format!("\u{feff}  {}", titled("bom"))).unwrap();
+    for (from, to) in [("cat.png", "dog.png"), ("cat.png", "pic.json"), ("cat.png", "q.png")] {
+        std::fs::copy(at(from), at(to)).unwrap();
+    }
+    image::RgbImage::new(9, 9).save(at("cat.jpg")).unwrap();
+    std::os::unix::fs::symlink("cat.png", at("cat.gif")).unwrap();
+    // What is named, what comes of it, whether it goes well.
+    for (path, said, succeeds) in [
+        ("q", "\"file q\"", true),
+        ("s.png", "\"a scene\"", true),
+        ("bom", "\"bom\"", true),
+        (
+            "q.png",
+            "is not read by the scene beside it, q.plica.json (edit that one, or make another: plica new q.png -o",
+            false,
+        ),
+        ("cat.png", "\"\"", true),
+        ("cat.gif", "\"\"", true),
+        ("cat.jpg", "is not read by the scene beside it, cat.plica.json", false),
+        ("dog.png", "\"\"", true),
+        ("pic.json", "\"\"", true),
+        ("no", "no: there is no such file", false),
+        ("cat.png#x", "only an OpenEXR has layers", false),
+    ] {
+        let output = edit(folder.path(), path, &[], "get title\n");
+        let told = text(&output.stdout) + &text(&output.stderr);
+        assert!(told.contains(said) && output.status.success() == succeeds, "{path}: {told}");
+    }
+    assert!(at("dog.plica.json").exists() && at("pic.plica.json").exists());
+    assert!(edit(folder.path(), "q", &[], "set title=edited\nwq\n").status.success());
+    let read = |name: &str| std::fs::read_to_string(at(name)).unwrap();
+    assert!(read("q").contains("edited") && read("q.plica.json").contains("beside q"));
+    // A picture that is gone leaves its scene to be edited.
+    std::fs::remove_file(at("dog.png")).unwrap();
+    assert!(edit(folder.path(), "dog.png", &[], "get title\n").status.success());
+}
+
+#[test]
+fn a_message_of_several_lines_keeps_them() {
+    let folder = folder();
+    let told = text(&run(folder.path(), &[], "render --frames 0 -o cat.plica.json\n").stderr);
+    assert!(told.contains("the extension names no format; these do:") && !told.contains('␊'), "{told}");
+    assert!(told.lines().count() > 10, "{told}");
 }
 
 #[test]

@@ -281,6 +281,18 @@ pub fn missing(path: &Path, scene: &Scene) -> Vec<String> {
     named.filter(|name| !there(name) && !paths::beside(path, name).exists()).map(str::to_owned).collect()
 }
 
+/// Whether a scene at `path` reads the picture at `picture`: this layer of it, where one is named.
+pub fn reads(path: &Path, scene: &Scene, picture: &Path) -> bool {
+    let wanted = picture.to_string_lossy();
+    let (file, layer) = (Path::new(paths::file_of(&wanted)), paths::layer_of(&wanted));
+    let is_file = |other: &Path| match (fs::metadata(file), fs::metadata(other)) {
+        (Ok(one), Ok(two)) => identity(&one) == identity(&two),
+        (one, two) => one.is_err() && two.is_err() && is_same(file, other),
+    };
+    let fits = |name: &&str| layer.is_none() || paths::layer_of(name) == layer;
+    materials::paths(scene).into_iter().filter(fits).any(|name| is_file(&paths::beside(path, name)))
+}
+
 /// The first and the last bytes of the file at `path`, so many or as many as there are.
 ///
 /// # Errors

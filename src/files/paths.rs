@@ -46,7 +46,7 @@ pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
     } else {
         beneath::open(&folder_of_scene(scene_path), Path::new(file_of(path)))
     };
-    let file = File::from(opened.map_err(|error| explain(path, error))?);
+    let file = File::from(opened.map_err(|error| explain(path, &folder_of_scene(scene_path).join(path), error))?);
     regular(file, path)
 }
 
@@ -56,7 +56,7 @@ pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
 /// If there is no such file, or it is a folder, a device, a FIFO or a socket.
 pub fn open_named(path: &Path) -> Result<File> {
     let place = path.display().to_string();
-    let opened = beneath::open_anywhere(path).map_err(|error| explain(&place, error))?;
+    let opened = beneath::open_anywhere(path).map_err(|error| explain(&place, path, error))?;
     regular(File::from(opened), &place)
 }
 
@@ -78,11 +78,35 @@ fn regular(file: File, place: &str) -> Result<File> {
     })
 }
 
-fn explain(place: &str, error: io::Error) -> Error {
+/// Opens a picture that a person named, whole or by a layer of it.
+///
+/// # Errors
+/// As [`open_named`].
+pub fn open_picture(path: &Path) -> Result<File> {
+    let file = path.to_str().map_or(path, |path| Path::new(file_of(path)));
+    // What is missing is called by the whole of its name.
+    open_named(if file.exists() { file } else { path })
+}
+
+/// What is behind the `#` of a name that is no file, where what is before it is one.
+fn no_layer(place: &str, path: &Path) -> Option<Error> {
+    let (file, layer) = path.to_str()?.rsplit_once('#')?;
+    if !Path::new(file).is_file() {
+        return None;
+    }
+    Some(if layer.is_empty() {
+        Error::at(place, "has no name of a layer after the #").cure("name the layer, or leave the # out")
+    } else {
+        let cure = format!("leave #{layer} out");
+        Error::at(place, "there is no such file, and only an OpenEXR has layers to name after a #").cure(cure)
+    })
+}
+
+fn explain(place: &str, path: &Path, error: io::Error) -> Error {
     match error.kind() {
         io::ErrorKind::CrossesDevices => Error::at(place, "leads out of the scene's folder")
             .cure("copy the file beside the scene, or give --allow-outside"),
-        io::ErrorKind::NotFound => Error::at(place, "there is no such file"),
+        io::ErrorKind::NotFound => no_layer(place, path).unwrap_or_else(|| Error::at(place, "there is no such file")),
         _ => Error::at(place, format!("cannot be opened: {error}")),
     }
 }
@@ -127,6 +151,7 @@ mod tests {
         let root = outer.path().join("root");
         std::fs::create_dir_all(root.join("sub")).unwrap();
         std::fs::write(root.join("sub/cat.png"), "").unwrap();
+        std::fs::write(root.join("sub/a.exr"), "").unwrap();
         std::fs::write(outer.path().join("dog.png"), "").unwrap();
         symlink("../dog.png", root.join("link.png")).unwrap();
         rustix::fs::mknodat(rustix::fs::CWD, root.join("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RUSR, 0)
@@ -143,6 +168,9 @@ mod tests {
             ("sub", Some("a folder"), Some("a folder")),
             ("fifo", Some("a FIFO"), Some("a FIFO")),
             ("no.png", Some("no such file"), Some("no such file")),
+            ("no.exr#layer", Some("no such file"), Some("no such file")),
+            ("sub/cat.png#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),
+            ("sub/a.exr#", Some("has no name of a layer after the #"), Some("name the layer")),
             ("a\0b", Some("cannot be opened"), Some("cannot be opened")),
             ("", Some("no such file"), Some("a folder")),
         ] {

@@ -5,9 +5,12 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::{Limits, Options, paths, through, write_atomic};
+use super::{Limits, Options, paths, picture, through, write_atomic};
 use crate::base::error::{Error, Result};
 use crate::scene::{Document, json};
+
+/// So many bytes tell whether a file is a scene.
+const HEAD: u64 = 512;
 
 /// Reads the scene at `path`; `-` is standard input.
 ///
@@ -40,6 +43,18 @@ pub fn read_text(path: &Path, limits: &Limits) -> Result<String> {
         Some(copy) if !read.as_ref().is_ok_and(|text| is_whole(text)) && is_whole(&copy) => Ok(copy),
         _ => read,
     }
+}
+
+/// Whether the file at `path` is a scene by what is in it: the beginning of a JSON object. Where that does not tell, because
+/// it is neither that nor a picture, its name does.
+pub fn is_one(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = paths::open_named(path).ok().and_then(|file| file.take(HEAD).read_to_end(&mut head).ok());
+    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&head).trim_ascii_start();
+    let is_object = text
+        .strip_prefix(b"{")
+        .is_some_and(|text| matches!(text.trim_ascii_start().first(), None | Some(b'"' | b'}')) && !text.contains(&0));
+    read.is_some() && is_object || path.extension().is_some_and(|end| end == "json") && !picture::is_one(path)
 }
 
 /// Whether a text is complete JSON.

@@ -141,12 +141,12 @@ enum Color {
     Spoken(color::Spoken),
 }
 
-/// Reads the picture at `path`, within the limits.
+/// Reads the picture at `path` (`a.exr#beauty` is a layer of it), within the limits.
 ///
 /// # Errors
 /// If it cannot be opened, is no picture, is broken, or is larger than the limits allow.
 pub fn read(path: &Path, limits: &Limits) -> Result<Found> {
-    decode(paths::open_named(path)?, &path.display().to_string(), limits, &limits.budget()).map(|(found, _)| found)
+    decode(paths::open_picture(path)?, &path.display().to_string(), limits, &limits.budget()).map(|(found, _)| found)
 }
 
 /// Width and height of the picture at `path`, as [`read`] would return it; only the header is read.
@@ -154,7 +154,15 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Found> {
 /// # Errors
 /// As [`read`], as far as the header shows.
 pub fn size(path: &Path, limits: &Limits) -> Result<(usize, usize)> {
-    header(paths::open_named(path)?, &path.display().to_string(), limits)
+    header(paths::open_picture(path)?, &path.display().to_string(), limits)
+}
+
+/// Whether the file at `path` begins as a picture does that can be read.
+pub fn is_one(path: &Path) -> bool {
+    let mut start = Vec::new();
+    let Ok(mut file) = paths::open_picture(path) else { return false };
+    let read = (&mut file).take(kinds::LOOKED_AT).read_to_end(&mut start);
+    read.is_ok() && kinds::kind(&start, &mut file, &path.display().to_string()).is_ok()
 }
 
 /// The picture in an open file and the memory that it takes; `place` is its name in messages.

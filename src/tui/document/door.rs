@@ -11,6 +11,7 @@ use crate::files::holder::Holder;
 use crate::files::outputs::{self, Guard};
 use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
 use crate::files::{self, picture, write};
+use crate::ops::new;
 use crate::scene::history::{Applied, Way};
 use crate::scene::merge::Side;
 use crate::scene::{Document, Edit, History};
@@ -35,8 +36,8 @@ impl Door {
     /// The scene or the picture cannot be read, or somebody else edits the scene.
     pub fn open(path: &Path, mode: Mode, options: &files::Options) -> Result<Door> {
         let read_only = mode == Mode::ReadOnly;
-        let is_scene = path.extension().is_some_and(|extension| extension == "json");
-        let (scene, made) = if is_scene { (path.to_owned(), false) } else { beside(path, read_only, options)? };
+        let (scene, made) =
+            if files::scene::is_one(path) { (path.to_owned(), false) } else { beside(path, read_only, options)? };
         let session = Session::open(&scene, options, mode)?;
         let read_only = session.reads_only();
         Ok(Door { session, options: options.clone(), read_only, journaled: !read_only, made })
@@ -325,18 +326,33 @@ fn millis(time: Duration) -> u64 {
 
 /// The scene beside a picture, and whether it had to be made.
 fn beside(picture: &Path, read_only: bool, options: &files::Options) -> Result<(PathBuf, bool)> {
-    let scene = picture.with_extension("plica.json");
-    if read_only || scene.exists() {
+    let scene = new::beside(picture);
+    if scene.exists() {
+        refuse_other(picture, &scene, options)?;
+        return Ok((scene, false));
+    }
+    if read_only {
         return Ok((scene, false));
     }
     let (width, height) = picture::size(picture, &options.limits)?;
-    let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-    let (name, file) = (text(picture.file_stem()), text(picture.file_name()));
+    let (name, file) = (new::called(picture), new::file_name(picture)?);
     let place = || scene.display().to_string();
     let document =
         Document::new(&[(&name, &file, width, height)]).map_err(|problems| Error::Scene { file: place(), problems })?;
     write::write_new(&scene, document.to_text().as_bytes())?;
     Ok((scene, true))
+}
+
+/// Refuses the scene beside a picture where it is one of other pictures. What is wrong in it is told when it is opened.
+fn refuse_other(picture: &Path, scene: &Path, options: &files::Options) -> Result<()> {
+    let Ok(document) = files::scene::open(scene, options) else { return Ok(()) };
+    if outputs::reads(scene, document.scene(), picture) {
+        return Ok(());
+    }
+    picture::size(picture, &options.limits)?;
+    let (own, other) = (picture.display(), scene.display());
+    let cure = format!("edit that one, or make another: plica new {own} -o OTHER.plica.json");
+    Err(Error::at(own, format!("is not read by the scene beside it, {other}")).cure(cure))
 }
 
 #[cfg(test)]

@@ -138,10 +138,13 @@ impl Editor {
         if bad {
             let text = self.state.message.take().map(|message| message.text).unwrap_or_default();
             session.failed += 1;
+            let mut lines = text.lines();
+            let first = lines.next().unwrap_or_default();
             match session.interactive {
-                true => terminal::print(&text),
-                false => terminal::remark(&format!("line {}: {text}", session.number)),
+                true => terminal::print(first),
+                false => terminal::remark(&format!("line {}: {first}", session.number)),
             }
+            lines.for_each(|line| if session.interactive { terminal::print(line) } else { terminal::remark(line) });
         }
         self.said().iter().for_each(|line| terminal::print(line));
         session.tell(self.state.seen.work.as_deref());
