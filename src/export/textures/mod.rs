@@ -255,8 +255,9 @@ impl Folder {
     fn stem(&self, plan: &Plan, zone: &Planned) -> String {
         let layer = (plan.layers.len() > 1).then_some(plan.layers[zone.layer].1);
         let stem = names::stem(layer, &zone.model.name);
-        let taken: HashSet<&str> = self.names.iter().map(String::as_str).collect();
-        let is_free = |stem: &String| !taken.contains(format!("{stem}init.{}", self.depth.extension()).as_str());
+        let taken: HashSet<String> = self.names.iter().map(|name| names::folded(name)).collect();
+        let is_free =
+            |stem: &String| !taken.contains(&names::folded(&format!("{stem}init.{}", self.depth.extension())));
         let numbered = (2..).map(|n| format!("{stem}{n}-"));
         std::iter::once(stem.clone()).chain(numbered).find(is_free).unwrap_or(stem)
     }

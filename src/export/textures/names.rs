@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::Depth;
 use crate::files::lines;
+use crate::files::scene::hash;
 use crate::layers::Layer;
 use crate::scene::Scene;
 
@@ -55,13 +56,29 @@ impl Names {
     }
 }
 
-/// How the files of a zone begin: its name in plain letters, the layer's before it where there are several.
+/// The longest beginning of a file's name, in bytes: with what follows it no file system takes it for too long.
+const LONGEST: usize = 200;
+
+/// How the files of a zone begin: its name in plain letters, the layer's before it where there are several. One that is too
+/// long is cut, and ends in what tells it from others that begin alike.
 pub fn stem(layer: Option<&str>, zone: &str) -> String {
-    let layer = layer.map(|layer| format!("{}-", plain(layer))).unwrap_or_default();
-    format!("{layer}{}-", plain(zone))
+    const MARK: usize = 8;
+    let whole = layer.map(|layer| format!("{}-", plain(layer))).unwrap_or_default() + &plain(zone);
+    if whole.len() < LONGEST {
+        return whole + "-";
+    }
+    let mark = hash(whole.as_bytes());
+    format!("{}-{}-", &whole[..whole.floor_char_boundary(LONGEST - MARK - 2)], &mark[..MARK])
 }
 
-/// A name with `-` in place of everything but letters, digits, `-` and `_`.
+/// A name as file systems compare it that take upper and lower case for the same.
+pub fn folded(name: &str) -> String {
+    // Twice: some letters have an upper case of which the lower is another letter.
+    name.to_lowercase().to_uppercase().to_lowercase()
+}
+
+/// A name with `-` in place of everything but letters, digits, `-` and `_`: of accents that stand apart from their letters too,
+/// so that the two spellings of é, which some file systems take for one, give two names.
 fn plain(name: &str) -> String {
     let plain: String = name.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
     let plain = plain.trim_matches('-');
@@ -106,11 +123,26 @@ mod tests {
             (None, "left eye", "left-eye-"),
             (None, "../../etc/passwd", "etc-passwd-"),
             (None, "眼", "眼-"),
+            (None, "caf\u{e9}", "caf\u{e9}-"),
+            (None, "cafe\u{301}", "cafe-"),
+            (None, "e\u{301}te", "e-te-"),
             (None, "...", "zone-"),
             (Some("face"), "lid", "face-lid-"),
         ] {
             assert_eq!(stem(layer, zone), expected);
         }
+    }
+
+    #[test]
+    fn long_names_are_cut_and_stay_apart() {
+        let long = "猫".repeat(90);
+        let all = [long.clone(), format!("{long}a"), format!("{long}b"), "x".repeat(199), "x".repeat(300)];
+        let stems: BTreeSet<String> = all.iter().map(|zone| stem(None, zone)).collect();
+        assert_eq!(stems.len(), all.len());
+        for stem in stems.iter().chain([&stem(Some(&"y".repeat(130)), &"z".repeat(130))]) {
+            assert!(stem.len() <= LONGEST && stem.ends_with('-'), "{stem}");
+        }
+        assert_eq!(stem(None, &"x".repeat(199)), "x".repeat(199) + "-");
     }
 
     #[test]
