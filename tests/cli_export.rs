@@ -352,6 +352,105 @@ fn textures_of_an_earlier_run_go_and_others_stay() {
 }
 
 #[test]
+fn textures_have_names_that_every_file_system_takes() {
+    let folder = folder();
+    let dir = folder.path();
+    let mut scene: serde_json::Value = serde_json::from_str(SCENE).unwrap();
+    let zone = scene["layers"][0]["zones"][0].clone();
+    let names = ["left eye".to_owned(), "Left Eye".into(), "LEFT-eye".into(), "猫".repeat(90), "猫".repeat(91)];
+    let zones = names.iter().map(|name| {
+        let mut zone = zone.clone();
+        zone["name"] = name.as_str().into();
+        zone
+    });
+    scene["layers"][0]["zones"] = zones.collect();
+    fs::write(dir.join("s.plica.json"), scene.to_string()).unwrap();
+    for _ in 0..2 {
+        good(dir, "synth s.plica.json -o out");
+        let files = fs::read_dir(dir.join("out")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        let files: Vec<String> = files.map(|name| name.to_lowercase()).collect();
+        assert_eq!(files.iter().collect::<std::collections::BTreeSet<_>>().len(), 3 * names.len() + 3, "{files:?}");
+        assert!(files.iter().all(|name| name.len() < 230), "{files:?}");
+    }
+    let manifest = fs::read_to_string(dir.join("out/manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    let zones = manifest["layers"][0]["zones"].as_array().unwrap();
+    assert!(zones.iter().zip(&names).all(|(zone, name)| zone["name"] == name.as_str()), "{zones:?}");
+}
+
+#[test]
+fn what_cannot_be_written_has_its_cure() {
+    let folder = folder();
+    let dir = folder.path();
+    for name in ["full.gif", "full.webp", "full.apng", "full.rgba", "full.csv", "f3.png"] {
+        std::os::unix::fs::symlink("/dev/full", dir.join(name)).unwrap();
+    }
+    let fifo = |name: &str| {
+        rustix::fs::mknodat(rustix::fs::CWD, dir.join(name), rustix::fs::FileType::Fifo, rustix::fs::Mode::RWXU, 0)
+            .unwrap();
+    };
+    ["p.png", "p.gif", "p.csv", "q0.png"].into_iter().for_each(fifo);
+    let (room, fifo) =
+        ("cannot be written: No space left on device", "is a FIFO that nobody reads (let another program");
+    for (line, place, wanted, cure) in [
+        ("render s.plica.json -o full.gif", "full.gif", room, "(make room, then try again)"),
+        ("render s.plica.json -o full.webp", "full.webp", room, "(make room, then try again)"),
+        ("render s.plica.json -o full.apng", "full.apng", room, "(make room, then try again)"),
+        ("render s.plica.json -o full.rgba", "full.rgba", room, "(make room, then try again)"),
+        ("render s.plica.json -o f%d.png", "f3.png", room, "(make room, then try again)"),
+        ("field s.plica.json -o full.csv", "full.csv", room, "(make room, then try again)"),
+        ("render s.plica.json --frames 0 -o p.png", "p.png", fifo, "or name a file)"),
+        ("render s.plica.json -o p.gif", "p.gif", fifo, "or name a file)"),
+        ("render s.plica.json -o q%d.png --skip-existing", "q0.png", fifo, "or name a file)"),
+        ("field s.plica.json -o p.csv", "p.csv", fifo, "or name a file)"),
+        ("synth s.plica.json -o no/out", "no/out", "cannot be written", "(make the folder first)"),
+    ] {
+        let Output { status, stderr, .. } = run(dir, line);
+        let said = String::from_utf8(stderr).unwrap();
+        let told = said.lines().any(|line| line.contains(&format!("{place}: {wanted}")) && line.ends_with(cure));
+        assert!(status.code() == Some(1) && told, "{line}: {said}");
+    }
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let said = plica(dir, "render s.plica.json -o - --format rgba").stdout(full).output().unwrap().stderr;
+    let said = String::from_utf8(said).unwrap();
+    assert!(said.contains(room) && said.contains("(make room, then try again)"), "{said}");
+}
+
+#[test]
+fn the_limit_on_memory_counts_all_that_a_render_keeps() {
+    let folder = folder();
+    let dir = folder.path();
+    let shade = |x, y| image::Rgba([(x % 256) as u8, (y % 256) as u8, 9, 255]);
+    image::RgbaImage::from_fn(600, 400, shade).save(dir.join("cat.png")).unwrap();
+    let pixels: u64 = 600 * 400;
+    // The picture; the frame as colors and as light; the frame that is packed, or those that wait for their palette.
+    let (picture, frame, packed, waiting) = (4 * pixels, 20 * pixels, 8 * pixels, 60 * pixels);
+    for (line, memory, refused) in [
+        (
+            "render s.plica.json --frames 0 -o a.png",
+            picture + frame - 1,
+            Some("frames: needs 4.6 MiB of memory besides"),
+        ),
+        (
+            "render s.plica.json --frames 0 -o a.png",
+            picture + frame + packed - 1,
+            Some("a.png: needs 1.8 MiB of memory besides"),
+        ),
+        ("render s.plica.json --frames 0 -o a.png", picture + frame + packed + (64 << 10), None),
+        ("render s.plica.json -o a.gif", picture + frame + waiting - 1, Some("a.gif: needs 14 MiB of memory besides")),
+    ] {
+        let Output { status, stderr, .. } = run(dir, &format!("{line} --limit memory={memory}"));
+        let said = String::from_utf8(stderr).unwrap();
+        assert_eq!(status.success(), refused.is_none(), "{line}: {said}");
+        assert!(
+            refused.is_none_or(|words| said.contains(words) && said.contains("(make it smaller, or")),
+            "{line}: {said}"
+        );
+    }
+    assert_eq!(made(dir), ["a.png"]);
+}
+
+#[test]
 fn what_is_done_is_told_with_its_size_and_time() {
     let folder = folder();
     let dir = folder.path();

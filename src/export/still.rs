@@ -10,6 +10,11 @@ use crate::base::pixels::Frame;
 const LARGE: usize = 256 << 20;
 const CHUNK: usize = 1 << 20;
 
+/// Bytes that packing so many pixels takes besides the frame: they are filtered, and packed in a buffer that grows.
+pub fn memory(pixels: u64) -> u64 {
+    if pixels * 4 <= LARGE as u64 { pixels * 8 } else { 8 * CHUNK as u64 }
+}
+
 /// sRGB in the numbers of ITU-T H.273: primaries of BT.709, transfer of sRGB, no matrix, full range.
 const CICP_SRGB: [u8; 4] = [1, 13, 0, 1];
 

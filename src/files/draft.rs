@@ -4,12 +4,13 @@
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::outputs::{FolderPlace, Place};
 use super::temporary::{self, Temporary};
-use super::write::Atomic;
+use super::write::{self, Atomic};
 use crate::base::error::{Error, Result};
+use crate::base::system;
 
 /// A file being written, buffered. A file that is already in its place stays until [`DraftFile::keep`].
 #[derive(Debug)]
@@ -27,7 +28,11 @@ impl DraftFile {
         if !fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
             return Ok(DraftFile::Whole(BufWriter::with_capacity(1 << 16, Atomic::create(path)?), path.to_path_buf()));
         }
-        let file = File::options().write(true).open(path).map_err(|e| Error::at(path.display(), e))?;
+        let file = system::open_special(path).map_err(|error| match error.kind() {
+            io::ErrorKind::WouldBlock => Error::at(path.display(), "is a FIFO that nobody reads")
+                .cure("let another program begin to read it first, or name a file"),
+            _ => write::failed(path.display(), &error),
+        })?;
         Ok(DraftFile::Special(BufWriter::new(file), path.to_path_buf()))
     }
 
@@ -35,9 +40,9 @@ impl DraftFile {
     pub fn keep(self) -> Result<()> {
         match self {
             DraftFile::Whole(file, path) => {
-                file.into_inner().map_err(|e| Error::at(path.display(), e.into_error()))?.commit()
+                file.into_inner().map_err(|e| write::failed(path.display(), e.error()))?.commit()
             }
-            DraftFile::Special(mut file, path) => file.flush().map_err(|e| Error::at(path.display(), e)),
+            DraftFile::Special(mut file, path) => file.flush().map_err(|e| write::failed(path.display(), &e)),
         }
     }
 }
@@ -98,7 +103,7 @@ impl DraftFolder {
         // In the folder if it exists, otherwise beside it: renaming works only within one file system.
         let temporary =
             if target.is_dir() { Temporary::beside(&target.join("file")) } else { Temporary::beside(&target) };
-        fs::create_dir(temporary.path()).map_err(|e| at_folder_of(path, &e))?;
+        fs::create_dir(temporary.path()).map_err(|e| write::failed(path.display(), &e))?;
         let held = File::open(temporary.path()).ok();
         held.iter().for_each(temporary::hold);
         Ok(DraftFolder { target, temporary, earlier: place.earlier.clone(), _held: held })
@@ -110,14 +115,14 @@ impl DraftFolder {
             file.write_all(bytes)?;
             file.sync_all()
         });
-        written.map_err(|e| Error::at(self.target.join(name).display(), e))
+        written.map_err(|e| write::failed(self.target.join(name).display(), &e))
     }
 
     /// Moves the files into place, in the order of `names`: the last one should be the one that lists the others. What
     /// is left of the earlier set is removed just before it.
     pub fn keep(self, names: &[String]) -> Result<()> {
         if !self.target.exists() {
-            return self.temporary.put(&self.target).map_err(|e| Error::at(self.target.display(), e));
+            return self.temporary.put(&self.target).map_err(|e| write::failed(self.target.display(), &e));
         }
         let (others, last) = names.split_at(names.len().saturating_sub(1));
         others.iter().try_for_each(|name| self.put(name))?;
@@ -130,18 +135,15 @@ impl DraftFolder {
 
     fn put(&self, name: &str) -> Result<()> {
         let target = self.target.join(name);
-        fs::rename(self.temporary.path().join(name), &target).map_err(|e| Error::at(target.display(), e))
+        fs::rename(self.temporary.path().join(name), &target).map_err(|e| write::failed(target.display(), &e))
     }
-}
-
-fn at_folder_of(path: &Path, error: &io::Error) -> Error {
-    let made = Error::at(path.display(), error);
-    if error.kind() == io::ErrorKind::NotFound { made.cure("make the folder first") } else { made }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
+
     use crate::files::outputs::{Guard, Kind};
 
     fn begin(path: &Path) -> Result<DraftFile> {
@@ -203,6 +205,36 @@ mod tests {
             fs::write(set.join("mine"), "mine").unwrap();
         }
         assert_eq!(names(folder.path()), ["set"]);
+    }
+
+    #[test]
+    fn a_fifo_is_written_where_somebody_reads_and_makes_nobody_wait() {
+        use std::io::Read;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gif");
+        rustix::fs::mknodat(rustix::fs::CWD, &path, rustix::fs::FileType::Fifo, rustix::fs::Mode::RWXU, 0).unwrap();
+        let refused = begin(&path).unwrap_err().to_string();
+        assert!(refused.contains("is a FIFO that nobody reads (let another program"), "{refused}");
+        let reader = {
+            let path = path.clone();
+            std::thread::spawn(move || {
+                let mut all = Vec::new();
+                File::open(path).unwrap().read_to_end(&mut all).unwrap();
+                all
+            })
+        };
+        let mut draft = (0..1000).find_map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            begin(&path).ok()
+        });
+        let draft = draft.as_mut().unwrap();
+        // More than a pipe holds: it waits for its reader then, as any program does.
+        draft.write_all(&[7; 300_000]).unwrap();
+        draft.flush().unwrap();
+        if let DraftFile::Special(file, _) = draft {
+            *file = BufWriter::new(File::create("/dev/null").unwrap());
+        }
+        assert_eq!(reader.join().unwrap(), [7; 300_000]);
     }
 
     #[test]

@@ -60,7 +60,7 @@ impl Log {
         let to = path.clone();
         let thread = std::thread::spawn(move || {
             if let Err(error) = write(&to, &header, &lines) {
-                failed(Error::at(to.display(), format!("cannot be written: {error}")).to_string());
+                failed(super::write::failed(to.display(), &error).to_string());
             }
         });
         Log { path, lines: Some(sender), thread: Some(thread) }

@@ -7,6 +7,7 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
+use super::write;
 use crate::base::error::{Error, Result};
 use crate::base::system::{self, folders};
 
@@ -32,7 +33,7 @@ pub fn start(file: Option<&Path>) -> Result<Option<PathBuf>> {
         return Err(error.cure("name another file for the log"));
     }
     if file.is_some() {
-        log.open().map_err(|error| Error::at(path.display(), format!("cannot be written: {error}")))?;
+        log.open().map_err(|error| write::failed(path.display(), &error))?;
     }
     let subscriber = tracing_subscriber::fmt().with_ansi(false).with_writer(Mutex::new(log)).finish();
     // In a program that uses the library, a subscriber of its own stays.

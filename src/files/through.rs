@@ -19,7 +19,13 @@ use crate::base::system;
 pub fn refuse_protected(path: &Path) -> Result<()> {
     match found(path)? {
         Some(found) if found.mode() & 0o222 == 0 || system::is_denied_to_write(path) => {
-            Err(Error::at(path.display(), "is read-only"))
+            let user = system::user();
+            Err(if user == 0 || found.uid() == user {
+                Error::at(path.display(), "is read-only").cure("allow to write it first: chmod u+w")
+            } else {
+                let error = Error::at(path.display(), "is another user's, and read-only for you");
+                error.cure("save a copy of it: plica edit, then :w PATH")
+            })
         }
         _ => Ok(()),
     }
@@ -167,6 +173,11 @@ mod tests {
         std::fs::write(&path, "").unwrap();
         refuse_protected(&path).unwrap();
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o444)).unwrap();
-        assert!(refuse_protected(&path).unwrap_err().to_string().contains("read-only"));
+        assert!(
+            refuse_protected(&path)
+                .unwrap_err()
+                .to_string()
+                .ends_with("is read-only (allow to write it first: chmod u+w)")
+        );
     }
 }

@@ -112,14 +112,46 @@ impl Seek for Atomic {
     }
 }
 
+/// What mends an I/O error of an output, by its kind, and how the system calls it.
+const CURES: &[(io::ErrorKind, &str, &str)] = &[
+    (io::ErrorKind::NotFound, "No such file or directory", "make the folder first"),
+    (io::ErrorKind::NotADirectory, "Not a directory", "name a folder where one is meant"),
+    (io::ErrorKind::IsADirectory, "Is a directory", "name a file"),
+    (io::ErrorKind::PermissionDenied, "Permission denied", "choose a folder that you may write to"),
+    (io::ErrorKind::ReadOnlyFilesystem, "Read-only file system", "choose a folder that you may write to"),
+    (io::ErrorKind::StorageFull, "No space left on device", "make room, then try again"),
+    (io::ErrorKind::QuotaExceeded, "Disk quota exceeded", "make room, then try again"),
+    (io::ErrorKind::FileTooLarge, "File too large", "choose a disk that takes files of this size, or write less"),
+    (io::ErrorKind::InvalidFilename, "File name too long", "choose a shorter name"),
+    (io::ErrorKind::ExecutableFileBusy, "Text file busy", "end the program that runs from it, or name another file"),
+    (io::ErrorKind::WriteZero, "write zero bytes", "make room, then try again"),
+];
+
+/// The cure of a failed output in the words of another program, which quotes the system.
+pub fn cure_in_words(said: &str) -> Option<&'static str> {
+    CURES.iter().find(|(_, words, _)| said.contains(words)).map(|(.., cure)| *cure)
+}
+
+/// That an output failed: with the cure, if it is an I/O error or was caused by one.
+pub fn failed(place: impl std::fmt::Display, error: &(dyn std::error::Error + 'static)) -> Error {
+    let Some(io) = cause(error) else { return Error::at(place, error) };
+    let failed = Error::at(place, format!("cannot be written: {io}"));
+    match CURES.iter().find(|(kind, ..)| *kind == io.kind()) {
+        Some((.., cure)) => failed.cure(*cure),
+        None => failed,
+    }
+}
+
+fn cause<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'a io::Error> {
+    // This one does not tell what caused it in the way that all others do.
+    if let Some(png::EncodingError::IoError(io)) = error.downcast_ref() {
+        return Some(io);
+    }
+    error.downcast_ref().or_else(|| error.source().and_then(cause))
+}
+
 pub(super) fn cannot_write(path: &Path, error: io::Error) -> Error {
-    let cure = match error.kind() {
-        io::ErrorKind::NotFound => "make the folder first",
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder that you may write to",
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "make room, then try again",
-        _ => return Error::at(path.display(), format!("cannot be written: {error}")),
-    };
-    Error::at(path.display(), format!("cannot be written: {error}")).cure(cure)
+    failed(path.display(), &error)
 }
 
 #[cfg(test)]
@@ -146,6 +178,38 @@ mod tests {
         assert_eq!(file.metadata().unwrap().mode() & 0o777, 0o640);
         assert!(link.symlink_metadata().unwrap().is_symlink());
         assert_eq!(names(folder.path()), ["file", "link"]);
+    }
+
+    #[test]
+    fn a_failed_output_has_the_cure_of_its_cause() {
+        let full = || io::Error::from_raw_os_error(28);
+        let errors: [Box<dyn std::error::Error>; 4] = [
+            Box::new(full()),
+            Box::new(png::EncodingError::IoError(full())),
+            Box::new(gif::EncodingError::Io(full())),
+            Box::new(io::Error::new(io::ErrorKind::StorageFull, "No space left on device")),
+        ];
+        for error in errors {
+            let said = failed("a.gif", &*error).to_string();
+            let wanted = "a.gif: cannot be written: No space left on device";
+            assert!(said.starts_with(wanted) && said.ends_with("(make room, then try again)"), "{said}");
+        }
+        // What the system says of each number is what the table has for it.
+        for (number, cure) in [
+            (2, "make the folder first"),
+            (13, "choose a folder that you may write to"),
+            (30, "choose a folder that you may write to"),
+            (20, "name a folder where one is meant"),
+            (21, "name a file"),
+            (27, "choose a disk that takes files of this size, or write less"),
+            (28, "make room, then try again"),
+            (36, "choose a shorter name"),
+        ] {
+            let error = io::Error::from_raw_os_error(number);
+            assert_eq!(cure_in_words(&format!("ffmpeg: x: {error}")), Some(cure), "{error}");
+            assert!(failed("x", &error).to_string().ends_with(&format!("({cure})")), "{error}");
+        }
+        assert!(!failed("x", &io::Error::from_raw_os_error(5)).to_string().ends_with("system)"));
     }
 
     #[test]

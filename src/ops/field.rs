@@ -13,6 +13,7 @@ use crate::base::error::{Error, Result};
 use crate::export::field::{arrows, csv, plot, png, svg};
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{self, Kind};
+use crate::files::write;
 use crate::render;
 use crate::scene::{Document, Scene, field};
 
@@ -70,12 +71,12 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     context.check_cancelled()?;
     match place {
         None => {
-            context.out.write_all(&bytes).map_err(|e| Error::at("standard output", e))?;
+            context.out.write_all(&bytes).map_err(|e| write::failed("standard output", &e))?;
             context.done("standard output", bytes.len() as u64, begun);
         }
         Some(place) => {
             let mut draft = DraftFile::create(&place)?;
-            draft.write_all(&bytes).map_err(|e| Error::at(args.output.display(), e))?;
+            draft.write_all(&bytes).map_err(|e| write::failed(args.output.display(), &e))?;
             draft.keep()?;
             context.done(&args.output.display().to_string(), outputs::size([place.path()]), begun);
         }

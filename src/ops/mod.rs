@@ -182,7 +182,7 @@ impl Context {
 
     /// Writes `text` and a line end to the data output.
     pub fn print(&mut self, text: impl std::fmt::Display) -> Result<()> {
-        writeln!(self.out, "{text}").map_err(|e| Error::at("standard output", e))
+        writeln!(self.out, "{text}").map_err(|e| files::write::failed("standard output", &e))
     }
 }
 

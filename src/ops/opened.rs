@@ -18,6 +18,8 @@ pub struct Opened {
     pub document: Document,
     /// Its pictures and fields.
     pub materials: Materials,
+    /// What was loaded counts against the limit on memory for as long as it is kept.
+    _loaded: materials::Cache,
 }
 
 /// A scene whose pictures are not loaded yet: a wrong command is reported before that.
@@ -56,7 +58,7 @@ impl Unloaded {
         for warning in warnings {
             context.messages.say(&format!("{}: {warning}", path.display()));
         }
-        Ok(Opened { path, document, materials })
+        Ok(Opened { path, document, materials, _loaded: cache })
     }
 }
 

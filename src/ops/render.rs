@@ -126,6 +126,7 @@ fn write(
     context: &mut Context,
 ) -> Result<()> {
     let mut renderer = Renderer::new(args, opened, (show.width, show.height), todo.len())?;
+    let _encoding = opened.materials.budget.take(target.memory(&show), &show.place)?;
     if todo.len() > 1 {
         let loops = seams::warnings(opened.document.scene(), || renderer.samples.first());
         loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
@@ -235,13 +236,19 @@ fn command(args: &Args) -> String {
 }
 
 /// Bytes that a frame of `own` size takes while it is rendered and scaled to `size`: as light and as color codes.
-fn frame_bytes(own: (usize, usize), size: (usize, usize)) -> u64 {
+fn frame_bytes(own: (usize, usize), size: (usize, usize), samples: usize, band: usize) -> u64 {
     const LIGHT: u64 = size_of::<Rgba>() as u64;
     const COLORS: u64 = size_of::<[u8; 4]>() as u64;
     let pixels = |(width, height): (usize, usize)| width as u64 * height as u64;
+    // The mean of several samples is summed up beside the sample being rendered.
+    let copies = if samples > 1 { 2 } else { 1 };
+    if own == size {
+        // Only a few rows are in memory as light.
+        let band = (band.max(own.0) as u64).min(pixels(own));
+        return pixels(own) * COLORS + band * LIGHT * copies;
+    }
     // Scaling needs copies of both.
-    let scaled = if own == size { 0 } else { pixels(own) * 2 * LIGHT + pixels(size) * (2 * LIGHT + COLORS) };
-    pixels(own) * (LIGHT + COLORS) + scaled
+    pixels(own) * (copies + 1) * LIGHT + pixels(size) * (2 * LIGHT + COLORS)
 }
 
 /// Turns a time into a finished frame.
@@ -265,16 +272,15 @@ impl<'a> Renderer<'a> {
             false => None,
             true => Some(opened.bands(args.samples)?).filter(|bands| bands.size() == size),
         };
+        let band = if bands.is_some() { Bands::PIXELS } else { cpu::BAND };
+        let own = crate::render::frame_size(opened.document.scene(), &opened.materials);
+        let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));
+        let share = opened.materials.budget.take(frame_bytes(own, size, args.samples as usize, band), place)?;
         let samples = match (&bands, args.samples) {
             (Some(_), _) => Vec::new(),
             (None, 1) => vec![opened.synth()?],
             (None, n) => opened.samples(n)?,
         };
-        // In bands, only the color codes of a frame are in memory.
-        let colors = (size.0 * size.1 * size_of::<[u8; 4]>()) as u64;
-        let bytes = samples.first().map_or(colors, |synth| frame_bytes(synth.size, size));
-        let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));
-        let share = opened.materials.budget.take(bytes, place)?;
         #[cfg(not(feature = "window"))]
         if args.gpu {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));

@@ -65,7 +65,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     settle(&mut session, &args)?;
     let edit = make(session.document())?;
-    session.refuse_protected().map_err(|error| error.cure("allow to write it first: chmod u+w"))?;
+    session.refuse_protected()?;
     let applied = session.apply(edit, false).map_err(|problems| refused(&args.scene, problems))?;
     session.save(Overwrite::No).inspect_err(|_| {
         // An edit that could not be saved is not left behind for recovery either.

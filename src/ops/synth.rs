@@ -49,8 +49,9 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let written = textures::write(opened.document.scene(), &synth, depth, &place, &mut step)?;
     if depth != Depth::Float {
         let (bits, error) = (&args.depth, written.error_px);
+        let off = if error < 0.0005 { "less than 0.001 px off".into() } else { format!("up to {error:.3} px off") };
         context.messages.say(&format!(
-            "{bits} bits: places and jump vectors are up to {error:.3} px off; a player that takes each zone's origin from the \
+            "{bits} bits: places and jump vectors are {off}; a player that takes each zone's origin from the \
              manifest shows still pixels exactly"
         ));
     }

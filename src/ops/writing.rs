@@ -39,7 +39,9 @@ impl Context {
     /// Prints that `what` is done, how large it is and how long it took.
     pub fn done(&mut self, what: &str, bytes: u64, begun: Instant) {
         let took = u64::try_from(begun.elapsed().as_millis()).unwrap_or(u64::MAX);
-        self.messages.say(&format!("done: {what}, {}, {}", text::bytes(bytes), text::took(took)));
+        // What went through a pipe has no size afterwards.
+        let size = if bytes == 0 { String::new() } else { format!("{}, ", text::bytes(bytes)) };
+        self.messages.say(&format!("done: {what}, {size}{}", text::took(took)));
     }
 
     /// Prints some lines.

@@ -15,9 +15,6 @@ use crate::layers::parts::moment::CENTRE;
 use crate::layers::ready::Prepared;
 use crate::scene::Scene;
 
-/// Pixels per band: enough for all cores, and small compared with the picture.
-const BAND: usize = 1 << 20;
-
 /// A scene whose parts can be rendered without the rest.
 pub struct Bands<'a> {
     materials: &'a Materials,
@@ -27,6 +24,9 @@ pub struct Bands<'a> {
 }
 
 impl<'a> Bands<'a> {
+    /// Pixels per band: enough for all cores, and small compared with the picture.
+    pub const PIXELS: usize = 1 << 20;
+
     /// Prepares everything that the parts share, for n x n samples per pixel.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl<'a> Bands<'a> {
     pub fn frame(&self, time: f64) -> Result<Frame, Problem> {
         let (width, height) = self.size;
         let mut cells = vec![[0; 4]; width * height];
-        let most = (BAND / width.max(1)).max(1);
+        let most = (Self::PIXELS / width.max(1)).max(1);
         for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
             let rows = i * most..((i + 1) * most).min(height);
             cpu::finish_rows(&self.part(0..width, rows.clone())?, time, rows, out);
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn bands_and_pixels_are_those_of_the_frame() {
         // Wide enough that a band is only a few rows, so that there are several.
-        let (width, height) = (BAND / 3, 7);
+        let (width, height) = (Bands::PIXELS / 3, 7);
         let cell = |i: usize| [(i % 251) as f32 / 251.0, (i % 17) as f32 / 17.0, (i % 5) as f32 / 5.0, 1.0];
         let picture = Arc::new(Picture::from_cells(width, height, (0..width * height).map(cell).collect()));
         let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };

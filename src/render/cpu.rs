@@ -42,7 +42,7 @@ fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Li
 }
 
 /// How many pixels are in memory as light at a time: light takes four times the memory of codes.
-const BAND: usize = 1 << 22;
+pub const BAND: usize = 1 << 22;
 
 /// The finished frame from several samples per pixel: sRGB, straight alpha, 8 bits per channel.
 pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {

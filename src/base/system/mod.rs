@@ -44,6 +44,25 @@ pub fn no_wait() -> i32 {
     (rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY).bits() as i32
 }
 
+/// Opens what is no regular file to write to it, without waiting for whoever reads it.
+///
+/// # Errors
+/// `WouldBlock` if it is a FIFO that nobody reads; or it cannot be opened.
+pub fn open_special(path: &std::path::Path) -> io::Result<std::fs::File> {
+    use rustix::fs::{Mode, OFlags};
+    let flags = OFlags::WRONLY | OFlags::CLOEXEC | OFlags::NOCTTY;
+    let opened = rustix::fs::open(path, flags | OFlags::NONBLOCK, Mode::empty());
+    let file = opened.map_err(|error| -> io::Error {
+        match error {
+            rustix::io::Errno::NXIO => io::ErrorKind::WouldBlock.into(),
+            error => error.into(),
+        }
+    })?;
+    // Once it is open, writing waits for the reader.
+    rustix::fs::fcntl_setfl(&file, flags)?;
+    Ok(file.into())
+}
+
 /// Whether a process with this number is there (it may belong to somebody else).
 pub fn process_lives(pid: u32) -> bool {
     let Some(pid) = i32::try_from(pid).ok().and_then(rustix::process::Pid::from_raw) else { return false };

@@ -19,8 +19,13 @@ struct Apng {
 /// Begins an APNG; a single frame makes a plain PNG.
 pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
     let out = Lent(Arc::new(Mutex::new(Some(out))));
-    let writer = header(out.clone(), &show).map_err(|e| show.failed(e))?;
+    let writer = header(out.clone(), &show).map_err(|e| show.unwritten(e))?;
     Ok(Box::new(Apng { show, writer, out, before: None }))
+}
+
+/// Bytes that it keeps: the frame before and the part that is written, and pixels filtered and packed.
+pub fn memory(show: &Show) -> u64 {
+    if show.frames > 1 { 16 * show.pixels() } else { still::memory(show.pixels()) }
 }
 
 fn header(out: Lent, show: &Show) -> std::result::Result<png::Writer<Lent>, png::EncodingError> {
@@ -52,14 +57,14 @@ impl Apng {
 impl Sink for Apng {
     fn frame(&mut self, _: u64, frame: Frame) -> Result<()> {
         let rect = self.before.as_ref().map_or(Rect::whole(&frame), |before| moved(before, &frame));
-        self.write(rect, &frame).map_err(|e| self.show.failed(e))?;
+        self.write(rect, &frame).map_err(|e| self.show.unwritten(e))?;
         self.before = Some(frame);
         Ok(())
     }
 
     fn finish(self: Box<Self>) -> Result<Vec<String>> {
         let Apng { show, writer, out, .. } = *self;
-        writer.finish().map_err(|e| show.failed(e))?;
+        writer.finish().map_err(|e| show.unwritten(e))?;
         if let Some(out) = out.take() {
             out.keep(&show)?;
         }

@@ -18,7 +18,7 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::files::draft;
 use crate::files::outputs::Place;
-use crate::files::write::Atomic;
+use crate::files::write::{self, Atomic};
 
 /// How one container is written.
 pub struct Codec {
@@ -127,6 +127,11 @@ pub fn find(codec: &Codec, show: &Show) -> Result<PathBuf> {
     })
 }
 
+/// Bytes that are kept besides what the program itself takes: the frame as it is handed over.
+pub fn memory(show: &Show) -> u64 {
+    4 * show.pixels()
+}
+
 struct Video {
     codec: &'static Codec,
     show: Show,
@@ -209,7 +214,8 @@ impl Video {
         }
         let said = self.said.take().and_then(|said| said.join().ok()).unwrap_or_default();
         let first = said.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("it ended without a word");
-        let cure = format!("another encoder may do: {}", self.codec.line(&self.show));
+        let other = || format!("another encoder may do: {}", self.codec.line(&self.show));
+        let cure = write::cure_in_words(&said).map_or_else(other, str::to_owned);
         Error::at(&self.show.place, format!("ffmpeg: {first}")).cure(cure)
     }
 

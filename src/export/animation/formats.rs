@@ -42,6 +42,8 @@ pub struct Format {
     /// What messages call it, and how a file of it is recognised.
     pub kind: Kind,
     pub(super) writer: Writer,
+    /// Bytes that its encoder keeps at the most, besides the frame that it is given.
+    pub(super) memory: fn(&Show) -> u64,
 }
 
 const NO_ENDING: &str = "none: the player decides";
@@ -56,6 +58,7 @@ pub const FORMATS: &[Format] = &[
         keeps: Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "exact", ending: "loop or once" },
         kind: Kind::Png,
         writer: Writer::Own(apng::begin),
+        memory: apng::memory,
     },
     Format {
         name: "webp",
@@ -70,6 +73,7 @@ pub const FORMATS: &[Format] = &[
         },
         kind: Kind::WebP,
         writer: Writer::Own(webp::begin),
+        memory: webp::memory,
     },
     Format {
         name: "gif",
@@ -84,6 +88,7 @@ pub const FORMATS: &[Format] = &[
         },
         kind: Kind::Gif,
         writer: Writer::Own(gif::begin),
+        memory: gif::memory,
     },
     Format {
         name: "mp4",
@@ -93,6 +98,7 @@ pub const FORMATS: &[Format] = &[
         keeps: Keeps { alpha: "lost, on black", colors: "lossy 4:2:0, tagged", timing: "exact", ending: NO_ENDING },
         kind: Kind::Mp4,
         writer: Writer::Ffmpeg(&ffmpeg::MP4),
+        memory: ffmpeg::memory,
     },
     Format {
         name: "webm",
@@ -102,6 +108,7 @@ pub const FORMATS: &[Format] = &[
         keeps: Keeps { alpha: "kept, lossy", colors: "lossy 4:2:0, tagged", timing: "whole ms", ending: NO_ENDING },
         kind: Kind::WebM,
         writer: Writer::Ffmpeg(&ffmpeg::WEBM),
+        memory: ffmpeg::memory,
     },
     Format {
         name: "mov",
@@ -111,6 +118,7 @@ pub const FORMATS: &[Format] = &[
         keeps: Keeps { alpha: "kept", colors: "10 bits 4:4:4, tagged", timing: "exact", ending: NO_ENDING },
         kind: Kind::Mov,
         writer: Writer::Ffmpeg(&ffmpeg::MOV),
+        memory: ffmpeg::memory,
     },
     Format {
         name: "y4m",
@@ -120,6 +128,7 @@ pub const FORMATS: &[Format] = &[
         keeps: Keeps { alpha: "lost, on black", colors: "8 bits Y'CbCr 4:4:4", timing: "exact", ending: NO_ENDING },
         kind: Kind::Y4m,
         writer: Writer::Own(raw::y4m),
+        memory: raw::y4m_memory,
     },
     Format {
         name: "rgba",
@@ -129,6 +138,7 @@ pub const FORMATS: &[Format] = &[
         keeps: Keeps { alpha: "kept, straight", colors: "exact, 8 bits sRGB", timing: "none", ending: "none" },
         kind: Kind::Rgba,
         writer: Writer::Own(raw::rgba),
+        memory: |_| 0,
     },
 ];
 

@@ -32,6 +32,14 @@ pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
     Ok(Box::new(Gif { show, state: State::Waiting(out, Vec::new()), partial: false }))
 }
 
+/// Bytes that it keeps: frames that wait for the palette; the frame before as it was given, as it was shown with the errors
+/// that it passes on, and packed; the next one.
+pub fn memory(show: &Show) -> u64 {
+    const OF_TWO: u64 = 36;
+    let waiting = (WAITING as u64 / show.pixels().max(1) + 1).min(show.frames);
+    show.pixels() * (OF_TWO + 4 * waiting)
+}
+
 struct Gif {
     show: Show,
     state: State,
@@ -143,9 +151,9 @@ impl Writer {
         let error = frames.iter().map(|f| palette.error(f)).fold(UNSEEN, f64::max);
         let (width, height) = (show.width as u16, show.height as u16);
         let colors = table(palette.colors());
-        let mut encoder = Encoder::new(out, width, height, &colors).map_err(|e| show.failed(e))?;
+        let mut encoder = Encoder::new(out, width, height, &colors).map_err(|e| show.unwritten(e))?;
         if !show.once && show.frames > 1 {
-            encoder.set_repeat(Repeat::Infinite).map_err(|e| show.failed(e))?;
+            encoder.set_repeat(Repeat::Infinite).map_err(|e| show.unwritten(e))?;
         }
         let dither = Dither::default();
         Ok(Writer { show: show.clone(), encoder, palette, dither, error, count: 0, pending: None })
@@ -204,14 +212,14 @@ impl Writer {
         let spared = pending.same.as_ref().map(|same| pending.encode(delay, dispose, Some(same)));
         let smaller = spared.filter(|spared| spared.buffer.len() < whole.buffer.len()).unwrap_or(whole);
         self.count += 1;
-        self.encoder.write_lzw_pre_encoded_frame(&smaller).map_err(|e| self.show.failed(e))
+        self.encoder.write_lzw_pre_encoded_frame(&smaller).map_err(|e| self.show.unwritten(e))
     }
 
     fn finish(mut self) -> Result<()> {
         if let Some(last) = self.pending.take() {
             self.write(&last, DisposalMethod::Keep)?;
         }
-        let out = self.encoder.into_inner().map_err(|e| self.show.failed(e))?;
+        let out = self.encoder.into_inner().map_err(|e| self.show.unwritten(e))?;
         out.keep(&self.show)
     }
 }

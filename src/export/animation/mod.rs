@@ -10,6 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{Guard, Kind, Place};
+use crate::files::write;
 
 mod apng;
 mod delta;
@@ -73,7 +74,7 @@ impl Out {
     fn keep(self, show: &Show) -> Result<()> {
         match self {
             Out::File(draft) => draft.keep(),
-            Out::Stream(mut stream) => stream.flush().map_err(|e| show.failed(e)),
+            Out::Stream(mut stream) => stream.flush().map_err(|e| show.unwritten(e)),
         }
     }
 }
@@ -193,6 +194,15 @@ impl Target {
         }
     }
 
+    /// Bytes that the output keeps at the most, besides the frame that it is given.
+    pub fn memory(&self, show: &Show) -> u64 {
+        let kind = match &self.0 {
+            Goal::Sequence(_) => return sequence::memory(show),
+            Goal::File(_, kind, _) | Goal::Stream(_, kind, _) => kind,
+        };
+        FORMATS.iter().find(|format| format.kind == *kind).map_or(0, |format| (format.memory)(show))
+    }
+
     /// Begins to write.
     ///
     /// # Errors
@@ -208,12 +218,22 @@ impl Target {
 }
 
 impl Show {
+    /// Pixels of a frame.
+    fn pixels(&self) -> u64 {
+        self.width as u64 * self.height as u64
+    }
+
     /// The matrix of its Y'CbCr.
     fn matrix(&self) -> Matrix {
         self.matrix.unwrap_or(Matrix::expected(self.height))
     }
 
-    /// An encoder's error or a write error, at the output.
+    /// An encoder's error or a write error, at the output, with its cure.
+    fn unwritten(&self, error: impl std::error::Error + 'static) -> Error {
+        write::failed(&self.place, &error)
+    }
+
+    /// What went wrong, at the output.
     fn failed(&self, error: impl std::fmt::Display) -> Error {
         Error::at(&self.place, error)
     }

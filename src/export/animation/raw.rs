@@ -21,7 +21,7 @@ struct Rgba {
 
 impl Sink for Rgba {
     fn frame(&mut self, _: u64, frame: Frame) -> Result<()> {
-        self.out.write_all(frame.cells().as_flattened()).map_err(|e| self.show.failed(e))
+        self.out.write_all(frame.cells().as_flattened()).map_err(|e| self.show.unwritten(e))
     }
 
     fn finish(self: Box<Self>) -> Result<Vec<String>> {
@@ -39,8 +39,13 @@ pub fn y4m(mut out: Out, show: Show) -> Result<Box<dyn Sink>> {
         rate.den,
         show.matrix().y4m()
     );
-    out.write_all(header.as_bytes()).map_err(|e| show.failed(e))?;
+    out.write_all(header.as_bytes()).map_err(|e| show.unwritten(e))?;
     Ok(Box::new(Y4m { out, show, transparent: false }))
+}
+
+/// Bytes that [`y4m`] keeps: the planes, and the room in which they grow.
+pub fn y4m_memory(show: &Show) -> u64 {
+    9 * show.pixels()
 }
 
 struct Y4m {
@@ -56,7 +61,7 @@ impl Sink for Y4m {
         let yuv: Vec<[u8; 3]> = frame.cells().iter().map(|&c| matrix.yuv(opaque(c))).collect();
         let planes = (0..3).flat_map(|plane| yuv.iter().map(move |c| c[plane]));
         let bytes: Vec<u8> = b"FRAME\n".iter().copied().chain(planes).collect();
-        self.out.write_all(&bytes).map_err(|e| self.show.failed(e))
+        self.out.write_all(&bytes).map_err(|e| self.show.unwritten(e))
     }
 
     fn finish(self: Box<Self>) -> Result<Vec<String>> {

@@ -12,6 +12,7 @@ use crate::base::pixels::Frame;
 use crate::export::still;
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{self, Guard, Kind, Place};
+use crate::files::write;
 
 /// A file name with one frame number in it.
 #[derive(Debug, PartialEq)]
@@ -113,6 +114,12 @@ pub fn begin(places: Places, show: Show) -> Result<Box<dyn Sink>> {
     Ok(Box::new(Sequence { places, show, writing: VecDeque::new() }))
 }
 
+/// Bytes that it keeps: one frame a core that is being packed.
+pub fn memory(show: &Show) -> u64 {
+    let at_once = (rayon::current_num_threads() as u64).min(show.frames);
+    at_once * (8 * show.pixels() + still::memory(show.pixels()))
+}
+
 struct Sequence {
     places: Places,
     show: Show,
@@ -127,8 +134,8 @@ impl Sequence {
     }
 }
 
-fn write(place: &Place, frame: &Frame) -> Result<()> {
-    let failed = |error: &dyn std::fmt::Display| Error::at(place.path().display(), error);
+fn put(place: &Place, frame: &Frame) -> Result<()> {
+    let failed = |error: &(dyn std::error::Error + 'static)| write::failed(place.path().display(), error);
     let bytes = still::frame(frame).map_err(|e| failed(&e))?;
     let mut draft = DraftFile::create(place)?;
     draft.write_all(&bytes).map_err(|e| failed(&e))?;
@@ -143,7 +150,7 @@ impl Sink for Sequence {
         if self.writing.len() >= rayon::current_num_threads() {
             self.wait()?;
         }
-        self.writing.push_back(std::thread::spawn(move || write(&place, &frame)));
+        self.writing.push_back(std::thread::spawn(move || put(&place, &frame)));
         Ok(())
     }
 

@@ -35,6 +35,14 @@ struct WebP {
     waiting: Vec<(Rect, Vec<u8>)>,
 }
 
+/// Bytes that it keeps: the frame before, and one a core that is compressed.
+pub fn memory(show: &Show) -> u64 {
+    /// What the library takes for each pixel of a frame that it compresses.
+    const COMPRESSED: u64 = 40;
+    let at_once = (rayon::current_num_threads() as u64).min(show.frames);
+    show.pixels() * (4 + at_once * COMPRESSED)
+}
+
 /// Begins a WebP; a single frame makes a still one.
 pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
     if show.width > MOST || show.height > MOST {
@@ -58,7 +66,7 @@ pub fn begin(out: Out, show: Show) -> Result<Box<dyn Sink>> {
 impl WebP {
     fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.length += bytes.len() as u64;
-        self.out.write_all(bytes).map_err(|e| self.show.failed(e))
+        self.out.write_all(bytes).map_err(|e| self.show.unwritten(e))
     }
 
     fn chunk(&mut self, name: &[u8; 4], payload: &[u8]) -> Result<()> {
@@ -105,7 +113,7 @@ impl Sink for WebP {
         self.flush()?;
         let length = u32::try_from(self.length - 8).map_err(|_| self.show.failed("a WebP holds at most 4 GiB"))?;
         let put = |out: &mut Out| out.seek(SeekFrom::Start(4)).and_then(|_| out.write_all(&length.to_le_bytes()));
-        put(&mut self.out).map_err(|e| self.show.failed(e))?;
+        put(&mut self.out).map_err(|e| self.show.unwritten(e))?;
         self.out.keep(&self.show)?;
         Ok(Vec::new())
     }

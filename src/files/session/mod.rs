@@ -284,7 +284,7 @@ impl Session {
         self.refuse_undecided().map_err(|problem| Error::at(place, problem))?;
         if overwrite == Overwrite::No {
             self.may_overwrite().map_err(|error| error.cure("take its changes in, or overwrite it"))?;
-            self.refuse_protected().map_err(|error| error.cure("allow to write it (chmod u+w), or overwrite it"))?;
+            self.refuse_protected()?;
         }
         // The journal first: if we are killed in between, it explains the new file. If edits do not reach the journal,
         // saving is all the more urgent.
