@@ -14,7 +14,6 @@ use crate::tui::document::sheet::Cell;
 use crate::tui::state::recorder::Work;
 use crate::tui::state::{Mode, Pane, State, entry, first};
 use crate::tui::text::line::Line;
-use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] = &[
     command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add)

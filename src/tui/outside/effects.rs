@@ -17,6 +17,7 @@ use crate::tui::graphics::probed::Request;
 use crate::tui::keys::Keymap;
 use crate::tui::layout::seeing;
 use crate::tui::state::State;
+use crate::tui::text::said;
 
 impl Editor {
     /// Does one.
