@@ -59,6 +59,7 @@ pub(super) fn cut_short(place: &str) -> Error {
 const CUT: &[&str] = &[
     "unexpected end of",
     "image truncated",
+    "unexpected input buffer end",
     "failed to fill whole buffer",
     "reference to missing bytes",
     "not enough data was provided",

@@ -48,6 +48,10 @@ fn look(reader: &mut (impl BufRead + Seek), format: ImageFormat, place: &str) ->
     reader.rewind().map_err(failed)?;
     let number = |at: usize| head.get(at..at + 4).and_then(|b| b.first_chunk()).map(|b| u32::from_le_bytes(*b));
     match format {
+        // The header of a PAM has an end.
+        ImageFormat::Pnm if length < HEAD && head.starts_with(b"P7") && !head.windows(6).any(|w| w == b"ENDHDR") => {
+            Err(limits::cut_short(place))
+        }
         // A WebP says how long it is.
         ImageFormat::WebP if number(4).is_some_and(|rest| length < u64::from(rest) + 8) => {
             Err(limits::cut_short(place))

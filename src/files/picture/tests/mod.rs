@@ -233,11 +233,11 @@ fn saved(name: &str, image: &DynamicImage) -> (tempfile::TempDir, std::path::Pat
 
 #[test]
 fn the_plain_kinds_are_read() {
-    let rgb: DynamicImage = ImageBuffer::from_fn(4, 2, |x, y| Rgb([x as u8 * 60, y as u8 * 200, 7u8])).into();
-    for name in ["a.bmp", "a.tga", "a.ppm", "a.qoi", "a.tiff", "a.webp", "a.png", "a.gif", "a.ico"] {
+    let rgb: DynamicImage = ImageBuffer::from_fn(40, 20, |x, y| Rgb([x as u8 * 6, y as u8 * 10, 7u8])).into();
+    for name in ["a.bmp", "a.tga", "a.ppm", "a.qoi", "a.tiff", "a.webp", "a.png"] {
         let (_folder, path) = saved(name, &rgb);
         let picture = read(&path, &Limits::default()).unwrap().picture;
-        assert_eq!(pixels::encode(picture.texel(3, 1)), [180, 200, 7, 255], "{name}");
+        assert_eq!(pixels::encode(picture.texel(30, 19)), [180, 190, 7, 255], "{name}");
         let whole = std::fs::read(&path).unwrap();
         for cut in [whole.len() / 4, whole.len() / 2, whole.len() - 3] {
             std::fs::write(&path, &whole[..cut]).unwrap();
@@ -286,6 +286,7 @@ fn what_is_not_read_of_a_kind_is_called_by_its_name() {
         ("a.jls", jpeg(0xf7), "a JPEG-LS picture (convert it: magick"),
         ("a.jpg", jpeg(0xc3), "a lossless JPEG (convert it: magick"),
         ("b.jpg", jpeg(0xc9), "a JPEG with arithmetic coding (convert it: magick"),
+        ("cut.pam", b"P7\nWIDTH 4\nTU".to_vec(), "is cut short (copy it again"),
         ("cut.pnm", b"P3 2 2 255 1 2 3 4 5".to_vec(), "is cut short (copy it again"),
     ] {
         let path = folder.path().join(name);
