@@ -1,5 +1,5 @@
-//! A display of its own (Xvfb), a scene in a folder of its own, and a real `plica view` on them, driven by keys (xdotool) and
-//! seen by screenshots (ImageMagick's import).
+//! A private display (Xvfb), a scene in its own folder, and a real `plica view` on them, driven by keys (xdotool) and
+//! observed by screenshots (ImageMagick's import).
 #![allow(dead_code, clippy::print_stdout, reason = "each test program uses a part of it, and says what it leaves out")]
 
 use std::io::{BufRead, BufReader, Read};
@@ -18,7 +18,7 @@ pub const PATIENCE: Duration = Duration::from_secs(60);
 /// Height of the bar at scale 1.
 pub const BAR: usize = 34;
 
-/// A display of its own, gone with the value.
+/// A private display; it ends when the value is dropped.
 pub struct Display {
     server: Child,
     pub name: String,
@@ -57,7 +57,7 @@ impl Drop for Display {
     }
 }
 
-/// A scene copied to a folder of its own, and where the program may keep its sockets.
+/// A scene copied to its own folder, and a folder for the program's sockets.
 pub struct Place {
     pub folder: tempfile::TempDir,
     runtime: tempfile::TempDir,
@@ -74,7 +74,7 @@ impl Place {
         Place { scene: folder.path().join("blink.plica.json"), folder, runtime: tempfile::tempdir().unwrap() }
     }
 
-    /// All files beside the scene and among the program's sockets.
+    /// All files beside the scene and in the folder for sockets.
     pub fn files(&self) -> Vec<PathBuf> {
         let folders = [self.folder.path().to_owned(), self.runtime.path().join("plica")];
         let entries = folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten();
@@ -104,14 +104,14 @@ impl Place {
         serde_json::from_slice(&std::fs::read(&self.scene).unwrap()).unwrap()
     }
 
-    /// All that frames and overlays are made of.
+    /// The synthesis, for frames and overlays.
     pub fn synth(&self) -> Synth {
         let scene = self.scene();
         let loaded = materials::load(&self.scene, &scene, &Options::default(), &mut materials::Cache::default());
         render::synth(&scene, &loaded.unwrap().0, None).unwrap()
     }
 
-    /// The picture with nothing moving.
+    /// The picture with no zone moving.
     pub fn still(&self) -> Frame {
         let mut scene = self.scene();
         for layer in &mut scene.layers {
@@ -122,7 +122,7 @@ impl Place {
         cpu::frame(&render::synth(&scene, &loaded.unwrap().0, None).unwrap(), 0.0)
     }
 
-    /// The frame as the CPU makes it.
+    /// The frame as rendered on the CPU.
     pub fn frame(&self, number: u64) -> Frame {
         cpu::frame(&self.synth(), self.scene().timeline.time_of(number))
     }
@@ -140,14 +140,14 @@ impl<'a> View<'a> {
         View::of(display, &mut place.command())
     }
 
-    /// The window of any command line, with the keyboard.
+    /// The window that a command opens, with the keyboard focus.
     pub fn of(display: &'a Display, command: &mut Command) -> View<'a> {
         let view = View::beside(display, command);
         display.tool("xdotool", &["windowfocus", "--sync", &view.window]);
         view
     }
 
-    /// The window of any command line, as it opens.
+    /// The window that a command opens, without giving it the focus.
     pub fn beside(display: &'a Display, command: &mut Command) -> View<'a> {
         let process = command.env("DISPLAY", &display.name).spawn().unwrap();
         let mut view = View { display, process, window: String::new() };
@@ -177,7 +177,7 @@ impl<'a> View<'a> {
         self.display.tool("xdotool", &arguments);
     }
 
-    /// What the window shows, without its bar, opaque.
+    /// The contents of the window without its bar, opaque.
     pub fn shot(&self) -> Frame {
         let geometry = self.display.tool("xdotool", &["getwindowgeometry", "--shell", &self.window]);
         let geometry = String::from_utf8(geometry).unwrap();
@@ -223,7 +223,7 @@ pub fn difference(shot: &Frame, frame: &Frame) -> u8 {
     largest
 }
 
-/// Where a picture of the size of `frame` stands at 1:1 in a window.
+/// The corner of a picture of the size of `frame` at 1:1 in a window.
 pub fn corner(shot: &Frame, frame: &Frame) -> (usize, usize) {
     let middle = |room: usize, size: usize| ((room as f64 - size as f64) / 2.0).round() as usize;
     (middle(shot.width(), frame.width()), middle(shot.height() - BAR, frame.height()))

@@ -1,5 +1,5 @@
-//! A scene, loaded and synthesised, and what holds for every demo: outside the zones the picture keeps still, and no seam
-//! opens where a zone ends.
+//! A scene, loaded and synthesised, and what is true of every demo: outside the zones the picture keeps still, and no
+//! seam opens where a zone ends.
 
 use std::path::Path;
 
@@ -47,7 +47,7 @@ impl Show {
         render::cpu::finish(&self.materials.pictures[&self.layer().image].to_linear())
     }
 
-    /// For every pixel, how many zones hold it.
+    /// For every pixel, how many zones contain it.
     pub fn zones(&self) -> Vec<u32> {
         let (width, height) = self.synth.size;
         let layer = self.synth.layers[0].downcast::<folding::synth::Synth>().unwrap();
@@ -63,7 +63,7 @@ impl Show {
     }
 }
 
-/// The largest difference of two colours in any channel, in 8-bit steps.
+/// The largest difference of two colors in any channel, in 8-bit steps.
 pub fn step(a: [u8; 4], b: [u8; 4]) -> u8 {
     (0..4).map(|i| a[i].abs_diff(b[i])).max().unwrap()
 }
@@ -72,7 +72,7 @@ pub fn at(frame: &Frame, x: usize, y: usize) -> [u8; 4] {
     *frame.get(x, y)
 }
 
-/// A time that shows the scene well moved, and two others.
+/// A time at which the scene has moved far, and two others.
 pub const TIMES: [f64; 3] = [0.1, 0.5, 0.75];
 
 pub fn still_outside(name: &str, show: &Show) {
@@ -88,9 +88,9 @@ pub fn still_outside(name: &str, show: &Show) {
     assert!(moves, "{name}: nothing moves");
 }
 
-/// Across a zone's outline a moved picture steps no more than it would step anyway: than the still picture does within a
-/// few pixels. Where a zone ends on purpose at an edge that is seen (the lower lid, a sign before the car) is left out:
-/// there one thing covers another.
+/// Checks that across a zone's outline, neighboring pixels of a moved picture differ no more than those of the still
+/// picture within a few pixels. Where a zone deliberately ends at a visible edge (the lower lid, a sign in front of the
+/// car), one thing covers another, and nothing is checked.
 pub fn no_seam(name: &str, show: &Show) {
     let (seams, still) = (seams(show), show.still());
     for time in (0..8).map(|k| f64::from(k) / 8.0) {
@@ -104,7 +104,7 @@ pub fn no_seam(name: &str, show: &Show) {
 
 type Pixel = (usize, usize);
 
-/// Neighbours that a zone's outline parts, but where one thing covers another on purpose.
+/// Neighboring pixels that a zone's outline separates, except where one thing covers another on purpose.
 fn seams(show: &Show) -> Vec<(Pixel, Pixel)> {
     let (width, height) = show.synth.size;
     let zones = show.zones();
@@ -116,7 +116,7 @@ fn seams(show: &Show) -> Vec<(Pixel, Pixel)> {
     parted.filter(|&(a, b)| !covers(a) && !covers(b)).collect()
 }
 
-/// Whether a pixel is near a fold region's edge or in a zone with a sampler image of its own: there one thing covers
+/// Whether a pixel is near a fold region's edge or in a zone with its own sampler image: there one thing covers
 /// another.
 fn covering(show: &Show) -> impl Fn(Pixel) -> bool {
     let mut areas: Vec<Polygon> = Vec::new();
@@ -133,7 +133,7 @@ fn covering(show: &Show) -> impl Fn(Pixel) -> bool {
     }
 }
 
-/// The largest step between neighbours within 3 pixels.
+/// The largest step between neighbors within 3 pixels.
 fn roughness(frame: &Frame, x: usize, y: usize) -> u8 {
     let rows = y.saturating_sub(3)..=(y + 3).min(frame.height() - 2);
     let columns = x.saturating_sub(3)..=(x + 3).min(frame.width() - 2);

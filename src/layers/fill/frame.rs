@@ -1,4 +1,4 @@
-//! A frame of a fill layer on the CPU: the reference. frame.wgsl has the same names and shape.
+//! A frame of a fill layer on the CPU: the reference. frame.wgsl has the same names and structure.
 
 use kurbo::Vec2;
 

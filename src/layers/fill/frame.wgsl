@@ -1,4 +1,4 @@
-// A fill on the GPU: the twin of frame.rs, with the same names and the same shape.
+// A fill on the GPU: the twin of frame.rs, with the same names and structure.
 
 const MOST_STOPS = 64u;
 

@@ -1,4 +1,4 @@
-//! A color or a gradient over the whole frame: a ground beneath transparent pictures, a veil over them.
+//! A color or a gradient over the whole frame: a background beneath transparent pictures, or a veil over them.
 
 pub mod frame;
 pub mod model;
@@ -16,7 +16,7 @@ use super::technique::{Checked, Kind, Technique};
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
-/// What is known of fills without a layer of one.
+/// The technique.
 pub static KIND: Kind = Kind {
     name: "fill",
     programs: &[&synth::PROGRAM],
@@ -61,7 +61,7 @@ impl Technique for FillLayer {
     }
 }
 
-/// A gradient starts from black above to white below.
+/// A new gradient goes from black above to white below.
 fn start(_variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     match field {
         "from" => Some(json!([bounds.x0, bounds.y0])),
@@ -76,10 +76,10 @@ fn ascending(_variant: &str, list: &str) -> Option<&'static str> {
     (list == "stops").then_some("/along")
 }
 
-/// A color half way between its neighbours, with that of the one before.
+/// A new stop half way between its neighbors, with the color of the one before.
 fn item(_variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
     let along = |i: usize| items.get(i)?.get("along")?.as_f64();
-    // Nothing stands before the first nor behind the last where those are the ends of the line.
+    // Nothing fits before the first or after the last stop if those are at the ends of the line.
     let index = if along(0) == Some(0.0) { index.max(1) } else { index };
     let index = if along(items.len().checked_sub(1)?) == Some(1.0) { index.min(items.len() - 1) } else { index };
     let before = index.checked_sub(1);

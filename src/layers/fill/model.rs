@@ -1,4 +1,4 @@
-//! The fill layer as it stands in the document. Doc comments become the help of forms and schema.
+//! The fill layer as in the document. The doc comments become the help texts of forms and schema.
 
 use kurbo::Vec2;
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use crate::base::pixels::{Rgba, decode};
 use crate::base::problem::{Problem, quoted};
 use crate::layers::check;
 
-/// Stops of a gradient at most: the shader reads them one after the other.
+/// The most stops of a gradient: the shader searches them one by one.
 pub const MOST_STOPS: usize = 64;
 
 /// A color or a gradient over the whole frame.
@@ -58,7 +58,7 @@ fn white() -> String {
 }
 
 impl FillLayer {
-    /// Everything that can be wrong beyond shape.
+    /// The checks beyond shape.
     pub fn check(&self) -> Vec<Problem> {
         let mut problems: Vec<Problem> = color_problem(&self.color, "/color").into_iter().collect();
         let Some(Gradient { from, to, stops }) = &self.gradient else { return problems };
@@ -77,7 +77,7 @@ impl FillLayer {
         problems.into_iter().chain(ascending).chain(colors).collect()
     }
 
-    /// Colors along a line, one alone where there is no gradient; what no color is counts as clear.
+    /// Colors along a line; only one if there is no gradient. An invalid color counts as transparent.
     pub fn stops(&self) -> Vec<(f64, Rgba)> {
         let light = |text: &str| parse(text).map_or([0.0; 4], decode);
         match &self.gradient {
@@ -86,7 +86,8 @@ impl FillLayer {
         }
     }
 
-    /// Where the line begins, and its direction divided by its length: what is `from + v` stands at `axis.dot(v)`.
+    /// Where the line begins, and its direction divided by its length: the point `from + v` is at `axis.dot(v)` along
+    /// it.
     pub fn line(&self) -> (Vec2, Vec2) {
         let Some(Gradient { from, to, .. }) = &self.gradient else { return (Vec2::ZERO, Vec2::ZERO) };
         let (from, to) = (Vec2::from((from[0], from[1])), Vec2::from((to[0], to[1])));

@@ -1,4 +1,4 @@
-//! A fill, ready to be shown at any time: it is the same at all of them.
+//! A fill, ready for rendering at any time; it does not change over time.
 
 use std::sync::Arc;
 
@@ -18,25 +18,25 @@ pub static PROGRAM: Program =
 /// What a frame needs.
 #[derive(Clone, Debug)]
 pub struct Synth {
-    /// Colors and where along the line they stand, ascending.
+    /// Colors and their places along the line, ascending.
     pub stops: Vec<(f64, Rgba)>,
     /// Where the line begins, in pixels.
     pub from: Vec2,
     /// Its direction divided by its length.
     pub axis: Vec2,
-    /// The place in each pixel that is looked at.
+    /// The place in each pixel that is evaluated.
     pub place: Vec2,
 }
 
 impl Synth {
-    /// The layer with this place in each pixel looked at.
+    /// The layer, evaluated at this place in each pixel.
     pub fn new(layer: &FillLayer, place: Vec2) -> Self {
         let (from, axis) = layer.line();
         Synth { stops: layer.stops(), from, axis, place }
     }
 }
 
-/// `Stop` of frame.wgsl.
+/// `Stop` in frame.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
 struct Stop {
@@ -45,7 +45,7 @@ struct Stop {
     padding: [f32; 3],
 }
 
-/// `Fill` of frame.wgsl behind its stops.
+/// The part of `Fill` in frame.wgsl after the stops.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Line {
