@@ -2,8 +2,10 @@
 
 use super::support::press;
 use crate::files::Options;
+use crate::files::materials;
 use crate::files::profiles::TUTOR;
 use crate::files::session::Mode as Open;
+use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
 use crate::tui::events::{Effect, Event};
@@ -45,6 +47,19 @@ fn at(state: &State) -> usize {
     state.tutor.as_ref().map_or(0, |tutor| tutor.at)
 }
 
+/// The line of the closed lid is dark from one corner of the eye to the other, and below it nothing is.
+fn lid_is_closed(state: &State) {
+    let scene = state.document().scene();
+    let loaded = materials::load(state.door.path(), scene, &Options::default(), &mut materials::Cache::default());
+    let frame = cpu::frame(&render::synth(scene, &loaded.unwrap().0, None).unwrap(), 0.5);
+    let dark = |x: usize, y: usize| frame.get(x, y)[..3].iter().map(|c| u32::from(*c)).sum::<u32>() < 200;
+    for x in 126..213 {
+        let rows: Vec<usize> = (170..240).filter(|&y| dark(x, y)).collect();
+        let (Some(first), Some(last)) = (rows.first(), rows.last()) else { panic!("the line has a gap at {x}") };
+        assert!(last - first < 12, "{x}: dark from {first} to {last}");
+    }
+}
+
 #[test]
 fn every_lesson_is_done_by_its_keys() {
     let (_folder, mut state) = begun();
@@ -61,6 +76,7 @@ fn every_lesson_is_done_by_its_keys() {
         }
         assert_eq!(at(&state), i + 1, "{} is not done by its keys: {:?}", lesson.title, state.message);
     }
+    lid_is_closed(&state);
     assert!(press(&mut state, "Esc Esc : \"q\" Enter").iter().any(|effect| matches!(effect, Effect::Quit)));
 }
 

@@ -117,7 +117,7 @@ pub const LESSONS: &[Lesson] = &[
             Key(ENTRY, "commit"),
             Key(EVERYWHERE, "back"),
         ],
-        done: |state| rise(state) == [-8.0, -56.0, -76.0, -64.0, -8.0] && state.selected_from.is_none(),
+        done: |state| rise(state) == [-8.0, -56.0, -76.0, -64.0, -24.0] && state.selected_from.is_none(),
     },
     Lesson {
         title: "the probe",
