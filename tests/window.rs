@@ -269,3 +269,20 @@ fn without_anything_to_draw_with_one_line_says_so() {
     assert!(said.starts_with("plica: ") && said.contains("neither a GPU nor a software driver"), "{said}");
     assert_eq!(said.lines().count(), 1, "{said}");
 }
+
+#[test]
+fn a_click_takes_the_keyboard_where_no_window_manager_gives_it() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let mut view = View::beside(&display, &mut place.command());
+    view.until("a picture", |v| v.shot().cells().iter().any(|p| p[0] > 200));
+    let shot = view.shot();
+    let (x, y) = ((shot.width() / 2).to_string(), (shot.height() / 2).to_string());
+    display.tool("xdotool", &["mousemove", "--sync", "--window", &view.window, &x, &y]);
+    let focused = || String::from_utf8(display.tool("xdotool", &["getwindowfocus"])).unwrap().trim().to_owned();
+    assert_ne!(focused(), view.window);
+    display.tool("xdotool", &["click", "1"]);
+    view.until("the keyboard", |v| focused() == v.window);
+    view.keys(&["P"]);
+    view.until("something that moves", |v| v.shot() != shot);
+}

@@ -292,6 +292,7 @@ impl App {
     /// A button of the mouse goes down or up.
     fn press(&mut self, event_loop: &ActiveEventLoop, button: Button, pressed: bool) {
         let mut asked = Asked::Nothing;
+        self.opened.iter().filter(|_| pressed).for_each(Opened::clicked);
         self.leading(|app| {
             asked = match pressed {
                 true => app.mouse.pressed(&mut app.state, button),

@@ -89,6 +89,11 @@ impl Opened {
         self.desk.is_none() || !self.hidden
     }
 
+    /// See [`Desk::take_the_keyboard`].
+    pub fn clicked(&self) {
+        self.desk.iter().for_each(Desk::take_the_keyboard);
+    }
+
     /// See [`Desk::wheel_is_a_button`].
     pub fn wheel_is_a_button(&self) -> bool {
         self.desk.as_ref().is_some_and(Desk::wheel_is_a_button)

@@ -1,10 +1,10 @@
-//! What winit does not do on X11, over a connection of our own: a window that opens without taking the keyboard, whether the
-//! window can be seen at all, and how the wheel is told of.
+//! What winit does not do on X11, over a connection of our own: a window that opens without taking the keyboard, and takes it
+//! where no window manager gives it; whether the window can be seen at all, and how the wheel is told of.
 
 use winit::raw_window_handle::{HasWindowHandle, RawWindowHandle};
 use winit::window::Window;
 use x11rb::protocol::xinput::{ConnectionExt as _, DeviceClassData, DeviceType};
-use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, MapState, PropMode};
+use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, InputFocus, MapState, PropMode};
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
@@ -40,6 +40,22 @@ impl Desk {
         };
         if let Err(error) = ask() {
             tracing::info!("the window may take the keyboard: {error}");
+        }
+    }
+
+    /// Takes the keyboard where no window manager (`_NET_SUPPORTING_WM_CHECK`) gives it to the window that is clicked.
+    pub fn take_the_keyboard(&self) {
+        let ask = || -> Result<(), Box<dyn std::error::Error>> {
+            let root = self.server.query_tree(self.window)?.reply()?.root;
+            let atom = self.server.intern_atom(false, b"_NET_SUPPORTING_WM_CHECK")?.reply()?.atom;
+            let managed = self.server.get_property(false, root, atom, AtomEnum::WINDOW, 0, 1)?.reply()?.length > 0;
+            if !managed {
+                self.server.set_input_focus(InputFocus::POINTER_ROOT, self.window, x11rb::CURRENT_TIME)?.check()?;
+            }
+            Ok(())
+        };
+        if let Err(error) = ask() {
+            tracing::info!("the window may have no keyboard: {error}");
         }
     }
 
