@@ -33,7 +33,7 @@ pub struct Holder {
     pub certain: bool,
 }
 
-/// `ann on box (process 123, since 12 min ago)`.
+/// `ann on box (process 123, opened 12 min ago)`.
 impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.user.as_str(), self.host.as_str()) {
@@ -42,7 +42,11 @@ impl fmt::Display for Holder {
             (user, "") => write!(f, "{user}")?,
             (user, host) => write!(f, "{user} on {host}")?,
         }
-        write!(f, " (process {}, since {})", self.pid, ago(super::now_ms().saturating_sub(self.since_ms)))
+        write!(f, " (process {}", self.pid)?;
+        match self.since_ms {
+            0 => write!(f, ")"),
+            since => write!(f, ", opened {})", ago(super::now_ms().saturating_sub(since))),
+        }
     }
 }
 
@@ -136,7 +140,7 @@ mod tests {
         let sign = Sign::put_up(&scene).unwrap();
         let told = Holder::of_lock(&scene, Some(std::process::id()));
         assert_eq!((told.pid, told.host.as_str()), (std::process::id(), system::host_name().as_str()));
-        assert!(told.to_string().ends_with("since just now)"), "{told}");
+        assert!(told.to_string().ends_with(", opened just now)"), "{told}");
         assert_eq!(Holder::of_lock(&scene, Some(1)).to_string(), "process 1");
         drop(sign);
         assert_eq!(read(&scene), None);

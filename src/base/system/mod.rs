@@ -88,8 +88,19 @@ pub fn user() -> u32 {
 
 /// The name of that user; the number where it has none.
 pub fn user_name() -> String {
-    let named = ["USER", "LOGNAME"].into_iter().filter_map(|name| std::env::var(name).ok());
-    named.into_iter().find(|name| !name.is_empty()).unwrap_or_else(|| format!("user {}", user()))
+    let told = ["USER", "LOGNAME"].into_iter().filter_map(|name| std::env::var(name).ok());
+    let listed = || std::fs::read_to_string("/etc/passwd").ok().and_then(|list| name_in(&list, user()));
+    told.into_iter().find(|name| !name.is_empty()).or_else(listed).unwrap_or_else(|| format!("user {}", user()))
+}
+
+/// The name of a user in a list like `/etc/passwd`: `name:password:number:...`, a line each.
+fn name_in(list: &str, user: u32) -> Option<String> {
+    let of = |line: &str| {
+        let mut fields = line.split(':');
+        let (name, number) = (fields.next()?, fields.nth(1)?);
+        (!name.is_empty() && number.parse() == Ok(user)).then(|| name.to_owned())
+    };
+    list.lines().find_map(of)
 }
 
 /// The name of this machine.
@@ -147,6 +158,14 @@ pub fn over_ssh() -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_user_has_the_name_that_the_list_gives() {
+        let list = "root:x:0:0:root:/root:/bin/sh\nann:x:1000:1000::/home/ann:/bin/sh\nbad\n:x:7:7";
+        for (user, name) in [(0, Some("root")), (1000, Some("ann")), (7, None), (100, None)] {
+            assert_eq!(name_in(list, user).as_deref(), name, "{user}");
+        }
+    }
 
     #[test]
     fn a_socket_pair_has_our_own_user() {

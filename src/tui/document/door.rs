@@ -245,7 +245,11 @@ impl Door {
         }
         if !overwrite && let Err(why) = self.session.may_overwrite() {
             tracing::warn!("not saved: {why}");
-            return Err(Error::Usage("another program changed the file: :merge takes it in, :w! overwrites it".into()));
+            let way = match self.session.difference() {
+                Ok(_) => ":merge takes it in, :w! overwrites it",
+                Err(_) => "it cannot be read any more, :w! overwrites it",
+            };
+            return Err(Error::Usage(format!("another program changed the file: {way}")));
         }
         if !overwrite && self.session.refuse_protected().is_err() {
             return Err(Error::Usage(

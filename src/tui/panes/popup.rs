@@ -31,11 +31,13 @@ pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position
 
 fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let text: &[String] = if let Then::Answer(question) = &choice.then { &question.text } else { &[] };
+    let text = text.join("\n");
     let words = choice.options.iter().map(|(word, _)| width(word)).max().unwrap_or(0);
     let help = choice.options.iter().map(|(_, help)| width(help)).max().unwrap_or(0);
     let title = plain(&choice.title);
-    let above = text.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
+    let above = text.lines().map(width).max().unwrap_or(0).max(width(&title));
     let wide = (words + help + 6).max(above + 4).clamp(30, screen.width - 8);
+    let text = folded(&text, wide - 4);
     // What is cut is told below the list, for the row under the cursor.
     let room = wide.saturating_sub(words + 6);
     let told = choice.options.iter().map(|(_, help)| width(help)).filter(|&help| help > room);

@@ -105,6 +105,10 @@ fn a_second_editor_is_told_and_looks_on() {
     let (words, text) = asked(&second).unwrap();
     assert_eq!(words, ["look", "quit"]);
     assert!(text.contains("is being edited by") && text.contains(&std::process::id().to_string()), "{text}");
+    let shown = super::screens::screen(&second);
+    let words: Vec<&str> = shown.split(['│', ' ', '\n']).filter(|word| !word.is_empty()).collect();
+    let told = words.join(" ");
+    assert!(told.contains("opened just") && told.contains("now)."), "{shown}");
     press(&mut second, "Enter");
     for keys in ["/ \"speed\" Enter +", "u", "Ctrl-r", ": \"set title=x\" Enter", ": \"w\" Enter", "g t d"] {
         press(&mut second, keys);
@@ -182,7 +186,8 @@ fn a_file_that_is_gone_or_broken_leaves_the_last_good_state() {
     let message = state.message.clone().unwrap();
     assert!(message.bad && message.text.starts_with("what is here stays"), "{message:?}");
     assert_eq!(state.life.file, Some("file unreadable"));
-    assert!(save(&mut state, "w").is_err(), "somebody may be mending it");
+    let refused = save(&mut state, "w").unwrap_err();
+    assert!(refused.contains(":w!") && !refused.contains(":merge"), "somebody may be mending it: {refused}");
     std::fs::remove_file(&place.scene).unwrap();
     update(&mut state, Event::FilesChanged(vec![place.scene.clone()]));
     assert!(state.message.clone().unwrap().text.contains(":w writes it again"));
