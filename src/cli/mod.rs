@@ -3,10 +3,12 @@
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, Parser};
 
 use crate::base::error::{Error, Result};
@@ -14,6 +16,7 @@ use crate::base::text;
 use crate::files;
 use crate::ops::Context;
 use crate::ops::command_line::CommandLine;
+use crate::ops::demo;
 #[cfg(feature = "tui")]
 use crate::{ops::Command, tui};
 
@@ -21,7 +24,7 @@ mod process;
 
 /// Runs the process.
 pub fn main() -> ExitCode {
-    let line = CommandLine::try_parse().unwrap_or_else(|error| refuse(error));
+    let line = CommandLine::try_parse().unwrap_or_else(|error| refuse(with_tip(error)));
     let cancel = Arc::new(AtomicBool::new(false));
     let closed = Arc::new(AtomicBool::new(false));
     let mut context = Context::process(cancel.clone());
@@ -43,6 +46,20 @@ fn quoting(error: &Error) -> String {
     split.fold(error.to_string(), |text, word| text.replace(&word, &text::line(&word)))
 }
 
+/// The error; where a file stands in the place of a subcommand, with what opens it.
+fn with_tip(mut error: clap::Error) -> clap::Error {
+    let word = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(word)) => word.clone(),
+        _ => return error,
+    };
+    if cfg!(feature = "tui") && Path::new(&word).is_file() {
+        let tip = format!("there is a file of that name; 'plica edit {}' opens it", demo::quoted(&word));
+        error.remove(ContextKind::SuggestedSubcommand);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
+    error
+}
+
 /// Says what is wrong in the command line, and ends. The message quotes words of it, which may be names that somebody else
 /// chose: control characters in them are escaped.
 fn refuse(error: clap::Error) -> ! {
@@ -52,7 +69,7 @@ fn refuse(error: clap::Error) -> ! {
     }
     let harmless = std::env::args_os().map(|word| text::line(&word.to_string_lossy()).into_owned());
     match CommandLine::try_parse_from(harmless) {
-        Err(error) => error.exit(),
+        Err(error) => with_tip(error).exit(),
         // As a name it would do: what is left to say is that it was not taken as it is.
         Ok(_) => {
             let first = error.to_string();

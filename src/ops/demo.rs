@@ -50,7 +50,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 }
 
 /// A path as it is typed in a shell.
-pub(super) fn quoted(path: &str) -> String {
+pub fn quoted(path: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+@%".contains(c);
     if path.chars().all(plain) { path.to_owned() } else { format!("'{}'", path.replace('\'', r"'\''")) }
 }
