@@ -138,7 +138,8 @@ pub fn settings(document: &Document, line: &str) -> Vec<String> {
             '"' if !line[..at].ends_with('\\') => quoted = !quoted,
             '[' | '{' if !quoted => depth += 1,
             ']' | '}' if !quoted => depth -= 1,
-            ' ' if !quoted && depth <= 0 && begins(document, line[at..].trim_start()) => {
+            // A name with a space, as `left eye.feather=3`, is no end of a setting: that has its `=`.
+            ' ' if !quoted && depth <= 0 && is_set(&all) && begins(document, line[at..].trim_start()) => {
                 all.push(String::new());
                 continue;
             }
@@ -149,6 +150,21 @@ pub fn settings(document: &Document, line: &str) -> Vec<String> {
         }
     }
     all.into_iter().map(|one| one.trim().to_owned()).filter(|one| !one.is_empty()).collect()
+}
+
+/// Whether the last of these settings has a value.
+fn is_set(all: &[String]) -> bool {
+    all.last().is_some_and(|last| equals(last).is_some())
+}
+
+/// Where the first `=` outside quotes is.
+fn equals(setting: &str) -> Option<usize> {
+    let mut inside = false;
+    let found = setting.char_indices().find(|&(_, c)| {
+        inside ^= c == '"';
+        c == '=' && !inside
+    });
+    found.map(|(at, _)| at)
 }
 
 /// Whether a setting begins here: with a path of the scene, or with something that looks like one.
@@ -174,13 +190,8 @@ fn refused(scene: &Path, problems: Vec<Problem>) -> Error {
 
 /// Splits at the first `=` outside quotes; the value is JSON if it can be read as JSON, otherwise text.
 pub fn parse(setting: &str) -> Result<(&str, Value)> {
-    let mut inside = false;
-    let split = setting.char_indices().find(|&(_, c)| {
-        inside ^= c == '"';
-        c == '=' && !inside
-    });
-    let Some((at, _)) = split else {
-        return Err(Error::Usage(format!("{setting}: write it as PATH=VALUE")));
+    let Some(at) = equals(setting) else {
+        return Err(Error::Usage(format!("{setting}: write it as PATH=VALUE, a name with a space in quotes")));
     };
     let value = &setting[at + 1..];
     // A number that JSON cannot hold must not become text.

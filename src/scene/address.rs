@@ -61,7 +61,8 @@ pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Pl
 /// A name as it is written in an address: in quotes if it needs them.
 fn spelled(name: &str, in_list: bool) -> String {
     let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_+".contains(c));
-    if plain && !(in_list && name.starts_with(|c: char| c.is_ascii_digit())) {
+    // In a list digits are an index, and - is the place after the last.
+    if plain && !(in_list && (name == "-" || name.starts_with(|c: char| c.is_ascii_digit()))) {
         return name.to_owned();
     }
     format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""))
@@ -116,9 +117,9 @@ fn key(place: Place, token: &Token) -> Option<String> {
         Body::List(..) => {
             let items = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
             let named = || items.iter().position(|item| name_of(Some(item)).as_deref() == Some(token.text.as_str()));
-            let counted = || Some(token.text.as_str()).filter(|&text| text == "-" || within(text, items.len()));
-            let index = if token.quoted { None } else { counted().map(str::to_owned) };
-            index.or_else(|| named().map(|index| index.to_string()))
+            let bare = |known: bool| (known && !token.quoted).then(|| token.text.clone());
+            let index = bare(within(&token.text, items.len())).or_else(|| named().map(|index| index.to_string()));
+            index.or_else(|| bare(token.text == "-"))
         }
         Body::Numbers(count) => {
             // x and y are understood even if the columns have other names (dx, dy).

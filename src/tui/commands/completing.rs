@@ -1,7 +1,7 @@
 //! What the line being typed could become.
 
 use super::command::Table;
-use crate::scene::field;
+use crate::scene::{address, field};
 use crate::tui::state::State;
 
 /// Commands that take the path of a file, and whether it is meant relative to the scene.
@@ -40,14 +40,29 @@ fn paths(state: &State, typed: &str) -> Vec<String> {
     if typed.contains('=') {
         return Vec::new();
     }
-    let (parent, last) = typed.rsplit_once('.').unwrap_or(("", typed));
-    let pointer = if parent.is_empty() {
-        Some(String::new())
-    } else {
-        crate::scene::address::resolve(state.document(), parent).ok()
+    let (parent, last) = typed.split_at(last_step(typed));
+    let document = state.document();
+    let pointer = match parent.trim_end_matches('.') {
+        "" => Some(String::new()),
+        parent => address::resolve(document, parent).ok(),
     };
-    let children = pointer.map(|pointer| field::children(state.document(), &pointer)).unwrap_or_default();
-    let quoted = |name: String| if name.contains([' ', '.', '"', '=']) { format!("\"{name}\"") } else { name };
-    let names = children.into_iter().map(|child| quoted(child.name)).filter(|name| name.starts_with(last));
-    names.map(|name| if parent.is_empty() { name } else { format!("{parent}.{name}") }).collect()
+    let holder = pointer.as_deref().map(|pointer| address::address(document, pointer)).unwrap_or_default();
+    let children = pointer.map(|pointer| field::children(document, &pointer)).unwrap_or_default();
+    // As the address spells it: a name with a space in quotes.
+    let name = |child: field::Child| {
+        let whole = address::address(document, &child.pointer);
+        whole.strip_prefix(holder.as_str()).unwrap_or(&whole).trim_start_matches('.').to_owned()
+    };
+    let begins = |name: &String| name.trim_start_matches('"').starts_with(last.trim_start_matches('"'));
+    children.into_iter().map(name).filter(begins).map(|name| format!("{parent}{name}")).collect()
+}
+
+/// Where the last step of an address begins: after the last dot outside quotes.
+fn last_step(typed: &str) -> usize {
+    let mut inside = false;
+    let dots = typed.char_indices().filter(|&(_, c)| {
+        inside ^= c == '"';
+        c == '.' && !inside
+    });
+    dots.last().map_or(0, |(at, _)| at + 1)
 }

@@ -1,7 +1,6 @@
 //! Values by their paths.
 
 use crate::tui::text::plain;
-use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use crate::base::error::Error;
@@ -37,7 +36,8 @@ fn set(state: &mut State, call: &Call) -> Done {
 
 fn get(state: &mut State, call: &Call) -> Done {
     let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
-    let value = field::value(state.document(), &pointer).unwrap_or(Value::Null);
+    let value = field::value(state.document(), &pointer);
+    let value = value.ok_or_else(|| format!("{} is not set, and has no default", call.text))?;
     state.say(plain(&value.to_string()));
     Ok(())
 }
