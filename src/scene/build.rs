@@ -104,6 +104,8 @@ fn lost(tag: &str, old: &Value, new: &Value) -> Option<String> {
     let names: Vec<&str> = old.as_object()?.iter().filter(gone).map(|(name, _)| name.as_str()).collect();
     match names.as_slice() {
         [] => None,
+        // Regions are several, a radius is one.
+        [one] if one.ends_with('s') && !one.ends_with("us") => Some(format!("its {one} are not kept")),
         [one] => Some(format!("its {one} is not kept")),
         [most @ .., last] => Some(format!("its {} and {last} are not kept", most.join(", "))),
     }

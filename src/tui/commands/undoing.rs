@@ -167,24 +167,24 @@ fn duration(text: &str) -> Option<Duration> {
 fn history(state: &mut State, _: &Call) -> Done {
     let history = state.door.history();
     let saved = history.saved();
-    let line = |way: String, state_of: usize, saved_if: usize, time_ms: u64, words: &str| {
-        let mark = if saved == Some(saved_if) { "  (as saved)" } else { "" };
-        plain(&format!("{way:<10} #{state_of:<5} {:>11}  {words}{mark}", state.door.ago(time_ms)))
+    let line = |way: String, state_of: usize, ago: String, words: &str| {
+        let mark = if saved == Some(state_of) { "  (as saved)" } else { "" };
+        plain(&format!("{way:<10} #{state_of:<5} {ago:>11}  {words}{mark}"))
     };
+    let ago = |time_ms: u64| state.door.ago(time_ms);
     let ahead = history.told_ahead(MOST_TOLD).into_iter().zip(history.undone()).zip(1..);
-    let mut lines: Vec<String> = ahead
-        .map(|((words, (state, step)), n)| line(format!("redo {n}"), state, state, step.time_ms, &words))
-        .collect();
+    let mut lines: Vec<String> =
+        ahead.map(|((words, (state, step)), n)| line(format!("redo {n}"), state, ago(step.time_ms), &words)).collect();
     lines.reverse();
     let here = if history.is_saved() { "-- now (saved) --" } else { "-- now --" };
     let scroll = lines.len().saturating_sub(3);
     lines.push(here.into());
     let behind = history.told(MOST_TOLD).into_iter().zip(history.done()).zip(1..);
-    // The state before the step is the one that `:undo N` leads to.
-    lines.extend(behind.map(|((words, (state, step)), n)| {
-        let before = history.before(state);
-        line(format!("undo {n}"), state, before, step.time_ms, &words)
-    }));
+    // A row is about the state that its step led to; `:undo N` leads to the one below it.
+    lines.extend(behind.map(|((words, (state, step)), n)| line(format!("undo {n}"), state, ago(step.time_ms), &words)));
+    if history.depth().0 <= MOST_TOLD {
+        lines.push(line(String::new(), 0, String::new(), "the beginning"));
+    }
     let mut aside = history.told_aside(MOST_TOLD);
     aside.sort_by_key(|told| std::cmp::Reverse(told.state));
     if !aside.is_empty() {
@@ -192,9 +192,7 @@ fn history(state: &mut State, _: &Call) -> Done {
         lines.push("-- other branches: :undo #STATE goes there, g- and g+ go through all states --".into());
     }
     lines.extend(
-        aside
-            .iter()
-            .map(|told| line(format!("after #{}", told.before), told.state, told.state, told.time_ms, &told.words)),
+        aside.iter().map(|told| line(format!("after #{}", told.before), told.state, ago(told.time_ms), &told.words)),
     );
     state.mode = Mode::Pages(Pages { title: "history".into(), lines, scroll });
     Ok(())

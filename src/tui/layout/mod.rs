@@ -1,7 +1,7 @@
 //! Where everything stands on the screen: functions of its size and of the state, read by what draws and by what clicks.
 
 use super::state::fits;
-use ratatui::layout::{Constraint, Layout, Margin, Rect, Spacing};
+use ratatui::layout::{Constraint, Layout, Margin, Position, Rect, Spacing};
 
 use super::state::{Mode, Pane, State};
 
@@ -60,6 +60,15 @@ pub fn screen(state: &State) -> Rect {
 /// Whether the picture stands in the middle, for want of room at the right.
 pub fn picture_in_middle(state: &State, areas: &Areas) -> bool {
     areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim))
+}
+
+/// The pane that a place of the screen belongs to, as it is drawn, of those that can have the focus.
+pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
+    let areas = areas(screen(state), state.seeing.probing);
+    let in_middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
+    let picture = areas.right.map(|[.., picture]| picture).or(in_middle);
+    let panes = [(Pane::Tree, Some(areas.tree)), (Pane::Picture, picture), (Pane::Table, Some(areas.table))];
+    panes.into_iter().find(|(_, area)| area.is_some_and(|area| area.contains(at))).map(|(pane, _)| pane)
 }
 
 /// The middle column, as far as the read-out leaves it.
