@@ -203,18 +203,12 @@ fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
     Ok(())
 }
 
-/// Steps every selected cell from its own value: numbers by the step, choices by one.
+/// Steps every selected number from its own value.
 fn step(state: &mut State, call: &Call) -> Done {
     let by = number(call, "step")?.saturating_mul(call.times());
-    let sheet = state.sheet();
     let (_, cell) = current(state).ok_or("there is nothing to step here")?;
     if !cell.is_number() {
-        let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
-        let mut choice: Choice =
-            choice::of_cell(state.document(), &cell, others).ok_or("only numbers and choices step")?;
-        choice.turn(by);
-        let word = choice.taken().unwrap_or_default().to_string();
-        return take(state, call, choice, &word);
+        return Err(format!("{} is no number: only numbers step (Enter opens it)", cell.field.name));
     }
     let unit = step_of(state.step);
     let edit = entry::each(state, |_, cell, _| {

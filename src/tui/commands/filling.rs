@@ -1,16 +1,16 @@
 //! A pasted table over the selected rows: the columns that it has, from the one under the cursor or by its header, take its
 //! values; the others stay.
 
-use crate::tui::document::sheet::in_range;
 use std::collections::BTreeMap;
 
 use kurbo::Vec2;
 use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
+use super::yanking::{counted, too_many};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
-use crate::tui::document::rows;
+use crate::tui::document::rows::{self, is_polar};
 use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
 use crate::tui::state::{State, entry};
 use crate::tui::text::numbers;
@@ -18,13 +18,6 @@ use crate::tui::text::numbers;
 pub const COMMANDS: &[Command] =
     &[command("fill", "JSON", "Give the selected rows values: a list of rows, or one row; heads may come first", fill)
         .change()];
-
-/// Whether a table is one for the selected rows: one row, or as many as are selected.
-pub fn fits(state: &State, table: &[Vec<String>]) -> bool {
-    let selected = entry::rows(state).count();
-    let rows = table.len() - usize::from(header(table).is_some());
-    rows == selected || rows == 1
-}
 
 /// The first row, where it has no number.
 fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
@@ -37,16 +30,25 @@ fn fill(state: &mut State, call: &Call) -> Done {
     let selected: Vec<usize> = entry::rows(state).collect();
     let header = header(&table);
     let values = &table[usize::from(header.is_some())..];
-    if !fits(state, &table) {
-        return Err(format!("{} rows do not fit over {} selected ones", values.len(), selected.len()));
+    if values.len() != 1 && values.len() != selected.len() {
+        return Err(too_many(values.len(), selected.len()));
     }
     let (document, sheet) = (state.document(), state.sheet());
     let mut filled = Filled { document, values: BTreeMap::new() };
     for (i, &at) in selected.iter().enumerate() {
         let Some(row) = sheet.row(at) else { continue };
         let texts = if values.len() == 1 { &values[0] } else { &values[i] };
+        let mut cells = Vec::new();
         for (k, text) in texts.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
             let cell = cell(&row, header, state.column, k).map_err(|why| format!("row {i}: {why}"))?;
+            cells.push((k, cell, text));
+        }
+        // A direction turns the length that was given; what follows from numbers that are given counts for nothing.
+        cells.sort_by_key(|(_, cell, _)| cell.part == Part::Degrees);
+        let given = |cell: &Cell| {
+            cells.iter().any(|(_, other, _)| other.pointer == cell.pointer && matches!(other.part, Part::Number(_)))
+        };
+        for (k, cell, text) in cells.iter().filter(|(_, cell, _)| !(is_polar(cell.part) && given(cell))) {
             filled.put(cell, text).map_err(|why| format!("row {i}, column {}: {why}", k + 1))?;
         }
     }
@@ -54,7 +56,7 @@ fn fill(state: &mut State, call: &Call) -> Done {
     let edits = filled.values.into_iter().map(|(pointer, value)| Edit::set(document, &pointer, value));
     let edit = Edit::all(edits.collect::<Vec<_>>());
     state.edit(edit, false)?;
-    state.say(format!("{count} {} pasted over", if count == 1 { "row" } else { "rows" }));
+    state.say(format!("{} pasted over", counted(count, "row")));
     Ok(())
 }
 
@@ -77,24 +79,31 @@ struct Filled<'a> {
 }
 
 impl Filled<'_> {
+    /// Takes the text of a cell, unless it is what the cell says already.
     fn put(&mut self, cell: &Cell, text: &str) -> Result<(), String> {
-        let old = self.values.get(&cell.pointer).cloned().or_else(|| field::value(self.document, &cell.pointer));
-        if !cell.is_number() {
-            self.values.insert(cell.pointer.clone(), Value::from(text));
+        let document = self.document;
+        if rows::exact(document, cell) == text {
             return Ok(());
         }
-        let number = rows::number(text).ok_or_else(|| format!("{} is not a number", quoted(text)))?;
-        in_range(&cell.field, cell.part, number)?;
-        let pair = |v: Vec2| Value::from(vec![tidy_json(v.x), tidy_json(v.y)]);
+        let read = rows::read(cell, text)?;
+        let Some(number) = read.as_f64().filter(|_| cell.is_number()) else {
+            self.values.insert(cell.pointer.clone(), read);
+            return Ok(());
+        };
+        if cell.number(document) == Some(number) {
+            return Ok(());
+        }
+        let old = self.values.get(&cell.pointer).cloned().or_else(|| field::value(document, &cell.pointer));
         let vector = || {
             let at = |i: usize| old.as_ref().and_then(|old| old.get(i)).and_then(Value::as_f64).unwrap_or(0.0);
             Vec2::new(at(0), at(1))
         };
+        let pair = |v: Vec2| Value::from(vec![tidy_json(v.x), tidy_json(v.y)]);
         let value = match cell.part {
-            Part::Whole => tidy_json(number),
+            Part::Whole => read,
             Part::Number(i) => {
                 let mut all = old.as_ref().and_then(Value::as_array).cloned().unwrap_or_default();
-                *all.get_mut(i).ok_or("there is no number here")? = tidy_json(number);
+                *all.get_mut(i).ok_or("there is no number here")? = read;
                 all.into()
             }
             Part::Length => pair(numbers::with_length(vector(), number)),

@@ -162,7 +162,7 @@ pub fn entries() -> Vec<String> {
         ("|J|  °", "A jump without a length takes one along x; it has no direction to turn"),
         (
             "p, or a paste",
-            "JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list; over a selection as many rows as are selected, or one",
+            "JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list; over a selection as many rows as are selected, or one; dx and dy count before |J| and °; on a number 7,5 is one number",
         ),
     ];
     let named = rows.iter().map(|&(what, help)| (what, help.to_owned()));

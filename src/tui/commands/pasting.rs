@@ -5,11 +5,12 @@ use serde_json::Value;
 
 use super::command::Done;
 use super::yanking::{here, item_of, upward};
-use super::{cells, filling, obey};
+use super::{cells, obey};
 use crate::scene::field::{self, Kind};
 use crate::tui::document::rows;
 use crate::tui::document::rows::Target;
 use crate::tui::state::{Pane, State};
+use crate::tui::text::numbers;
 
 /// Takes a pasted text, as one step of undo; where something is wrong with it, nothing changes.
 pub fn pasted(state: &mut State, text: &str) -> Done {
@@ -27,16 +28,20 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     if json {
         return obey(state, &format!("paste {}", trimmed.replace(['\n', '\r'], " ")), None);
     }
-    let on_number = state.focus == Pane::Table && cells::current(state).is_some_and(|(_, cell)| cell.is_number());
-    let number = trimmed.replace('−', "-");
-    if on_number && number.parse().is_ok_and(f64::is_finite) {
-        return obey(state, &format!("put {number}"), None);
+    let in_table = state.focus == Pane::Table;
+    let on_number = in_table && cells::current(state).is_some_and(|(_, cell)| cell.is_number());
+    // A comma within one number is a decimal comma, as where it is typed.
+    if let (true, Some(number)) = (on_number, rows::number(trimmed)) {
+        return obey(state, &format!("put {}", numbers::exact(number)), None);
     }
-    if state.selected_from.is_some() && state.focus == Pane::Table {
-        let rows: Vec<Vec<String>> = rows::records(text).into_iter().map(|record| record.fields).collect();
-        if filling::fits(state, &rows) {
-            return obey(state, &format!("fill {}", Value::from(rows)), None);
-        }
+    if state.selected_from.is_some() && in_table {
+        let lines: Vec<&str> = trimmed.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        let column = on_number && lines.iter().all(|line| rows::number(line).is_some());
+        let rows: Vec<Vec<String>> = match column {
+            true => lines.iter().map(|line| vec![(*line).to_owned()]).collect(),
+            false => rows::records(text)?.into_iter().map(|record| record.fields).collect(),
+        };
+        return obey(state, &format!("fill {}", Value::from(rows)), None);
     }
     let most = limits.items();
     let items =

@@ -14,7 +14,7 @@ use crate::tui::commands;
 use crate::tui::document::tree;
 use crate::tui::keys::Found;
 use crate::tui::layout::first_row;
-use crate::tui::state::{Mode, Pages, State};
+use crate::tui::state::{Mode, Pages, Pane, State};
 
 /// Takes an event and gives what is to be done outside.
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
@@ -105,7 +105,7 @@ fn report(state: &mut State, result: Result<String, String>) {
     }
 }
 
-/// Pasted text is typed where something is typed; a line end ends it.
+/// Pasted text is typed where something is typed, if it is one line.
 fn paste(state: &mut State, text: &str) {
     state.pressed.clear();
     state.count = None;
@@ -114,15 +114,25 @@ fn paste(state: &mut State, text: &str) {
     }
     // Terminals send the ends of lines as the Enter key does.
     let text = &text.replace("\r\n", "\n").replace('\r', "\n");
-    let first = text.lines().next().unwrap_or_default();
     match &state.mode {
-        Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_text(state, first),
+        Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_pasted(state, text),
         Mode::Normal => {
             if let Err(why) = pasting::pasted(state, text) {
                 state.complain(why);
             }
         }
         _ => state.complain("end this first (Esc): pasted rows go into lists, and text into what is being typed"),
+    }
+}
+
+fn type_pasted(state: &mut State, text: &str) {
+    let single = text.lines().count() == 1;
+    let mut lines = text.lines().filter(|line| single || !line.trim().is_empty());
+    match (lines.next().unwrap_or_default(), lines.count()) {
+        (line, 0) => type_text(state, line),
+        (_, more) => {
+            state.complain(format!("{} lines were pasted, but one is typed here: nothing was taken", more + 1))
+        }
     }
 }
 
@@ -135,21 +145,22 @@ fn click(state: &mut State, x: u16, y: u16) {
     if !matches!(state.mode, Mode::Normal) || state.is_small() {
         return;
     }
-    let areas = layout::areas(layout::screen(state), state.seeing.probing);
-    let at = Position::new(x, y);
-    if areas.tree.contains(at) {
+    let Some(pane) = layout::pane_at(state, Position::new(x, y)) else { return };
+    if pane == Pane::Tree {
+        let area = layout::areas(layout::screen(state), state.seeing.probing).tree;
         let rows = tree::rows(state.document(), &state.folded);
-        let first = first_row(tree::row_of(&rows, &state.node), rows.len(), areas.tree.height.saturating_sub(2));
-        let row = rows.get(first + usize::from(y.saturating_sub(areas.tree.y + 1)));
+        let first = first_row(tree::row_of(&rows, &state.node), rows.len(), area.height.saturating_sub(2));
+        let row = rows.get(first + usize::from(y.saturating_sub(area.y + 1)));
         if let Some(row) = row {
             commands::run(state, &format!("go {}", row.pointer), None);
         }
-        commands::run(state, "pane tree", None);
-    } else if areas.right.is_some_and(|[.., picture]| picture.contains(at)) {
-        commands::run(state, "pane picture", None);
-    } else if areas.table.contains(at) {
-        commands::run(state, "pane table", None);
     }
+    let name = match pane {
+        Pane::Tree => "tree",
+        Pane::Table => "table",
+        Pane::Picture => "picture",
+    };
+    commands::run(state, &format!("pane {name}"), None);
 }
 
 /// Said where the terminal is too small for a key.
@@ -161,7 +172,8 @@ fn press(state: &mut State, key: &str) {
     if let (true, Some(digit)) =
         (counting, key.parse::<usize>().ok().filter(|&d| d < 10 && (d > 0 || state.count.is_some())))
     {
-        state.count = Some((state.count.unwrap_or(0) * 10 + digit).min(1_000_000));
+        // One that is too large is refused with the key that it is for.
+        state.count = Some(state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit));
         return;
     }
     let pressed = if state.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.pressed) };

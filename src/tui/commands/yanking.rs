@@ -28,7 +28,11 @@ fn yank(state: &mut State, call: &Call) -> Done {
     let (text, said) = match call.text {
         "csv" => {
             let (sheet, rows) = table(state, call)?;
-            (rows::write(state.document(), &sheet, rows.clone()), format!("{} as CSV", counted(rows.count(), "row")))
+            let pointers: Vec<String> = rows.clone().filter_map(|i| sheet.pointer(i)).collect();
+            let text = rows::write(state.document(), &sheet, rows.clone());
+            // Here they are pasted as they are, with what a table has no column for.
+            state.kept.yanked = Some(values(state, &pointers));
+            (text, format!("{} as CSV", counted(rows.count(), "row")))
         }
         "" | "json" => {
             let (yanked, said) = yanked(state, call)?;
@@ -40,10 +44,9 @@ fn yank(state: &mut State, call: &Call) -> Done {
     };
     if text.len() > MOST_BYTES {
         let size = text.len().div_ceil(1000);
-        let here = if call.text == "csv" { "" } else { "; p pastes it here" };
+        let most = MOST_BYTES / 1000;
         state.complain(format!(
-            "{said}: {size} kB are too much for the terminal's clipboard ({} kB){here}",
-            MOST_BYTES / 1000
+            "{said}: {size} kB are too much for the terminal's clipboard ({most} kB); p pastes it here"
         ));
         return Ok(());
     }
@@ -52,8 +55,13 @@ fn yank(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
+/// That so many rows are neither one nor as many as are selected.
+pub fn too_many(rows: usize, selected: usize) -> String {
+    format!("{} over {selected} selected: paste one or {selected}, or end the selection (Esc)", counted(rows, "row"))
+}
+
 /// So many of a thing, in words.
-fn counted(count: usize, name: &str) -> String {
+pub fn counted(count: usize, name: &str) -> String {
     if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
 }
 
@@ -74,22 +82,12 @@ fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<
 fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
     let several = call.count.is_some() || state.focus == Pane::Table && state.selected_from.is_some();
     let pointers = if several { targets(state, call)? } else { Vec::new() };
-    let there = |pointer: &str| field::value(state.document(), pointer).filter(|value| !value.is_null());
-    let nothing = "there is nothing to yank here";
     let one = match pointers.as_slice() {
         [] => target(state)?,
         [one] => one.clone(),
-        [first, ..] => {
-            let said = counted(pointers.len(), "row");
-            let values = pointers.iter().filter_map(|path| Some((pointer::split(path)?.1, there(path)?)));
-            let value: Value = match is_item(state.document(), first) {
-                true => values.map(|(_, value)| value).collect(),
-                false => values.collect::<Map<_, _>>().into(),
-            };
-            return Ok((Yanked { value, name: None }, said));
-        }
+        several => return Ok((values(state, several), counted(several.len(), "row"))),
     };
-    let value = there(&one).ok_or(nothing)?;
+    let value = there(state, &one).ok_or("there is nothing to yank here")?;
     let name = in_map(state.document(), &one).then(|| pointer::split(&one).map(|(_, last)| last)).flatten();
     let said = field::field(state.document(), &one).map(|field| field.name).filter(|name| !name.is_empty());
     let said = said.map_or("the scene".into(), |name| match name.parse::<usize>() {
@@ -97,6 +95,21 @@ fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
         Err(_) => plain(&name),
     });
     Ok((Yanked { value, name }, said))
+}
+
+fn there(state: &State, pointer: &str) -> Option<Value> {
+    field::value(state.document(), pointer).filter(|value| !value.is_null())
+}
+
+/// What stands in several rows: a list of items, else an object by their names.
+fn values(state: &State, rows: &[String]) -> Yanked {
+    let mut values = rows.iter().filter_map(|path| Some((pointer::split(path)?.1, there(state, path)?)));
+    let value = match rows {
+        [one] if !in_map(state.document(), one) => values.next().map(|(_, value)| value).unwrap_or_default(),
+        [first, ..] if is_item(state.document(), first) => values.map(|(_, value)| value).collect(),
+        _ => values.collect::<Map<_, _>>().into(),
+    };
+    Yanked { value, name: None }
 }
 
 fn in_map(document: &Document, path: &str) -> bool {
@@ -114,7 +127,41 @@ fn paste(state: &mut State, call: &Call) -> Done {
     };
     let times = call.times_of("paste")?;
     bearable(state, json::bytes(&yanked.value).saturating_mul(times as u64))?;
-    paste_value(state, &yanked, times)
+    match state.focus == Pane::Table && state.selected_from.is_some() {
+        true => over_selection(state, &yanked.value, call),
+        false => paste_value(state, &yanked, times),
+    }
+}
+
+/// Pastes over what is selected: the cell of every row, or the rows themselves, by one item or as many as they are.
+fn over_selection(state: &mut State, value: &Value, call: &Call) -> Done {
+    let count = rows_of(state, call)?.count();
+    let (document, sheet) = (state.document(), state.sheet());
+    let takes = |path: &String, value: &Value| misfit(document, path, value).is_none();
+    let rows: Vec<String> = entry::rows(state).filter_map(|i| sheet.pointer(i)).collect();
+    let cells: Vec<String> = entry::cells(state, &sheet).into_iter().map(|(_, cell)| cell.pointer).collect();
+    let set = |paths: &[String], values: &[Value]| {
+        let edits =
+            paths.iter().zip(values.iter().cycle()).map(|(path, value)| Edit::set(document, path, value.clone()));
+        Some(Edit::all(edits))
+    };
+    let items = rows.iter().all(|path| is_item(document, path));
+    let one = std::slice::from_ref(value);
+    let edit = match value {
+        value if !cells.is_empty() && cells.iter().all(|path| takes(path, value)) => set(&cells, one),
+        value if items && rows.iter().all(|path| takes(path, value)) => set(&rows, one),
+        Value::Array(values) if items && values.first().is_some_and(|value| takes(&rows[0], value)) => {
+            if values.len() != 1 && values.len() != rows.len() {
+                return Err(too_many(values.len(), rows.len()));
+            }
+            set(&rows, values)
+        }
+        _ => over_cells(state, value).map(|way| way.edit),
+    };
+    let edit = edit.ok_or_else(|| format!("{}; {count} rows are selected", refusal(state, value)))?;
+    state.edit(edit, false)?;
+    state.say(format!("{} pasted over", counted(count, "row")));
+    Ok(())
 }
 
 /// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, over a

@@ -46,12 +46,6 @@ impl Choice {
         found.is_some()
     }
 
-    /// Moves the cursor, from the last to the first.
-    pub fn turn(&mut self, by: i64) {
-        let n = self.options.len().max(1) as i64;
-        self.at = (self.at as i64 + by).rem_euclid(n) as usize;
-    }
-
     /// The word under the cursor.
     pub fn taken(&self) -> Option<&str> {
         self.options.get(self.at).map(|(word, _)| word.as_str())

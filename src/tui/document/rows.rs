@@ -37,14 +37,9 @@ pub fn write(document: &Document, sheet: &Sheet, rows: RangeInclusive<usize>) ->
         }
     }
     let mut out = Writer::from_writer(Vec::new());
-    let shown = |cell: &Cell| match cell.number(document) {
-        Some(number) if cell.is_number() => numbers::exact(number),
-        _ => field::value(document, &cell.pointer)
-            .and_then(|v| v.as_str().map(str::to_owned))
-            .unwrap_or(cell.text.clone()),
-    };
     let texts = rows.iter().map(|row| {
-        let of = |head: &&str| row.cells.iter().find(|cell| cell.head == *head).map(shown).unwrap_or_default();
+        let of = |head: &&str| row.cells.iter().find(|cell| cell.head == *head);
+        let of = |head: &&str| of(head).map(|cell| exact(document, cell)).unwrap_or_default();
         heads.iter().map(of).collect::<Vec<_>>()
     });
     let header = heads.iter().map(|head| (*head).to_owned()).collect::<Vec<_>>();
@@ -52,6 +47,16 @@ pub fn write(document: &Document, sheet: &Sheet, rows: RangeInclusive<usize>) ->
         out.write_record(&record).expect("memory takes every record of one length");
     }
     String::from_utf8(out.into_inner().expect("memory is flushed")).expect("text was written")
+}
+
+/// What a cell says as text: a number with all its decimals.
+pub fn exact(document: &Document, cell: &Cell) -> String {
+    match cell.number(document) {
+        Some(number) if cell.is_number() => numbers::exact(number),
+        _ => field::value(document, &cell.pointer)
+            .and_then(|value| value.as_str().map(str::to_owned))
+            .unwrap_or(cell.text.clone()),
+    }
 }
 
 /// A line of a pasted table.
@@ -101,34 +106,52 @@ impl<'a> Target<'a> {
 
     /// The items that `text` has, a row each, or what is wrong with it: the line and the column.
     pub fn items(&self, text: &str, most: u64) -> Result<Vec<Value>, String> {
-        let mut records = records(text);
+        let mut records = records(text)?;
         if records.len() as u64 > most {
             return Err(format!("{} rows are too many: {most} at most", records.len()));
         }
         let is_header = |record: &Record| record.fields.iter().all(|field| number(field).is_none());
         let header = (records.first().is_some_and(is_header) && !records.is_empty()).then(|| records.remove(0));
         match header {
+            Some(header) if records.is_empty() => Err(self.alone(&header)),
             Some(header) => self.by_heads(&header, &records),
             None => self.by_place(&records),
         }
     }
 
+    /// What is wrong with a line without a number after which nothing comes.
+    fn alone(&self, line: &Record) -> String {
+        let columns = &self.specimen.columns;
+        let known = |head: &&String| columns.iter().any(|column| same(head, &column.head));
+        match line.fields.iter().find(|head| !known(head)) {
+            None => "there is a header but no rows".into(),
+            Some(other) => {
+                let (line, other, wanted) = (line.line, quoted(other), self.wanted());
+                format!("line {line}: {other} is neither a number nor a column: a row takes {wanted}")
+            }
+        }
+    }
+
+    /// The columns that are read without a header.
+    fn plain(&self) -> Vec<&Column> {
+        self.specimen.columns.iter().filter(|column| column.cell.is_number() && !is_polar(column.cell.part)).collect()
+    }
+
+    fn wanted(&self) -> String {
+        self.plain().iter().map(|column| column.head.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
     /// Without a header the numbers of a row are x, y and so on, as the table shows them.
     fn by_place(&self, records: &[Record]) -> Result<Vec<Value>, String> {
         let all = &self.specimen.columns;
-        let plain: Vec<&Column> = all.iter().filter(|c| c.cell.is_number() && !is_polar(c.cell.part)).collect();
-        let wanted = || plain.iter().map(|column| column.head.as_str()).collect::<Vec<_>>().join(" ");
+        let plain = self.plain();
         let count = records.first().map_or(0, |record| record.fields.len());
         let enough = self.specimen.required.iter().all(|&i| plain.iter().take(count).any(|c| c.head == all[i].head));
         if count > plain.len() || !enough {
             let line = records.first().map_or(1, |record| record.line);
-            return Err(format!("line {line} has {}, but a row takes {}", values(count), wanted()));
+            return Err(format!("line {line} has {}, but a row takes {}", values(count), self.wanted()));
         }
         let item = |record: &Record| {
-            if record.fields.len() != count {
-                let (line, found) = (record.line, values(record.fields.len()));
-                return Err(format!("line {line} has {found}, the lines before have {count}"));
-            }
             let cells = plain.iter().copied().zip(&record.fields).enumerate();
             self.specimen.item(cells.map(|(i, (column, field))| (i + 1, column, field.as_str())), record.line)
         };
@@ -154,9 +177,6 @@ impl<'a> Target<'a> {
             };
             items.push(self.row(specimen, header, record)?);
         }
-        if records.is_empty() {
-            return Err("there is a header but no rows".into());
-        }
         Ok(items)
     }
 
@@ -172,10 +192,6 @@ impl<'a> Target<'a> {
     }
 
     fn row(&self, specimen: &Specimen, header: &Record, record: &Record) -> Result<Value, String> {
-        if record.fields.len() > header.fields.len() {
-            let (line, found) = (record.line, values(record.fields.len()));
-            return Err(format!("line {line} has {found}, the header has {}", header.fields.len()));
-        }
         let mut cells = Vec::new();
         for (i, head) in header.fields.iter().enumerate() {
             let field = record.fields.get(i).map_or("", String::as_str);
@@ -241,7 +257,7 @@ impl Specimen {
         let mut given = Vec::new();
         let mut polar: BTreeMap<&str, (Option<f64>, Option<f64>)> = BTreeMap::new();
         for (at, column, text) in cells {
-            let read = read(column, text);
+            let read = read(&column.cell, text);
             let read = read.map_err(|why| format!("line {line}, column {at}: {why}"))?;
             given.push((column.path.as_str(), column.cell.part));
             match (column.cell.part, read.as_f64()) {
@@ -269,10 +285,10 @@ impl Specimen {
     }
 }
 
-/// A field of a line as its column wants it.
-fn read(column: &Column, text: &str) -> Result<Value, String> {
-    let Cell { field, part, .. } = &column.cell;
-    if column.cell.is_number() {
+/// A field of a line as the cell of its column wants it.
+pub fn read(cell: &Cell, text: &str) -> Result<Value, String> {
+    let Cell { field, part, .. } = cell;
+    if cell.is_number() {
         let value = number(text).ok_or_else(|| format!("{} is not a number", quoted(text)))?;
         return in_range(field, *part, value).map(|()| tidy_json(value));
     }
@@ -307,7 +323,8 @@ fn set_whole(item: &mut Value, path: &str, value: Value) {
     }
 }
 
-fn is_polar(part: Part) -> bool {
+/// Whether a part of a vector follows from its numbers.
+pub fn is_polar(part: Part) -> bool {
     matches!(part, Part::Length | Part::Degrees)
 }
 
@@ -331,7 +348,7 @@ pub fn number(text: &str) -> Option<f64> {
 }
 
 /// What separates the fields of a table: of tabs, semicolons and commas the first that its first record has outside quotes
-/// (RFC 4180); `None` if spaces do.
+/// (RFC 4180); `None` if spaces do, as between numbers with decimal commas.
 fn delimiter(text: &str) -> Option<char> {
     let (mut quoted, mut found) = (false, [false; 3]);
     for c in text.trim_start().chars() {
@@ -342,19 +359,57 @@ fn delimiter(text: &str) -> Option<char> {
             c => ['\t', ';', ','].into_iter().zip(&mut found).for_each(|(known, found)| *found |= c == known),
         }
     }
-    let found = ['\t', ';', ','].into_iter().zip(found).find(|(_, found)| *found).map(|(c, _)| c);
-    found.or(text.contains('"').then_some(','))
+    let words = || text.trim_start().lines().next().unwrap_or_default().split_whitespace();
+    // One that ends with a comma is separated by it.
+    let is_number = |word: &str| !word.ends_with(',') && number(word).is_some();
+    match found {
+        [true, ..] => Some('\t'),
+        [_, true, _] => Some(';'),
+        [.., true] if words().count() > 1 && words().all(is_number) => None,
+        [.., true] => Some(','),
+        _ => text.contains('"').then_some(','),
+    }
+}
+
+/// The line of a quote that opens a field and is not closed.
+fn unclosed(text: &str, delimiter: char) -> Option<usize> {
+    let (mut line, mut open, mut begins) = (1, None, true);
+    for c in text.chars() {
+        match (open, c) {
+            // What was closed goes on where the quote is doubled.
+            (Some(_), '"') => (open, begins) = (None, true),
+            (Some(_), _) => {}
+            (None, '"') if begins => (open, begins) = (Some(line), false),
+            (None, _) => begins = c == delimiter || c == '\n',
+        }
+        line += usize::from(c == '\n');
+    }
+    open
 }
 
 /// The lines that have something in them, split where the first of them is: at tabs, semicolons, commas or spaces. A field
-/// in quotes may hold any of these, line ends, and doubled quotes.
-pub fn records(text: &str) -> Vec<Record> {
-    let text = text.trim_start_matches('\u{feff}');
+/// in quotes may hold any of these, line ends, and doubled quotes. All have as many fields as the first.
+pub fn records(text: &str) -> Result<Vec<Record>, String> {
+    let records = split(text.trim_start_matches('\u{feff}'))?;
+    let count = records.first().map_or(0, |record| record.fields.len());
+    match records.iter().find(|record| record.fields.len() != count) {
+        None => Ok(records),
+        Some(other) => {
+            let (line, found) = (other.line, values(other.fields.len()));
+            Err(format!("line {line} has {found}, the lines before have {count}"))
+        }
+    }
+}
+
+fn split(text: &str) -> Result<Vec<Record>, String> {
     let Some(delimiter) = delimiter(text) else {
         let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let fields = |line: &str| line.split_whitespace().map(str::to_owned).collect();
-        return lines.map(|(i, line)| Record { line: i as u64 + 1, fields: fields(line) }).collect();
+        return Ok(lines.map(|(i, line)| Record { line: i as u64 + 1, fields: fields(line) }).collect());
     };
+    if let Some(line) = unclosed(text, delimiter) {
+        return Err(format!("the quote of line {line} is not closed"));
+    }
     let reader = ReaderBuilder::new()
         .delimiter(delimiter as u8)
         .has_headers(false)
@@ -371,7 +426,7 @@ pub fn records(text: &str) -> Vec<Record> {
         Record { line, fields: record.iter().map(str::to_owned).collect() }
     };
     let records = reader.into_records().filter_map(Result::ok).map(record);
-    records.filter(|record| record.fields.iter().any(|field| !field.is_empty())).collect()
+    Ok(records.filter(|record| record.fields.iter().any(|field| !field.is_empty())).collect())
 }
 
 #[cfg(test)]
@@ -395,11 +450,28 @@ mod tests {
             ("\"say \"\"a\"\"\",2", vec![(1, "say \"a\"|2")]),
             ("\"a\nb\",2\n3,4", vec![(1, "a\nb|2"), (3, "3|4")]),
             ("\"5\"\n\"6\"", vec![(1, "5"), (2, "6")]),
+            ("1,5 2,5\n3 4,5", vec![(1, "1,5|2,5"), (2, "3|4,5")]),
+            ("1, 2, 3", vec![(1, "1|2|3")]),
+            ("5\",\"6\"", vec![(1, "5\"|6")]),
         ] {
-            let found: Vec<(u64, String)> = records(text).iter().map(|r| (r.line, r.fields.join("|"))).collect();
+            let found: Vec<(u64, String)> =
+                records(text).unwrap().iter().map(|r| (r.line, r.fields.join("|"))).collect();
             let expected: Vec<(u64, String)> =
                 expected.into_iter().map(|(line, text)| (line, text.to_string())).collect();
             assert_eq!(found, expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn quotes_are_closed_and_rows_are_of_one_length() {
+        for (text, why) in [
+            ("\"1,2,3,4", "the quote of line 1 is not closed"),
+            ("1,2\n3,\"4\n5,6", "the quote of line 2 is not closed"),
+            ("1,\"2\"\"\n3,4", "the quote of line 1 is not closed"),
+            ("1,5\n2,5\n3", "line 3 has 1 value, the lines before have 2"),
+            ("x,y\n1,2,3", "line 2 has 3 values, the lines before have 2"),
+        ] {
+            assert_eq!(records(text).err().as_deref(), Some(why), "{text:?}");
         }
     }
 

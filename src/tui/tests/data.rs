@@ -37,7 +37,7 @@ pub fn what_is_yanked_is_pasted_where_it_fits() {
         (&motion("y p u"), &zone("/motion/1/at"), json!([30, 25])),
         ("y p", "/layers/0/zones/1/name", json!("left eye 2")),
         ("y / \"motion\" Enter p", "/layers/0/zones/1/name", json!("left eye 2")),
-        (&motion("y / \"mouth\" Enter p"), "/layers/0/zones/1/motion/0", still),
+        (&motion("y / \"mouth\" Enter p"), "/layers/0/zones/1/motion/0", still.clone()),
         (
             "/ \"outline\" Enter y / \"mouth\" Enter / \"outline\" Enter p",
             "/layers/0/zones/1/outline/kind",
@@ -47,6 +47,11 @@ pub fn what_is_yanked_is_pasted_where_it_fits() {
         (&motion("y / \"radius\" Enter p"), &zone("/interpolation/radius"), json!(60)),
         ("/ \"images\" Enter Enter y p", "/images/cat 2/path", json!("cat.png")),
         ("/ \"name\" Enter y j p", &zone("/name"), json!("left eye")),
+        (&motion("Y p"), &zone("/motion/1"), still.clone()),
+        (&motion("j y k Y p"), &zone("/motion/1"), still.clone()),
+        (&motion("Y j y p"), &zone("/motion/2/at"), json!([30, 25])),
+        (&motion("G Y g g p"), &zone("/motion/1/factor"), json!([1.1, 1])),
+        (&motion("v j Y Esc G p"), &zone("/motion/4"), still.clone()),
     ]);
 }
 
@@ -132,6 +137,8 @@ fn rows_are_pasted_into_tables() {
         ("x;y;|J|;°\n1,5;2;18;90\n", anchor(1.5, 2.0, 0.0, -18.0), 1),
         ("tool,x,y,dx,dy,|J|,°\npoint,1,2,3,4,99,99\n", anchor(1.0, 2.0, 3.0, 4.0), 1),
         ("1 2 3 4\r5 6 7 8\r", anchor(1.0, 2.0, 3.0, 4.0), 2),
+        ("1,5 2,5 3,5 4,5", anchor(1.5, 2.5, 3.5, 4.5), 1),
+        ("1,5 2 3 4\r5 6,5 7 8", anchor(1.5, 2.0, 3.0, 4.0), 2),
         ("#,x,y\n1,7,8\n2,9,10\n", json!({"tool": "point", "at": [7, 8]}), 2),
         ("[{\"tool\": \"point\", \"at\": [1, 2]}]", json!({"tool": "point", "at": [1, 2]}), 1),
     ] {
@@ -186,6 +193,11 @@ fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
         ("tool,x,y\npont,1,2", "line 2, column 1: there is no tool \"pont\": did you mean \"point\"?"),
         ("x,y\n1e12,2", "line 2, column 1: 1000000000000 is out of range"),
         ("x,y", "a header but no rows"),
+        ("x,y,dx\n1,2", "line 2 has 2 values, the lines before have 3"),
+        ("\"1,2,3,4", "the quote of line 1 is not closed"),
+        ("1,2,3,4\n5,\"6,7,8", "the quote of line 2 is not closed"),
+        ("１ ２", "line 1: \"１\" is neither a number nor a column: a row takes x y dx dy"),
+        ("1，2", "line 1: \"1，2\" is neither a number nor a column"),
         ("{\"tool\":", "not JSON"),
         ("", "nothing was pasted"),
     ] {
@@ -201,19 +213,37 @@ fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
 #[test]
 fn a_number_is_pasted_into_its_cell() {
     for (keys, pointer, expected) in [
-        (motion("l"), zone("/motion/0/at"), json!([7.5, 20])),
-        (motion("l v j"), zone("/motion/1/at"), json!([7.5, 25])),
-        ("/ \"radius\" Enter".into(), zone("/interpolation/radius"), json!(7.5)),
+        (motion("l"), zone("/motion/0/at"), json!([-7.5, 20])),
+        (motion("l v j"), zone("/motion/1/at"), json!([-7.5, 25])),
+        ("/ \"points\" Enter Enter".into(), zone("/outline/points"), json!([[-7.5, 10], [50, 10], [50, 40], [10, 40]])),
+        ("/ \"cycles\" Enter".into(), zone("/position/cycles"), json!(-7.5)),
     ] {
-        let mut state = state();
-        press(&mut state, &keys);
-        paste(&mut state, "7.5\n");
-        assert_eq!(at(&state, &pointer), expected, "{keys}");
+        for text in ["-7.5\n", "-7,5", "\u{2212}7,5\r"] {
+            let mut state = state();
+            press(&mut state, &keys);
+            paste(&mut state, text);
+            assert_eq!(at(&state, &pointer), expected, "{keys} {text}: {:?}", said(&state));
+        }
     }
-    let mut state = state();
-    press(&mut state, &motion("l i"));
-    paste(&mut state, "12\r13");
-    assert!(matches!(&state.mode, Mode::Entry(entry) if entry.text.value() == "12"));
+}
+
+#[test]
+fn one_line_is_typed_and_several_are_refused() {
+    let typed = |state: &State| match &state.mode {
+        Mode::Entry(entry) => entry.text.value().to_owned(),
+        Mode::Line(line) => line.text.value().to_owned(),
+        _ => "nothing".into(),
+    };
+    for keys in [motion("l i Ctrl-u"), ":".into(), "/".into()] {
+        for (text, expected) in [("12\r13", ""), ("7\n8\n9\n", ""), ("12\r", "12"), ("\n12\n\n", "12")] {
+            let mut state = state();
+            press(&mut state, &keys);
+            paste(&mut state, text);
+            assert_eq!(typed(&state), expected, "{keys} {text:?}");
+            let told = said(&state).1.contains("lines were pasted");
+            assert_eq!(told, expected.is_empty(), "{keys} {text:?}: {:?}", said(&state));
+        }
+    }
 }
 
 #[test]
@@ -293,9 +323,9 @@ fn the_history_lists_what_each_step_did() {
     press(&mut state, "/ \"radius\" Enter + k j / \"feather\" Enter + k j + u : \"history\" Enter");
     let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
     let told: Vec<&str> = pages.lines.iter().map(|line| line.split("just now").last().unwrap().trim()).collect();
-    let expected =
-        ["left eye · feather 1 → 2", "-- now --", "left eye · feather 0 → 1", "left eye · radius 60 → 61  (as saved)"];
-    assert_eq!(told, expected);
+    let expected = ["left eye · feather 1 → 2", "-- now --", "left eye · feather 0 → 1", "left eye · radius 60 → 61"];
+    assert_eq!(told[..4], expected);
+    assert_eq!(told[4].split_whitespace().collect::<Vec<_>>().join(" "), "#0 the beginning (as saved)");
     assert!(pages.lines[0].starts_with("redo 1") && pages.lines[3].starts_with("undo 2"), "{:?}", pages.lines);
     press(&mut state, "q u / \"feather\" Enter 9 + : \"history\" Enter");
     let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
@@ -304,13 +334,35 @@ fn the_history_lists_what_each_step_did() {
     let expected = [
         "-- now --",
         "undo 1 #4 just now mouth · feather 0 → 9",
-        "undo 2 #1 just now left eye · radius 60 → 61 (as saved)",
+        "undo 2 #1 just now left eye · radius 60 → 61",
+        "#0 the beginning (as saved)",
         "",
         "-- other branches: :undo #STATE goes there, g- and g+ go through all states --",
         "after #2 #3 just now left eye · feather 1 → 2",
         "after #1 #2 just now left eye · feather 0 → 1",
     ];
     assert_eq!(told, expected);
+}
+
+#[test]
+fn the_history_marks_the_state_that_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cat.plica.json");
+    std::fs::write(&path, super::support::SCENE).unwrap();
+    let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
+    let mut state = State::new(door, (80, 24), crate::tui::text::colour::Depth::None);
+    press(&mut state, "/ \"radius\" Enter + k j +");
+    state.door.save(None, false).unwrap();
+    press(&mut state, "k j +");
+    for (keys, now) in [("", "-- now --"), ("u", "-- now (saved) --"), ("2 u", "-- now --"), ("3 Ctrl-r", "-- now --")]
+    {
+        press(&mut state, &format!("{keys} : \"history\" Enter"));
+        let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+        let marked: Vec<&String> = pages.lines.iter().filter(|line| line.contains("(as saved)")).collect();
+        assert!(matches!(marked[..], [line] if line.contains("#2 ")), "{keys}: {:#?}", pages.lines);
+        assert!(pages.lines.iter().any(|line| line == now), "{keys}: {:#?}", pages.lines);
+        press(&mut state, "q");
+    }
 }
 
 #[test]

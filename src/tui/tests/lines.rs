@@ -23,7 +23,7 @@ pub fn lines_say_what_keys_do() {
         ("/ \"method\" Enter : \"put thin-plate\" Enter", &zone("/interpolation/method"), json!("thin-plate")),
         ("/ \"method\" Enter : \"put thin\" Enter", &zone("/interpolation/method"), json!("modified-shepard")),
         (&motion(": \"2 move right\" Enter 3 +"), &zone("/motion/0/at"), json!([20, 23])),
-        (&motion(": \"2 move down\" Enter : \"2 step 3\" Enter"), &zone("/motion/2/tool"), json!("shear")),
+        (&motion("l : \"2 move down\" Enter : \"2 step 3\" Enter"), &zone("/motion/2/at"), json!([46, 30])),
         (&motion("g i : \"cursor at 12 13\" Enter r"), &zone("/motion/0/at"), json!([12, 13])),
     ]);
 }

@@ -98,6 +98,19 @@ fn numbers_step_and_counts_multiply() {
 }
 
 #[test]
+fn what_is_no_number_does_not_step() {
+    for keys in
+        [motion("+"), motion("5 -"), motion("v j +"), "/ \"function\" Enter +".into(), "/ \"name\" Enter -".into()]
+    {
+        let mut state = state();
+        press(&mut state, &keys);
+        let message = state.message.clone().unwrap();
+        assert!(message.bad && message.text.contains("is no number"), "{keys}: {message:?}");
+        assert!(state.door.is_saved(), "{keys}");
+    }
+}
+
+#[test]
 fn out_of_range_tells_the_range_and_keeps_what_was_typed() {
     let mut state = state();
     press(&mut state, "/ \"radius\" Enter i \"-5\" Enter");
@@ -130,7 +143,7 @@ fn rows_and_nodes_come_and_go() {
 fn kinds_and_optional_nodes_are_chosen() {
     check(&[
         ("/ \"interpolation\" Enter Enter Enter j j Enter", &zone("/interpolation/method"), json!("thin-plate")),
-        ("/ \"function\" Enter +", &zone("/position/function"), json!("cosine")),
+        ("/ \"function\" Enter Enter j Enter", &zone("/position/function"), json!("cosine")),
         ("/ \"fold\" Enter o Enter", &zone("/fold/rule"), json!("cover")),
         ("/ \"fold\" Enter o j Enter", &zone("/fold/rule"), json!("return")),
         ("/ \"fold\" Enter o Enter d", &zone("/fold"), Value::Null),

@@ -27,6 +27,25 @@ fn cells(state: &State) -> Buffer {
     terminal.draw(|frame| view::draw(frame, state)).unwrap().buffer.clone()
 }
 
+#[test]
+fn a_click_belongs_to_the_pane_that_is_seen_there() {
+    use crate::tui::state::Pane::{Picture, Table, Tree};
+    for (size, keys, at, pane) in [
+        ((80, 24), "g i", (50, 8), Picture),
+        ((80, 24), "g i", (50, 20), Picture),
+        ((100, 30), "g i", (60, 10), Picture),
+        ((100, 30), "g i", (3, 3), Tree),
+        ((100, 30), "", (60, 10), Table),
+        ((119, 30), "g i", (60, 10), Table),
+        ((160, 50), "", (150, 40), Picture),
+    ] {
+        let mut state = opened(size);
+        press(&mut state, keys);
+        update(&mut state, Event::Click(at.0, at.1));
+        assert_eq!(state.focus, pane, "{size:?} {keys} {at:?}");
+    }
+}
+
 /// The editor with the picture in a protocol, on a wide terminal.
 fn shown_by(protocol: Protocol, keys: &str) -> State {
     let mut state = opened((160, 48));

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::support::{press, replayed, state, state_of};
 use super::{motion, zone};
 use crate::tui::commands::update::update;
-use crate::tui::events::Event;
+use crate::tui::events::{Effect, Event};
 use crate::tui::panes::view;
 use crate::tui::state::{Mode, State};
 
@@ -36,6 +36,14 @@ pub fn tables_are_pasted_over_a_selection() {
         ("v j", "\"dy\"\t\"dx\"\n\"2\"\t\"1,5\"\n4\t3", json!([[1.5, 2], [3, 4], null])),
         ("3 l v 2 j", "1 2\n3 4\n5 6", json!([[1, 2], [3, 4], [5, 6]])),
         ("v j", "|J|\n5", json!([[0, -5], [3, 4], null])),
+        ("v j", "dx,dy,|J|,°\n10,0,18,90\n5,5,5,-53.13", json!([[10, 0], [5, 5], null])),
+        ("v j", "|J|,°,dy,dx\n18,90,0,10", json!([[10, 0], [10, 0], null])),
+        ("v 2 j", "°,|J|\n90,2", json!([[0, -2], [0, -2], [0, -2]])),
+        ("3 l v j", "7,5", json!([[7.5, -18], [7.5, 4], null])),
+        ("3 l v j", "7,5\n8", json!([[7.5, -18], [8, 4], null])),
+        ("v j", "dx\n7,5\n\u{2212}8,25", json!([[7.5, -18], [-8.25, 4], null])),
+        ("3 l v j", "7,5;1\n8", json!([[0, -18], [3, 4], null])),
+        ("3 l v j", "1;2\n3;4\n5;6", json!([[0, -18], [3, 4], null])),
         ("v j", "dx,dy\n\u{2212}1,2\n3,x", json!([[0, -18], [3, 4], null])),
         ("v j", "colour\n1\n2", json!([[0, -18], [3, 4], null])),
     ] {
@@ -47,6 +55,62 @@ pub fn tables_are_pasted_over_a_selection() {
         assert_eq!(replayed(&state).document().json(), state.document().json(), "{text}");
         press(&mut state, "u");
         assert!(state.door.is_saved(), "{text}");
+    }
+}
+
+#[test]
+fn what_was_yanked_changes_nothing_where_it_was() {
+    let jumps = json!([{ "along": 0, "jump": [0, -3.0] }, { "along": 1, "jump": [0.123456789012, -8] }]);
+    let curve = json!({ "tool": "curve", "samples": 9, "nodes": [{ "at": [1, 2] }, { "at": [30, 4.000000000001] }], "jumps": jumps });
+    let list = json!([curve, { "tool": "point", "at": [3, 4], "jump": [0.123456789012, -18] }, { "tool": "point", "at": [5, 6] }]);
+    for place in ["motion", "motion.0.jumps", "motion.0.nodes", "outline.points"] {
+        for yank in ["V Y", "V y"] {
+            let mut state = state();
+            super::super::commands::obey(&mut state, &format!("set layers.0.zones.0.motion={list}"), None).unwrap();
+            press(&mut state, &format!(": \"go layers.0.zones.0.{place}\" Enter g e g g"));
+            let before = state.document().json().clone();
+            let copied = press(&mut state, yank).into_iter().find_map(|effect| match effect {
+                Effect::Copy(text) => Some(text),
+                _ => None,
+            });
+            update(&mut state, Event::Paste(copied.unwrap()));
+            assert!(said(&state).ends_with("pasted over"), "{place} {yank}: {}", said(&state));
+            assert_eq!(state.document().json(), &before, "{place} {yank}");
+            press(&mut state, "p u");
+            assert!(state.door.is_saved(), "no step of undo: {place} {yank}");
+        }
+    }
+}
+
+#[test]
+fn json_goes_over_all_that_is_selected_or_is_refused() {
+    let point = json!({ "tool": "point", "at": [9, 9] });
+    for (keys, text, pointer, expected) in [
+        ("l V", "[9,9]", "/motion/0/at", json!([9, 9])),
+        ("l V", "[9,9]", "/motion/3/center", json!([9, 9])),
+        ("l v 2 j", "[9,9]", "/motion/2/at", json!([9, 9])),
+        ("v j", r#"{"tool":"point","at":[9,9]}"#, "/motion/1", point.clone()),
+        ("v j", r#"[{"tool":"point","at":[9,9]},{"tool":"point","at":[8,8]}]"#, "/motion/1/at", json!([8, 8])),
+        ("v", r#"{"tool":"point","at":[9,9]}"#, "/motion/0", point),
+    ] {
+        let mut state = state();
+        press(&mut state, &motion(keys));
+        update(&mut state, Event::Paste(text.into()));
+        assert_eq!(at(&state, &zone(pointer)), expected, "{keys} {text}: {}", said(&state));
+        assert_eq!(at(&state, &zone("/motion")).as_array().unwrap().len(), 4, "{keys} {text}");
+        assert!(said(&state).ends_with("pasted over"), "{keys} {text}: {}", said(&state));
+        press(&mut state, "u");
+        assert!(state.door.is_saved(), "{keys} {text}");
+    }
+    for (keys, text, why) in [
+        ("v 2 j", r#"[{"tool":"point","at":[9,9]},{"tool":"point","at":[8,8]}]"#, "2 rows over 3 selected"),
+        ("v j", "[9,9]", "2 rows are selected"),
+        ("v j", "1 2 3\n1 2 3\n1 2 3", "3 rows over 2 selected"),
+    ] {
+        let mut state = state();
+        press(&mut state, &motion(keys));
+        update(&mut state, Event::Paste(text.into()));
+        assert!(said(&state).contains(why) && state.door.is_saved(), "{keys} {text}: {}", said(&state));
     }
 }
 
@@ -154,6 +218,14 @@ fn settings_are_answered_in_the_form_that_was_asked() {
             "layers.0.zones.0.feather, layers.0.zones.1.speed are set",
         ),
         ("set title=two words", "title is set"),
+        ("set layers.face.zones.left eye.feather=3", "layers.face.zones.left eye.feather is set"),
+        (
+            "set layers.0.zones.left eye.feather=3 layers.0.zones.1.speed=2",
+            "layers.0.zones.left eye.feather, layers.0.zones.1.speed are set",
+        ),
+        ("set layers.face", "layers.face: write it as PATH=VALUE, a name with a space in quotes"),
+        ("get layers.0.zones.-.name", "layers.0.zones.-.name is not set, and has no default"),
+        ("get layers.0.zones.1.name", "\"mouth\""),
         (
             "set layers.0.zones.1.outline.kind=ellipse",
             "layers.0.zones.1.outline.kind: only the ellipse inside its box is kept: 300 px² became 235.62",
@@ -162,6 +234,24 @@ fn settings_are_answered_in_the_form_that_was_asked() {
         let mut state = state();
         press(&mut state, &format!(": \"{line}\" Enter"));
         assert_eq!(said(&state), answer);
+    }
+}
+
+#[test]
+fn names_with_spaces_are_completed_in_quotes() {
+    for (typed, completed) in [
+        ("set layers.face.zones.le", "set layers.face.zones.\"left eye\""),
+        ("set layers.face.zones.\"left e", "set layers.face.zones.\"left eye\""),
+        ("set layers.0.zones.\"left eye\".fe", "set layers.0.zones.\"left eye\".feather"),
+        ("set layers.face.zones.mo", "set layers.face.zones.mouth"),
+        ("get tim", "get timeline"),
+    ] {
+        let mut state = state();
+        press(&mut state, ":");
+        update(&mut state, Event::Paste(typed.into()));
+        press(&mut state, "Tab");
+        let Mode::Line(line) = &state.mode else { panic!("no line") };
+        assert_eq!(line.text.value(), completed, "{typed}");
     }
 }
 

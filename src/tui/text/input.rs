@@ -77,9 +77,11 @@ impl Text {
     }
 
     /// Steps the digit under (or just before) the cursor by `steps`, carrying as arithmetic does; the cursor stays on its
-    /// place value. False where the text is not a plain number with a digit there.
+    /// place value, and a decimal comma or a true minus sign what it is. False where the text is not a plain number with a
+    /// digit there.
     pub fn step_digit(&mut self, steps: i64) -> bool {
-        let text = self.value().to_string();
+        let (comma, minus) = (self.value().contains(','), self.value().contains('−'));
+        let text = self.value().replace(',', ".").replace('−', "-");
         let Some((decimals, place)) = digit_at(&text, self.cursor()) else { return false };
         let power = maths::powi(10.0, place.unsigned_abs());
         let unit = if place >= 0 { power } else { 1.0 / power };
@@ -89,6 +91,8 @@ impl Text {
         let stepped = nothing.map(str::to_owned).unwrap_or(stepped);
         let from_end = text.chars().count() - self.cursor().min(text.chars().count());
         let cursor = stepped.chars().count().saturating_sub(from_end);
+        let stepped = if comma { stepped.replace('.', ",") } else { stepped };
+        let stepped = if minus { stepped.replace('-', "−") } else { stepped };
         self.set(stepped, cursor);
         true
     }
@@ -158,12 +162,19 @@ mod tests {
             ("12.50", 5, 1, "12.51"),
             ("0.001", 5, -2, "-0.001"),
             ("5", 1, 25, "30"),
+            ("0,5", 3, 2, "0,7"),
+            ("0,95", 2, 1, "1,05"),
+            ("−5", 1, 2, "−3"),
+            ("−5", 2, 6, "1"),
+            ("−0,5", 4, -1, "−0,6"),
         ] {
             let mut line = Text::new(text, true);
             line.set(text.into(), cursor);
             assert!(line.step_digit(steps), "{text}");
             assert_eq!(line.value(), stepped, "{text} at {cursor}");
         }
-        assert!(!Text::new("w/2", false).step_digit(1));
+        for text in ["w/2", "1,5,2", "1.5,2"] {
+            assert!(!Text::new(text, false).step_digit(1), "{text}");
+        }
     }
 }
