@@ -1,4 +1,4 @@
-//! The binary in a fresh folder: what it renders, writes and plots, what it says, and what it leaves.
+//! The binary in a fresh folder: what it renders, writes and plots, what it prints, and what it leaves behind.
 
 #![allow(clippy::unwrap_used, reason = "a failing test says so by a panic, in its helpers too")]
 
@@ -18,7 +18,7 @@ const SCENE: &str = r#"{
     "fold": { "rule": "cover", "regions": [{ "kind": "rectangle", "x": 18, "y": 0, "width": 5, "height": 24 }] } }] }]
 }"#;
 
-/// A folder with a scene of 6 frames, 33 x 25.
+/// A folder with a scene of 6 frames, 33 x 25 pixels.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let shade = |x, y| image::Rgba([(x * 7) as u8, (y * 9) as u8, ((x * y) % 256) as u8, 255]);
@@ -35,7 +35,7 @@ fn run(folder: &Path, line: &str) -> Output {
     plica(folder, line).output().unwrap()
 }
 
-/// Runs what must go well and returns standard output.
+/// Runs a command that must succeed and returns its standard output.
 fn good(folder: &Path, line: &str) -> Vec<u8> {
     let Output { status, stdout, stderr } = run(folder, line);
     assert!(status.success(), "{line}: {}", String::from_utf8_lossy(&stderr));
@@ -113,12 +113,12 @@ fn wrong_command_lines_are_told_and_leave_nothing() {
     assert!(made(folder.path()).is_empty(), "{:?}", made(folder.path()));
 }
 
-/// A scene so long that it is never done before it is ended.
+/// Makes the scene so long that a command is interrupted long before it is done.
 fn make_long(dir: &Path) {
     fs::write(dir.join("s.plica.json"), SCENE.replace("\"duration\": 0.5", "\"duration\": 5000")).unwrap();
 }
 
-/// Runs a command until `begun` sees what it has made so far, then sends it a signal.
+/// Runs a command until `begun` accepts the files made so far, then sends it a signal.
 fn ended_by(dir: &Path, signal: &str, line: &str, begun: impl Fn(&[String]) -> bool) -> Output {
     let mut child = plica(dir, line).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     while !begun(&made(dir)) {
@@ -141,7 +141,7 @@ fn an_interrupt_leaves_what_was_there() {
     let old = fs::read(dir.join("a.webp")).unwrap();
     make_long(dir);
     for output in ["a.webp", "b.gif"] {
-        // The hidden temporary tells that it is at work.
+        // The hidden temporary file shows that it is at work.
         let line = format!("render s.plica.json -o {output}");
         let status = ended_by(dir, "-INT", &line, |made| made.iter().any(is_hidden)).status;
         assert_eq!(status.code(), Some(130), "{output}");
@@ -163,7 +163,7 @@ fn finished_frames_stay_and_the_rest_is_made_later() {
     assert!(frames.len() >= 3 && !frames.iter().any(is_hidden), "{frames:?}");
     frames.iter().for_each(|name| assert_eq!(pixels(&dir.join(name)).0, 33, "{name}"));
 
-    // The first is left as it is, a half one and a small one are made again, and the next is made.
+    // The first is left as it is; a truncated one and one of another size are made again; the next is made.
     let first = fs::read(dir.join(&frames[0])).unwrap();
     let time = || dir.join("00000.png").metadata().unwrap().modified().unwrap();
     let before = time();
@@ -259,7 +259,7 @@ fn nor_does_the_editor_replace_what_its_scene_reads() {
         ("log cat.png", true),
         ("w cat.png", true),
         ("w .s.journal", true),
-        // A picture that the scene has not been saved with yet, and one that only its file still reads.
+        // A picture that is only in the unsaved scene, and one that is only in its file.
         ("set images.cat.path=dog.png\nrender --frames 0 -o dog.png --force\nq!", true),
         ("set images.cat.path=dog.png\nrender --frames 0 -o cat.png --force\nq!", true),
         ("render --frames 0 -o ~/one.png", false),
@@ -336,7 +336,7 @@ fn textures_of_an_earlier_run_go_and_others_stay() {
         "nose-thresholds.png",
     ];
     assert_eq!(names("out"), wanted);
-    // Somebody's own file of such a name.
+    // A person's own file with such a name.
     fs::create_dir(dir.join("other")).unwrap();
     for name in ["colour.png", "nose-init.exr", "nose-2-jump.exr", "manifest.json"] {
         fs::write(dir.join("other").join(name), "mine").unwrap();

@@ -11,7 +11,7 @@ use plica::files::Options;
 use plica::files::session::{Mode, Session};
 use plica::scene::Edit;
 
-/// What one run gave.
+/// The result of one run.
 #[derive(Debug, PartialEq)]
 struct Ran {
     status: i32,
@@ -137,7 +137,7 @@ fn new_makes_a_scene_and_never_overwrites() {
     let again = plica(folder.path(), &["new", "cat.png"]);
     assert_eq!(again.status, 1);
     assert!(again.messages.contains("is there already"), "{again:?}");
-    // Nothing moves yet, which a check tells.
+    // Nothing moves yet, which a check reports.
     let strict = plica(folder.path(), &["check", "cat.plica.json"]);
     assert!(strict.status == 1 && strict.out.contains("nothing moves"), "{strict:?}");
     assert!(ok(plica(folder.path(), &["check", "--lenient", "cat.plica.json"])).contains("nothing moves"));
@@ -192,7 +192,7 @@ fn new_copies_pictures_of_other_folders() {
     ok(plica(folder.path(), &["new", "cat.png", "-o", "scenes/a.plica.json"]));
     assert_eq!(std::fs::read(scenes.join("cat.png")).unwrap(), std::fs::read(folder.path().join("cat.png")).unwrap());
     assert_eq!(ok(plica(&scenes, &["get", "a.plica.json", "images.cat.path"])), "\"cat.png\"\n");
-    // The same picture may lie there already; another one of its name is not touched.
+    // The same picture may be there already; a different one with its name is not touched.
     ok(plica(folder.path(), &["new", "cat.png", "-o", "scenes/b.plica.json"]));
     std::fs::write(scenes.join("cat.png"), "other").unwrap();
     let refused = plica(folder.path(), &["new", "cat.png", "-o", "scenes/c.plica.json"]);

@@ -1,5 +1,5 @@
-//! The line mode by the real binary: commands on standard input, plain answers on standard output, mistakes on standard
-//! error, and an exit status that a script can trust.
+//! The line mode of the real binary: commands on standard input, plain answers on standard output, errors on standard
+//! error, and an exit status that a script can rely on.
 #![cfg(feature = "tui")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -38,7 +38,7 @@ fn edit(folder: &Path, path: &str, arguments: &[&str], lines: &str) -> Output {
     let mut command = binary::plica(folder, ["edit", path]);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    // One that refuses to begin reads nothing.
+    // A process that refuses to start reads nothing.
     let _ = child.stdin.take().unwrap().write_all(lines.as_bytes());
     child.wait_with_output().unwrap()
 }
@@ -54,7 +54,7 @@ fn saved(folder: &Path) -> String {
 #[test]
 fn lines_edit_answer_and_fail_by_their_numbers() {
     let speed = "layers.face.zones.eye.speed";
-    // Lines; what is on standard output and on standard error; whether it succeeds; whether the speed is saved.
+    // Lines; standard output and standard error; whether it succeeds; whether the speed is saved.
     for (lines, out, error, succeeds, kept) in [
         (format!("set {speed}=2\nget {speed}\nw\n"), "\n2\n", "", true, true),
         (format!(":set {speed}=2\n# a remark\n\nwq\nget {speed}"), "is saved", "", true, true),
@@ -210,7 +210,7 @@ fn nothing_is_changed_while_unsaved_edits_wait_for_an_answer() {
 #[test]
 fn edits_that_no_journal_holds_are_not_promised() {
     let folder = folder();
-    // A newer program's journal: it is not to be touched.
+    // The journal of a newer program must not be touched.
     let mut journal = b"PLICAJNL".to_vec();
     journal.extend([9, 0, 0, 0, 0, 0, 0, 0]);
     std::fs::write(folder.path().join(".cat.journal"), &journal).unwrap();

@@ -1,6 +1,6 @@
-//! The one door for whatever a command writes: [`Guard`] gives the [`Place`]s that drafts are made for. Nothing that an open
-//! scene reads is ever replaced, through whichever link or spelling; another file only by the same kind of file, or where
-//! the person forces it. All of it is decided before work begins.
+//! Everything that a command writes goes through here: [`Guard`] gives out the [`Place`]s for drafts. Nothing that an
+//! open scene reads is ever replaced, whatever link or spelling leads to it; other files only by the same kind of file,
+//! or if forced. All of this is decided before work begins.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Metadata};
@@ -12,7 +12,7 @@ use super::{disk, holder, journal, materials, paths, temporary};
 use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 
-/// A kind of file, told by how its content begins.
+/// A kind of file, recognized by its first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// PNG, animated or not.
@@ -23,7 +23,7 @@ pub enum Kind {
     WebP,
     /// YUV4MPEG2.
     Y4m,
-    /// Bare pixels, which nothing tells: a file of that extension that begins like no other kind.
+    /// Bare pixels, which have no signature: a file with that extension that does not begin like another kind.
     Rgba,
     /// MPEG-4 video.
     Mp4,
@@ -39,13 +39,13 @@ pub enum Kind {
     Exr,
 }
 
-/// How much of a file tells its kind.
+/// How many first bytes are looked at.
 const HEAD: usize = 512;
 
 /// The first line of a table of jump vectors.
 pub const CSV_HEADER: &str = "x,y,dx,dy,length,degrees";
 
-/// What messages call a kind, and how a file of it begins.
+/// A kind, its name in messages, and a test of a file's first bytes.
 type Row = (Kind, &'static str, fn(&[u8]) -> bool);
 
 const KINDS: &[Row] = &[
@@ -82,7 +82,7 @@ impl Kind {
     }
 }
 
-/// A file that may be written: the guard has looked at it.
+/// A file that may be written: the guard has checked it.
 #[derive(Clone, Debug)]
 pub struct Place(PathBuf);
 
@@ -93,7 +93,7 @@ impl Place {
     }
 }
 
-/// A folder whose files may be written: those that are in the way are the person's own earlier output.
+/// A folder whose files may be written: existing files with the same names are from an earlier run.
 #[derive(Clone, Debug)]
 pub struct FolderPlace {
     path: PathBuf,
@@ -108,18 +108,18 @@ impl FolderPlace {
     }
 }
 
-/// A file that must stay.
+/// A file that must not be replaced.
 #[derive(Debug)]
 struct Input {
-    /// Its folder without links, and its name in small letters: that is how one that is not there yet is known.
+    /// Its folder without links, and its name in lower case: identifies files that do not exist yet.
     place: Option<(PathBuf, String)>,
-    /// Device and number of one that is there, whatever it is called.
+    /// Device and inode: identifies existing files, whatever their name.
     file: Option<(u64, u64)>,
-    /// Why it must stay.
+    /// Why it must not be replaced.
     what: String,
 }
 
-/// Knows what must stay, and lets the rest pass.
+/// Knows which files must not be replaced, and allows the rest.
 #[derive(Debug, Default)]
 pub struct Guard {
     inputs: Vec<Input>,
@@ -128,12 +128,12 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// A guard that lets files of another kind be replaced where the person forces it.
+    /// A guard; with `force`, files of another kind may be replaced.
     pub fn new(force: bool) -> Guard {
         Guard { force, ..Guard::default() }
     }
 
-    /// Keeps the scene at `path` (`-` is standard input), its journal, and every file that it names.
+    /// Protects the scene at `path` (`-` is standard input), its journal, and every file that it names.
     pub fn protect(&mut self, path: &Path, scene: &Scene) {
         let called = if path == Path::new("-") { "the scene".to_owned() } else { path.display().to_string() };
         if path != Path::new("-") {
@@ -145,7 +145,7 @@ impl Guard {
             }
         }
         for name in materials::paths(scene) {
-            // What stands behind a # says which part of the file is meant.
+            // What follows a # says which part of the file is meant.
             for name in [Some(name), name.rsplit_once('#').map(|(file, _)| file)].into_iter().flatten() {
                 self.keep(&paths::beside(path, name), format!("is read by {called}"));
             }
@@ -157,7 +157,7 @@ impl Guard {
         self.inputs.push(Input { place: place(path), file, what });
     }
 
-    /// Why the file at `path` must stay; `None` where it need not.
+    /// Why the file at `path` must not be replaced; `None` if it may be.
     fn kept(&self, path: &Path) -> Option<&str> {
         let (found, place) = (fs::metadata(path).ok().map(|found| identity(&found)), place(path));
         let is = |input: &&Input| match (input.file, found) {
@@ -167,10 +167,10 @@ impl Guard {
         self.inputs.iter().find(is).map(|input| input.what.as_str())
     }
 
-    /// Refuses a file that must stay.
+    /// Refuses a file that must not be replaced.
     ///
     /// # Errors
-    /// Says what it is.
+    /// If it must not; the message says why.
     pub fn spare(&self, path: &Path) -> Result<()> {
         match self.kept(path) {
             None => Ok(()),
@@ -182,7 +182,7 @@ impl Guard {
     /// The place at `path`, for a file of this kind.
     ///
     /// # Errors
-    /// When the file must stay, or is of another kind and nobody forces it.
+    /// If the file must not be replaced, or is of another kind and not forced.
     pub fn file(&mut self, path: &Path, kind: Kind) -> Result<Place> {
         let place = self.one(path, kind)?;
         self.clear(disk::folder_of(path));
@@ -213,11 +213,11 @@ impl Guard {
         }
     }
 
-    /// The folder at `path`, for a set of files. `may_write` tells which names the set may have; `earlier` are the names of
-    /// an output of the same command that is there.
+    /// The folder at `path`, for a set of files. `may_write` says which names the set may contain; `earlier` are the
+    /// names of an earlier output of the same command there.
     ///
     /// # Errors
-    /// When a file of such a name must stay, or is not of an earlier output and nobody forces it.
+    /// If a file with such a name must not be replaced, or is not from an earlier output and not forced.
     pub fn folder(
         &mut self,
         path: &Path,
@@ -249,7 +249,7 @@ impl Guard {
         }
     }
 
-    /// What a person should know about what was looked at, a line each; told once.
+    /// Notes for the person, one line each; each is returned only once.
     pub fn notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
     }
@@ -274,7 +274,7 @@ fn place(path: &Path) -> Option<(PathBuf, String)> {
     Some((folder, path.file_name()?.to_string_lossy().to_lowercase()))
 }
 
-/// What a scene at `path` would name and not find there, as it is written.
+/// The paths that a scene saved at `path` would name but not find, as written.
 pub fn missing(path: &Path, scene: &Scene) -> Vec<String> {
     let named = materials::paths(scene).into_iter();
     let there = |name: &str| paths::beside(path, name.rsplit_once('#').map_or(name, |(file, _)| file)).exists();
@@ -293,10 +293,10 @@ pub fn reads(path: &Path, scene: &Scene, picture: &Path) -> bool {
     materials::paths(scene).into_iter().filter(fits).any(|name| is_file(&paths::beside(path, name)))
 }
 
-/// The first and the last bytes of the file at `path`, so many or as many as there are.
+/// The first and the last bytes of the file at `path`; fewer if it is shorter.
 ///
 /// # Errors
-/// It is no regular file, or cannot be read.
+/// If it is no regular file, or cannot be read.
 pub fn ends(path: &Path, first: usize, last: usize) -> Result<(Vec<u8>, Vec<u8>)> {
     let mut file = paths::open_named(path)?;
     let (mut head, mut tail) = (Vec::new(), Vec::new());
@@ -310,7 +310,7 @@ pub fn ends(path: &Path, first: usize, last: usize) -> Result<(Vec<u8>, Vec<u8>)
     Ok((head, tail))
 }
 
-/// How many bytes the files at `paths` hold.
+/// The total size of the files at `paths`, in bytes.
 pub fn size<'a>(paths: impl IntoIterator<Item = &'a Path>) -> u64 {
     paths.into_iter().filter_map(|path| fs::metadata(path).ok()).map(|found| found.len()).sum()
 }

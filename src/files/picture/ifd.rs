@@ -1,13 +1,13 @@
-//! The directories of a TIFF, read before its decoder sees them: which page is the picture and not its thumbnail, whether
-//! it is a raw photograph in truth, and which of its values the decoder must be told otherwise so that it reads what it
-//! could (palettes and Lab are samples like any others; their meaning is added afterwards).
+//! The directories of a TIFF, read before its decoder sees them: which page is the picture and not a thumbnail, whether
+//! it is really a raw photograph, and which values must be patched for the decoder so that it reads what it is able to
+//! (palettes and Lab are samples like any others; their meaning is added afterwards).
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// At most so many pages are looked at.
+/// At most this many pages are looked at.
 const MOST_PAGES: usize = 64;
-/// At most so many values of an entry are read: more than the largest palette has, and any color profile.
+/// At most this many values of an entry are read: more than the largest palette or any color profile has.
 const MOST_VALUES: u64 = 4 << 20;
 
 pub(super) const SUBFILE: u16 = 254;
@@ -22,7 +22,7 @@ pub(super) const EXTRA_SAMPLES: u16 = 338;
 pub(super) const PROFILE: u16 = 34675;
 pub(super) const DNG: u16 = 50706;
 
-/// How numbers stand in the file.
+/// How numbers are stored in the file.
 #[derive(Clone, Copy)]
 pub(super) struct Form {
     big_endian: bool,
@@ -41,7 +41,7 @@ struct Entry {
     tag: u16,
     kind: u16,
     count: u64,
-    /// Where the entry's value, or the offset of its values, stands.
+    /// Where the entry's value, or the offset of its values, is.
     at: u64,
 }
 
@@ -65,7 +65,7 @@ impl Form {
         if self.wide { 8 } else { 4 }
     }
 
-    /// Where the offset of the first page stands.
+    /// Where the offset of the first page is.
     fn first(self) -> u64 {
         if self.wide { 8 } else { 4 }
     }
@@ -78,7 +78,7 @@ fn number(file: &mut File, form: Form, at: u64, count: usize) -> io::Result<u64>
     Ok(form.number(&bytes[..count]))
 }
 
-/// How the file writes numbers, and its pages with those below them, as far as they can be read.
+/// How the file stores numbers, and its pages with their subpages, as far as they can be read.
 pub(super) fn pages(file: &mut File) -> io::Result<(Form, Vec<Page>)> {
     let mut start = [0; 4];
     file.rewind()?;
@@ -95,7 +95,7 @@ pub(super) fn pages(file: &mut File) -> io::Result<(Form, Vec<Page>)> {
             Err(error) if pages.is_empty() => return Err(error),
             Err(_) => continue,
         };
-        // The page after this one comes before those below it.
+        // The next page comes before the subpages of this one.
         waiting.extend(page.values(file, form, SUB_PAGES).into_iter().rev());
         waiting.push(page.next);
         pages.push(page);
@@ -129,7 +129,7 @@ impl Page {
         self.entry(tag).is_some()
     }
 
-    /// The whole numbers of an entry; `None` if there is no such entry.
+    /// The whole numbers of an entry; empty if there is no such entry.
     pub fn values(&self, file: &mut File, form: Form, tag: u16) -> Vec<u64> {
         let Some(entry) = self.entry(tag) else { return Vec::new() };
         let size = match entry.kind {
@@ -142,7 +142,7 @@ impl Page {
         let count = entry.count.min(MOST_VALUES) as usize;
         let inside = count * size <= form.offset();
         let at = if inside { Ok(entry.at) } else { number(file, form, entry.at, form.offset()) };
-        // What an entry claims is taken only as far as the file has it.
+        // An entry may claim more bytes than the file has.
         let mut bytes = Vec::new();
         let read = at.and_then(|at| file.seek(SeekFrom::Start(at)));
         let read = read.and_then(|_| file.take((count * size) as u64).read_to_end(&mut bytes));
@@ -156,19 +156,19 @@ impl Page {
         self.values(file, form, tag).first().copied()
     }
 
-    /// What makes the file say that `tag`, a short number, is `value`.
+    /// The patch that sets `tag`, a short number, to `value`.
     pub fn told(&self, form: Form, tag: u16, value: u16) -> Option<(u64, Vec<u8>)> {
         let entry = self.entry(tag).filter(|entry| entry.kind == 3 && entry.count == 1)?;
         Some((entry.at, form.bytes(value.into(), 2)))
     }
 
-    /// What makes the file begin with this page.
+    /// The patch that makes this page the first.
     pub fn first(&self, form: Form) -> (u64, Vec<u8>) {
         (form.first(), form.bytes(self.at, form.offset()))
     }
 }
 
-/// A file in which some bytes are others.
+/// A file with some bytes patched.
 pub(super) struct Told {
     pub file: File,
     pub at: u64,

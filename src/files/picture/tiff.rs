@@ -1,5 +1,5 @@
-//! TIFF: samples of 1 to 64 bits, whole or floating point, grey, RGB, palette, CMYK, YCbCr or Lab. Of several pages the
-//! first is taken that is no thumbnail; a raw photograph is told from a picture.
+//! TIFF: samples of 1 to 64 bits, integers or floating point, grey, RGB, palette, CMYK, YCbCr or Lab. Of several pages
+//! the first that is not a thumbnail is read; raw photographs are recognized and refused.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -20,7 +20,7 @@ use crate::files::Limits;
 
 type Tiff = Decoder<BufReader<Told>>;
 
-/// How raw photographs say that their samples lie behind a mosaic of filters, or are light as it was measured.
+/// The photometric interpretations of raw photographs: a color filter array, or linear sensor data.
 const RAW_PHOTOMETRIC: [u64; 2] = [32803, 34892];
 /// Compressions of raw photographs: Nikon, Sony, Pentax, Kodak.
 const RAW_COMPRESSION: [u64; 4] = [34713, 32767, 65535, 65000];
@@ -29,22 +29,22 @@ const PALETTE: u64 = 3;
 const CIE_LAB: u64 = 8;
 const ICC_LAB: u64 = 9;
 
-/// What the decoder is not told, or does not tell.
+/// What is hidden from the decoder, or what it does not report.
 struct About {
     /// Red, green and blue of every index, 16 bits each, all reds first.
     palette: Option<Vec<u16>>,
-    /// The zero of a and b is code 0 (signed), or the middle one; none for what is no Lab.
+    /// Whether zero of a and b is code 0 (signed), not the middle code; `None` if it is not Lab.
     lab: Option<bool>,
     /// Whether alpha is among the extra samples, and multiplied into the others.
     associated: Option<bool>,
     /// Where only some samples are used.
     picked: Option<Picked>,
-    /// The decoder refuses a profile that is large beside its picture.
+    /// The color profile; the decoder refuses one that is large compared with its picture.
     profile: Option<Vec<u8>>,
 }
 
-/// The samples of a pixel that are used, and what they are. The decoder is told that all of them are bands: by itself it
-/// leaves extra samples out before it adds up the differences that a predictor has made of all.
+/// The samples of a pixel that are used, and what they are. The decoder is told that all of them are bands: by itself
+/// it leaves extra samples out before it adds up the differences that a predictor has made of all.
 struct Picked {
     samples: Vec<usize>,
     color: fn(u8) -> ColorType,
@@ -65,7 +65,7 @@ pub(super) fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opene
         return Err(kinds::other_kind(place, format!("a TIFF of {} bits a sample", color.bit_depth())));
     }
     let layout = decoder.image_buffer_layout().map_err(failed)?;
-    // What is decoded, and what becomes of it, stand beside one another for a moment.
+    // The decoded samples and what they are converted to are both in memory for a moment.
     let samples = size.0 as u64 * size.1 as u64 * u64::from(color.num_samples());
     let other = if about.palette.is_some() { samples * 6 } else { samples * u64::from(color.bit_depth().max(8)) / 8 };
     let bytes = (layout.complete_len as u64).saturating_add(if is_simple(color, &about) { 0 } else { other });
@@ -199,7 +199,7 @@ fn explain(place: &str, error: TiffError) -> Error {
     }
 }
 
-/// The samples that were decoded, as one of four kinds; few bits are spread over all codes.
+/// The decoded samples, as one of four kinds; samples of few bits are unpacked.
 fn raw(
     result: DecodingResult,
     bits: u8,
@@ -243,7 +243,7 @@ fn few(row: &[u8], i: usize, bits: u8) -> u8 {
     row.get(at / 8).map_or(0, |byte| byte << (at % 8) >> (8 - bits))
 }
 
-/// Planes one after another, as pixels.
+/// Turns planes, one after another, into pixels.
 fn interleaved(raw: Raw, planes: usize) -> Raw {
     fn woven<T: Copy>(all: &[T], planes: usize) -> Vec<T> {
         let each = all.len() / planes;
@@ -257,7 +257,7 @@ fn interleaved(raw: Raw, planes: usize) -> Raw {
     }
 }
 
-/// What the samples are, and only those of them that are used.
+/// The model of the samples, and only those samples that are used.
 fn shaped(raw: Raw, color: ColorType, about: &About) -> Option<(Model, Raw)> {
     let bits = color.bit_depth();
     if let Some(palette) = &about.palette {
@@ -272,7 +272,7 @@ fn shaped(raw: Raw, color: ColorType, about: &About) -> Option<(Model, Raw)> {
         return (color.num_samples() == 3).then_some((Model::Lab, raw));
     }
     let spread = |raw| match raw {
-        // 1, 2 and 4 bits reach from black to white.
+        // 1, 2 and 4 bits are scaled to the full range.
         Raw::Bytes(all) if bits < 8 => {
             let step = 255 / ((1u16 << bits) - 1);
             Raw::Bytes(all.into_iter().map(|v| (u16::from(v) * step) as u8).collect())
@@ -307,7 +307,7 @@ fn some(raw: Raw, count: usize, places: &[usize]) -> Raw {
     }
 }
 
-/// a and b of signed Lab, their zero moved to the middle code.
+/// a and b of signed Lab, with zero moved to the middle code.
 fn centered<T: Copy + std::ops::BitXor<Output = T>>(mut all: Vec<T>, middle: T) -> Vec<T> {
     for cell in all.as_chunks_mut::<3>().0 {
         cell[1] = cell[1] ^ middle;
@@ -346,7 +346,7 @@ fn looked_up(raw: Raw, count: usize, bits: u8, palette: &[u16]) -> Option<(Model
     })
 }
 
-/// Straight alpha for integers, multiplied for the others, whatever the file has.
+/// Converts to straight alpha for integers and premultiplied for the others, whatever the file has.
 fn alpha(raw: Raw, model: Model, associated: Option<bool>) -> Raw {
     let count = model.count();
     match (raw, associated) {

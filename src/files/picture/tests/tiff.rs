@@ -1,11 +1,11 @@
-//! TIFFs, written here value by value: no encoder at hand writes most of these.
+//! TIFFs, written here value by value, because our encoders cannot write most of them.
 
 use super::*;
 
-/// An entry: its tag, the kind of its values (1 bytes, 3 of 16 bits, 4 of 32), and the values.
+/// An entry: its tag, the type of its values (1: bytes, 3: 16 bits, 4: 32 bits), and the values.
 type Entry = (u16, u16, Vec<u32>);
 
-/// A little-endian TIFF of pages, each with entries and the bytes of its one strip.
+/// A little-endian TIFF of pages, each with entries and the bytes of a single strip.
 fn tiff(pages: &[(Vec<Entry>, Vec<u8>)]) -> Vec<u8> {
     let mut file = b"II*\0\0\0\0\0".to_vec();
     let mut link = 4;
@@ -43,7 +43,7 @@ fn tiff(pages: &[(Vec<Entry>, Vec<u8>)]) -> Vec<u8> {
     file
 }
 
-/// What every page needs: size, bits of every sample, photometric, no compression.
+/// The entries that every page needs: size, bits of every sample, photometric, no compression.
 fn page(size: (u32, u32), bits: &[u32], photometric: u32) -> Vec<Entry> {
     vec![
         (256, 4, vec![size.0]),
@@ -140,7 +140,7 @@ fn a_thumbnail_is_not_the_picture() {
     let large = (page((2, 1), &[8], 1), vec![7, 255]);
     let found = read_bytes(&tiff(&[(small.clone(), vec![9]), large])).unwrap();
     assert_eq!((found.picture.width(), pixels::encode(found.picture.texel(1, 0))[0]), (2, 255));
-    // Alone, it is what there is.
+    // If it is the only page, it is read.
     assert_eq!(read_bytes(&tiff(&[(small.clone(), vec![9])])).unwrap().picture.width(), 1);
     let mosaic = (page((4, 4), &[16], 32803), vec![0; 32]);
     let mut dng = small.clone();
@@ -162,7 +162,7 @@ fn what_is_wrong_with_a_tiff_is_told_truly() {
     }
     let error = read_bytes(&odd).unwrap_err().to_string();
     assert!(error.contains("in a form that Plica does not read") && error.contains("magick"), "{error}");
-    // Any byte may be any other: a message, or a picture, and no panic.
+    // With any byte changed, there is a message or a picture, and no panic.
     for at in 0..whole.len() {
         for byte in [0, 1, 0x7f, 0xff] {
             let mut bytes = whole.clone();
