@@ -9,10 +9,9 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use plica::preview::Reply;
 use plica::preview::editor::{Event, Preview};
 use plica::preview::wire::frame;
-use plica::preview::wire::message::FromEditor;
+use plica::preview::wire::message::{FromEditor, ToEditor};
 use plica::scene::Document;
 use plica::tui::{Change, Offscreen};
 
@@ -40,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ["/", "r", "a", "d", "i", "u", "s", "Enter"].iter().try_for_each(|key| keys.press(key))?;
     let (sender, replies) = channel();
     let editor = Preview::start(&scene, &document, 0, move |event| {
-        if let Event::Reply(reply) = event {
+        if let Event::Said(reply) = event {
             drop(sender.send(reply));
         }
     });
@@ -70,10 +69,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Waits until the window has put this revision on the screen; gives what loading and synthesis took, in milliseconds.
-fn shown(replies: &Receiver<Reply>, wanted: u64) -> Result<f64, Box<dyn std::error::Error>> {
+fn shown(replies: &Receiver<ToEditor>, wanted: u64) -> Result<f64, Box<dyn std::error::Error>> {
     loop {
         match replies.recv_timeout(PATIENCE)? {
-            Reply::Shown { revision, synth_ms } if revision == wanted => return Ok(synth_ms),
+            ToEditor::Ack { revision, synth_ms } if revision == wanted => return Ok(synth_ms),
             _ => {}
         }
     }

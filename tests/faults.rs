@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 use plica::files::Options;
 use plica::files::cache::Cache;
 use plica::preview::editor::Preview;
+use plica::preview::follow::Update;
 use plica::preview::follow::client::Link;
 use plica::preview::remote::address::Address;
 use plica::preview::remote::ssh::Way;
@@ -24,8 +25,7 @@ use plica::preview::remote::{attach, far, fetch};
 use plica::preview::wire::connection::{HangUp, Wire};
 use plica::preview::wire::frame::most;
 use plica::preview::wire::handshake;
-use plica::preview::wire::message::Role;
-use plica::preview::{Reply, Update};
+use plica::preview::wire::message::{FromEditor, Role, ToEditor};
 use plica::scene::{Document, Edit};
 use serde_json::json;
 
@@ -133,7 +133,7 @@ fn next<T>(link: &Link, wanted: impl Fn(&Update) -> Option<T>) -> T {
         let update = link.updates.recv_timeout(PATIENCE).expect("an update");
         if let Update::Scene { revision, .. } = update {
             // As a window does.
-            drop(link.replies.send(Reply::Shown { revision, synth_ms: 1.0 }));
+            drop(link.replies.send(ToEditor::Ack { revision, synth_ms: 1.0 }));
         }
         if let Some(found) = wanted(&update) {
             return found;
@@ -146,14 +146,16 @@ fn shows(link: &Link, wanted: u64) {
 }
 
 fn notice(link: &Link, part: &str) {
-    next(link, |update| matches!(update, Update::Notice(line) if line.contains(part)).then_some(()));
+    next(link, |update| matches!(update, Update::Said(FromEditor::Notice(line)) if line.contains(part)).then_some(()));
 }
 
 /// Says one thing after the other until the link has had enough bytes to be cut.
 fn until_lost(link: &Link, editor: &Preview) {
     for _ in 0..1200 {
         match link.updates.recv_timeout(PATIENCE / 1200) {
-            Ok(Update::Notice(line)) if line.contains("reconnecting: the connection was lost") => return,
+            Ok(Update::Said(FromEditor::Notice(line))) if line.contains("reconnecting: the connection was lost") => {
+                return;
+            }
             Ok(_) => {}
             Err(_) => editor.view("view-grid"),
         }

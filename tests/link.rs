@@ -12,13 +12,14 @@ use std::time::Duration;
 use plica::base::error::Error;
 use plica::base::problem::Problem;
 use plica::files::Options;
+use plica::preview::Transport;
 use plica::preview::editor::script;
 use plica::preview::editor::{Event, Preview, Status};
+use plica::preview::follow::Update;
 use plica::preview::follow::client::{self, Link};
 use plica::preview::wire::frame::{self, most};
 use plica::preview::wire::message::{FromEditor, Role, ToEditor};
 use plica::preview::wire::socket::socket_path;
-use plica::preview::{Reply, Transport, Update};
 use plica::scene::Document;
 use plica::scene::edit::Edit;
 use serde_json::{Value, json};
@@ -111,11 +112,11 @@ fn next_title(link: &Link) -> (String, u64) {
 /// Waits for a problem whose words hold `part`.
 fn problem(link: &Link, part: &str) {
     let said = |problems: &[Problem]| problems.iter().any(|problem| problem.to_string().contains(part));
-    next(link, |update| matches!(update, Update::Problems(problems) if said(problems)).then_some(()));
+    next(link, |update| matches!(update, Update::Said(FromEditor::Problems(problems)) if said(problems)).then_some(()));
 }
 
 fn notice(link: &Link, part: &str) {
-    next(link, |update| matches!(update, Update::Notice(line) if line.contains(part)).then_some(()));
+    next(link, |update| matches!(update, Update::Said(FromEditor::Notice(line)) if line.contains(part)).then_some(()));
 }
 
 fn until(events: &Receiver<Event>, editor: &Preview, wanted: impl Fn(&Status) -> bool) {
@@ -132,7 +133,7 @@ fn windows(wanted: usize) -> impl Fn(&Status) -> bool {
 }
 
 fn shown(link: &Link, revision: u64) {
-    link.replies.send(Reply::Shown { revision, synth_ms: 1.5 }).unwrap();
+    link.replies.send(ToEditor::Ack { revision, synth_ms: 1.5 }).unwrap();
 }
 
 #[test]
@@ -145,12 +146,12 @@ fn a_window_gets_the_state_and_then_joined_edits() {
     let window = stage.window();
     assert_eq!(next_title(&window), ("0".into(), 0));
     let selection = next(&window, |update| match update {
-        Update::Selection(pointer) => Some(pointer.clone()),
+        Update::Said(FromEditor::Selection(pointer)) => Some(pointer.clone()),
         _ => None,
     });
     assert_eq!(selection.as_deref(), Some("/layers/0"));
     let transport = next(&window, |update| match update {
-        Update::Transport(transport) => Some(*transport),
+        Update::Said(FromEditor::Transport(transport)) => Some(*transport),
         _ => None,
     });
     assert_eq!(transport, half);
@@ -160,7 +161,9 @@ fn a_window_gets_the_state_and_then_joined_edits() {
     assert_eq!(next_title(&window), ("1".into(), 1));
     publish(&editor, &document, 2..=9);
     editor.view("view-field");
-    next(&window, |update| matches!(update, Update::View(name) if name == "view-field on").then_some(()));
+    next(&window, |update| {
+        matches!(update, Update::Said(FromEditor::View(name)) if name == "view-field on").then_some(())
+    });
     shown(&window, 1);
     assert_eq!(next_title(&window), ("9".into(), 9), "eight edits in one patch");
 }
@@ -171,16 +174,16 @@ fn the_editor_hears_the_window() {
     let (editor, events) = stage.editor();
     let window = stage.window();
     next_title(&window);
-    let report = |fps| Reply::Report { fps, adapter: "a\u{1b}b".into(), notice: String::new() };
-    window.replies.send(Reply::Pointer { x: f64::NAN, y: 0.0 }).unwrap();
+    let report = |fps| ToEditor::Report { fps, adapter: "a\u{1b}b".into(), notice: String::new() };
+    window.replies.send(ToEditor::Pointer { x: f64::NAN, y: 0.0 }).unwrap();
     window.replies.send(report(60.0)).unwrap();
-    window.replies.send(Reply::Pointer { x: 1.5, y: -2.0 }).unwrap();
-    window.replies.send(Reply::Transport(Transport { playing: true, time: 0.5, speed: 2.0 })).unwrap();
-    window.replies.send(Reply::Command("mark-point".into())).unwrap();
+    window.replies.send(ToEditor::Pointer { x: 1.5, y: -2.0 }).unwrap();
+    window.replies.send(ToEditor::Transport(Transport { playing: true, time: 0.5, speed: 2.0 })).unwrap();
+    window.replies.send(ToEditor::Command("mark-point".into())).unwrap();
     let mut heard = Vec::new();
     while heard.len() < 3 {
         let event = events.recv_timeout(PATIENCE).expect("an event");
-        if let Event::Reply(reply @ (Reply::Pointer { .. } | Reply::Transport(_) | Reply::Command(_))) = event {
+        if let Event::Said(reply @ (ToEditor::Pointer { .. } | ToEditor::Transport(_) | ToEditor::Command(_))) = event {
             heard.push(format!("{reply:?}"));
         }
     }
@@ -362,7 +365,7 @@ fn an_editor_that_leaves_says_goodbye() {
         notice(&window, "joined");
         drop(editor);
         if joined {
-            next(&window, |update| matches!(update, Update::Closed).then_some(()));
+            next(&window, |update| matches!(update, Update::Said(FromEditor::Bye(_))).then_some(()));
         } else {
             notice(&window, "following the file");
         }

@@ -12,11 +12,12 @@ use plica::files::cache::Cache;
 use plica::files::{Options, materials};
 use plica::layers::parts::materials::Materials;
 use plica::preview::editor::{Event, Preview};
+use plica::preview::follow::Update;
 use plica::preview::follow::client::Link;
 use plica::preview::remote::address::Address;
 use plica::preview::remote::ssh::Way;
 use plica::preview::remote::{far, fetch};
-use plica::preview::{Reply, Update};
+use plica::preview::wire::message::{FromEditor, ToEditor};
 use plica::scene::{Document, Edit, Scene};
 use serde_json::json;
 
@@ -112,7 +113,7 @@ impl Window {
             Update::Scene { scene, revision } if scene.title == title => Some((scene.clone(), *revision)),
             _ => None,
         });
-        self.link.replies.send(Reply::Shown { revision, synth_ms: 1.5 }).unwrap();
+        self.link.replies.send(ToEditor::Ack { revision, synth_ms: 1.5 }).unwrap();
         self.load(&scene)
     }
 
@@ -122,7 +123,9 @@ impl Window {
     }
 
     fn notice(&self, part: &str) {
-        self.next(|update| matches!(update, Update::Notice(line) if line.contains(part)).then_some(()));
+        self.next(|update| {
+            matches!(update, Update::Said(FromEditor::Notice(line)) if line.contains(part)).then_some(())
+        });
     }
 
     /// Waits until the picture is so wide.
@@ -150,7 +153,9 @@ fn the_file_is_followed_there_with_its_pictures() {
     window.shows("set");
     std::fs::write(&stage.scene, "{\"plica\": 1, ").unwrap();
     window.next(|update| match update {
-        Update::Problems(problems) => problems.iter().any(|p| p.to_string().contains("line 1")).then_some(()),
+        Update::Said(FromEditor::Problems(problems)) => {
+            problems.iter().any(|p| p.to_string().contains("line 1")).then_some(())
+        }
         _ => None,
     });
     std::fs::write(&stage.scene, text("mended")).unwrap();
@@ -168,20 +173,22 @@ fn an_editor_there_is_joined_and_hears_the_window() {
     editor.view("view-field");
     let window = stage.window();
     window.shows("0");
-    let selected = |update: &Update| matches!(update, Update::Selection(Some(at)) if at == "/images").then_some(());
+    let selected = |update: &Update| {
+        matches!(update, Update::Said(FromEditor::Selection(Some(at))) if at == "/images").then_some(())
+    };
     let (document, edit) = titled(&stage.document, "1");
     editor.publish(&document, 1, &edit);
     window.shows("1");
     editor.select(Some("/images".into()));
     window.next(selected);
     for reply in [
-        Reply::Report { fps: 60.0, adapter: "far".into(), notice: String::new() },
-        Reply::Pointer { x: 1.0, y: 2.0 },
-        Reply::Command("play".into()),
+        ToEditor::Report { fps: 60.0, adapter: "far".into(), notice: String::new() },
+        ToEditor::Pointer { x: 1.0, y: 2.0 },
+        ToEditor::Command("play".into()),
     ] {
         window.link.replies.send(reply.clone()).unwrap();
         loop {
-            if matches!(events.recv_timeout(PATIENCE).expect("an event"), Event::Reply(said) if said == reply) {
+            if matches!(events.recv_timeout(PATIENCE).expect("an event"), Event::Said(said) if said == reply) {
                 break;
             }
         }
@@ -200,7 +207,7 @@ fn a_lost_link_keeps_the_last_state_and_comes_back() {
     let seen = std::cell::Cell::new((false, false));
     window.next(|update| {
         match update {
-            Update::View(name) if name == "view-field on" => seen.set((true, seen.get().1)),
+            Update::Said(FromEditor::View(name)) if name == "view-field on" => seen.set((true, seen.get().1)),
             Update::Scene { .. } => seen.set((seen.get().0, true)),
             _ => {}
         }
@@ -211,14 +218,14 @@ fn a_lost_link_keeps_the_last_state_and_comes_back() {
     let (document, edit) = titled(&stage.document, "meanwhile");
     editor.publish(&document, 1, &edit);
     window.next(|update| match update {
-        Update::View(name) => panic!("{name} is switched over"),
+        Update::Said(FromEditor::View(name)) => panic!("{name} is switched over"),
         Update::Scene { scene, .. } if scene.title == "meanwhile" => Some(()),
         _ => None,
     });
     let (document, edit) = titled(&document, "after");
     editor.publish(&document, 2, &edit);
     // Until it shows what came it is sent no more.
-    window.link.replies.send(Reply::Shown { revision: 1, synth_ms: 1.0 }).unwrap();
+    window.link.replies.send(ToEditor::Ack { revision: 1, synth_ms: 1.0 }).unwrap();
     window.shows("after");
 }
 

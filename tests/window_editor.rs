@@ -8,16 +8,17 @@ use std::sync::mpsc::{Receiver, channel};
 
 use display::{Display, Place, View, corner};
 use plica::files::{Options, scene};
+use plica::preview::Transport;
 use plica::preview::editor::{Event, Preview};
-use plica::preview::{Reply, Transport};
+use plica::preview::wire::message::ToEditor;
 use plica::scene::edit::Edit;
 
 /// An editor of the scene, and what its windows say.
-fn editor(place: &Place) -> (Preview, Receiver<Reply>) {
+fn editor(place: &Place) -> (Preview, Receiver<ToEditor>) {
     let (sender, replies) = channel();
     let document = scene::open(&place.scene, &Options::default()).unwrap();
     let deliver = move |event| {
-        if let Event::Reply(reply) = event {
+        if let Event::Said(reply) = event {
             drop(sender.send(reply));
         }
     };
@@ -25,7 +26,7 @@ fn editor(place: &Place) -> (Preview, Receiver<Reply>) {
 }
 
 /// The first reply that is looked for.
-fn heard<T>(replies: &Receiver<Reply>, wanted: impl Fn(&Reply) -> Option<T>) -> T {
+fn heard<T>(replies: &Receiver<ToEditor>, wanted: impl Fn(&ToEditor) -> Option<T>) -> T {
     loop {
         let reply = replies.recv_timeout(display::PATIENCE).expect("a reply");
         if let Some(found) = wanted(&reply) {
@@ -34,9 +35,9 @@ fn heard<T>(replies: &Receiver<Reply>, wanted: impl Fn(&Reply) -> Option<T>) -> 
     }
 }
 
-fn transport(replies: &Receiver<Reply>) -> Transport {
+fn transport(replies: &Receiver<ToEditor>) -> Transport {
     heard(replies, |reply| match reply {
-        Reply::Transport(transport) => Some(*transport),
+        ToEditor::Transport(transport) => Some(*transport),
         _ => None,
     })
 }
@@ -69,15 +70,15 @@ fn editor_and_window_share_time_point_and_view() {
     let at = [left + 100, top + 60].map(|n| n.to_string());
     display.tool("xdotool", &["mousemove", "--window", &view.window, &at[0], &at[1]]);
     view.keys(&["Return"]);
-    heard(&replies, |reply| matches!(reply, Reply::Pointer { x: 100.0, y: 60.0 }).then_some(()));
-    heard(&replies, |reply| matches!(reply, Reply::Command(name) if name == "mark-point").then_some(()));
+    heard(&replies, |reply| matches!(reply, ToEditor::Pointer { x: 100.0, y: 60.0 }).then_some(()));
+    heard(&replies, |reply| matches!(reply, ToEditor::Command(name) if name == "mark-point").then_some(()));
 
     for click in [false, true] {
         match click {
             true => drop(display.tool("xdotool", &["click", "1"])),
             false => view.keys(&["space"]),
         }
-        heard(&replies, |reply| matches!(reply, Reply::Command(name) if name == "select-point").then_some(()));
+        heard(&replies, |reply| matches!(reply, ToEditor::Command(name) if name == "select-point").then_some(()));
     }
 
     let bare = view.shot();
@@ -113,7 +114,7 @@ fn what_is_lost_comes_back_in_the_same_window() {
     let edit: Edit = serde_json::from_value(patch).unwrap();
     let edited = document.apply(&edit).unwrap();
     editor.publish(&edited, 7, &edit);
-    heard(&replies, |reply| matches!(reply, Reply::Shown { revision: 7, .. }).then_some(()));
+    heard(&replies, |reply| matches!(reply, ToEditor::Ack { revision: 7, .. }).then_some(()));
     assert_eq!(view.window, window);
 }
 
@@ -125,7 +126,7 @@ fn a_picture_that_the_gpu_cannot_hold_is_reduced_and_said_so() {
     let mut command = place.joining();
     let mut view = View::of(&display, command.args(["--limit", "texture=200"]));
     let said = heard(&replies, |reply| match reply {
-        Reply::Report { notice, .. } if !notice.is_empty() => Some(notice.clone()),
+        ToEditor::Report { notice, .. } if !notice.is_empty() => Some(notice.clone()),
         _ => None,
     });
     assert_eq!(said, "480 x 360 is shown reduced 3 times");

@@ -1,59 +1,136 @@
-//! The overlay and zoom commands in force, so that a window which joins late shows what the others show, and one that comes
-//! back is not switched over. Switches are kept and told as what they are set to (`view-field on`), so that windows cannot
-//! drift apart.
+//! How windows show the picture: a value, so that a window that joins late is told it, and one that comes back is told only
+//! what it does not show yet. Switches are told as what they are set to (`view-field on`), so that windows cannot drift apart.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::iter::repeat_n;
+use std::ops::RangeInclusive;
 
 use super::keys::{KEYS, VIEW};
 
-/// The most commands kept; the oldest go first.
-const MOST: usize = 64;
-
 /// Switches that are on in a new window.
 const ON_AT_FIRST: [&str; 2] = ["view-checkerboard", "view-legends"];
+/// Commands that fit the picture anew and so undo earlier zooming.
+const FITS: [&str; 3] = ["zoom-fit", "zoom-whole", "zoom-one"];
+const ZOOM: Steps = Steps { down: "zoom-out", up: "zoom-in", most: -64..=64 };
+/// How often the spacing of the field is doubled.
+pub(super) const FIELD: Steps = Steps { down: "field-closer", up: "field-wider", most: -2..=4 };
+/// The border between still and moving, in steps from the middle of the picture, of as many to each side.
+pub(super) const WIPE: Steps = Steps { down: "wipe-left", up: "wipe-right", most: -10..=10 };
 
-/// Commands given so far, without those that a later one made void.
+/// Two commands that move a number up and down.
+pub(super) struct Steps {
+    down: &'static str,
+    up: &'static str,
+    /// How far they move it.
+    pub most: RangeInclusive<i32>,
+}
+
+impl Steps {
+    /// The number after a step.
+    pub fn step(&self, from: i32, by: i32) -> i32 {
+        (from + by).clamp(*self.most.start(), *self.most.end())
+    }
+}
+
+/// Which switches of the view are on, by their commands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Switches(BTreeSet<&'static str>);
+
+impl Default for Switches {
+    fn default() -> Self {
+        Switches(ON_AT_FIRST.into())
+    }
+}
+
+impl Switches {
+    /// Whether a switch is on.
+    pub fn is_on(&self, name: &str) -> bool {
+        self.0.contains(name)
+    }
+
+    /// Turns a switch on or off, or over if `wanted` is `None`; returns what it is then. `None` if there is no such switch.
+    pub fn set(&mut self, name: &str, wanted: Option<bool>) -> Option<bool> {
+        let name = switch(name)?;
+        let on = wanted.unwrap_or(!self.is_on(name));
+        if on {
+            self.0.insert(name)
+        } else {
+            self.0.remove(name)
+        };
+        Some(on)
+    }
+}
+
+/// See the top of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Views(Vec<String>);
+pub(super) struct Views {
+    switches: Switches,
+    /// How the picture was fitted last, if it was.
+    fit: Option<&'static str>,
+    /// Steps taken since then, or since the beginning, by the command that counts them up.
+    steps: BTreeMap<&'static str, i32>,
+}
 
 impl Views {
-    /// Takes a command; returns it as windows are to be told it. A switch is set, and no longer what it was set to before;
-    /// fitting the picture forgets earlier zooming.
+    /// Takes a command; returns it as windows are to be told it: a switch is set. Commands that leave nothing behind, as
+    /// `view-full-screen`, pass through.
     pub fn take(&mut self, command: &str) -> String {
-        let told = match wanted(command) {
-            (name, None) if is_switch(name) => set(name, !self.is_on(name)),
-            _ => command.to_owned(),
-        };
-        let (name, _) = wanted(&told);
-        if is_switch(name) {
-            self.0.retain(|given| wanted(given).0 != name);
+        let (name, wanted) = wanted(command);
+        if let Some(on) = self.switches.set(name, wanted) {
+            return set(name, on);
         }
-        if ["zoom-fit", "zoom-whole", "zoom-one"].contains(&name) {
-            self.0.retain(|given| given.starts_with("view-"));
+        if let Some(fit) = FITS.into_iter().find(|fit| *fit == command) {
+            self.fit = Some(fit);
+            self.steps.remove(ZOOM.up);
         }
-        if self.0.len() == MOST {
-            self.0.remove(0);
+        for steps in [ZOOM, FIELD, WIPE] {
+            let by = i32::from(command == steps.up) - i32::from(command == steps.down);
+            if by != 0 {
+                let number = self.steps.entry(steps.up).or_default();
+                *number = steps.step(*number, by);
+            }
         }
-        self.0.push(told.clone());
-        told
+        if [WIPE.up, WIPE.down].contains(&command) {
+            self.switches.set("view-wipe", Some(true));
+        }
+        command.to_owned()
     }
 
-    fn is_on(&self, name: &str) -> bool {
-        let given = self.0.iter().map(|given| wanted(given)).find(|(given, _)| *given == name);
-        given.and_then(|(_, on)| on).unwrap_or(ON_AT_FIRST.contains(&name))
+    /// The commands that make a new window look like this.
+    pub fn list(&self) -> Vec<String> {
+        let mut list = self.changes(&Views::default());
+        list.extend(self.fit.map(str::to_owned));
+        for steps in [ZOOM, FIELD, WIPE] {
+            let number = self.steps.get(steps.up).copied().unwrap_or(0);
+            let command = if number < 0 { steps.down } else { steps.up };
+            list.extend(repeat_n(command.to_owned(), number.unsigned_abs() as usize));
+        }
+        // Moving the border shows it, and so would turn on what may be off again.
+        let wipe = self.switches.is_on("view-wipe");
+        let moved = self.steps.get(WIPE.up).is_some_and(|&steps| steps != 0);
+        list.extend((moved && !wipe).then(|| set("view-wipe", false)));
+        list
     }
 
-    /// All of them, in order.
-    pub fn list(&self) -> &[String] {
-        &self.0
+    /// The commands that set the switches that are otherwise in `before`.
+    fn changes(&self, before: &Views) -> Vec<String> {
+        let rows = KEYS.iter().filter_map(|row| switch(row.command));
+        let differs = |name: &&str| self.switches.is_on(name) != before.switches.is_on(name);
+        rows.filter(differs).map(|name| set(name, self.switches.is_on(name))).collect()
     }
 
-    /// Takes what is in force at the other end: returns the commands that were not given here yet. A window that was
-    /// zoomed already keeps its place.
+    /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
+    /// its zoom and its place.
     pub fn catch_up(&mut self, list: &[String]) -> Vec<String> {
-        let fresh = self.0.is_empty();
-        let is_new = |command: &&String| fresh || is_switch(wanted(command).0) && !self.0.contains(command);
-        let missing: Vec<String> = list.iter().filter(is_new).cloned().collect();
-        missing.iter().for_each(|command| drop(self.take(command)));
-        missing
+        let mut wanted = Views::default();
+        list.iter().for_each(|command| drop(wanted.take(command)));
+        if *self == Views::default() {
+            *self = wanted;
+            return self.list();
+        }
+        let changes = wanted.changes(self);
+        self.switches = wanted.switches;
+        changes
     }
 }
 
@@ -66,21 +143,26 @@ pub(super) fn wanted(command: &str) -> (&str, Option<bool>) {
     }
 }
 
+/// The command that sets a switch to what it is; `None` if there is no such switch.
+pub(super) fn setting(name: &str, switches: &Switches) -> Option<String> {
+    switch(name).map(|name| set(name, switches.is_on(name)))
+}
+
 /// A command that sets a switch.
-pub(super) fn set(name: &str, on: bool) -> String {
+fn set(name: &str, on: bool) -> String {
     format!("{name} {}", if on { "on" } else { "off" })
 }
 
 /// Whether a command sets a switch of the view, and does nothing else: any window may ask for it.
 pub(super) fn sets_a_switch(command: &str) -> bool {
-    matches!(wanted(command), (name, Some(_)) if is_switch(name))
+    matches!(wanted(command), (name, Some(_)) if switch(name).is_some())
 }
 
-/// Whether a command switches something on and off that every window is to show alike.
-pub(super) fn is_switch(name: &str) -> bool {
-    name.starts_with("view-")
-        && name != "view-full-screen"
-        && KEYS.iter().any(|row| row.context == VIEW && row.command == name)
+/// The switch of that name, which all windows are to show alike; `None` if there is none.
+fn switch(name: &str) -> Option<&'static str> {
+    let is_switch = |command: &&str| command.starts_with("view-") && *command != "view-full-screen";
+    let rows = KEYS.iter().filter(|row| row.context == VIEW).map(|row| row.command);
+    rows.filter(is_switch).find(|command| *command == name)
 }
 
 #[cfg(test)]
@@ -94,19 +176,24 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_in_force_is_kept() {
-        let table: [(&[&str], &[&str]); 6] = [
-            (&["view-field", "view-grid", "view-field"], &["view-grid on", "view-field off"]),
+    fn only_what_is_in_force_is_listed() {
+        let table: [(&[&str], &[&str]); 9] = [
+            (&["view-field", "view-grid", "view-field"], &["view-grid on"]),
             (&["view-field on", "view-field on"], &["view-field on"]),
-            (&["view-checkerboard", "view-legends off", "view-legends"], &["view-checkerboard off", "view-legends on"]),
+            (&["view-checkerboard", "view-legends off", "view-legends"], &["view-checkerboard off"]),
             (&["zoom-in", "view-grid", "zoom-in", "zoom-one", "zoom-out"], &["view-grid on", "zoom-one", "zoom-out"]),
             (&["zoom-in", "zoom-in"], &["zoom-in", "zoom-in"]),
-            (&[], &[]),
+            (&["field-closer", "field-wider", "field-wider"], &["field-wider"]),
+            (&["wipe-left"], &["view-wipe on", "wipe-left"]),
+            (&["wipe-left", "view-wipe"], &["wipe-left", "view-wipe off"]),
+            (&["view-full-screen"], &[]),
         ];
-        for (given, kept) in table {
-            assert_eq!(views(given).list(), kept, "{given:?}");
+        for (given, listed) in table {
+            assert_eq!(views(given).list(), listed, "{given:?}");
+            let again = views(&views(given).list().iter().map(String::as_str).collect::<Vec<_>>());
+            assert_eq!(again.list(), listed, "{given:?}, from its list");
         }
-        assert_eq!(views(&["zoom-in"; 100]).list().len(), MOST);
+        assert_eq!(views(&["field-closer"; 100]).list().len(), 2, "as far as a window goes");
     }
 
     #[test]
@@ -133,9 +220,9 @@ mod tests {
     fn who_comes_back_is_told_what_is_new() {
         let list = ["view-field on", "zoom-in", "zoom-in", "view-grid on"].map(String::from);
         let table: [(&[&str], &[&str]); 4] = [
-            (&[], &["view-field on", "zoom-in", "zoom-in", "view-grid on"]),
+            (&[], &["view-field on", "view-grid on", "zoom-in", "zoom-in"]),
             (&["view-grid"], &["view-field on"]),
-            (&["view-grid off"], &["view-field on", "view-grid on"]),
+            (&["view-paths on"], &["view-field on", "view-paths off", "view-grid on"]),
             (&["zoom-in"], &["view-field on", "view-grid on"]),
         ];
         for (given, told) in table {

@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use super::graphics::Shown;
 use super::graphics::probed::Probed;
-use crate::preview::Transport;
-use crate::preview::editor::Asked;
+use crate::preview::editor;
 use crate::render::Synth;
 use crate::scene::{Document, Edit};
 
@@ -40,16 +39,8 @@ pub enum Event {
     Done(Result<String, String>),
     /// A save has ended.
     Saved(Result<String, String>),
-    /// The windows have something new to say about themselves.
-    WindowChanged,
-    /// The pointer in a window, in pixels of the picture.
-    Pointer(f64, f64),
-    /// A window plays or stands like this.
-    Transport(Transport),
-    /// A window asks for a command, by its name in the window's table.
-    Command(String),
-    /// A script asks for an edit.
-    Asked(Asked),
+    /// A window or a script says something, or windows come and go.
+    Window(editor::Event),
     /// A thread beside the editor had a fault of its own.
     Fault(String),
     /// The log of the session cannot be written.

@@ -3,16 +3,16 @@
 use std::sync::mpsc;
 
 use crate::base::problem::Problem;
-use crate::preview::Reply;
+use crate::preview::wire::message::ToEditor;
 use crate::scene::edit::Edit;
 
 /// What comes from windows and scripts; delivered on their threads.
 #[derive(Debug)]
 pub enum Event {
-    /// [`Preview::status`] has something new to say.
+    /// [`Preview::status`](super::Preview::status) has something new to say.
     Status,
-    /// What a window says.
-    Reply(Reply),
+    /// What a window says. Its text is one line without control characters.
+    Said(ToEditor),
     /// A script asks for a change.
     Edit(Asked),
 }

@@ -9,16 +9,16 @@ use std::time::Duration;
 
 use super::events::{Asked, Event};
 use super::keeper::Life;
-use super::outbox::{Latest, Outbox, Outgoing, Topic};
+use super::outbox::{Latest, Outbox, Outgoing};
 use super::status::Status;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::problem::Problem;
+use crate::preview::views;
 use crate::preview::wire::connection::{HangUp, Wire};
 use crate::preview::wire::frame;
 use crate::preview::wire::message::{FromEditor, Role, ToEditor};
 use crate::preview::wire::socket::{Caller, Listener};
-use crate::preview::{Reply, Transport, views};
 use crate::scene::edit::Edit;
 
 /// The most connections at a time.
@@ -63,6 +63,12 @@ struct Report {
     notice: String,
 }
 
+impl Report {
+    fn take(&mut self, fps: f64, adapter: &str, notice: &str) {
+        (self.fps, self.adapter, self.notice) = (Some(fps), adapter.into(), notice.into());
+    }
+}
+
 /// Starts a thread that nobody waits for.
 pub(in crate::preview) fn thread(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
     let started = std::thread::Builder::new().name(name.into()).spawn(work);
@@ -70,11 +76,19 @@ pub(in crate::preview) fn thread(name: &str, work: impl FnOnce() + Send + 'stati
 }
 
 impl State {
-    /// The animation runs as this window says; the others are told.
-    fn lead(&mut self, id: u64, transport: Transport) {
-        self.latest.transport = transport;
-        let others = self.peers.iter_mut().filter(|(other, _)| **other != id);
-        others.for_each(|(_, peer)| peer.outbox.due(Topic::Transport));
+    /// Tells the windows how something is now, except the one that said so. What they know already is not said again.
+    pub fn say(&mut self, except: Option<u64>, message: FromEditor) {
+        if let Some(kind) = self.latest.say(message) {
+            let peers = self.peers.iter_mut().filter(|(id, _)| Some(**id) != except);
+            peers.for_each(|(_, peer)| peer.outbox.due(kind));
+        }
+    }
+
+    /// An overlay or zoom command for the windows, except the one that gave it.
+    fn view(&mut self, except: Option<u64>, command: &str) {
+        let told = self.latest.view(command);
+        let peers = self.peers.iter_mut().filter(|(id, _)| Some(**id) != except);
+        peers.for_each(|(_, peer)| peer.outbox.view(&told));
     }
 
     /// What the status line says.
@@ -135,19 +149,20 @@ impl Shared {
 
     /// An overlay or zoom command for the windows.
     pub fn view(&self, command: &str) {
+        self.change(|state| state.view(None, command));
+    }
+
+    /// The overlay and zoom commands in force where the scene is followed.
+    pub fn catch_up(&self, commands: &[String]) {
         self.change(|state| {
-            let told = state.latest.views.take(command);
-            state.peers.values_mut().for_each(|peer| peer.outbox.view(&told));
+            let message = state.latest.catch_up(commands);
+            state.say(None, message);
         });
     }
 
-    /// A switch was set in a window: the others follow.
-    fn switched(&self, id: u64, command: &str) {
-        self.change(|state| {
-            let told = state.latest.views.take(command);
-            let others = state.peers.iter_mut().filter(|(other, _)| **other != id);
-            others.for_each(|(_, peer)| peer.outbox.view(&told));
-        });
+    /// Tells the windows how something is now; only the latest message of its kind counts.
+    pub fn say(&self, message: FromEditor) {
+        self.change(|state| state.say(None, message));
     }
 
     /// Waits until something is so, or for this long.
@@ -272,37 +287,37 @@ impl Shared {
                 ToEditor::Ack { revision, synth_ms } => {
                     self.change(|state| state.report.synth_ms = Some(synth_ms));
                     self.outbox(id, |outbox| outbox.shown(revision));
-                    (self.deliver)(Event::Reply(Reply::Shown { revision, synth_ms }));
+                    self.heard(said);
+                }
+                ToEditor::Report { fps, adapter, notice } => {
+                    let (adapter, notice) = (line(&adapter), line(&notice));
+                    self.change(|state| state.report.take(fps, &adapter, &notice));
+                    self.heard(ToEditor::Report { fps, adapter, notice });
+                }
+                ToEditor::Transport(transport) => {
+                    self.change(|state| state.say(Some(id), FromEditor::Transport(transport)));
+                    self.heard(said);
+                }
+                ToEditor::Command(name) => {
+                    if views::sets_a_switch(&name) {
+                        self.change(|state| state.view(Some(id), &name));
+                    }
+                    self.heard(ToEditor::Command(line(&name)));
                 }
                 ToEditor::WantScene => self.outbox(id, Outbox::want_scene),
                 ToEditor::Want { hash, offset } => self.outbox(id, |outbox| outbox.want(hash, offset)),
-                ToEditor::Report { fps, adapter, notice } => {
-                    let (adapter, notice) = (line(&adapter), line(&notice));
-                    self.change(|state| {
-                        let synth_ms = state.report.synth_ms;
-                        let (adapter, notice) = (adapter.clone(), notice.clone());
-                        state.report = Report { synth_ms, fps: Some(fps), adapter, notice };
-                    });
-                    (self.deliver)(Event::Reply(Reply::Report { fps, adapter, notice }));
-                }
-                ToEditor::Transport(transport) => {
-                    self.change(|state| state.lead(id, transport));
-                    (self.deliver)(Event::Reply(Reply::Transport(transport)));
-                }
-                ToEditor::Pointer { x, y } => (self.deliver)(Event::Reply(Reply::Pointer { x, y })),
-                ToEditor::Command(name) => {
-                    if views::sets_a_switch(&name) {
-                        self.switched(id, &name);
-                    }
-                    (self.deliver)(Event::Reply(Reply::Command(line(&name))));
-                }
                 ToEditor::Alive => {}
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));
                 }
+                other => self.heard(other),
             }
         }
         Ok(())
+    }
+
+    fn heard(&self, said: ToEditor) {
+        (self.deliver)(Event::Said(said));
     }
 
     fn forget(&self, id: u64) {

@@ -2,11 +2,11 @@
 //! revision, and become the scene itself once that is shorter; of everything else only the latest counts. So it stays small
 //! however long a window is stuck, and whoever edits never waits.
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::VecDeque;
 use std::io;
+use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
 
-use crate::base::problem::Problem;
 use crate::files::originals::Originals;
 use crate::preview::Transport;
 use crate::preview::views::Views;
@@ -23,50 +23,60 @@ const MAX_VIEWS: usize = 64;
 /// The most pieces of files that a window may ask for at a time; what it asks beyond them is not heard.
 const MAX_WANTS: usize = 256;
 
+/// Which message it is, whatever it says.
+pub(in crate::preview) type Kind = Discriminant<FromEditor>;
+
 /// The editor's state, as windows see it.
 #[derive(Clone)]
 pub(in crate::preview) struct Latest {
     pub document: Document,
     pub revision: u64,
-    pub selection: Option<String>,
-    pub transport: Transport,
-    pub views: Views,
-    /// What the scene names, where windows on another machine are served.
+    /// The files that the scene names, if windows on another machine are served.
     pub originals: Option<Arc<Originals>>,
-    /// A line for the person at a window on another machine.
-    pub notice: String,
-    /// What is wrong, for the same.
-    pub problems: Vec<Problem>,
+    views: Views,
+    /// Everything else that a new window is told, in this order: of each kind of message the latest.
+    said: Vec<FromEditor>,
 }
 
 impl Latest {
     /// A document that nothing was done with yet.
     pub fn new(document: Document, revision: u64) -> Latest {
-        let (transport, views, notice) = (Transport::default(), Views::default(), String::new());
-        Latest { document, revision, selection: None, transport, views, originals: None, notice, problems: Vec::new() }
+        let said = vec![FromEditor::Selection(None), FromEditor::Transport(Transport::default())];
+        Latest { document, revision, originals: None, views: Views::default(), said }
     }
 
-    fn message(&self, topic: Topic) -> FromEditor {
-        match topic {
-            Topic::Selection => FromEditor::Selection(self.selection.clone()),
-            Topic::Transport => FromEditor::Transport(self.transport),
-            Topic::Views => FromEditor::Views(self.views.list().to_vec()),
-            Topic::Notice => FromEditor::Notice(self.notice.clone()),
-            Topic::Problems => FromEditor::Problems(self.problems.clone()),
-            Topic::Images => FromEditor::Images(self.originals.as_ref().map(|all| all.list()).unwrap_or_default()),
+    /// Takes a message of which only the latest counts; returns its kind if it says something new.
+    pub fn say(&mut self, message: FromEditor) -> Option<Kind> {
+        let kind = discriminant(&message);
+        match self.said.iter_mut().find(|said| discriminant(*said) == kind) {
+            Some(said) if *said == message => return None,
+            Some(said) => *said = message,
+            None => self.said.push(message),
         }
+        Some(kind)
     }
-}
 
-/// What only the latest counts of, in the order in which it is told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::preview) enum Topic {
-    Selection,
-    Transport,
-    Views,
-    Notice,
-    Problems,
-    Images,
+    /// Takes an overlay or zoom command; returns it as windows are to be told it.
+    pub fn view(&mut self, command: &str) -> String {
+        let told = self.views.take(command);
+        self.say(FromEditor::Views(self.views.list()));
+        told
+    }
+
+    /// Takes the overlay and zoom commands in force where the scene is followed; returns what windows are to be told.
+    pub fn catch_up(&mut self, commands: &[String]) -> FromEditor {
+        self.views.catch_up(commands);
+        FromEditor::Views(self.views.list())
+    }
+
+    /// The animation has run on to `time`, in seconds, in the windows too.
+    pub fn passing(&mut self, time: f64) {
+        self.said.iter_mut().for_each(|said| {
+            if let FromEditor::Transport(transport) = said {
+                transport.time = time;
+            }
+        });
+    }
 }
 
 /// An edit with its length on the wire, measured once for all windows. `None`: longer than a patch may be.
@@ -112,7 +122,7 @@ pub(in crate::preview) struct Outbox {
     sent: u64,
     owed: bool,
     change: Change,
-    due: BTreeSet<Topic>,
+    due: VecDeque<Kind>,
     views: VecDeque<String>,
     /// Pieces of files that the window waits for: hash and offset.
     wants: VecDeque<(String, u64)>,
@@ -147,11 +157,7 @@ impl Outgoing {
 impl Outbox {
     /// For a window that was greeted with this state's document, and has everything else to learn.
     pub fn greeted(latest: &Latest) -> Self {
-        let mut due = BTreeSet::from([Topic::Selection, Topic::Transport]);
-        due.extend((!latest.views.list().is_empty()).then_some(Topic::Views));
-        due.extend((!latest.notice.is_empty()).then_some(Topic::Notice));
-        due.extend((!latest.problems.is_empty()).then_some(Topic::Problems));
-        due.extend(latest.originals.is_some().then_some(Topic::Images));
+        let due = latest.said.iter().map(discriminant).collect();
         let (views, wants) = (VecDeque::new(), VecDeque::new());
         Outbox { sent: latest.revision, owed: true, change: Change::None, due, views, wants }
     }
@@ -180,9 +186,11 @@ impl Outbox {
         self.owed &= revision != self.sent;
     }
 
-    /// There is something new to tell.
-    pub fn due(&mut self, topic: Topic) {
-        self.due.insert(topic);
+    /// The latest message of this kind is still to be told.
+    pub fn due(&mut self, kind: Kind) {
+        if !self.due.contains(&kind) {
+            self.due.push_back(kind);
+        }
     }
 
     /// The window asks for a piece of a file.
@@ -213,12 +221,13 @@ impl Outbox {
                 return next;
             }
         }
-        if let Some(topic) = self.due.pop_first() {
-            if topic == Topic::Views {
+        while let Some(kind) = self.due.pop_front() {
+            let Some(message) = latest.said.iter().find(|said| discriminant(*said) == kind) else { continue };
+            if matches!(message, FromEditor::Views(_)) {
                 // They are among those in force.
                 self.views.clear();
             }
-            return Some(Outgoing::Plain(latest.message(topic)));
+            return Some(Outgoing::Plain(message.clone()));
         }
         if let Some(view) = self.views.pop_front() {
             return Some(Outgoing::Plain(FromEditor::View(view)));
@@ -247,7 +256,7 @@ mod tests {
     }
 
     fn quiet(revision: u64) -> Outbox {
-        Outbox { owed: false, due: BTreeSet::new(), ..Outbox::greeted(&latest(revision)) }
+        Outbox { owed: false, due: VecDeque::new(), ..Outbox::greeted(&latest(revision)) }
     }
 
     /// What goes out, in one word and its revisions.
@@ -297,13 +306,14 @@ mod tests {
     #[test]
     fn a_stuck_window_costs_no_memory() {
         let mut outbox = Outbox::greeted(&latest(0));
+        let selection = discriminant(&FromEditor::Selection(None));
         for i in 0..100_000 {
             outbox.edited(&edit(10));
             outbox.view(&i.to_string());
-            outbox.due(Topic::Selection);
+            outbox.due(selection);
         }
         assert!(matches!(outbox.change, Change::Whole));
-        assert_eq!(outbox.views.len(), MAX_VIEWS);
+        assert_eq!((outbox.views.len(), outbox.due.len()), (MAX_VIEWS, 2));
         assert_eq!(outbox.views.back().unwrap(), "99999");
     }
 
@@ -336,7 +346,7 @@ mod tests {
         let mut latest = latest(0);
         latest.originals = Some(Arc::default());
         let mut outbox = quiet(0);
-        let told = |outbox: &mut Outbox| match outbox.next(&latest).map(Outgoing::into_message) {
+        let told = |outbox: &mut Outbox, latest: &Latest| match outbox.next(latest).map(Outgoing::into_message) {
             Some(FromEditor::Piece { offset, .. }) => offset.to_string(),
             Some(FromEditor::Patch { .. }) => "patch".into(),
             Some(FromEditor::Notice(_)) => "notice".into(),
@@ -344,16 +354,16 @@ mod tests {
         };
         (0..1000).for_each(|offset| outbox.want("a".into(), offset));
         assert_eq!(outbox.wants.len(), MAX_WANTS);
-        assert_eq!(told(&mut outbox), "0");
+        assert_eq!(told(&mut outbox, &latest), "0");
         outbox.edited(&edit(1));
-        outbox.due(Topic::Notice);
-        assert_eq!(["patch", "notice", "1", "2"].map(|_| told(&mut outbox)), ["patch", "notice", "1", "2"]);
+        latest.say(FromEditor::Notice("a".into())).into_iter().for_each(|kind| outbox.due(kind));
+        assert_eq!(["patch", "notice", "1", "2"].map(|_| told(&mut outbox, &latest)), ["patch", "notice", "1", "2"]);
     }
 
     #[test]
     fn who_joins_late_learns_what_is_in_force() {
         let mut latest = latest(0);
-        latest.views.take("view-field");
+        latest.view("view-field");
         let mut outbox = Outbox::greeted(&latest);
         outbox.view("view-field");
         let all: Vec<_> = std::iter::from_fn(|| outbox.next(&latest)).map(Outgoing::into_message).collect();

@@ -10,11 +10,12 @@ use super::display::no_window;
 use super::events::Event;
 use super::host::{Shared, thread};
 use super::keeper::{Keeper, Life};
-use super::outbox::{Latest, Measured, Topic};
+use super::outbox::{Latest, Measured};
 use super::status::Status;
 use crate::base::error::Result;
 use crate::files::Options;
 use crate::preview::Transport;
+use crate::preview::wire::message::FromEditor;
 use crate::preview::wire::socket::{Door, Listener};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
@@ -74,31 +75,27 @@ impl Preview {
         });
     }
 
+    /// Tells the windows how something is now, those that join later too: of each kind of message only the latest counts.
+    /// What they know already is not said again.
+    pub fn say(&self, message: FromEditor) {
+        self.shared.say(message);
+    }
+
     /// The selection moved to this JSON pointer.
     pub fn select(&self, pointer: Option<String>) {
-        self.shared.change(|state| {
-            if state.latest.selection != pointer {
-                state.latest.selection = pointer;
-                state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Selection));
-            }
-        });
+        self.say(FromEditor::Selection(pointer));
     }
 
     /// The animation was started or stopped, or moved, or plays at another speed. What the windows know already is not said
     /// again.
     pub fn transport(&self, transport: Transport) {
-        self.shared.change(|state| {
-            if state.latest.transport != transport {
-                state.latest.transport = transport;
-                state.peers.values_mut().for_each(|peer| peer.outbox.due(Topic::Transport));
-            }
-        });
+        self.say(FromEditor::Transport(transport));
     }
 
     /// The animation has run on to `time` (scene time, in seconds) by itself, as it does in the windows: those that join
     /// later begin there.
     pub fn passing(&self, time: f64) {
-        self.shared.lock().latest.transport.time = time;
+        self.shared.lock().latest.passing(time);
     }
 
     /// An overlay or zoom command for the windows, by name.
@@ -172,8 +169,7 @@ mod tests {
     use std::sync::mpsc::{Receiver, channel};
 
     use super::*;
-    use crate::preview::Update;
-    use crate::preview::follow::client;
+    use crate::preview::follow::{Update, client};
 
     const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -233,13 +229,16 @@ mod tests {
     fn window_process() {
         let Some(scene) = std::env::var_os("PLICA_TEST_SCENE").map(PathBuf::from) else { return };
         let link = client::follow(&scene, &Options::default(), true);
-        let update = link.updates.iter().find(|update| matches!(update, Update::Scene { .. } | Update::Closed));
+        let update = link
+            .updates
+            .iter()
+            .find(|update| matches!(update, Update::Scene { .. } | Update::Said(FromEditor::Bye(_))));
         assert!(matches!(update, Some(Update::Scene { .. })));
         if (1..9).any(|time| std::fs::remove_file(scene.with_file_name(time.to_string())).is_ok()) {
             eprintln!("plica: no adapter\u{7}");
             std::process::exit(1);
         }
-        assert!(link.updates.iter().any(|update| matches!(update, Update::Closed)));
+        assert!(link.updates.iter().any(|update| matches!(update, Update::Said(FromEditor::Bye(_)))));
     }
 
     #[test]
@@ -253,10 +252,7 @@ mod tests {
         stage.until(connected);
         let Stage { preview, events, .. } = stage;
         drop(preview);
-        assert!(
-            events.iter().all(|event| matches!(event, Event::Status | Event::Reply(_))),
-            "and ends with its editor"
-        );
+        assert!(events.iter().all(|event| matches!(event, Event::Status | Event::Said(_))), "and ends with its editor");
     }
 
     #[test]

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::time::Duration;
 
-use super::talk::{Heard, News, Outcome, Sink, Talk, WindowGone, window_sink};
+use super::news::{News, Sink, Update, window_sink};
+use super::talk::{Heard, Outcome, Talk, WindowGone};
 use crate::base::error::Error;
 use crate::files::watch::Watch;
 use crate::files::{self, Options, materials};
 use crate::preview::wire::handshake;
-use crate::preview::wire::message::{FromEditor, Role};
-use crate::preview::{Reply, Update};
+use crate::preview::wire::message::{FromEditor, Role, ToEditor};
 
 /// How often an editor is looked for while there is none.
 const LOOK: Duration = Duration::from_millis(250);
@@ -21,7 +21,7 @@ pub struct Link {
     /// What the window shows. The first is the scene, or a notice why there is none yet.
     pub updates: Receiver<Update>,
     /// What the window has to say. Dropping it, or `updates`, ends the link.
-    pub replies: Sender<Reply>,
+    pub replies: Sender<ToEditor>,
 }
 
 /// Follows a scene in its editor or its file. `joined`: the window was opened by the editor, and is to close with it.
@@ -34,7 +34,7 @@ pub fn follow(scene: &Path, options: &Options, joined: bool) -> Link {
 }
 
 /// The same for anybody who takes the news.
-pub(in crate::preview) fn follow_with(scene: &Path, options: &Options, joined: bool, sink: Sink) -> Sender<Reply> {
+pub(in crate::preview) fn follow_with(scene: &Path, options: &Options, joined: bool, sink: Sink) -> Sender<ToEditor> {
     let (talk, replies, heard) = Talk::new(scene.display().to_string(), options, sink);
     let client = Client { scene: scene.to_owned(), joined, talk, watch: None };
     std::thread::spawn(move || drop(client.run(&heard)));
@@ -102,8 +102,8 @@ impl Client {
     fn take(&mut self, said: FromEditor) -> Outcome<bool> {
         let patched = matches!(said, FromEditor::Patch { .. } | FromEditor::Scene { .. });
         match self.talk.take(said)? {
-            Some(FromEditor::Bye(_)) if self.joined => {
-                self.talk.update(Update::Closed)?;
+            Some(bye @ FromEditor::Bye(_)) if self.joined => {
+                self.talk.pass_on(bye)?;
                 return Ok(true);
             }
             Some(FromEditor::Bye(reason)) => {

@@ -6,38 +6,15 @@ use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::news::{News, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::Options;
-use crate::preview::views::Views;
 use crate::preview::wire::connection::{HangUp, Wire};
 use crate::preview::wire::frame;
 use crate::preview::wire::message::{FromEditor, ToEditor};
-use crate::preview::{Reply, Update};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
-
-/// What is told of a scene that is followed.
-pub(in crate::preview) enum News {
-    /// The document of this revision.
-    Document {
-        /// The document.
-        document: Document,
-        /// As in [`Update::Scene`].
-        revision: u64,
-        /// What made it of the one before, where that is known.
-        edit: Option<Edit>,
-    },
-    /// Files that the document names changed.
-    Files,
-    /// The overlay and zoom commands in force at the other end.
-    Views(Vec<String>),
-    /// Anything else; never a scene.
-    Update(Update),
-}
-
-/// Takes news; tells whether anybody is still there to hear them.
-pub(in crate::preview) type Sink = Box<dyn FnMut(News) -> bool + Send>;
 
 /// What the thread of a talk hears.
 pub(in crate::preview) enum Heard {
@@ -81,7 +58,7 @@ pub(in crate::preview) struct Talk {
 
 impl Talk {
     /// A talk with nobody yet; replies go to whoever serves it then.
-    pub fn new(place: String, options: &Options, sink: Sink) -> (Talk, Sender<Reply>, Receiver<Heard>) {
+    pub fn new(place: String, options: &Options, sink: Sink) -> (Talk, Sender<ToEditor>, Receiver<Heard>) {
         let (sender, heard) = mpsc::channel();
         let (replies, said) = mpsc::channel();
         let talk = Talk {
@@ -116,9 +93,9 @@ impl Talk {
         if (self.sink)(news) { Ok(()) } else { Err(WindowGone) }
     }
 
-    /// Tells an update.
-    pub fn update(&mut self, update: Update) -> Outcome {
-        self.tell(News::Update(update))
+    /// Tells what the editor says, or what is said in its place.
+    pub fn pass_on(&mut self, message: FromEditor) -> Outcome {
+        self.tell(News::Said(message))
     }
 
     /// A line for the person; the same one is not said again and again.
@@ -128,12 +105,12 @@ impl Talk {
             return Ok(());
         }
         self.last_notice.clone_from(&line);
-        self.update(Update::Notice(line))
+        self.pass_on(FromEditor::Notice(line))
     }
 
     /// How far something is; nothing once it is done.
     pub fn progress(&mut self, line: Option<String>) -> Outcome {
-        self.update(Update::Progress(line.unwrap_or_default()))
+        self.tell(News::Progress(line.unwrap_or_default()))
     }
 
     /// All that is wrong now; the same is not said again.
@@ -142,12 +119,12 @@ impl Talk {
             return Ok(());
         }
         self.last_problems.clone_from(&problems);
-        self.update(Update::Problems(problems))
+        self.pass_on(FromEditor::Problems(problems))
     }
 
     /// What went wrong is all that is wrong now.
     pub fn failed(&mut self, error: Error) -> Outcome {
-        let problems = crate::preview::problems(error, &self.place);
+        let problems = problems(error, &self.place);
         self.problems(problems)
     }
 
@@ -189,16 +166,13 @@ impl Talk {
         }
     }
 
-    /// Does what is said, as far as it is the same for every window; returns the rest.
+    /// Applies what changes the document and passes on what is meant for windows; returns what concerns the link itself.
     pub fn take(&mut self, said: FromEditor) -> Outcome<Option<FromEditor>> {
         match said {
             FromEditor::Patch { from_revision, to_revision, patch } => self.patch(from_revision, to_revision, patch)?,
             FromEditor::Scene { revision, document } => self.replace(revision, document)?,
-            FromEditor::Selection(pointer) => self.update(Update::Selection(pointer))?,
-            FromEditor::Transport(transport) => self.update(Update::Transport(transport))?,
-            FromEditor::View(name) => self.update(Update::View(name))?,
-            FromEditor::Views(names) => self.tell(News::Views(names))?,
-            other => return Ok(Some(other)),
+            said if said.is_of_the_link() => return Ok(Some(said)),
+            said => self.pass_on(said)?,
         }
         Ok(None)
     }
@@ -248,28 +222,6 @@ impl Drop for Talk {
     }
 }
 
-/// Tells a window: what comes back after a lost link is not switched over.
-pub(in crate::preview) fn window_sink(updates: Sender<Update>) -> Sink {
-    let mut views = Views::default();
-    let mut shown = None;
-    Box::new(move |news| {
-        let send = |update| updates.send(update).is_ok();
-        match news {
-            News::Document { document, revision, .. } => {
-                let scene = document.scene().clone();
-                shown = Some((scene.clone(), revision));
-                send(Update::Scene { scene, revision })
-            }
-            News::Files => shown.clone().is_none_or(|(scene, revision)| send(Update::Scene { scene, revision })),
-            News::Views(list) => views.catch_up(&list).into_iter().all(|name| send(Update::View(name))),
-            News::Update(update) => match update {
-                Update::View(name) => send(Update::View(views.take(&name))),
-                other => send(other),
-            },
-        }
-    })
-}
-
 /// Where replies go: to the editor while there is one.
 #[derive(Clone, Default)]
 struct Outlet(Arc<Mutex<Option<Box<dyn Write + Send>>>>);
@@ -287,8 +239,8 @@ impl Outlet {
         }
     }
 
-    fn pass_on(&self, replies: &Receiver<Reply>, heard: &Sender<Heard>) {
-        replies.iter().filter_map(to_editor).for_each(|message| self.send(&message));
+    fn pass_on(&self, replies: &Receiver<ToEditor>, heard: &Sender<Heard>) {
+        replies.iter().filter(ToEditor::is_finite).for_each(|message| self.send(&message));
         // The talk may have ended first.
         drop(heard.send(Heard::Gone));
     }
@@ -304,15 +256,15 @@ fn listen(mut from: &mut dyn Read, most: u64, takes: impl Fn(FromEditor) -> bool
     Ok(())
 }
 
-/// A reply as it goes over the wire; nothing where it holds no number that JSON can write.
-fn to_editor(reply: Reply) -> Option<ToEditor> {
-    match reply {
-        Reply::Shown { revision, synth_ms } if synth_ms.is_finite() => Some(ToEditor::Ack { revision, synth_ms }),
-        Reply::Shown { revision, .. } => Some(ToEditor::Ack { revision, synth_ms: 0.0 }),
-        Reply::Report { fps, adapter, notice } if fps.is_finite() => Some(ToEditor::Report { fps, adapter, notice }),
-        Reply::Pointer { x, y } if x.is_finite() && y.is_finite() => Some(ToEditor::Pointer { x, y }),
-        Reply::Transport(t) if t.time.is_finite() && t.speed.is_finite() => Some(ToEditor::Transport(t)),
-        Reply::Report { .. } | Reply::Pointer { .. } | Reply::Transport(_) => None,
-        Reply::Command(name) => Some(ToEditor::Command(name)),
+/// What is wrong with the scene that messages call `scene`, one by one.
+fn problems(error: Error, scene: &str) -> Vec<Problem> {
+    match error {
+        Error::Scene { problems, .. } => problems,
+        Error::Failed { place, what, cure } => {
+            let place = if place == scene { String::new() } else { place };
+            let problem = Problem::error(place, what);
+            vec![cure.into_iter().fold(problem, Problem::hint)]
+        }
+        other => vec![Problem::error("", other.to_string())],
     }
 }

@@ -11,14 +11,13 @@ use crate::files::Options;
 use crate::files::originals::Originals;
 use crate::preview::editor::Event;
 use crate::preview::editor::host::{Shared, thread};
-use crate::preview::editor::outbox::{Latest, Measured, Topic};
+use crate::preview::editor::outbox::{Latest, Measured};
 use crate::preview::follow::client;
-use crate::preview::follow::talk::News;
+use crate::preview::follow::news::News;
 use crate::preview::wire::connection::{ALIVE, SILENCE, Wire};
 use crate::preview::wire::frame;
 use crate::preview::wire::handshake::HANDSHAKE;
 use crate::preview::wire::message::{FromEditor, ToEditor};
-use crate::preview::{Reply, Update};
 use crate::scene::edit::Edit;
 
 /// How long the scene may take to be read for the first time.
@@ -57,7 +56,7 @@ pub fn serve(scene: &Path, options: &Options, wire: Wire) -> Result<()> {
 
 struct Far {
     news: Receiver<News>,
-    replies: Sender<Reply>,
+    replies: Sender<ToEditor>,
     latest: Latest,
     options: Options,
 }
@@ -74,8 +73,8 @@ fn begin(scene: &Path, options: &Options) -> Result<Far> {
                 let latest = Latest::new(document, revision);
                 return Ok(Far { news, replies, latest, options: options.clone() });
             }
-            Ok(News::Update(Update::Notice(line))) => (why, patience) = (line, AFTER_NOTICE),
-            Ok(News::Update(Update::Problems(problems))) if !problems.is_empty() => {
+            Ok(News::Said(FromEditor::Notice(line))) => (why, patience) = (line, AFTER_NOTICE),
+            Ok(News::Said(FromEditor::Problems(problems))) if !problems.is_empty() => {
                 let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
                 (why, patience) = (format!("{}: {}", scene.display(), lines.join("; ")), AFTER_NOTICE);
             }
@@ -94,7 +93,7 @@ impl Far {
         // A reply that nobody waits for any more ends with this process.
         let replies = Mutex::new(replies);
         let deliver = move |event| {
-            if let Event::Reply(reply) = event {
+            if let Event::Said(reply) = event {
                 drop(replies.lock().unwrap_or_else(PoisonError::into_inner).send(reply));
             }
         };
@@ -124,35 +123,12 @@ fn publish(shared: &Shared, news: News) {
                 state.peers.values_mut().for_each(|peer| peer.outbox.edited(&edit));
             });
         }
-        News::Files => {}
-        News::Views(names) => {
-            shared.change(|state| drop(state.latest.views.catch_up(&names)));
-            tell(shared, Topic::Views);
-        }
-        News::Update(Update::Selection(pointer)) => {
-            shared.change(|state| state.latest.selection = pointer);
-            tell(shared, Topic::Selection);
-        }
-        News::Update(Update::Transport(transport)) => {
-            shared.change(|state| state.latest.transport = transport);
-            tell(shared, Topic::Transport);
-        }
-        News::Update(Update::Notice(line)) => {
-            shared.change(|state| state.latest.notice = line);
-            tell(shared, Topic::Notice);
-        }
-        News::Update(Update::Problems(problems)) => {
-            shared.change(|state| state.latest.problems = problems);
-            tell(shared, Topic::Problems);
-        }
-        News::Update(Update::View(name)) => shared.view(&name),
-        // Never told here: a scene comes as a document, and who was not opened by the editor is not closed by it.
-        News::Update(Update::Scene { .. } | Update::Progress(_) | Update::Closed) => {}
+        News::Said(FromEditor::View(name)) => shared.view(&name),
+        News::Said(FromEditor::Views(names)) => shared.catch_up(&names),
+        News::Said(message) => shared.say(message),
+        // The caller looks at files; what is fetched here concerns nobody there.
+        News::Files | News::Progress(_) => {}
     }
-}
-
-fn tell(shared: &Shared, topic: Topic) {
-    shared.change(|state| state.peers.values_mut().for_each(|peer| peer.outbox.due(topic)));
 }
 
 /// Tells the window what the scene names, where that is not what it was.
@@ -161,7 +137,8 @@ fn look_at_files(shared: &Shared, scene: &Path, options: &Options) {
     let before = latest.originals.as_deref().unwrap_or(&none);
     let originals = Originals::of(scene, latest.document.scene(), options, before);
     if latest.originals.is_none() || originals.list() != before.list() {
+        let list = originals.list();
         shared.change(|state| state.latest.originals = Some(Arc::new(originals)));
-        tell(shared, Topic::Images);
+        shared.say(FromEditor::Images(list));
     }
 }

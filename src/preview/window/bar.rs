@@ -82,10 +82,10 @@ fn said(state: &State) -> (String, Color) {
     let words = &state.words;
     let explained = if !state.has_picture() {
         words.progress.clone().or_else(|| state.waits_for().map(str::to_owned))
-    } else if state.shown.seam {
+    } else if state.shows("view-seam") {
         let last = state.timeline.frames() - 1;
         Some(format!("seam: frame {last} against 0, differences x 8"))
-    } else if state.shown.wipe {
+    } else if state.shows("view-wipe") {
         Some("still left, moving right".to_owned())
     } else {
         None
@@ -119,7 +119,7 @@ fn times(state: &State) -> Vec<String> {
         return Vec::new();
     }
     let (timeline, transport) = (&state.timeline, &state.transport);
-    let still = if state.shown.still { "   still picture" } else { "" };
+    let still = if state.shows("view-still") { "   still picture" } else { "" };
     let speed = if transport.speed == 1.0 { String::new() } else { format!("   speed {}", transport.speed) };
     let seconds = format!("{:.2} / {:.2} s", transport.secs(timeline), timeline.frames() as f64 / timeline.fps);
     let frames = format!("{} / {}", transport.frame.floor(), timeline.frames());
@@ -207,7 +207,7 @@ mod tests {
         let mut state = State { selected: Some("face/eye".into()), ..state() };
         state.words.notice = Some("joined".into());
         assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
-        state.shown.seam = true;
+        state.run("view-seam");
         assert!(said(&state).0.contains("frame 59 against 0"));
         state.words.reduced = Some("shown reduced".into());
         assert_eq!(said(&state), ("shown reduced".into(), WARNING));

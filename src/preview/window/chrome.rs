@@ -80,7 +80,9 @@ mod tests {
         let letters = Letters::default();
         for size in [Size::new(360.0, 240.0), Size::new(480.0, 320.0), Size::new(512.0, 802.0)] {
             let mut state = State { panel: Panel::Help, longest: 40.0, ..State::default() };
-            (state.shown.field, state.shown.wheel) = (true, true);
+            for command in ["view-field", "view-wheel"] {
+                state.run(command);
+            }
             state.words.follow_scene(vec![Problem::error("/layers/0", "something is wrong")]);
             state.resize(size, 1.0);
             state.load(Size::new(320.0, 200.0), &Timeline::default());

@@ -21,11 +21,11 @@ const GAP_PX: f64 = 12.0;
 
 /// Draws the legends of what is shown into what is free of the area.
 pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
-    if !state.has_picture() || state.shown.no_legends {
+    if !state.has_picture() || !state.shows("view-legends") {
         return;
     }
-    let wheel = state.shown.wheel.then(|| Wheel::new(state, letters));
-    let bar = state.shown.field.then(|| ScaleBar::new(state, letters)).flatten();
+    let wheel = state.shows("view-wheel").then(|| Wheel::new(state, letters));
+    let bar = state.shows("view-field").then(|| ScaleBar::new(state, letters)).flatten();
     let sizes = [wheel.as_ref().map(|wheel| wheel.size), bar.as_ref().map(|bar| bar.size)];
     let [wheel_at, bar_at] = places(sizes, free, MARGIN_PX * state.scale);
     wheel.zip(wheel_at).into_iter().for_each(|(wheel, at)| wheel.draw(canvas, state, at));

@@ -11,7 +11,8 @@ use winit::event_loop::EventLoop;
 
 use libraries::Missing;
 
-use super::{Reply, Update};
+use super::follow::Update;
+use super::wire::message::ToEditor;
 use crate::base::error::{Error, Result};
 
 mod app;
@@ -20,6 +21,9 @@ mod camera;
 mod canvas;
 mod chrome;
 mod clock;
+mod draw;
+mod events;
+mod follow;
 mod glyphs;
 mod input;
 mod labels;
@@ -28,8 +32,10 @@ mod libraries;
 mod marks;
 mod mouse;
 mod opened;
+mod overlays;
 mod panel;
 mod problems;
+mod run;
 mod screen;
 mod show;
 mod state;
@@ -49,7 +55,7 @@ pub struct Setup {
     /// What it shows.
     pub updates: Receiver<Update>,
     /// What it has to say.
-    pub replies: Sender<Reply>,
+    pub replies: Sender<ToEditor>,
     /// How the pictures of a scene are loaded.
     pub load: Load,
     /// Set by a signal: the window ends, interrupted.

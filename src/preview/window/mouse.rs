@@ -170,15 +170,6 @@ fn scrub(state: &mut State, x: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::timeline::Timeline;
-    use kurbo::Size;
-
-    fn state() -> State {
-        let mut state = State::default();
-        state.resize(Size::new(640.0, 434.0), 1.0);
-        state.load(Size::new(320.0, 200.0), &Timeline::default());
-        state
-    }
 
     /// Presses at one place, moves through the others, lets go at the last.
     fn drag(mouse: &mut Mouse, state: &mut State, button: Button, places: &[(f64, f64)], at: Instant) -> Asked {
@@ -194,7 +185,7 @@ mod tests {
     #[test]
     fn what_is_pressed_is_what_is_moved() {
         let now = Instant::now();
-        let (mut mouse, mut state) = (Mouse::default(), state());
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
         let place = |state: &State| state.camera.origin(state.area());
         let origin = place(&state);
         let across = [(100.0, 100.0), (150.0, 110.0)];
@@ -216,7 +207,7 @@ mod tests {
     #[test]
     fn a_click_selects_and_two_fit() {
         let now = Instant::now();
-        let (mut mouse, mut state) = (Mouse::default(), state());
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
         let later = |ms| now + Duration::from_millis(ms);
         let at = |mouse: &mut Mouse, state: &mut State, x: f64, ms| {
             drag(mouse, state, Button::Left, &[(x, 100.0), (x + 2.0, 100.0)], later(ms))
@@ -232,7 +223,7 @@ mod tests {
 
     #[test]
     fn the_wheel_zooms_by_what_it_sends() {
-        let (mut mouse, mut state) = (Mouse::default(), state());
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
         state.run("zoom-one");
         for (turns, percent) in [
             (&[1.0][..], 141),
@@ -258,7 +249,7 @@ mod tests {
 
     #[test]
     fn the_pointer_shows_what_can_be_done() {
-        let (mut mouse, mut state) = (Mouse::default(), state());
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
         state.run("view-wipe");
         for (at, shape) in [
             ((100.0, 100.0), Shape::Arrow),

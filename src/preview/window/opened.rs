@@ -143,12 +143,12 @@ impl Opened {
     fn pictures(&mut self, state: &State, show: &Show) -> Result<Pictures> {
         let time = state.transport.scene_time(&state.timeline);
         let last = state.timeline.time_of(state.timeline.frames() - 1);
-        let (frame, other) = if state.shown.seam {
+        let (frame, other) = if state.shows("view-seam") {
             ((&show.frames, last), Some((&show.frames, 0.0)))
-        } else if state.shown.wipe {
+        } else if state.shows("view-wipe") {
             ((&show.frames, time), Some((&show.still, 0.0)))
         } else {
-            ((if state.shown.still { &show.still } else { &show.frames }, time), None)
+            ((if state.shows("view-still") { &show.still } else { &show.frames }, time), None)
         };
         let (frame, other) = self.gpu.textures(frame, other)?;
         Ok(Pictures { frame, other, scale: show.frame_scale })

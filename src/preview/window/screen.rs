@@ -182,7 +182,7 @@ impl Screen {
         reduces: bool,
     ) {
         let frames = if reduces { &self.pipelines.reduced } else { &self.pipelines.enlarged };
-        let differs = state.shown.seam && other.is_some();
+        let differs = state.shows("view-seam") && other.is_some();
         pass.set_pipeline(if differs { &self.pipelines.difference } else { frames });
         pass.set_bind_group(0, &self.pipelines.group(device, [frame, other.as_ref().unwrap_or(frame), frame]), &[]);
         pass.draw(0..3, 0..1);
@@ -367,7 +367,7 @@ fn uniform(state: &State, Pictures { frame, scale, .. }: &Pictures) -> ScreenUni
     };
     let origin = state.camera.origin(state.area());
     let zoom = state.camera.zoom / scale;
-    let checks = if state.shown.plain { [GROUND; 2] } else { [LIGHT, DARK] };
+    let checks = if state.shows("view-checkerboard") { [LIGHT, DARK] } else { [GROUND; 2] };
     ScreenUniform {
         size: [state.window.width as f32, state.window.height as f32],
         origin: [origin.x as f32, origin.y as f32],

@@ -95,7 +95,7 @@ impl Cached {
     /// Makes the strokes again where anything that they show has changed.
     pub fn follow(&mut self, state: &State, show: &Show, letters: &Letters) {
         let camera = state.camera.clone();
-        let (window, scale, grid) = (state.window, state.scale, state.shown.grid);
+        let (window, scale, grid) = (state.window, state.scale, state.shows("view-grid"));
         let sight = Sight { camera, window, scale, grid, revision: self.revision, letters: letters.generation() };
         let (fixed, moving) = (Some((state.overlay_view(), sight.clone())), Some((state.samplers(), sight)));
         if self.made_for != fixed {
@@ -114,7 +114,7 @@ impl Cached {
         let view = state.overlay_view();
         let found = overlay(&show.scene, Some(&show.synth), &view);
         self.fixed = Canvas::default();
-        if state.shown.grid {
+        if state.shows("view-grid") {
             marks::grid(&mut self.fixed, state.picture, &state.camera, state.area());
         }
         self.fixed.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);

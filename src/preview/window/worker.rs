@@ -10,7 +10,7 @@ use super::text::Fonts;
 use crate::base::fault;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
-use crate::preview::Update;
+use crate::preview::follow::Update;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
 
@@ -126,6 +126,7 @@ fn synthesise(work: &Receiver<(Arc<Scene>, u64)>, mut load: Load, send: &impl Fn
 mod tests {
     use super::*;
     use crate::base::picture::Picture;
+    use crate::preview::wire::message::FromEditor;
 
     fn scene(image: &str) -> Arc<Scene> {
         let text = format!(r#"{{"plica": 1, "layers": [{{"kind": "picture", "name": "a", "image": "{image}"}}]}}"#);
@@ -144,11 +145,11 @@ mod tests {
             updates.send(Update::Scene { scene: scene("a"), revision }).unwrap();
         }
         updates.send(Update::Scene { scene: scene("b"), revision: 4 }).unwrap();
-        updates.send(Update::Notice("hello".into())).unwrap();
+        updates.send(Update::Said(FromEditor::Notice("hello".into()))).unwrap();
         drop(updates);
         start(receiver, load, Arc::default(), move |event| events.send(event).is_ok());
         let all: Vec<Event> = seen.iter().collect();
-        assert!(all.iter().any(|e| matches!(e, Event::Update(Update::Notice(n)) if n == "hello")));
+        assert!(all.iter().any(|e| matches!(e, Event::Update(Update::Said(FromEditor::Notice(n))) if n == "hello")));
         let last = all.iter().rfind(|e| !matches!(e, Event::Update(_)));
         let Some(Event::Problems(problems)) = last else { panic!("{all:?}") };
         assert!(problems[0].to_string().contains("/layers/0/image"), "{all:?}");

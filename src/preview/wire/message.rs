@@ -1,4 +1,6 @@
-//! The protocol between editor, windows and scripts: what may be said, in both directions. See `frame.rs` for the bytes.
+//! The protocol between editor, windows and scripts: what may be said, in both directions. These are also the types in which
+//! windows hear their editor and the editor hears its windows: a message that the link itself does not answer is passed
+//! through as it is. See `frame.rs` for the bytes.
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
@@ -137,6 +139,34 @@ pub enum ToEditor {
         /// The change.
         patch: Edit,
     },
+}
+
+impl FromEditor {
+    /// Whether the message concerns the link itself, or is answered differently by different ends of it; all others are
+    /// passed on to windows.
+    pub fn is_of_the_link(&self) -> bool {
+        match self {
+            FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. } => true,
+            FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => true,
+            FromEditor::Notice(_) | FromEditor::Problems(_) => true,
+            FromEditor::Edited(_) | FromEditor::Bye(_) => true,
+            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::View(_) | FromEditor::Views(_) => false,
+        }
+    }
+}
+
+impl ToEditor {
+    /// Whether JSON can write all numbers of the message: it knows no infinity and no NaN.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            ToEditor::Ack { synth_ms, .. } => synth_ms.is_finite(),
+            ToEditor::Report { fps, .. } => fps.is_finite(),
+            ToEditor::Pointer { x, y } => x.is_finite() && y.is_finite(),
+            ToEditor::Transport(transport) => transport.time.is_finite() && transport.speed.is_finite(),
+            ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Command(_) => true,
+            ToEditor::Want { .. } | ToEditor::Alive | ToEditor::Edit { .. } => true,
+        }
+    }
 }
 
 /// What goes over the wire: JSON, and bytes where a message has some.

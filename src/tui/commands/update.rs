@@ -9,7 +9,8 @@ use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
 use super::{life, tutor};
-use crate::preview::editor::Asked;
+use crate::preview::editor::{self, Asked};
+use crate::preview::wire::message::ToEditor;
 use crate::tui::commands;
 use crate::tui::document::tree;
 use crate::tui::keys::Found;
@@ -60,12 +61,9 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             }
             report(state, result);
         }
-        Event::WindowChanged | Event::Typed(_) => {}
-        Event::Pointer(x, y) => state.seen.pointer = Some((x, y)),
+        Event::Typed(_) => {}
         Event::Click(x, y) => click(state, x, y),
-        Event::Transport(transport) => state.follow(transport),
-        Event::Command(name) => run_of_window(state, &name),
-        Event::Asked(asked) => answer(state, asked),
+        Event::Window(said) => hear(state, said),
         Event::Fault(fault) => state.complain(fault),
         Event::Unlogged(why) => {
             state.recorder.set_place(None);
@@ -79,6 +77,18 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
     tutor::follow(state);
     state.ask_waiting();
     state.effects.drain(..).collect()
+}
+
+/// Takes what windows and scripts say.
+fn hear(state: &mut State, said: editor::Event) {
+    match said {
+        editor::Event::Said(ToEditor::Pointer { x, y }) => state.seen.pointer = Some((x, y)),
+        editor::Event::Said(ToEditor::Transport(transport)) => state.follow(transport),
+        editor::Event::Said(ToEditor::Command(name)) => run_of_window(state, &name),
+        editor::Event::Edit(asked) => answer(state, asked),
+        // The runner asks for the status after every event.
+        editor::Event::Status | editor::Event::Said(_) => {}
+    }
 }
 
 /// An edit that a script asks for goes through the same door.

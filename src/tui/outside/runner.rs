@@ -18,7 +18,6 @@ use crate::files::lines::Log;
 use crate::files::profiles;
 use crate::files::session::Mode;
 use crate::files::watch::Watch;
-use crate::preview::Reply;
 use crate::preview::editor::{self, Preview, Status};
 use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
@@ -428,15 +427,8 @@ impl Editor {
 /// Listens for windows of the scene; what they say comes as events.
 pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
     let preview = Preview::start(door.path(), door.document(), door.revision(), move |said| {
-        let event = match said {
-            editor::Event::Reply(Reply::Command(line)) => Event::Command(line),
-            editor::Event::Reply(Reply::Pointer { x, y }) => Event::Pointer(x, y),
-            editor::Event::Reply(Reply::Transport(transport)) => Event::Transport(transport),
-            editor::Event::Status | editor::Event::Reply(_) => Event::WindowChanged,
-            editor::Event::Edit(asked) => Event::Asked(asked),
-        };
         // Nobody listens once the editor has left.
-        let _ = sender.send(event);
+        let _ = sender.send(Event::Window(said));
     });
     preview.with_options(options)
 }

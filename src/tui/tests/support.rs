@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::preview::editor;
+use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
@@ -35,6 +37,11 @@ pub const SCENE: &str = r#"{
     }
   ]
 }"#;
+
+/// What a window says.
+pub fn said(message: ToEditor) -> Event {
+    Event::Window(editor::Event::Said(message))
+}
 
 /// The editor with [`SCENE`] open on a terminal of 80 x 24. Edits stay in memory.
 pub fn state() -> State {

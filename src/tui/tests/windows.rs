@@ -2,9 +2,10 @@
 
 use serde_json::json;
 
-use super::support::{press, state};
+use super::support::{press, said, state};
 use super::{motion, zone};
 use crate::preview::Transport;
+use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
@@ -16,7 +17,7 @@ fn pass(state: &mut State, seconds: f64) -> Vec<Effect> {
 #[test]
 fn a_window_leads_and_is_not_told_what_it_said() {
     let mut state = state();
-    let told = update(&mut state, Event::Transport(Transport { playing: true, time: 0.5, speed: 0.5 }));
+    let told = update(&mut state, said(ToEditor::Transport(Transport { playing: true, time: 0.5, speed: 0.5 })));
     assert!(matches!(told[..], [Effect::Pass]), "{told:?}");
     assert_eq!((state.playing, state.time, state.speed), (true, 0.25, 0.5));
     let told = pass(&mut state, 1.0);
@@ -25,7 +26,7 @@ fn a_window_leads_and_is_not_told_what_it_said() {
     let told = press(&mut state, "P");
     assert!(matches!(told[..], [Effect::Show]), "{told:?}");
     assert_eq!(state.transport(), Transport { playing: false, time: 1.0, speed: 0.5 });
-    update(&mut state, Event::Transport(Transport { playing: false, time: f64::NAN, speed: 1.0 }));
+    update(&mut state, said(ToEditor::Transport(Transport { playing: false, time: f64::NAN, speed: 1.0 })));
     assert_eq!(state.time, 0.5);
 }
 
@@ -60,8 +61,8 @@ fn a_point_marked_in_a_window_moves_the_cursor_only() {
     let mut state = state();
     press(&mut state, &motion(""));
     let before = state.document().json().clone();
-    update(&mut state, Event::Pointer(12.5, 13.25));
-    update(&mut state, Event::Command("mark-point".into()));
+    update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
+    update(&mut state, said(ToEditor::Command("mark-point".into())));
     assert_eq!(state.placing.cursor, (12.5, 13.25).into());
     assert_eq!(state.document().json(), &before);
     assert!(state.message.as_ref().is_some_and(|said| said.text.starts_with("marked 12.5, 13.25")));
@@ -78,8 +79,8 @@ fn what_is_selected_in_a_window_is_shown() {
     ] {
         let mut state = state();
         press(&mut state, &keys);
-        update(&mut state, Event::Pointer(at.0, at.1));
-        update(&mut state, Event::Command("select-point".into()));
+        update(&mut state, said(ToEditor::Pointer { x: at.0, y: at.1 }));
+        update(&mut state, said(ToEditor::Command("select-point".into())));
         assert_eq!((&state.node, state.row), (&node, row), "{at:?} {keys}");
     }
 }
@@ -94,7 +95,7 @@ fn the_pointer_goes_into_the_entry() {
         ("l l l l i M Enter", at("jump"), json!([0, -6.75])),
     ] {
         let mut state = state();
-        update(&mut state, Event::Pointer(12.5, 13.25));
+        update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
         press(&mut state, &motion(keys));
         assert_eq!(state.document().json().pointer(&pointer), Some(&expected), "{keys}");
     }
@@ -112,7 +113,7 @@ fn the_pointer_goes_into_the_column_of_the_cursor() {
         ("l l l l l l M", json!([20, 20]), json!([-7.5, -6.75])),
     ] {
         let mut state = state();
-        update(&mut state, Event::Pointer(12.5, 13.25));
+        update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
         press(&mut state, &motion(keys));
         let read = |field: &str| state.document().json().pointer(&at(field)).cloned();
         assert_eq!((read("at"), read("jump")), (Some(moved), Some(aimed)), "{keys}");
@@ -122,7 +123,7 @@ fn the_pointer_goes_into_the_column_of_the_cursor() {
 #[test]
 fn a_name_takes_a_capital_m() {
     let mut state = state();
-    update(&mut state, Event::Pointer(12.5, 13.25));
+    update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
     press(&mut state, "/ \"name\" Enter i Ctrl-u \"Mouth\" Enter");
     let names = state.document().json().to_string();
     assert!(names.contains("\"Mouth\""), "{names}");

@@ -1,0 +1,72 @@
+//! The drawing of a frame: the time runs on, the window is painted, what was lost is replaced.
+
+use super::app::App;
+use super::screen::Drawn;
+use super::text::of_system;
+use super::worker::Event;
+use crate::base::error::Result;
+
+impl App {
+    /// Draws the window, where it can be seen. A lost device is replaced, and the drawing asked for again.
+    pub(super) fn draw(&mut self) -> Result<()> {
+        self.advance();
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        let was_hidden = opened.hidden;
+        if opened.is_seen() {
+            self.letters.begin();
+            match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, &self.letters) {
+                _ if opened.gpu.device().is_lost() => self.reopen()?,
+                Ok(Drawn::Yes) => self.drawn(),
+                Ok(Drawn::Again) => opened.window.request_redraw(),
+                Ok(Drawn::Hidden) => opened.hidden = true,
+                Ok(Drawn::Lost) => self.reopen()?,
+                Err(error) => return Err(error),
+            }
+            self.clock.drawn += 1;
+        } else if !was_hidden {
+            self.report();
+        }
+        self.owed.take().into_iter().for_each(|reply| self.reply(reply));
+        Ok(())
+    }
+
+    /// A drawing is on the screen.
+    fn drawn(&mut self) {
+        let Some(opened) = &mut self.opened else { return };
+        opened.hidden = false;
+        if let Some(size) = self.grows_to.take() {
+            let _ = opened.window.request_inner_size(size); // answered by Resized
+        }
+        if self.letters.asks_for_fonts() {
+            let proxy = self.proxy.clone();
+            // Where nobody is there any more to take them, they are not needed.
+            std::thread::spawn(move || drop(proxy.send_event(Event::Fonts(Box::new(of_system())))));
+        }
+    }
+
+    /// The animation runs on, and stops by itself where it plays once.
+    fn advance(&mut self) {
+        let (passed, fps) = self.clock.tick();
+        if !self.state.transport.playing {
+            return;
+        }
+        if let Some(fps) = fps {
+            self.state.fps = Some(fps);
+            self.report();
+        }
+        self.state.transport.advance(passed, &self.state.timeline);
+        if !self.state.transport.playing {
+            self.lead();
+            self.report();
+        }
+    }
+
+    /// Goes on after device or surface were lost, with new ones in the same window.
+    fn reopen(&mut self) -> Result<()> {
+        if let Some(opened) = self.opened.take() {
+            self.opened = Some(opened.anew()?);
+            self.redraw();
+        }
+        Ok(())
+    }
+}

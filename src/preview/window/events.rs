@@ -1,0 +1,187 @@
+//! The window's events: what happens becomes a change of the [`State`], and a change asks for one drawing. While nothing
+//! plays the loop sleeps.
+//!
+//! [`State`]: super::state::State
+
+use std::time::{Duration, Instant};
+
+use kurbo::Point;
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::window::WindowId;
+
+use super::app::App;
+use super::input;
+use super::mouse::{Asked, Button};
+use super::opened::Opened;
+use super::worker::Event;
+use crate::base::error::{Error, Result};
+use crate::preview::views;
+use crate::preview::wire::message::ToEditor;
+
+/// A line of a mouse wheel is one step; a touchpad may give pixels.
+const WHEEL_PX: f64 = 60.0;
+/// How often a hidden window looks whether it can be seen again.
+const HIDDEN: Duration = Duration::from_millis(250);
+
+impl App {
+    /// Does what can fail; a failure ends the window.
+    fn attempt(&mut self, event_loop: &ActiveEventLoop, work: impl FnOnce(&mut App) -> Result<()>) {
+        if let Err(error) = work(self) {
+            self.failed = Some(error);
+            event_loop.exit();
+        }
+    }
+
+    /// A key: the window follows at once, and the editor is told what concerns it too.
+    fn key(&mut self, event_loop: &ActiveEventLoop, command: &'static str) {
+        self.leading(|app| app.run(event_loop, command));
+        match command {
+            "mark-point" => self.tell(command, self.state.marked),
+            "select-point" => self.tell(command, self.state.pointed()),
+            switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
+                self.reply(ToEditor::Command(setting));
+            }),
+        }
+    }
+
+    /// Asks the editor to do something with a point of the picture.
+    fn tell(&self, command: &str, at: Option<Point>) {
+        if let Some(Point { x, y }) = at {
+            self.reply(ToEditor::Pointer { x, y });
+            self.reply(ToEditor::Command(command.to_owned()));
+        }
+    }
+
+    fn pointer(&mut self, at: Option<Point>) {
+        self.leading(|app| app.mouse.moved(&mut app.state, at));
+        if let Some(Point { x, y }) = self.state.pointed() {
+            self.reply(ToEditor::Pointer { x, y });
+        }
+        self.pointed();
+    }
+
+    /// A button of the mouse goes down or up.
+    fn press(&mut self, event_loop: &ActiveEventLoop, button: Button, pressed: bool) {
+        let mut asked = Asked::Nothing;
+        self.opened.iter().filter(|_| pressed).for_each(Opened::clicked);
+        self.leading(|app| {
+            asked = match pressed {
+                true => app.mouse.pressed(&mut app.state, button),
+                false => app.mouse.released(&app.state, Instant::now()),
+            };
+        });
+        match asked {
+            Asked::Nothing => {}
+            Asked::Play => self.key(event_loop, "play"),
+            Asked::Fit => self.run(event_loop, "zoom-fit"),
+            Asked::Select(at) => self.tell("select-point", Some(at)),
+        }
+        self.pointed();
+    }
+
+    /// The pointer shows what can be done where it is.
+    fn pointed(&mut self) {
+        let shape = self.mouse.shape(&self.state);
+        self.opened.iter_mut().for_each(|opened| opened.point(shape));
+        if self.mouse.drags_time() {
+            self.report();
+        }
+        self.redraw();
+    }
+
+    fn wheel(&mut self, delta: MouseScrollDelta) {
+        let steps = match delta {
+            MouseScrollDelta::PixelDelta(by) => by.y / WHEEL_PX,
+            MouseScrollDelta::LineDelta(_, 0.0) => return,
+            MouseScrollDelta::LineDelta(_, y) => {
+                let twice = self.opened.as_ref().is_some_and(Opened::wheel_is_a_button);
+                if !self.mouse.counts(twice) {
+                    return;
+                }
+                f64::from(y)
+            }
+        };
+        self.mouse.turned(&mut self.state, steps);
+        self.redraw();
+    }
+}
+
+impl ApplicationHandler<Event> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        event_loop.set_control_flow(ControlFlow::Wait);
+        self.redraw();
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
+        self.attempt(event_loop, |app| match event {
+            Event::Ready(ready) => app.take(event_loop, ready),
+            Event::Problems(problems) => app.warn(event_loop, problems),
+            Event::Work(work) => {
+                app.state.work = Some(work);
+                app.redraw();
+                Ok(())
+            }
+            Event::Fonts(fonts) => {
+                app.letters.take_fonts(*fonts);
+                app.redraw();
+                Ok(())
+            }
+            Event::Interrupted => Err(Error::Interrupted),
+            Event::Update(update) => {
+                app.follow(event_loop, update);
+                Ok(())
+            }
+        });
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => self.attempt(event_loop, App::draw),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => self.resized(),
+            WindowEvent::Occluded(covered) => {
+                self.opened.iter_mut().for_each(|o| o.covered = covered);
+                self.redraw();
+            }
+            WindowEvent::ModifiersChanged(held) => self.held = held.state(),
+            WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {
+                if let Some(command) = input::command(&event.logical_key, self.held, event.repeat) {
+                    self.key(event_loop, command);
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => self.pointer(Some(Point::new(position.x, position.y))),
+            WindowEvent::CursorLeft { .. } => self.pointer(None),
+            WindowEvent::MouseInput { state, button: MouseButton::Left, .. } => {
+                self.press(event_loop, Button::Left, state == ElementState::Pressed);
+            }
+            WindowEvent::MouseInput { state, button: MouseButton::Middle, .. } => {
+                self.press(event_loop, Button::Middle, state == ElementState::Pressed);
+            }
+            WindowEvent::MouseWheel { delta, .. } => self.wheel(delta),
+            _ => {}
+        }
+    }
+
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.attempt(event_loop, |app| app.open(event_loop));
+            self.redraw();
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let rest = self.state.transport.until_next(&self.state.timeline);
+        let interval = self.opened.as_ref().map(Opened::interval);
+        let flow = match interval {
+            Some(interval) if self.plays_visibly() => ControlFlow::WaitUntil(self.clock.next(interval, rest)),
+            Some(_) if self.state.transport.playing && self.opened.as_ref().is_some_and(|o| o.hidden) => {
+                ControlFlow::WaitUntil(Instant::now() + HIDDEN)
+            }
+            None => self.open_by.map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
+            _ => ControlFlow::Wait,
+        };
+        event_loop.set_control_flow(flow);
+    }
+}

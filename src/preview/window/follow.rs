@@ -1,0 +1,124 @@
+//! What the window hears of the scene that it follows: from its editor, and from the thread that synthesises.
+
+use std::io::Write;
+use std::time::{Duration, Instant};
+
+use kurbo::Size;
+use winit::event_loop::ActiveEventLoop;
+
+use super::app::App;
+use super::show::{Show, name};
+use super::state::State;
+use super::words::Words;
+use super::worker::Ready;
+use crate::base::error::Result;
+use crate::base::problem::Problem;
+use crate::preview::Transport as Leading;
+use crate::preview::follow::Update;
+use crate::preview::wire::message::{FromEditor, ToEditor};
+
+/// A scene is given so long before the window opens with a notice alone.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// Editor and window may be so far apart while both play, as a share of the timeline, before the window follows.
+const APART: f64 = 0.05;
+/// A command that no key gives: the device is lost. For tests of what follows.
+const LOSE_DEVICE: &str = "lose-device";
+
+impl App {
+    /// Takes a scene that is ready.
+    pub(super) fn take(&mut self, event_loop: &ActiveEventLoop, ready: Ready) -> Result<()> {
+        let (width, height) = ready.synth.size;
+        self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
+        self.open(event_loop)?;
+        let Some(opened) = &self.opened else { return Ok(()) };
+        // Sending a large picture to the GPU takes a while: the window stays whole until then.
+        self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
+        let most = opened.gpu.device().max_side().min(self.manner.most);
+        let (show, reduced) = Show::new(ready.scene, ready.synth, most);
+        self.shown = Some(show);
+        self.state.words.reduced = reduced;
+        self.state.words.follow_scene(ready.problems);
+        self.marks.revision += 1;
+        self.owed = Some(ToEditor::Ack { revision: ready.revision, synth_ms: ready.synth_ms });
+        self.select(self.state.selection.clone());
+        self.report();
+        Ok(())
+    }
+
+    /// Takes what comes from the editor.
+    pub(super) fn follow(&mut self, event_loop: &ActiveEventLoop, update: Update) {
+        match update {
+            Update::Scene { .. } => {} // comes as Ready, synthesised
+            Update::Progress(line) => self.say(|words| words.progress = Some(line).filter(|line| !line.is_empty())),
+            Update::Said(said) => self.hear(event_loop, said),
+        }
+        self.redraw();
+    }
+
+    fn hear(&mut self, event_loop: &ActiveEventLoop, said: FromEditor) {
+        match said {
+            FromEditor::Selection(pointer) => self.select(pointer),
+            FromEditor::Transport(transport) => self.join_in(transport),
+            FromEditor::View(command) if command == LOSE_DEVICE => {
+                self.opened.iter().for_each(|opened| opened.gpu.device().raw.destroy());
+            }
+            FromEditor::View(command) => self.run(event_loop, &command),
+            FromEditor::Notice(line) => self.say(|words| words.notice = Some(line).filter(|line| !line.is_empty())),
+            FromEditor::Problems(problems) => {
+                self.complain(&problems);
+                self.say(|words| words.follow_link(problems));
+            }
+            FromEditor::Bye(_) => event_loop.exit(),
+            // Answered by whoever follows the scene for the window.
+            FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. } | FromEditor::Alive => {}
+            FromEditor::Views(_) | FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Edited(_) => {}
+        }
+    }
+
+    /// Says something; a window that has nothing to show opens for that in a while.
+    fn say(&mut self, what: impl FnOnce(&mut Words)) {
+        what(&mut self.state.words);
+        self.open_by.get_or_insert(Instant::now() + PATIENCE);
+    }
+
+    /// Says what is wrong on standard error too, as long as there is no picture: the window may never open.
+    fn complain(&self, problems: &[Problem]) {
+        if self.shown.is_none() && self.manner.complains {
+            let lines: String = problems.iter().map(|p| format!("plica: {}: {p}\n", self.manner.name)).collect();
+            // Nobody may read it.
+            drop(std::io::stderr().write_all(lines.as_bytes()));
+        }
+    }
+
+    fn select(&mut self, pointer: Option<String>) {
+        let named = pointer.as_deref().zip(self.shown.as_ref());
+        self.state.selected = named.and_then(|(pointer, show)| name(&show.scene, pointer));
+        self.state.selection = pointer;
+        self.redraw();
+    }
+
+    /// Plays or stands as the editor does. Whoever drags the time leads, and two clocks that run need not be set.
+    fn join_in(&mut self, Leading { playing, time, speed }: Leading) {
+        let State { transport, timeline, .. } = &mut self.state;
+        let t = time / timeline.duration.max(f64::MIN_POSITIVE);
+        let apart = (transport.scene_time(timeline) - t).abs();
+        let together = playing && transport.playing && apart.min(1.0 - apart) < APART;
+        if !self.mouse.drags_time() && !together {
+            transport.playing = playing;
+            transport.seek(t, timeline);
+            self.clock.start();
+        }
+        transport.speed = speed;
+        self.report();
+    }
+
+    /// Takes what is wrong with a scene.
+    pub(super) fn warn(&mut self, event_loop: &ActiveEventLoop, problems: Vec<Problem>) -> Result<()> {
+        self.complain(&problems);
+        self.state.words.follow_scene(problems);
+        self.open(event_loop)?;
+        self.report();
+        self.redraw();
+        Ok(())
+    }
+}

@@ -1,0 +1,141 @@
+//! What the commands of the key table change of what the window shows.
+
+use kurbo::Vec2;
+
+use super::camera::Fit;
+use super::state::{Panel, State};
+use crate::preview::views::{self, FIELD};
+
+/// A key moves the border between still and moving by this share of the picture.
+const WIPE_STEP: f64 = 0.05;
+/// A key pans by this share of the area.
+const PAN: f64 = 0.1;
+
+/// What a command asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// A new picture of the window.
+    Redraw,
+    /// The whole screen, or the window again.
+    FullScreen,
+    /// The window again, where it fills the screen.
+    Window,
+    /// The end.
+    Quit,
+    /// Nothing: the command is not one of the window's.
+    Unknown,
+}
+
+impl State {
+    /// Runs a command by its name in the key table; behind the name of a switch may stand ` on` or ` off`.
+    pub fn run(&mut self, command: &str) -> Outcome {
+        if command != "view-menu" && self.panel == Panel::Menu {
+            self.panel = Panel::None;
+        }
+        let (name, wanted) = views::wanted(command);
+        if self.switches.set(name, wanted).is_some() {
+            self.transport.whole_frames = self.shows("view-whole-frames");
+            return Outcome::Redraw;
+        }
+        let area = self.area();
+        let about = self.pointer.filter(|p| p.y < area.height).unwrap_or((area.to_vec2() / 2.0).to_point());
+        let pan = |x: f64, y: f64| Vec2::new(x * area.width * PAN, y * area.height * PAN);
+        match command {
+            "play" => self.transport.toggle(&self.timeline),
+            "frame-back" => self.transport.step(-1, &self.timeline),
+            "frame-on" => self.transport.step(1, &self.timeline),
+            "first-frame" => self.transport.go_to(0.0, &self.timeline),
+            "last-frame" => self.transport.go_to_end(&self.timeline),
+            "slower" => self.transport.change_speed(-1),
+            "faster" => self.transport.change_speed(1),
+            "field-closer" => self.field_step = FIELD.step(self.field_step, -1),
+            "field-wider" => self.field_step = FIELD.step(self.field_step, 1),
+            "wipe-left" => self.move_wipe(-WIPE_STEP),
+            "wipe-right" => self.move_wipe(WIPE_STEP),
+            "mark-point" => self.marked = self.pointed(),
+            "zoom-in" => self.zoom(1, about),
+            "zoom-out" => self.zoom(-1, about),
+            "zoom-fit" => self.camera.fit(self.picture, area, Fit::Window),
+            "zoom-whole" => self.camera.fit(self.picture, area, Fit::Whole),
+            "zoom-one" => self.camera.one(self.picture, area),
+            "pan-left" => self.pan(pan(-1.0, 0.0)),
+            "pan-right" => self.pan(pan(1.0, 0.0)),
+            "pan-up" => self.pan(pan(0.0, -1.0)),
+            "pan-down" => self.pan(pan(0.0, 1.0)),
+            "view-menu" => self.panel = Panel::Menu,
+            "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
+            "close-panel" => return self.close(),
+            "view-full-screen" => return Outcome::FullScreen,
+            "select-point" => {} // the editor's answer is a selection
+            "quit" => return Outcome::Quit,
+            _ => return Outcome::Unknown,
+        }
+        Outcome::Redraw
+    }
+
+    /// Closes what lies over the picture; if nothing does, leaves the full screen.
+    fn close(&mut self) -> Outcome {
+        let panel = std::mem::take(&mut self.panel) != Panel::None;
+        let marked = self.marked.take().is_some();
+        if panel || marked || self.words.put_away() { Outcome::Redraw } else { Outcome::Window }
+    }
+
+    fn move_wipe(&mut self, by: f64) {
+        self.switches.set("view-wipe", Some(true));
+        self.wipe = (self.wipe + by).clamp(0.0, 1.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kurbo::Point;
+
+    use super::*;
+    use crate::preview::keys::KEYS;
+
+    #[test]
+    fn every_command_of_the_key_table_is_known() {
+        for row in KEYS {
+            assert_ne!(State::for_tests().run(row.command), Outcome::Unknown, "{row:?}");
+        }
+        assert_eq!(State::for_tests().run("sing"), Outcome::Unknown);
+    }
+
+    #[test]
+    fn a_switch_is_turned_or_set() {
+        let mut state = State::for_tests();
+        for (command, outlines) in [
+            ("view-outlines", true),
+            ("view-outlines on", true),
+            ("view-outlines off", false),
+            ("view-outlines off", false),
+        ] {
+            assert_eq!(state.run(command), Outcome::Redraw);
+            assert_eq!(state.shows("view-outlines"), outlines, "{command}");
+        }
+        state.run("view-checkerboard off");
+        assert!(!state.shows("view-checkerboard"));
+        state.run("view-legends");
+        assert!(!state.shows("view-legends"));
+        state.run("view-whole-frames on");
+        assert!(state.transport.whole_frames);
+        assert_eq!(state.run("zoom-in on"), Outcome::Unknown);
+    }
+
+    #[test]
+    fn esc_closes_one_thing_after_the_other() {
+        let mut state = State { panel: Panel::Help, marked: Some(Point::ZERO), ..State::for_tests() };
+        state.words.follow_scene(vec![crate::base::problem::Problem::error("", "wrong")]);
+        assert_eq!((state.run("close-panel"), state.panel, state.marked), (Outcome::Redraw, Panel::None, None));
+        assert_eq!((state.run("close-panel"), state.words.listed().len()), (Outcome::Redraw, 0));
+        assert_eq!(state.run("close-panel"), Outcome::Window);
+    }
+
+    #[test]
+    fn the_menu_is_gone_with_the_next_key() {
+        let mut state = State::for_tests();
+        state.run("view-menu");
+        state.run("view-outlines");
+        assert_eq!((state.panel, state.shows("view-outlines")), (Panel::None, true));
+    }
+}
