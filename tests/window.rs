@@ -16,7 +16,8 @@ use std::time::Duration;
 use display::{Display, Place, View, corner, difference};
 use kurbo::Point;
 use plica::base::pixels::Frame;
-use plica::render::overlay::{self, Kind, Mark, Samplers, Shape};
+use plica::layers::parts::marks::{self, Mark, Shape};
+use plica::render::overlay;
 
 #[test]
 fn shows_what_the_cpu_shows_and_follows_keys_and_file() {
@@ -178,11 +179,11 @@ fn without_a_display_one_line_says_so() {
     }
 }
 
-/// The share of the dots of these kinds, drawn over a picture at 1:1, whose colour is found `right` of their middle.
-fn found(shot: &Frame, frame: &Frame, marks: &[Mark], kinds: &[Kind], right: f64) -> f64 {
+/// The share of the dots of these looks, drawn over a picture at 1:1, whose colour is found `right` of their middle.
+fn found(shot: &Frame, frame: &Frame, marks: &[Mark], looks: &[&str], right: f64) -> f64 {
     let (left, top) = corner(shot, frame);
-    let dots = marks.iter().filter(|mark| kinds.contains(&mark.kind)).filter_map(|mark| match mark.shape {
-        Shape::Dot(at) => Some((mark.kind.style().color, at)),
+    let dots = marks.iter().filter(|mark| looks.contains(&mark.look.name)).filter_map(|mark| match mark.shape {
+        Shape::Dot(at) => Some((mark.look.color, at)),
         _ => None,
     });
     let mut count = (0, 0);
@@ -191,7 +192,7 @@ fn found(shot: &Frame, frame: &Frame, marks: &[Mark], kinds: &[Kind], right: f64
         let near = shot.get(x, y).iter().zip(color).take(3).all(|(a, b)| a.abs_diff(b) < 24);
         count = (count.0 + 1, count.1 + usize::from(near));
     }
-    assert!(count.0 > 8, "{count:?} of {kinds:?}");
+    assert!(count.0 > 8, "{count:?} of {looks:?}");
     count.1 as f64 / count.0 as f64
 }
 
@@ -204,17 +205,17 @@ fn overlays_stand_where_they_are_computed() {
     view.keys(&["1"]);
     view.shows("frame 0", &frame);
     let spacing = 32.0; // the first power of two that is not below 22 pixels of the screen
-    let samplers = Some(Samplers { spacing, times: vec![0.0] });
-    for (key, kinds, shown) in [
-        ("a", &[Kind::Anchor, Kind::Still][..], overlay::View { anchors: true, ..Default::default() }),
-        ("x", &[Kind::Threshold], overlay::View { thresholds: Some(spacing), ..Default::default() }),
-        ("e", &[Kind::Sampler, Kind::Resting], overlay::View { samplers, ..Default::default() }),
+    for (key, looks, name) in [
+        ("a", &["anchor", "still anchor"][..], "view-anchors"),
+        ("x", &["threshold"], "view-thresholds"),
+        ("e", &["sampler", "resting sampler"], "view-samplers"),
     ] {
+        let shown = marks::View { spacing_px: spacing, times: vec![0.0], ..marks::View::of(&[name]) };
         let marks = overlay::overlay(&scene, Some(&synth), &shown);
         view.keys(&[key]);
         // What lies closer than a dot is wide hides a part of the others.
-        view.until("dots", |v| found(&v.shot(), &frame, &marks, kinds, 0.0) > 0.7);
-        assert!(found(&view.shot(), &frame, &marks, kinds, 5.0) < 0.4, "dots of {key} are small");
+        view.until("dots", |v| found(&v.shot(), &frame, &marks, looks, 0.0) > 0.7);
+        assert!(found(&view.shot(), &frame, &marks, looks, 5.0) < 0.4, "dots of {key} are small");
         view.keys(&[key]);
         view.shows("the bare frame", &frame);
     }
@@ -225,7 +226,7 @@ fn marks_are_as_large_as_the_screen_asks_for() {
     let Some(display) = Display::open() else { return };
     let place = Place::new();
     let frame = place.frame(0);
-    let marks = overlay::overlay(&place.scene(), None, &overlay::View { anchors: true, ..Default::default() });
+    let marks = overlay::overlay(&place.scene(), None, &marks::View::of(&["view-anchors"]));
     let mut command = place.command();
     let mut view = View::of(&display, command.env("WINIT_X11_SCALE_FACTOR", "2"));
     view.keys(&["1", "a"]);
@@ -234,7 +235,7 @@ fn marks_are_as_large_as_the_screen_asks_for() {
         let (width, height) = (shot.width(), shot.height() - display::BAR);
         plica::base::pixels::Grid::from_cells(width, height, shot.cells()[..width * height].to_vec())
     };
-    view.until("large dots", |v| found(&lower(v.shot()), &frame, &marks, &[Kind::Anchor], 5.0) > 0.5);
+    view.until("large dots", |v| found(&lower(v.shot()), &frame, &marks, &["anchor"], 5.0) > 0.5);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
 use super::parts::moment::{Columns, Moment};
 use super::parts::passes::Plan;
@@ -34,6 +35,11 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// The largest side of any picture that a frame reads, in pixels.
     fn largest_texture(&self) -> usize;
+
+    /// What the view shows of the vectors of pixels, in any order; paths are relative to the layer.
+    fn marks(&self, _view: &View) -> Vec<Mark> {
+        Vec::new()
+    }
 
     /// Gives a fully transparent pixel (column, row) of a finished frame the color that the layer has there, if it has one:
     /// straight alpha keeps it.

@@ -4,9 +4,10 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use kurbo::{Rect, Vec2};
+use kurbo::{Point, Rect, Vec2};
 use serde_json::Value;
 
+use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{Materials, Use};
 use super::parts::passes::Program;
 use super::parts::readout::{Curve, ReadOut};
@@ -88,6 +89,17 @@ pub trait Technique: Any + Send + Sync {
         Ok(None)
     }
 
+    /// What the view shows of the document alone, in any order.
+    fn marks(&self, _view: &View) -> Vec<Mark> {
+        Vec::new()
+    }
+
+    /// What of the layer stands at a place of the picture: the nearest thing not farther than `reach_px`, else the topmost
+    /// area that holds the place. Both in pixels of the picture.
+    fn pick(&self, _at: Point, _reach_px: f64) -> Option<Hit> {
+        None
+    }
+
     /// What happens to the layer where time starts anew.
     fn repeat(&self, _wrap: Wrap) -> Repeat {
         Repeat::default()
@@ -124,6 +136,10 @@ pub struct Kind {
     pub programs: &'static [&'static Program],
     /// What a scene may not have too much of.
     pub counted: &'static [Counted],
+    /// What can be drawn over the picture to explain it.
+    pub overlays: &'static [Overlay],
+    /// How that looks, in ascending order.
+    pub looks: &'static [&'static Look],
     /// A layer that shows the image of this name, of this width and height; `None` if the technique does not begin with
     /// a picture.
     pub template: Option<fn(image: &str, size: (usize, usize)) -> Value>,

@@ -1,7 +1,10 @@
 //! The keys of the window, which are also those of the editor's `z` menu and of playing. In the window `z` may be
 //! pressed before a letter of the menu, and then shows it, or left out.
 
+use std::sync::LazyLock;
+
 use crate::base::keys::KeyRow;
+use crate::render::overlay::overlays;
 
 /// Playing: the same keys in the editor.
 pub const PLAY: &str = "play";
@@ -14,32 +17,28 @@ const fn row(context: &'static str, key: &'static str, command: &'static str, he
     KeyRow { context, key, command, help }
 }
 
-/// Every key of the window.
-pub const KEYS: &[KeyRow] = &[
+/// Every key of the window: its own, and those of the overlays at the head of the view menu.
+pub static KEYS: LazyLock<Vec<KeyRow>> = LazyLock::new(|| {
+    let (play, own) = OWN.split_at(OWN.iter().take_while(|row| row.context == PLAY).count());
+    let overlays = overlays().map(|overlay| row(VIEW, overlay.key, overlay.name, overlay.help));
+    play.iter().copied().chain(overlays).chain(own.iter().copied()).collect()
+});
+
+/// The keys that no overlay brings.
+const OWN: &[KeyRow] = &[
     row(PLAY, "P", "play", "Plays or pauses"),
     row(PLAY, "[", "frame-back", "One frame back"),
     row(PLAY, "]", "frame-on", "One frame on"),
     row(PLAY, "{", "first-frame", "To the first frame"),
     row(PLAY, "}", "last-frame", "To the last frame"),
-    row(VIEW, "o", "view-outlines", "Zone outlines"),
-    row(VIEW, "r", "view-regions", "Fold regions"),
-    row(VIEW, "a", "view-anchors", "Anchors and their jump vectors"),
-    row(VIEW, "c", "view-curves", "Curves, lassos and handles"),
-    row(VIEW, "v", "view-field", "The vector field as arrows"),
-    row(VIEW, "d", "view-wheel", "The vector field as colours of directions"),
-    row(VIEW, "p", "view-paths", "Jump paths"),
-    row(VIEW, "x", "view-thresholds", "Where jump paths meet fold regions"),
-    row(VIEW, "e", "view-samplers", "Samplers, at their effective places"),
-    row(VIEW, "i", "view-onion", "Where the samplers were before"),
     row(VIEW, ",", "field-closer", "More of the field and its paths"),
     row(VIEW, ".", "field-wider", "Less of the field and its paths"),
-    row(VIEW, "n", "view-labels", "Names and numbers"),
     row(VIEW, "g", "view-grid", "The pixel grid, when large enough"),
     row(VIEW, "s", "view-still", "The still picture, for comparison"),
-    row(VIEW, "b", "view-wipe", "Before and after: still on the left"),
+    row(VIEW, "b", "view-wipe", "Before and after, still on the left"),
     row(VIEW, "(", "wipe-left", "Their border to the left"),
     row(VIEW, ")", "wipe-right", "Their border to the right"),
-    row(VIEW, "w", "view-seam", "The loop's seam: the last frame against the first"),
+    row(VIEW, "w", "view-seam", "The loop's seam, the last frame against the first"),
     row(VIEW, "t", "view-checkerboard", "A checkerboard under transparency"),
     row(VIEW, "L", "view-legends", "Legends of the vector field"),
     row(VIEW, "+", "zoom-in", "Larger"),

@@ -55,6 +55,7 @@ pub fn write(text: &str, at: Point, color: [u8; 4], marks: &mut Vec<Mark>) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Plot, png};
     use super::*;
 
     #[test]
@@ -68,5 +69,24 @@ mod tests {
                 assert!((0.0..=4.0).contains(&x) && (-6.0..=2.0).contains(&y), "{letter}: {point:?}");
             }
         }
+    }
+
+    /// Every letter in the order of the table, against `tests/golden/letters.png`.
+    #[test]
+    fn the_alphabet_is_golden() {
+        let text: String = LETTERS.iter().map(|(letter, _)| letter).collect();
+        let mut marks = Vec::new();
+        write(&text, Point::new(4.0, 16.0), [0, 0, 0, 255], &mut marks);
+        let width = text.chars().count() as f64 * ADVANCE * STEP + 8.0;
+        let plot = Plot { width, height: 24.0, picture: None, marks, title: String::new() };
+        let drawn = image::load_from_memory(&png(&plot).unwrap()).unwrap().to_rgba8();
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/letters.png");
+        if std::env::var_os("PLICA_UPDATE").is_some() {
+            drawn.save(&file).unwrap();
+        }
+        let kept = image::open(&file).unwrap().to_rgba8();
+        assert_eq!(kept.dimensions(), drawn.dimensions());
+        let worst = kept.as_raw().iter().zip(drawn.as_raw()).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!(worst <= 1, "letters differ from tests/golden by {worst}: PLICA_UPDATE=1 writes them anew");
     }
 }

@@ -6,8 +6,9 @@ use kurbo::{Point, Rect, Vec2};
 use crate::base::maths::atan2;
 use crate::base::oklab::hue;
 use crate::base::pixels::Frame;
+use crate::layers::parts::marks::{self, Dot, Shape, View};
 use crate::layers::parts::readout::{VectorField, vector};
-use crate::render::overlay::{Dot, Shape, View, overlay};
+use crate::render::overlay::overlay;
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
@@ -171,25 +172,23 @@ fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = Mark> {
 
 /// Zone outlines and fold regions, in the look they have everywhere.
 fn outlines(scene: &Scene, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
-    marks_of(scene, &View { outlines: true, regions: true, ..View::default() }, plot_from_image)
+    marks_of(scene, &View::of(&["view-outlines", "view-regions"]), plot_from_image)
 }
 
 fn anchors(scene: &Scene, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
-    marks_of(scene, &View { anchors: true, ..View::default() }, plot_from_image)
+    marks_of(scene, &View::of(&["view-anchors"]), plot_from_image)
 }
 
 fn marks_of(scene: &Scene, view: &View, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
-    let mark = |mark: crate::render::overlay::Mark| {
-        let style = mark.kind.style();
-        let dash = style.dash_px.map(|(on, off)| (f64::from(on), f64::from(off)));
+    let mark = |mark: marks::Mark| {
+        let look = mark.look;
+        let dash = look.dash_px.map(|(on, off)| (f64::from(on), f64::from(off)));
         match mark.shape {
             Shape::Line { points, closed } => {
                 let points = points.into_iter().map(plot_from_image).collect();
-                Some(Mark { points, closed, stroke: Some(style.width_px.into()), color: style.color, dash })
+                Some(Mark { points, closed, stroke: Some(look.width_px.into()), color: look.color, dash })
             }
-            Shape::Dot(at) => {
-                Some(fill(dot(plot_from_image(at), style.dot, f64::from(style.dot_px) * 0.8), style.color))
-            }
+            Shape::Dot(at) => Some(fill(dot(plot_from_image(at), look.dot, f64::from(look.dot_px) * 0.8), look.color)),
             // The arrows of the field say more.
             Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) | Shape::Cell(..) => None,
         }

@@ -21,6 +21,8 @@ pub static KIND: Kind = Kind {
     name: "fill",
     programs: &[&synth::PROGRAM],
     counted: &[],
+    overlays: &[],
+    looks: &[],
     template: None,
     start,
     beyond: |_, _| None,

@@ -12,9 +12,13 @@ pub mod fold;
 pub mod frame;
 pub mod interpolation;
 pub mod kinds;
+pub mod looks;
+pub mod marks;
 pub mod model;
 pub mod outline;
 pub mod passes;
+pub mod pick;
+pub mod pixel_marks;
 pub mod position;
 pub mod probe;
 mod ready;
@@ -33,10 +37,11 @@ mod tests;
 use std::any::Any;
 use std::sync::Arc;
 
-use kurbo::{Rect, Vec2};
+use kurbo::{Point, Rect, Vec2};
 use serde_json::Value;
 
 use self::model::PictureLayer;
+use super::parts::marks::{Hit, Mark, View};
 use super::parts::materials::{Materials, Use};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
@@ -53,6 +58,8 @@ pub static KIND: Kind = Kind {
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },
         Counted { name: "points", help: "points of a scene's outlines", most: 1_000_000 },
     ],
+    overlays: looks::OVERLAYS,
+    looks: looks::LOOKS,
     template: Some(starts::template),
     start: starts::start,
     beyond: starts::beyond,
@@ -129,6 +136,14 @@ impl Technique for PictureLayer {
         t: f64,
     ) -> Result<Option<ReadOut>, Problem> {
         Ok(Some(probe::read_out(probe::probe(self, wrap, materials, pixel, t)?)))
+    }
+
+    fn marks(&self, view: &View) -> Vec<Mark> {
+        marks::marks(self, view)
+    }
+
+    fn pick(&self, at: Point, reach_px: f64) -> Option<Hit> {
+        pick::pick(self, at, reach_px)
     }
 
     fn repeat(&self, wrap: Wrap) -> Repeat {

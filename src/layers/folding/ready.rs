@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use super::frame::Frame;
 use super::passes;
+use super::pixel_marks;
 use super::reduce;
 use super::synth::Synth;
 use crate::base::reduce::Reduced;
+use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::passes::Plan;
 use crate::layers::parts::readout::{Flag, VectorField};
@@ -45,6 +47,10 @@ impl Ready for Synth {
     fn largest_texture(&self) -> usize {
         let read = self.zones.iter().map(|zone| &zone.source.picture).chain([&self.picture]);
         read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
+    }
+
+    fn marks(&self, view: &View) -> Vec<Mark> {
+        pixel_marks::marks(self, view)
     }
 
     fn keep_clear_color(&self, (x, y): (usize, usize), code: &mut [u8; 4]) {

@@ -46,7 +46,7 @@ mod tests {
             ("F11", NamedKey::F11),
             ("Space", NamedKey::Space),
         ];
-        for row in KEYS {
+        for row in KEYS.iter() {
             let name = named.iter().find(|(written, _)| *written == row.key);
             let key = name.map_or(Key::Character(row.key.into()), |(_, key)| Key::Named(*key));
             assert_eq!(command(&key, NONE, false), Some(row.command), "{row:?}");

@@ -10,7 +10,7 @@ use super::camera::Camera;
 use super::canvas::{Canvas, Color};
 use super::marks::color_of;
 use super::text::{Letters, Text};
-use crate::render::overlay::{Kind, Mark, Shape};
+use crate::layers::parts::marks::{Mark, Shape};
 
 const LABEL_PX: f64 = 8.0;
 /// From what is named to its label, and from a label's text to its rim, in logical pixels.
@@ -101,13 +101,13 @@ fn obstacles(
     let mut vectors = HashMap::new();
     for mark in marks {
         match &mark.shape {
-            Shape::Arrow(from, to) if mark.kind == Kind::Jump => {
+            Shape::Arrow(from, to) if mark.look.keeps_labels_off => {
                 let (from, to) = (screen(*from), screen(*to));
                 taken.line(from, to);
                 taken.set(Rect::from_center_size(to, (8.0 * scale, 8.0 * scale)), MARK);
                 vectors.insert(key(from), to - from);
             }
-            Shape::Dot(at) if matches!(mark.kind, Kind::Anchor | Kind::Still) => {
+            Shape::Dot(at) if mark.look.keeps_labels_off => {
                 taken.set(Rect::from_center_size(screen(*at), (7.0 * scale, 7.0 * scale)), MARK);
             }
             _ => {}
@@ -170,17 +170,19 @@ mod tests {
     use super::super::camera::Fit;
     use super::super::canvas::BOX;
     use super::*;
+    use crate::layers::parts::marks::Look;
 
     const AREA: Size = Size::new(400.0, 300.0);
+    static ANCHOR: Look = Look::new("anchor", 0, [60, 210, 160, 255], 1.4).off_labels();
 
     fn marks(anchors: &[((f64, f64), (f64, f64))]) -> Vec<Mark> {
-        let mark = |kind, shape| Mark { kind, shape, selected: false, strength: 1.0 };
+        let mark = |shape| Mark::new(&ANCHOR, "", shape);
         let each = anchors.iter().flat_map(|&(at, jump)| {
             let at = Point::from(at);
             [
-                mark(Kind::Jump, Shape::Arrow(at, at + Vec2::from(jump))),
-                mark(Kind::Anchor, Shape::Dot(at)),
-                mark(Kind::Anchor, Shape::Label(at, "0: 40, -6".into())),
+                mark(Shape::Arrow(at, at + Vec2::from(jump))),
+                mark(Shape::Dot(at)),
+                mark(Shape::Label(at, "0: 40, -6".into())),
             ]
         });
         each.collect()

@@ -10,7 +10,7 @@ use super::chrome::{MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::state::State;
 use super::text::{Letters, Text};
 use crate::base::maths::{TAU, cos, pow, sin};
-use crate::render::overlay::{Kind, wheel};
+use crate::layers::parts::marks::{VECTORS, vector_color};
 
 /// Radius of the wheel of colours and of its dots, in logical pixels, and how many rings it has.
 const WHEEL_PX: f64 = 34.0;
@@ -70,7 +70,7 @@ impl Wheel {
             for dot in 0..dots {
                 let angle = TAU * f64::from(dot) / f64::from(dots);
                 let jump = Vec2::new(cos(angle), sin(angle)) * share;
-                let [r, g, b, _] = wheel(jump, 1.0);
+                let [r, g, b, _] = vector_color(jump, 1.0);
                 canvas.disc(middle + jump * ((WHEEL_PX - DOT_PX) * scale), DOT_PX * scale, [r, g, b, 255]);
             }
         }
@@ -104,7 +104,7 @@ impl ScaleBar {
         canvas.rect(at, 4.0 * scale, PANEL);
         let from = Point::new(at.x0 + MARGIN_PX * scale, at.center().y);
         let to = from + Vec2::new(self.length, 0.0);
-        canvas.arrow(from, to, 1.2 * scale, 7.0 * scale, Kind::Field.style().color);
+        canvas.arrow(from, to, 1.2 * scale, 7.0 * scale, VECTORS.color);
         canvas.text(&self.text, to + Vec2::new(GAP_PX * scale, -TEXT_PX * scale / 2.0), TEXT);
     }
 }

@@ -1,11 +1,11 @@
-//! Marks of the overlay as strokes on the screen: the only place that knows how a kind's style becomes lines and dots.
+//! Marks of the overlays as strokes on the screen: the only place that knows how a look becomes lines and dots.
 
 use kurbo::{Point, Rect, Size, Vec2};
 
 use super::camera::Camera;
 use super::canvas::{Canvas, Color};
 use crate::base::geometry::Polygon;
-use crate::render::overlay::{Dot, FILL_ALPHA, Mark, SELECTED, SELECTED_GROWTH, Shape, Style};
+use crate::layers::parts::marks::{Dot, FILL_ALPHA, Look, Mark, SELECTED, SELECTED_GROWTH, Shape};
 
 /// Distance of the lines that fill a region, in logical pixels.
 const HATCH_PX: f64 = 7.0;
@@ -59,20 +59,20 @@ impl Painter<'_> {
     }
 
     fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
-        let style = mark.kind.style();
+        let look = mark.look;
         let grown = if mark.selected { f64::from(SELECTED_GROWTH) } else { 1.0 } * self.scale;
         let color = color_of(mark);
-        let width = f64::from(style.width_px) * grown;
+        let width = f64::from(look.width_px) * grown;
         match &mark.shape {
             Shape::Line { points, closed } => {
                 let points: Vec<_> = points.iter().map(|&p| self.screen(p)).collect();
-                let dash = style.dash_px.map(|(a, b)| (f64::from(a) * self.scale, f64::from(b) * self.scale));
+                let dash = look.dash_px.map(|(a, b)| (f64::from(a) * self.scale, f64::from(b) * self.scale));
                 if self.seen(&points) {
                     canvas.with_halo(|c| c.polyline(&points, *closed, width, dash, color));
                 }
             }
             Shape::Fill(points) => self.hatch(canvas, points, color),
-            Shape::Dot(at) => self.dot(canvas, self.screen(*at), &style, grown, color),
+            Shape::Dot(at) => self.dot(canvas, self.screen(*at), look, grown, color),
             Shape::Arrow(from, to) => {
                 let (from, to) = (self.screen(*from), self.screen(*to));
                 if self.seen(&[from, to]) {
@@ -90,10 +90,10 @@ impl Painter<'_> {
         }
     }
 
-    fn dot(&self, canvas: &mut Canvas, at: Point, style: &Style, grown: f64, color: Color) {
-        let r = f64::from(style.dot_px) * grown;
+    fn dot(&self, canvas: &mut Canvas, at: Point, look: &Look, grown: f64, color: Color) {
+        let r = f64::from(look.dot_px) * grown;
         if self.seen(&[at]) {
-            canvas.with_halo(|c| match style.dot {
+            canvas.with_halo(|c| match look.dot {
                 Dot::Disc => c.disc(at, r, color),
                 Dot::Square => c.rect(Rect::from_center_size(at, (2.0 * r, 2.0 * r)), 0.0, color),
                 Dot::Diamond => c.diamond(at, r, color),
@@ -124,7 +124,7 @@ impl Painter<'_> {
 }
 
 pub fn color_of(mark: &Mark) -> Color {
-    let [r, g, b, a] = if mark.selected { SELECTED } else { mark.kind.style().color };
+    let [r, g, b, a] = if mark.selected { SELECTED } else { mark.look.color };
     [r, g, b, (f32::from(a) * mark.strength).round() as u8]
 }
 
@@ -132,8 +132,8 @@ pub fn color_of(mark: &Mark) -> Color {
 mod tests {
     use super::super::camera::Fit;
     use super::*;
-    use crate::render::overlay::Kind;
 
+    static LOOK: Look = Look::new("dashed", 0, [240, 160, 40, 255], 1.6).dashed(6.0, 4.0).dots(Dot::Square, 3.0);
     const AREA: Size = Size::new(200.0, 100.0);
 
     fn camera() -> Camera {
@@ -143,7 +143,7 @@ mod tests {
     }
 
     fn mark(shape: Shape, selected: bool) -> Mark {
-        Mark { kind: Kind::FoldRegion, shape, selected, strength: 1.0 }
+        Mark { selected, ..Mark::new(&LOOK, "", shape) }
     }
 
     fn strokes(shape: Shape, selected: bool) -> usize {

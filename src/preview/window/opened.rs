@@ -124,7 +124,7 @@ impl Opened {
             Some(show) => {
                 marks.follow(state, show, letters);
                 (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
-                let asked = state.pointed().filter(|_| state.shows_jumps());
+                let asked = state.pointed().filter(|_| state.shows_vectors());
                 state.jump = asked.and_then(|at| jump_at(&show.synth, at));
                 self.pictures(state, show)?
             }

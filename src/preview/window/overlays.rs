@@ -2,8 +2,9 @@
 
 use super::state::State;
 use crate::base::maths::pow;
+use crate::layers::parts::marks::{View, When};
 use crate::layers::timeline::Wrap;
-use crate::render::overlay::{Samplers, View};
+use crate::render::overlay::overlays;
 
 /// An arrow of the vector field stands about every so many logical pixels of the screen, unless keys change it, by so many
 /// times twice or half.
@@ -21,46 +22,49 @@ impl State {
         (0..24).map(|k| f64::from(1 << k)).find(|&s| s >= wanted).unwrap_or(wanted)
     }
 
-    /// The samplers that are shown: now, and where they were before.
-    pub fn samplers(&self) -> Option<Samplers> {
+    /// Pixels of the picture between two arrows of the field, two jump paths or two samplers.
+    pub fn field_spacing(&self) -> f64 {
+        self.spacing(FIELD_PX * pow(2.0, f64::from(self.field_step)))
+    }
+
+    /// Whether anything is shown of the vectors of pixels.
+    pub fn shows_vectors(&self) -> bool {
+        overlays().any(|overlay| overlay.when != When::Document && self.shows(overlay.name))
+    }
+
+    /// What stays as it is while the animation runs.
+    pub fn fixed_view(&self) -> View {
+        self.view(|when| when != When::EveryFrame)
+    }
+
+    /// What changes with every frame.
+    pub fn moving_view(&self) -> View {
+        let view = self.view(|when| when == When::EveryFrame);
+        let times = if view.shown.is_empty() { Vec::new() } else { self.times() };
+        View { times, ..view }
+    }
+
+    /// The overlays that are shown, as dense as the screen bears.
+    fn view(&self, wanted: impl Fn(When) -> bool) -> View {
+        let shown = overlays().filter(|overlay| wanted(overlay.when) && self.shows(overlay.name));
+        View {
+            shown: shown.map(|overlay| overlay.name).collect(),
+            spacing_px: self.field_spacing(),
+            cell_px: self.spacing(WHEEL_PX),
+            selection: self.selection.clone(),
+            ..View::default()
+        }
+    }
+
+    /// The present scene time and some before it.
+    fn times(&self) -> Vec<f64> {
         let now = self.transport.scene_time(&self.timeline);
         let before = (1..=ONION.0).map(|k| now - f64::from(k) * ONION.1);
         let before = before.filter_map(|t| match self.timeline.wrap {
             Wrap::Once => (t >= 0.0).then_some(t),
             Wrap::Repeat | Wrap::PingPong => Some(t.rem_euclid(1.0)),
         });
-        let before = before.filter(|_| self.shows("view-onion"));
-        let shown = self.shows("view-samplers") || self.shows("view-onion");
-        shown.then(|| Samplers { spacing: self.field_spacing(), times: std::iter::once(now).chain(before).collect() })
-    }
-
-    /// Pixels of the picture between two arrows of the field, two jump paths or two samplers.
-    pub fn field_spacing(&self) -> f64 {
-        self.spacing(FIELD_PX * pow(2.0, f64::from(self.field_step)))
-    }
-
-    /// Whether anything is shown of the jump vectors of pixels.
-    pub fn shows_jumps(&self) -> bool {
-        let of_jumps = ["view-field", "view-wheel", "view-paths", "view-samplers", "view-onion", "view-thresholds"];
-        of_jumps.iter().any(|name| self.shows(name))
-    }
-
-    /// What the overlay shows but the samplers, its field as dense as the screen bears.
-    pub fn overlay_view(&self) -> View {
-        let spacing = Some(self.field_spacing());
-        View {
-            outlines: self.shows("view-outlines"),
-            regions: self.shows("view-regions"),
-            anchors: self.shows("view-anchors"),
-            curves: self.shows("view-curves"),
-            labels: self.shows("view-labels"),
-            field: spacing.filter(|_| self.shows("view-field")),
-            wheel: self.shows("view-wheel").then(|| self.spacing(WHEEL_PX)),
-            paths: spacing.filter(|_| self.shows("view-paths")),
-            thresholds: spacing.filter(|_| self.shows("view-thresholds")),
-            samplers: None,
-            selection: self.selection.clone(),
-        }
+        std::iter::once(now).chain(before).collect()
     }
 }
 
@@ -73,7 +77,7 @@ mod tests {
         let mut state = State::for_tests();
         state.run("view-field");
         for _ in 0..16 {
-            let on_screen = state.overlay_view().field.unwrap() * state.camera.zoom;
+            let on_screen = state.fixed_view().spacing_px * state.camera.zoom;
             assert!(on_screen >= FIELD_PX, "{on_screen}");
             state.run("zoom-out");
         }

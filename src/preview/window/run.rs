@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn every_command_of_the_key_table_is_known() {
-        for row in KEYS {
+        for row in KEYS.iter() {
             assert_ne!(State::for_tests().run(row.command), Outcome::Unknown, "{row:?}");
         }
         assert_eq!(State::for_tests().run("sing"), Outcome::Unknown);

@@ -10,8 +10,9 @@ use super::canvas::Canvas;
 use super::state::State;
 use super::text::Letters;
 use super::{labels, marks};
+use crate::layers::parts::marks::View;
 use crate::render::Synth;
-use crate::render::overlay::{Samplers, View, field_scale, longest, overlay, samplers};
+use crate::render::overlay::{longest, overlay};
 use crate::render::reduce::reduced;
 use crate::scene::{Scene, words::item_of};
 
@@ -66,9 +67,9 @@ pub struct Cached {
     /// Strokes that stay as they are while the animation runs.
     pub fixed: Canvas,
     made_for: Option<(View, Sight)>,
-    /// Those of the samplers.
+    /// Those that change with every frame.
     pub moving: Canvas,
-    moved_for: Option<(Option<Samplers>, Sight)>,
+    moved_for: Option<(View, Sight)>,
     /// Names and numbers, above all else of the overlay.
     pub labels: Canvas,
     /// See [`State::arrow_scale`].
@@ -97,21 +98,20 @@ impl Cached {
         let camera = state.camera.clone();
         let (window, scale, grid) = (state.window, state.scale, state.shows("view-grid"));
         let sight = Sight { camera, window, scale, grid, revision: self.revision, letters: letters.generation() };
-        let (fixed, moving) = (Some((state.overlay_view(), sight.clone())), Some((state.samplers(), sight)));
+        let (fixed, moving) = (Some((state.fixed_view(), sight.clone())), Some((state.moving_view(), sight)));
         if self.made_for != fixed {
             self.made_for = fixed;
             self.make_fixed(state, show, letters);
         }
         if self.moved_for != moving {
             self.moved_for = moving;
-            let view = View { samplers: state.samplers(), selection: state.selection.clone(), ..View::default() };
-            let found = if view.samplers.is_some() { samplers(&show.synth, &view) } else { Vec::new() };
+            let found = overlay(&show.scene, Some(&show.synth), &state.moving_view());
             self.moving = marks::draw(&found, &state.camera, state.area(), state.scale);
         }
     }
 
     fn make_fixed(&mut self, state: &State, show: &Show, letters: &Letters) {
-        let view = state.overlay_view();
+        let view = state.fixed_view();
         let found = overlay(&show.scene, Some(&show.synth), &view);
         self.fixed = Canvas::default();
         if state.shows("view-grid") {
@@ -119,8 +119,9 @@ impl Cached {
         }
         self.fixed.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
         self.labels = labels::draw(&found, &state.camera, state.area(), state.scale, letters);
-        self.arrow_scale = view.field.map_or(1.0, |spacing| field_scale(&show.synth, spacing));
-        self.longest = view.wheel.map_or(0.0, |_| longest(&show.synth));
+        let legends = state.shows("view-field") || state.shows("view-wheel");
+        self.longest = if legends { longest(&show.synth) } else { 0.0 };
+        self.arrow_scale = View { longest_px: self.longest, ..view }.arrow_scale();
     }
 }
 

@@ -24,6 +24,6 @@ pub fn manual() -> String {
          a count before the name (`:5 move down`),\nand stand in scripts (`:source`, `plica edit --script`) and in the log of a \
          session (`:log`).\n\n| line | does |\n| --- | --- |\n{own}{others}\n## What an entry may be\n\n{entries}\n## In the window\n\nThe keys of the preview window; \
          the editor has most of them behind `z`.\n\n| key | does |\n| --- | --- |\n{window}",
-        crate::base::keys::markdown(KEYS)
+        crate::base::keys::markdown(&KEYS)
     )
 }

@@ -86,10 +86,8 @@ fn select(state: &mut State, call: &Call, at: Point) -> Done {
     }
     let (width, height) = state.picture_size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
-    let pointer = overlay::pick(state.document().scene(), at, reach_px).ok_or("no zone is there")?;
-    // A tool's first cell stands in the table of all tools, beside its numbers.
-    let cell = if pointer.contains("/motion/") { "/tool" } else { "" };
-    call.obey(state, &format!("go {pointer}{cell}"))
+    let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("no zone is there")?;
+    call.obey(state, &format!("go {}{}", hit.path, hit.cell))
 }
 
 /// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and with it the row

@@ -7,7 +7,7 @@ use super::sight::clipped;
 use crate::base::geometry::Polygon;
 use crate::base::maths;
 use crate::base::pixels::Frame;
-use crate::render::overlay::{self, Dot, Mark, Shape};
+use crate::layers::parts::marks::{Dot, Mark, SELECTED, SELECTED_GROWTH, Shape};
 use crate::render::part::Part;
 
 /// Length of an arrow's head, in dots.
@@ -40,9 +40,9 @@ impl Ink<'_> {
     }
 
     fn mark(&mut self, mark: &Mark) {
-        let style = mark.kind.style();
-        let dash = style.dash_px.map(|(on, off)| (self.less(on.into()).max(1.0), self.less(off.into()).max(1.0)));
-        let colour = if mark.selected { overlay::SELECTED } else { style.color };
+        let look = mark.look;
+        let dash = look.dash_px.map(|(on, off)| (self.less(on.into()).max(1.0), self.less(off.into()).max(1.0)));
+        let colour = if mark.selected { SELECTED } else { look.color };
         let pen = Pen { colour, wide: mark.selected && self.by == 1, dash };
         match &mark.shape {
             Shape::Line { points, closed } => {
@@ -50,7 +50,7 @@ impl Ink<'_> {
                 from.clone().zip(from.skip(1)).for_each(|(&from, &to)| self.line(&pen, self.at(from), self.at(to)));
             }
             Shape::Arrow(from, to) => self.arrow(&pen, self.at(*from), self.at(*to)),
-            Shape::Dot(at) => self.dot(&pen, self.at(*at), style.dot, f64::from(style.dot_px), mark.selected),
+            Shape::Dot(at) => self.dot(&pen, self.at(*at), look.dot, f64::from(look.dot_px), mark.selected),
             Shape::Fill(points) => self.hatch(&pen, points),
             Shape::Cell(..) | Shape::Label(..) => {}
         }
@@ -113,7 +113,7 @@ impl Ink<'_> {
 
     /// A dot with a dark rim; where it is small its colour alone.
     fn dot(&mut self, pen: &Pen, at: Point, shape: Dot, radius: f64, selected: bool) {
-        let growth = if selected { f64::from(overlay::SELECTED_GROWTH) } else { 1.0 };
+        let growth = if selected { f64::from(SELECTED_GROWTH) } else { 1.0 };
         let radius = self.less(radius * growth * DOTS);
         let rim = if radius >= 1.5 { 1.0 } else { 0.0 };
         let reach = (radius + rim).ceil() as i32;
@@ -170,17 +170,18 @@ fn blend(frame: &mut Frame, at: Point, [r, g, b, a]: [u8; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::overlay::Kind;
+    use crate::layers::folding::looks::{ANCHOR, CURVE, FOLD_REGION, ZONE_OUTLINE};
+    use crate::layers::parts::marks::Look;
 
     fn text(frame: &Frame) -> Vec<String> {
         let glyph = |cell: &[u8; 4]| if *cell == [0, 0, 0, 255] { '.' } else { '#' };
         frame.cells().chunks(frame.width()).map(|row| row.iter().map(glyph).collect()).collect()
     }
 
-    fn drawn(shape: Shape, kind: Kind, selected: bool) -> Vec<String> {
+    fn drawn(shape: Shape, look: &'static Look, selected: bool) -> Vec<String> {
         let mut frame = Frame::filled(12, 6, DARK);
         let part = Part { corner: Point::new(10.0, 10.0), scale: 2.0, dots: (12, 6) };
-        Ink { frame: &mut frame, part: &part, by: 1 }.draw(&[Mark { kind, shape, selected, strength: 1.0 }]);
+        Ink { frame: &mut frame, part: &part, by: 1 }.draw(&[Mark { selected, ..Mark::new(look, "", shape) }]);
         text(&frame)
     }
 
@@ -188,14 +189,14 @@ mod tests {
     fn marks_stand_where_they_are_in_the_picture() {
         let rectangle = [(14.0, 12.0), (28.0, 12.0), (28.0, 18.0), (14.0, 18.0)].map(Point::from).to_vec();
         let outline = Shape::Line { points: rectangle.clone(), closed: true };
-        let found = drawn(outline, Kind::ZoneOutline, false);
+        let found = drawn(outline, &ZONE_OUTLINE, false);
         assert_eq!(
             found,
             ["............", "..########..", "..#......#..", "..#......#..", "..########..", "............"]
         );
         let far = Shape::Line { points: vec![Point::new(-1e9, 15.0), Point::new(1e9, 15.0)], closed: false };
-        assert_eq!(drawn(far, Kind::Curve, false)[2], "############");
-        assert_eq!(drawn(Shape::Fill(rectangle), Kind::FoldRegion, false)[1..4].concat().matches('#').count(), 3);
+        assert_eq!(drawn(far, &CURVE, false)[2], "############");
+        assert_eq!(drawn(Shape::Fill(rectangle), &FOLD_REGION, false)[1..4].concat().matches('#').count(), 3);
     }
 
     #[test]
@@ -203,12 +204,7 @@ mod tests {
         let mut frame = Frame::filled(12, 6, DARK);
         let part = Part { corner: Point::ZERO, scale: 8.0, dots: (12, 6) };
         let mut ink = Ink { frame: &mut frame, part: &part, by: 4 };
-        ink.draw(&[Mark {
-            kind: Kind::Anchor,
-            shape: Shape::Dot(Point::new(20.0, 20.0)),
-            selected: false,
-            strength: 1.0,
-        }]);
+        ink.draw(&[Mark::new(&ANCHOR, "", Shape::Dot(Point::new(20.0, 20.0)))]);
         assert_eq!(text(&frame).concat().matches('#').count(), 1);
     }
 
@@ -216,7 +212,7 @@ mod tests {
     fn what_is_selected_is_wider_and_dashes_tell_kinds_apart() {
         let line = || Shape::Line { points: vec![Point::new(10.0, 14.0), Point::new(34.0, 14.0)], closed: false };
         let count = |rows: Vec<String>| rows.concat().matches('#').count();
-        assert_eq!((count(drawn(line(), Kind::Curve, false)), count(drawn(line(), Kind::Curve, true))), (12, 24));
-        assert_eq!(drawn(line(), Kind::FoldRegion, false)[2], "######....##");
+        assert_eq!((count(drawn(line(), &CURVE, false)), count(drawn(line(), &CURVE, true))), (12, 24));
+        assert_eq!(drawn(line(), &FOLD_REGION, false)[2], "######....##");
     }
 }

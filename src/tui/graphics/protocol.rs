@@ -2,7 +2,7 @@
 
 use kurbo::Point;
 
-use crate::render::overlay::View;
+use crate::layers::parts::marks::View;
 use crate::render::part::Part;
 use crate::tui::text::colour::Depth;
 

@@ -199,7 +199,7 @@ fn read(text: &str, mistakes: &mut Vec<(usize, String)>) -> Vec<Written> {
 /// The contexts that there are, in the order of the table.
 pub fn contexts() -> Vec<&'static str> {
     let mut all: Vec<&str> = Vec::new();
-    for row in KEYS {
+    for row in KEYS.iter() {
         if !all.contains(&row.context) {
             all.push(row.context);
         }
@@ -365,7 +365,7 @@ mod tests {
 
     #[test]
     fn every_key_of_the_table_could_be_written() {
-        for row in KEYS {
+        for row in KEYS.iter() {
             if let Err(why) = sequence(row.context, row.key) {
                 panic!("{row:?}: {why}");
             }

@@ -23,7 +23,7 @@ mod tests {
     #[test]
     fn no_two_bindings_clash() {
         let mut seen = BTreeSet::new();
-        for row in KEYS {
+        for row in KEYS.iter() {
             assert!(seen.insert((row.context, row.key)), "{row:?}");
             let hidden = KEYS.iter().any(|other| other.context == row.context && continues(row.key, other.key));
             assert!(!hidden, "{row:?} can never be reached");
@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn every_binding_is_a_command() {
-        for row in KEYS {
+        for row in KEYS.iter() {
             let name = row.command.split(' ').next().unwrap();
             assert!(TABLE.find(name).is_some(), "{row:?}");
         }
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn the_window_takes_the_same_keys() {
-        for row in window::KEYS {
+        for row in window::KEYS.iter() {
             let key = match row.context {
                 window::PLAY => row.key.to_string(),
                 window::VIEW => format!("z {}", row.key),

@@ -1,6 +1,9 @@
 //! The one table of keys: from it come the bindings, the help, the hints after a first key, and docs/keys.md.
 
+use std::sync::LazyLock;
+
 use crate::base::keys::KeyRow;
+use crate::preview::keys as window;
 
 /// In every pane, while nothing is being typed.
 pub const EVERYWHERE: &str = "everywhere";
@@ -35,8 +38,26 @@ const fn row(context: &'static str, key: &'static str, command: &'static str, he
     KeyRow { context, key, command, help }
 }
 
-/// Every binding.
-pub const KEYS: &[KeyRow] = &[
+/// Every binding: the editor's own, and behind `z` what the window can show.
+pub static KEYS: LazyLock<Vec<KeyRow>> = LazyLock::new(|| {
+    let view = OWN.iter().position(|row| row.key == "z <").unwrap_or(OWN.len());
+    let of_window = OF_WINDOW.iter().map(|[key, command, help]| row(EVERYWHERE, key, command, help));
+    OWN[..view].iter().copied().chain(of_window).chain(OWN[view..].iter().copied()).collect()
+});
+
+/// The rows of the window's view menu that the editor has no command of its own for: key, line and help.
+static OF_WINDOW: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| {
+    let made = |row: &KeyRow| {
+        let [first, rest] = row.help.split_at(1).into();
+        let help = format!("Window: {}{rest}", first.to_lowercase());
+        [format!("z {}", row.key), format!("view {}", row.command), help]
+    };
+    let rows = window::KEYS.iter().filter(|row| row.context == window::VIEW).map(made);
+    rows.filter(|[key, ..]| OWN.iter().all(|own| own.context != EVERYWHERE || own.key != *key)).collect()
+});
+
+/// The editor's own bindings.
+const OWN: &[KeyRow] = &[
     row(EVERYWHERE, "?", "help", "Show what is under the cursor, the keys of this pane, then all others"),
     row(EVERYWHERE, ":", "line", "Type a command"),
     row(EVERYWHERE, "Tab", "pane next", "Go to the next pane"),
@@ -85,30 +106,6 @@ pub const KEYS: &[KeyRow] = &[
     row(EVERYWHERE, "z j", "pan down", "Show more of the picture below"),
     row(EVERYWHERE, "z k", "pan up", "Show more of the picture above"),
     row(EVERYWHERE, "z l", "pan right", "Show more of the picture on the right"),
-    row(EVERYWHERE, "z o", "view view-outlines", "Window: zone outlines"),
-    row(EVERYWHERE, "z r", "view view-regions", "Window: fold regions"),
-    row(EVERYWHERE, "z a", "view view-anchors", "Window: anchors and their jump vectors"),
-    row(EVERYWHERE, "z c", "view view-curves", "Window: curves, lassos and handles"),
-    row(EVERYWHERE, "z v", "view view-field", "Window: the vector field as arrows"),
-    row(EVERYWHERE, "z d", "view view-wheel", "Window: the vector field as colours of directions"),
-    row(EVERYWHERE, "z p", "view view-paths", "Window: jump paths"),
-    row(EVERYWHERE, "z x", "view view-thresholds", "Window: where jump paths meet fold regions"),
-    row(EVERYWHERE, "z e", "view view-samplers", "Window: samplers, at their effective places"),
-    row(EVERYWHERE, "z i", "view view-onion", "Window: where the samplers were before"),
-    row(EVERYWHERE, "z ,", "view field-closer", "Window: more of the field and its paths"),
-    row(EVERYWHERE, "z .", "view field-wider", "Window: less of the field and its paths"),
-    row(EVERYWHERE, "z n", "view view-labels", "Window: names and numbers"),
-    row(EVERYWHERE, "z g", "view view-grid", "Window: the pixel grid, when large enough"),
-    row(EVERYWHERE, "z s", "view view-still", "Window: the still picture"),
-    row(EVERYWHERE, "z b", "view view-wipe", "Window: before and after, still on the left"),
-    row(EVERYWHERE, "z (", "view wipe-left", "Window: their border to the left"),
-    row(EVERYWHERE, "z )", "view wipe-right", "Window: their border to the right"),
-    row(EVERYWHERE, "z w", "view view-seam", "Window: the loop's seam, the last frame against the first"),
-    row(EVERYWHERE, "z t", "view view-checkerboard", "Window: a checkerboard under transparency"),
-    row(EVERYWHERE, "z L", "view view-legends", "Window: legends of the vector field"),
-    row(EVERYWHERE, "z W", "view zoom-whole", "Window: fit by a whole factor, all pixels equally large"),
-    row(EVERYWHERE, "z F", "view view-full-screen", "Window: the whole screen"),
-    row(EVERYWHERE, "z R", "view view-whole-frames", "Window: the display's rate, or the scene's frames only"),
     row(EVERYWHERE, "z <", "speed slower", "Play slower"),
     row(EVERYWHERE, "z >", "speed faster", "Play faster"),
     row(EVERYWHERE, "Space Space", "palette", "Find a command, a node or a field"),

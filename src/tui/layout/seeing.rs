@@ -5,7 +5,8 @@ use crate::tui::graphics::probed::{Asked, Request};
 use crate::tui::layout;
 use kurbo::Point;
 
-use crate::render::overlay::View;
+use crate::layers::parts::marks::{View, When};
+use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::document::tree;
 use crate::tui::graphics::{Marks, Protocol, Wanted, sight};
@@ -48,7 +49,8 @@ pub fn settle(state: &mut State) {
 /// What is drawn over the picture, and how the selection stands out.
 pub fn overlays(state: &State) -> View {
     let selection = Some(state.focused());
-    View { outlines: true, regions: true, anchors: true, curves: true, selection, ..View::default() }
+    let of_document = overlay::overlays().filter(|overlay| overlay.when == When::Document);
+    View { shown: of_document.map(|overlay| overlay.name).collect(), selection, ..View::default() }
 }
 
 fn wanted(state: &State) -> Option<Wanted> {

@@ -8,7 +8,8 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
-use crate::render::overlay::{self, Dot, Kind, Mark, Shape};
+use crate::layers::parts::marks::{Dot, Mark, SELECTED, Shape};
+use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::graphics::{Protocol, Shown, sight};
 use crate::tui::layout::seeing;
@@ -139,22 +140,11 @@ fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// What a line of each kind is drawn with: shapes tell them apart, colours only help.
-fn stroke(kind: Kind) -> &'static str {
-    match kind {
-        Kind::FoldRegion => "x",
-        Kind::Curve => "~",
-        Kind::Lasso => ":",
-        Kind::Handle => "'",
-        _ => "·",
-    }
-}
-
 fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Buffer) {
-    let [r, g, b, _] = if mark.selected { overlay::SELECTED } else { mark.kind.style().color };
+    let [r, g, b, _] = if mark.selected { SELECTED } else { mark.look.color };
     let style = depth.colour([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
     let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
-    let glyph = stroke(mark.kind);
+    let glyph = mark.look.stroke;
     match &mark.shape {
         Shape::Cell(..) => {} // asked for by nobody here: a cell of the terminal is too large for it
         Shape::Line { points, closed } => {
@@ -166,7 +156,7 @@ fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Bu
             }
         }
         Shape::Dot(at) => {
-            let glyph = match (mark.kind.style().dot, mark.selected) {
+            let glyph = match (mark.look.dot, mark.selected) {
                 (Dot::Disc, false) => "o",
                 (Dot::Disc, true) => "●",
                 (Dot::Square, false) => "□",

@@ -1,0 +1,223 @@
+//! What a technique draws over the picture to explain it: marks in pixels of the picture, how they look, and the overlays
+//! that switch them on. The window, plots and the terminal only draw them.
+
+use std::collections::BTreeSet;
+
+use kurbo::{Point, Vec2};
+
+use crate::base::oklab::srgb;
+
+/// An overlay: one switch of the window and of the editor's view menu.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overlay {
+    /// The command that switches it, `view-...`. Techniques that share a name share the switch.
+    pub name: &'static str,
+    /// Its key in the window; in the editor it stands behind `z`.
+    pub key: &'static str,
+    /// What it shows, in a few words.
+    pub help: &'static str,
+    /// What its marks are made of, and so when they change.
+    pub when: When,
+}
+
+/// What the marks of an overlay are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// The document alone.
+    Document,
+    /// The vectors of pixels: the layer must be ready to be shown.
+    Synthesis,
+    /// The same, and the scene time: they change with every frame.
+    EveryFrame,
+}
+
+/// Which overlays are shown, and how densely.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    /// Overlays, by their names.
+    pub shown: BTreeSet<&'static str>,
+    /// Distance of two pixels of which something is drawn, in pixels of the picture.
+    pub spacing_px: f64,
+    /// The same for those that are drawn as cells of color.
+    pub cell_px: f64,
+    /// Scene times in [0, 1] of what changes with every frame: the present one, then earlier ones, drawn ever fainter.
+    pub times: Vec<f64>,
+    /// The longest vector of a pixel in the scene, in pixels; filled in by whoever collects the marks of all layers.
+    pub longest_px: f64,
+    /// JSON pointer of what is selected.
+    pub selection: Option<String>,
+}
+
+impl View {
+    /// These overlays.
+    pub fn of(names: &[&'static str]) -> View {
+        View { shown: names.iter().copied().collect(), ..View::default() }
+    }
+
+    /// Whether an overlay is shown.
+    pub fn shows(&self, name: &str) -> bool {
+        self.shown.contains(name)
+    }
+
+    /// Length of a drawn arrow as a share of its vector, so that arrows keep apart: the longest of the scene reaches to the
+    /// next arrow.
+    pub fn arrow_scale(&self) -> f64 {
+        (self.spacing_px.max(1.0) / self.longest_px).min(1.0)
+    }
+}
+
+/// One thing to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// How it looks.
+    pub look: &'static Look,
+    /// Its shape, in pixels of the picture.
+    pub shape: Shape,
+    /// JSON pointer of what it shows: relative to the layer as a technique makes it, to the document once collected.
+    pub path: String,
+    /// Whether it belongs to what is selected; set by whoever collects.
+    pub selected: bool,
+    /// Opacity beside that of its color, 0 to 1.
+    pub strength: f32,
+}
+
+impl Mark {
+    /// A mark of what stands at `path`, not selected, of full strength.
+    pub fn new(look: &'static Look, path: impl Into<String>, shape: Shape) -> Mark {
+        Mark { look, shape, path: path.into(), selected: false, strength: 1.0 }
+    }
+}
+
+/// A shape in pixels of the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A line through points.
+    Line {
+        /// At least two points.
+        points: Vec<Point>,
+        /// Whether the last joins the first.
+        closed: bool,
+    },
+    /// The inside of a polygon, even-odd.
+    Fill(Vec<Point>),
+    /// A square of a color of its own around a point: center, side, sRGB with straight alpha.
+    Cell(Point, f64, [u8; 4]),
+    /// A dot at a point.
+    Dot(Point),
+    /// An arrow; its head is at the second point.
+    Arrow(Point, Point),
+    /// Text beside a point.
+    Label(Point, String),
+}
+
+/// How marks of one kind look. Looks differ in more than their colors. Lengths are in logical pixels of the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// What is drawn so: "zone outline".
+    pub name: &'static str,
+    /// Marks of a higher order lie above.
+    pub order: u8,
+    /// sRGB with straight alpha.
+    pub color: [u8; 4],
+    /// Width of lines.
+    pub width_px: f32,
+    /// Length of a dash and of the gap after it; `None` for solid lines.
+    pub dash_px: Option<(f32, f32)>,
+    /// The shape of dots.
+    pub dot: Dot,
+    /// Radius of dots.
+    pub dot_px: f32,
+    /// The character of lines in a terminal without pictures.
+    pub stroke: &'static str,
+    /// Whether labels keep off its dots and arrows.
+    pub keeps_labels_off: bool,
+}
+
+impl Look {
+    /// A look of solid lines and discs.
+    pub const fn new(name: &'static str, order: u8, color: [u8; 4], width_px: f32) -> Look {
+        let (dot, dot_px) = (Dot::Disc, 1.0);
+        Look { name, order, color, width_px, dash_px: None, dot, dot_px, stroke: "·", keeps_labels_off: false }
+    }
+
+    /// The same with these dots.
+    pub const fn dots(self, dot: Dot, dot_px: f32) -> Look {
+        Look { dot, dot_px, ..self }
+    }
+
+    /// The same with dashed lines.
+    pub const fn dashed(self, dash: f32, gap: f32) -> Look {
+        Look { dash_px: Some((dash, gap)), ..self }
+    }
+
+    /// The same with another character in terminals.
+    pub const fn stroke(self, stroke: &'static str) -> Look {
+        Look { stroke, ..self }
+    }
+
+    /// The same, and labels keep off it.
+    pub const fn off_labels(self) -> Look {
+        Look { keeps_labels_off: true, ..self }
+    }
+}
+
+/// The shape of a dot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dot {
+    /// A filled disc.
+    Disc,
+    /// A filled square.
+    Square,
+    /// A filled square on its corner.
+    Diamond,
+}
+
+/// The color of what is selected; its lines and dots are larger by [`SELECTED_GROWTH`].
+pub const SELECTED: [u8; 4] = [255, 255, 255, 255];
+/// See [`SELECTED`].
+pub const SELECTED_GROWTH: f32 = 1.6;
+/// Opacity of a [`Shape::Fill`] in the color of its look.
+pub const FILL_ALPHA: f32 = 0.16;
+
+/// Vectors of pixels as colors: the look of [`vector_color`], whatever technique they are of.
+pub static VECTOR_COLORS: Look =
+    Look::new("vector field as colors", 0, [255, 255, 255, 220], 0.0).dots(Dot::Square, 0.0);
+/// Vectors of pixels as arrows, whatever technique they are of.
+pub static VECTORS: Look = Look::new("vector field", 1, [190, 205, 220, 230], 1.0);
+
+/// The color of a vector if the longest is `longest`: its hue is the direction on the screen, and the longer it is, the
+/// lighter and the more saturated. No vector is dark grey.
+pub fn vector_color(vector: Vec2, longest: f64) -> [u8; 4] {
+    let length = vector.hypot2().sqrt();
+    let share = if longest > 0.0 { (length / longest).min(1.0) } else { 0.0 };
+    let way = if length > 0.0 { vector / length } else { Vec2::ZERO } * (0.02 + 0.12 * share);
+    let [r, g, b] = srgb([0.28 + 0.46 * share, way.x, way.y]);
+    [r, g, b, VECTOR_COLORS.color[3]]
+}
+
+/// What stands at a place of the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hit {
+    /// JSON pointer of it, relative as the path of a [`Mark`].
+    pub path: String,
+    /// How far away it is, in pixels of the picture; infinite if it is an area that holds the place, which anything that is
+    /// near precedes.
+    pub distance_px: f64,
+    /// What follows the path to the cell that the editor's cursor goes to.
+    pub cell: &'static str,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colors_tell_directions_and_lengths_apart() {
+        let ways = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.5, 0.0), (0.0, 0.0)];
+        let colors = ways.map(|way| vector_color(way.into(), 1.0));
+        for (i, color) in colors.iter().enumerate() {
+            assert!(colors[i + 1..].iter().all(|other| (0..3).any(|c| color[c].abs_diff(other[c]) > 30)), "{colors:?}");
+        }
+        assert_eq!(vector_color(Vec2::ZERO, 0.0), colors[5]);
+    }
+}

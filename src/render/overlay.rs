@@ -1,0 +1,137 @@
+//! What is drawn over a picture to explain it: the marks of all layers, in the order in which they lie over one another. A
+//! pure function from scene, synthesis and view to marks in pixels of the picture.
+
+use kurbo::Point;
+
+use super::Synth;
+use crate::layers::KINDS;
+use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
+use crate::scene::Scene;
+
+/// Every overlay of every technique; one that several share stands once.
+pub fn overlays() -> impl Iterator<Item = &'static Overlay> {
+    let all = || KINDS.iter().flat_map(|kind| kind.overlays);
+    all().enumerate().filter(move |(i, overlay)| all().take(*i).all(|other| other.name != overlay.name)).map(|(_, o)| o)
+}
+
+/// The marks of a scene, from those that lie below to those on top. What is made of the synthesis is left out without it.
+pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
+    let of_pixels = overlays().any(|overlay| overlay.when == When::Synthesis && view.shows(overlay.name));
+    let longest_px = synth.filter(|_| of_pixels).map_or(0.0, longest);
+    let view = View { longest_px, ..view.clone() };
+    let ready = synth.iter().flat_map(|synth| synth.layers.iter().enumerate());
+    let ready = ready.flat_map(|(i, layer)| layer.marks(&view).into_iter().map(move |mark| (i, mark)));
+    let layers = scene.layers.iter().enumerate();
+    let layers = layers.flat_map(|(i, layer)| layer.technique().marks(&view).into_iter().map(move |mark| (i, mark)));
+    let mut marks: Vec<Mark> = ready.chain(layers).map(|(i, mark)| collected(i, mark, &view)).collect();
+    marks.sort_by_key(|mark| mark.look.order);
+    marks
+}
+
+fn collected(layer: usize, mark: Mark, view: &View) -> Mark {
+    let path = format!("/layers/{layer}{}", mark.path);
+    let selected = view.selection.as_deref().is_some_and(|selection| is_selected(&path, selection));
+    Mark { path, selected, ..mark }
+}
+
+/// The longest vector of a pixel in the scene, in pixels.
+pub fn longest(synth: &Synth) -> f64 {
+    let fields = synth.layers.iter().flat_map(|layer| layer.fields());
+    fields.map(|field| field.longest()).fold(0.0, f64::max)
+}
+
+/// What is at a place, in pixels of the picture: the nearest thing not farther than `reach_px`, else the topmost area that
+/// holds it; its path is a pointer into the document.
+pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
+    let layers = scene.layers.iter().enumerate().rev();
+    let hits = layers.filter_map(|(i, layer)| {
+        let hit = layer.technique().pick(at, reach_px)?;
+        Some(Hit { path: format!("/layers/{i}{}", hit.path), ..hit })
+    });
+    hits.min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
+}
+
+/// A mark is selected if the selection lies in it, or if it lies in the selection and that is an item of the layer or
+/// something smaller.
+fn is_selected(mark: &str, selection: &str) -> bool {
+    let within =
+        |inner: &str, outer: &str| inner.strip_prefix(outer).is_some_and(|r| r.is_empty() || r.starts_with('/'));
+    // `/layers/0/zones/2` and what is deeper.
+    let is_item = selection.split('/').count() > 4;
+    within(selection, mark) || (is_item && within(mark, selection))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::parts::marks::Look;
+
+    #[test]
+    fn selection_reaches_up_to_the_zone_and_down() {
+        for (mark, selection, selected) in [
+            ("/layers/0/zones/2", "/layers/0/zones/2/interpolation/radius", true),
+            ("/layers/0/zones/2/motion/1", "/layers/0/zones/2", true),
+            ("/layers/0/zones/2/motion/1", "/layers/0/zones/2/motion/10", false),
+            ("/layers/0/zones/2", "/layers/0/zones", false),
+            ("/layers/0/zones/2", "/layers/0", false),
+            ("/layers/0/zones/2", "", false),
+        ] {
+            assert_eq!(is_selected(mark, selection), selected, "{mark} {selection}");
+        }
+    }
+
+    #[test]
+    fn looks_differ_in_more_than_color_and_in_their_order() {
+        for kind in KINDS {
+            for (i, look) in kind.looks.iter().enumerate() {
+                for other in &kind.looks[i + 1..] {
+                    let shape = |look: &Look| (look.width_px, look.dash_px, look.dot, look.dot_px);
+                    assert!(shape(look) != shape(other), "{} {}", look.name, other.name);
+                    assert!(look.order < other.order, "{} {}", look.name, other.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_two_overlays_share_a_key() {
+        let all: Vec<_> = overlays().collect();
+        for (i, overlay) in all.iter().enumerate() {
+            assert!(overlay.name.starts_with("view-"), "{overlay:?}");
+            let twice = all[i + 1..].iter().find(|other| other.key == overlay.key || other.name == overlay.name);
+            assert_eq!(twice, None, "{overlay:?}");
+        }
+    }
+
+    #[test]
+    fn the_nearest_anchor_else_the_topmost_zone_is_picked() {
+        let zone = |name: &str, x: u32| {
+            format!(
+                r#"{{ "name": "{name}", "outline": {{"kind": "rectangle", "x": {x}, "y": 0, "width": 40, "height": 20}},
+                    "motion": [{{"tool": "translate", "by": [1, 0]}}, {{"tool": "point", "at": [{}, 10]}}]}}"#,
+                x + 5
+            )
+        };
+        let scene: Scene = serde_json::from_str(&format!(
+            r#"{{ "plica": 1, "images": {{"a": {{"path": "a.png"}}}},
+              "layers": [{{ "kind": "picture", "name": "l", "image": "a", "zones": [{}, {}]}}]}}"#,
+            zone("below", 0),
+            zone("above", 30)
+        ))
+        .unwrap();
+        for ((x, y), expected) in [
+            ((5.0, 10.0), Some("/layers/0/zones/0/motion/1")),
+            ((8.0, 10.0), Some("/layers/0/zones/0/motion/1")),
+            ((37.0, 11.0), Some("/layers/0/zones/1/motion/1")),
+            ((12.0, 3.0), Some("/layers/0/zones/0")),
+            ((38.0, 3.0), Some("/layers/0/zones/1")),
+            ((60.0, 3.0), Some("/layers/0/zones/1")),
+            ((90.0, 3.0), None),
+            ((1.0, 25.0), None),
+        ] {
+            let hit = pick(&scene, Point::new(x, y), 4.0);
+            assert_eq!(hit.as_ref().map(|hit| hit.path.as_str()), expected, "{x} {y}");
+            assert!(hit.is_none_or(|hit| hit.cell.is_empty() != hit.path.contains("motion")), "{x} {y}");
+        }
+    }
+}
