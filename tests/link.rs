@@ -12,6 +12,7 @@ use std::time::Duration;
 use plica::base::error::Error;
 use plica::base::problem::Problem;
 use plica::files::Options;
+use plica::files::session::{Mode, Overwrite, Session};
 use plica::preview::Transport;
 use plica::preview::editor::script;
 use plica::preview::editor::{Event, Preview, Status};
@@ -387,6 +388,27 @@ fn without_an_editor_the_file_is_followed_and_the_last_good_scene_stays() {
     problem(&window, "");
     write(&text("back"));
     assert_eq!(next_title(&window).0, "back");
+}
+
+#[test]
+fn what_a_session_left_behind_is_told() {
+    let stage = stage();
+    let mut session = Session::open(&stage.scene, &Options::default(), Mode::Edit).unwrap();
+    let (_, edit) = titled(&stage.document, "unsaved");
+    session.apply(edit, false).unwrap();
+    drop(session);
+    let window = stage.window();
+    assert_eq!(next_title(&window).0, "0");
+    notice(&window, "following the file; 1 unsaved change was left behind");
+    // It is still offered, and once it is answered nothing is told any more.
+    let mut session = Session::open(&stage.scene, &Options::default(), Mode::Edit).unwrap();
+    session.recover();
+    session.save(Overwrite::No).unwrap();
+    drop(session);
+    assert_eq!(next_title(&window).0, "unsaved");
+    next(&window, |update| {
+        matches!(update, Update::Said(FromEditor::Notice(line)) if line == "following the file").then_some(())
+    });
 }
 
 #[test]

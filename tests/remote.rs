@@ -9,6 +9,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use plica::files::cache::Cache;
+use plica::files::session::{Mode, Session};
 use plica::files::{Options, materials};
 use plica::layers::parts::materials::Materials;
 use plica::preview::editor::{Event, Preview};
@@ -227,6 +228,32 @@ fn a_lost_link_keeps_the_last_state_and_comes_back() {
     // Until it shows what came it is sent no more.
     window.link.replies.send(ToEditor::Ack { revision: 1, synth_ms: 1.0 }).unwrap();
     window.shows("after");
+}
+
+#[test]
+fn who_does_not_want_to_wait_tries_now() {
+    let stage = stage();
+    let window = stage.window();
+    window.shows("0");
+    let away = stage.folder.path().join("away");
+    std::fs::rename(stage.folder.path().join("ssh"), &away).unwrap();
+    stage.script("ssh", "echo 'ssh: connect to host far port 22: No route to host' >&2; exit 255");
+    stage.cut();
+    window.notice("again in 5 s, T tries now");
+    std::fs::rename(&away, stage.folder.path().join("ssh")).unwrap();
+    let began = std::time::Instant::now();
+    window.link.replies.send(ToEditor::Command("try-now".into())).unwrap();
+    window.notice("far: connected again");
+    assert!(began.elapsed() < Duration::from_secs(4), "{:?}", began.elapsed());
+}
+
+#[test]
+fn a_recovery_that_is_offered_there_is_told_here() {
+    let stage = stage();
+    let mut session = Session::open(&stage.scene, &Options::default(), Mode::Edit).unwrap();
+    session.apply(titled(&stage.document, "unsaved").1, false).unwrap();
+    drop(session);
+    stage.window().notice("far: following the file; 1 unsaved change was left behind");
 }
 
 #[test]

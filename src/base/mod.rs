@@ -15,6 +15,7 @@ pub mod oklab;
 pub mod picture;
 pub mod pixels;
 pub mod problem;
+pub mod progress;
 pub mod quantise;
 pub mod reduce;
 pub mod system;

@@ -196,7 +196,7 @@ impl Sources<'_> {
         let allowed = Allowed { limits: &self.options.limits, budget: &budget, stop: stop.as_deref() };
         let pictures = self.load(&named_pictures(scene), allowed, decode_picture, &mut cache.pictures, &mut problems);
         let fields = self.load(&named_fields(scene), allowed, decode_field, &mut cache.fields, &mut problems);
-        let mut materials = Materials { pictures, fields, masks: BTreeMap::new(), stop, budget };
+        let mut materials = Materials { pictures, fields, stop, budget, ..Materials::default() };
         problems.extend(check::check_materials(scene, &materials));
         lay_masks(scene, &mut materials, &mut cache.masks, &mut problems);
         problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));

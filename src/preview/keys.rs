@@ -3,6 +3,7 @@
 
 use std::sync::LazyLock;
 
+use super::follow::talk::TRY_NOW;
 use crate::base::keys::KeyRow;
 use crate::render::overlay::overlays;
 
@@ -57,6 +58,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "F11", "view-full-screen", "The whole screen"),
     row(WINDOW, "Enter", "mark-point", "Marks the pointer's place, for the editor"),
     row(WINDOW, "Space", "select-point", "Selects what is under the pointer; so does a click"),
+    row(WINDOW, "T", TRY_NOW, "Tries at once to connect again"),
     row(WINDOW, "z", "view-menu", "The view menu"),
     row(WINDOW, "?", "help", "These keys"),
     row(WINDOW, "Esc", "close-panel", "Closes help and problems, leaves the full screen"),

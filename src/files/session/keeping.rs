@@ -8,7 +8,7 @@ use crate::files::journal::{self, Found, Header, Journal, Record, Unopened};
 use crate::files::now_ms;
 use crate::files::recovery::{self, Replayed};
 use crate::scene::history::{Applied, Way};
-use crate::scene::{Document, Edit, json, words};
+use crate::scene::{Document, Edit, History, json, words};
 
 /// How long after a failure to try a journal again.
 const TRY_AGAIN: Duration = Duration::from_secs(1);
@@ -127,8 +127,7 @@ impl Session {
             self.history = history;
             self.now_saved(file_changed);
         } else if unsaved > 0 && !history.is_saved() {
-            let words = words::describe(document.json(), &Edit::between(&document, history.document()));
-            let recovery = Recovery { changes: unsaved, words, time_ms, file_changed };
+            let recovery = offered(&history, &document, (unsaved, time_ms, file_changed));
             let base = base.and_then(|json| Document::from_json_under(json, self.options.rules()).ok());
             self.offer = Some(Offer { recovery, history, file, base });
         } else {
@@ -186,6 +185,21 @@ impl Session {
         let record = Record { revision: *revision, time: now_ms(), step: *step, kind, patch, inverse };
         journal.append(&record, self.history.document(), &self.file);
     }
+}
+
+/// The unsaved edits that a session of the scene at `path` left behind, if its file holds `document`. Nothing is locked, and
+/// nothing is taken: opening the scene still offers them.
+pub fn left_behind(path: &std::path::Path, document: &Document) -> Option<Recovery> {
+    let path = std::fs::canonicalize(path).ok()?;
+    let Replayed { history, unsaved, time_ms, .. } = recovery::replay(&journal::look(&path)?)?;
+    let left = unsaved > 0 && !history.is_saved() && history.document().to_text() != document.to_text();
+    left.then(|| offered(&history, document, (unsaved, time_ms, false)))
+}
+
+/// What is said of unsaved edits: how many, of when, and whether the file changed since.
+fn offered(history: &History, document: &Document, (changes, time_ms, file_changed): (usize, u64, bool)) -> Recovery {
+    let words = words::describe(document.json(), &Edit::between(document, history.document()));
+    Recovery { changes, words, time_ms, file_changed }
 }
 
 /// Tries again to find a journal; returns it, the document that it leads to, and by how many records. A new journal

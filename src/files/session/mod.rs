@@ -17,6 +17,7 @@ mod outside;
 mod tests;
 
 use keeping::Keeping;
+pub use keeping::left_behind;
 pub use outside::Taken;
 
 /// What a session may do.

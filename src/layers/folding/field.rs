@@ -134,6 +134,12 @@ impl Inputs {
     }
 }
 
+/// How many pixels the field of `zone` has.
+pub fn pixels(zone: &Zone, (width, height): (usize, usize)) -> u64 {
+    let held = pixel_box(zone.outline.polygon().bounds(), (0..width, 0..height));
+    held.map_or(0, |(_, _, width, height)| width as u64 * height as u64)
+}
+
 /// A zone made ready to be asked for any of its pixels.
 pub struct Prepared {
     outline: Polygon,
@@ -265,6 +271,7 @@ impl Prepared {
             let row = Row::of(&prepared.row(x0, y, width));
             // Rows and the whole of them stand beside one another for a moment.
             let share = take(2 * row.bytes())?;
+            materials.made(width as u64);
             Ok((row, share))
         };
         let rows = (y0..y0 + height).into_par_iter().map(row).collect::<Result<Vec<_>, _>>()?;

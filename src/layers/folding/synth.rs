@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
-use super::field::{Field, Inputs, Prepared};
+use super::field::{self, Field, Inputs, Prepared};
 use super::model::{PictureLayer, Zone};
 use super::outline::vector;
 use super::position::Clock;
@@ -72,13 +72,17 @@ pub fn synth(
 ) -> Result<Synth, Problem> {
     let picture = materials.picture(&layer.image, "/image")?;
     let size = (picture.width(), picture.height());
+    let known = |zone: &Zone, inputs: &Inputs| {
+        let mut before = previous.into_iter().flat_map(|p| &p.zones);
+        before.find(|known| known.inputs == *inputs && !reads_file(zone))
+    };
+    let inputs: Vec<Inputs> = layer.zones.iter().map(|zone| Inputs::new(zone, size, place)).collect();
+    let to_make = layer.zones.iter().zip(&inputs).filter(|(zone, inputs)| known(zone, inputs).is_none());
+    materials.expect(to_make.map(|(zone, _)| field::pixels(zone, size)).sum());
     let mut zones = Vec::with_capacity(layer.zones.len());
-    for (index, zone) in layer.zones.iter().enumerate() {
+    for (index, (zone, inputs)) in layer.zones.iter().zip(inputs).enumerate() {
         let source = source(layer, index, &picture, materials)?;
-        let inputs = Inputs::new(zone, size, place);
-        let known =
-            previous.into_iter().flat_map(|p| &p.zones).find(|known| known.inputs == inputs && !reads_file(zone));
-        let made = match known {
+        let made = match known(zone, &inputs) {
             Some(known) => Some((known.field.clone(), known.share.clone())),
             None => Field::new(zone, &inputs, materials)
                 .map_err(|problem| problem.under(&format!("/zones/{index}")))?

@@ -8,6 +8,7 @@ use super::model::PictureLayer;
 use super::{frame::Frame, probe, synth};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Grid, Rgba};
+use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::{CENTRE, Columns};
 use crate::layers::ready::Still;
@@ -162,4 +163,21 @@ fn a_frame_may_be_smaller_or_larger_than_the_picture() {
     assert_eq!(row(10, Columns::All, 44), [&whole[..], &[[0.0; 4]; 4]].concat());
     assert_eq!(row(10, Columns::Some(&[2, 7, 39, 41]), 4), [whole[2], whole[7], whole[39], [0.0; 4]]);
     assert_eq!(row(30, Columns::All, 40), [[0.0; 4]; 40]);
+}
+
+#[test]
+fn a_synthesis_counts_the_pixels_that_are_not_taken_over() {
+    let told = Arc::new(std::sync::Mutex::new(Vec::new()));
+    let progress = |told: &Arc<std::sync::Mutex<Vec<u8>>>| {
+        let heard = told.clone();
+        Some(Arc::new(Progress::new(move |percent| heard.lock().unwrap().push(percent))))
+    };
+    let layer = layer(&zone("[4, 0]", ""));
+    let counting = Materials { progress: progress(&told), ..materials() };
+    let first = synth::synth(&layer, Wrap::Once, &counting, CENTRE, None).unwrap();
+    assert_eq!(told.lock().unwrap().last(), Some(&100));
+    told.lock().unwrap().clear();
+    let again = Materials { progress: progress(&told), ..counting };
+    synth::synth(&layer, Wrap::Once, &again, CENTRE, Some(&first)).unwrap();
+    assert!(told.lock().unwrap().is_empty(), "nothing was left to do");
 }

@@ -8,6 +8,7 @@ use crate::base::budget::Budget;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
 use crate::base::problem::Problem;
+use crate::base::progress::Progress;
 
 /// Something that a layer names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,6 +55,8 @@ pub struct Materials {
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
     /// Cancellation flag: once set, a synthesis under way ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
+    /// Where a synthesis counts how far it is, in pixels.
+    pub progress: Option<Arc<Progress>>,
     /// The memory that is left for what is made of them.
     pub budget: Budget,
 }
@@ -62,6 +65,16 @@ impl Materials {
     /// Whether the synthesis has been cancelled.
     pub fn stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
+    /// So many pixels are still to be made.
+    pub fn expect(&self, pixels: u64) {
+        self.progress.iter().for_each(|progress| progress.expect(pixels));
+    }
+
+    /// So many pixels are made.
+    pub fn made(&self, pixels: u64) {
+        self.progress.iter().for_each(|progress| progress.done(pixels));
     }
 
     /// What samplers read through the mask `name` of the picture `own`.

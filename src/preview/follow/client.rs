@@ -69,6 +69,8 @@ impl Client {
                 Ok(Heard::Lost(session, error)) if self.talk.is_present(session) => self.lost(error)?,
                 Ok(Heard::Said(..) | Heard::Lost(..) | Heard::Connected(_)) => {}
                 Ok(Heard::Changed(files)) => self.changed(&files)?,
+                Ok(Heard::TryNow) if !self.talk.is_joined() => drop(self.join()?),
+                Ok(Heard::TryNow) => {}
                 Err(RecvTimeoutError::Timeout) if !self.talk.is_joined() => drop(self.join()?),
                 Err(RecvTimeoutError::Timeout) => {}
                 Ok(Heard::Gone) | Err(RecvTimeoutError::Disconnected) => return Err(WindowGone),
@@ -139,11 +141,14 @@ impl Client {
     fn load(&mut self) -> Outcome {
         match files::scene::open(&self.scene, &self.talk.options) {
             Ok(document) => {
+                let left = files::session::left_behind(&self.scene, &document);
                 let count = self.talk.shown.as_ref().map_or(0, |(_, count)| count + 1);
                 self.talk.shown = Some((document, count));
                 self.talk.problems(Vec::new())?;
                 self.show()?;
-                self.talk.notice("following the file")
+                self.talk.notice(left.map_or("following the file".to_owned(), |recovery| {
+                    format!("following the file; {} left behind, plica edit offers to keep them", recovery.in_words())
+                }))
             }
             Err(error) => self.talk.failed(error),
         }

@@ -16,6 +16,9 @@ use crate::preview::wire::message::{FromEditor, ToEditor};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
+/// The command of a window that is not the editor's: connect now, without waiting any longer.
+pub const TRY_NOW: &str = "try-now";
+
 /// What the thread of a talk hears.
 pub(in crate::preview) enum Heard {
     /// Whoever serves this session says something.
@@ -26,6 +29,8 @@ pub(in crate::preview) enum Heard {
     Changed(Vec<PathBuf>),
     /// An attempt to connect again ended.
     Connected(Result<(FromEditor, Wire)>),
+    /// The person does not want to wait for the next attempt to connect.
+    TryNow,
     /// The window is gone.
     Gone,
 }
@@ -240,8 +245,13 @@ impl Outlet {
     }
 
     fn pass_on(&self, replies: &Receiver<ToEditor>, heard: &Sender<Heard>) {
-        replies.iter().filter(ToEditor::is_finite).for_each(|message| self.send(&message));
-        // The talk may have ended first.
+        for message in replies.iter().filter(ToEditor::is_finite) {
+            match message {
+                // The talk may have ended first, here and below.
+                ToEditor::Command(name) if name == TRY_NOW => drop(heard.send(Heard::TryNow)),
+                message => self.send(&message),
+            }
+        }
         drop(heard.send(Heard::Gone));
     }
 }

@@ -90,7 +90,8 @@ impl Far {
                 Ok(Heard::Lost(session, error)) if self.talk.is_present(session) => self.lost(error)?,
                 Ok(Heard::Connected(Ok((hello, wire)))) => self.connected(hello, wire)?,
                 Ok(Heard::Connected(Err(error))) => self.wait(error.to_string())?,
-                Ok(Heard::Said(..) | Heard::Lost(..) | Heard::Changed(_)) => {}
+                Ok(Heard::TryNow) if self.next.is_some() => self.go(),
+                Ok(Heard::Said(..) | Heard::Lost(..) | Heard::Changed(_) | Heard::TryNow) => {}
                 Err(RecvTimeoutError::Timeout) if self.next.is_some() => self.go(),
                 Err(RecvTimeoutError::Timeout) => {
                     self.talk.say(&ToEditor::Alive);
@@ -172,7 +173,7 @@ impl Far {
         self.tries += 1;
         self.next = Some(Instant::now() + wait);
         self.talk.progress(None)?;
-        self.talk.warn(format!("reconnecting: {why}"))
+        self.talk.warn(format!("reconnecting: {why}; again in {} s, T tries now", wait.as_secs()))
     }
 
     /// Goes there again, beside this thread: ssh may have something to ask.

@@ -16,7 +16,7 @@ use super::run::Outcome;
 use super::show::{Cached, Show};
 use super::state::State;
 use super::text::Letters;
-use super::worker::Event;
+use super::worker::{Event, Ready};
 use crate::base::error::{Error, Result};
 use crate::preview::Transport as Leading;
 use crate::preview::wire::message::ToEditor;
@@ -39,6 +39,9 @@ pub struct App {
     pub(super) clock: Clock,
     /// What the window is to grow to once its first picture is drawn.
     pub(super) grows_to: Option<PhysicalSize<u32>>,
+    /// A scene is on its way to the GPU; the next one waits.
+    pub(super) sending: bool,
+    pub(super) waiting: Option<Ready>,
     /// What is to be answered once it is on the screen.
     pub(super) owed: Option<ToEditor>,
     /// What was said last about how the window is doing: frames a second and what is wrong.
@@ -70,6 +73,8 @@ impl App {
             held: ModifiersState::empty(),
             grows_to: None,
             clock: Clock::default(),
+            sending: false,
+            waiting: None,
             owed: None,
             reported: None,
             open_by: None,

@@ -81,7 +81,9 @@ fn first_that_fits(texts: Vec<String>, room: f64, width: impl Fn(&str) -> f64) -
 fn said(state: &State) -> (String, Color) {
     let words = &state.words;
     let explained = if !state.has_picture() {
-        words.progress.clone().or_else(|| state.waits_for().map(str::to_owned))
+        Some(words.progress.clone().unwrap_or_else(|| state.waits_for()))
+    } else if let Some(work) = state.work.filter(|work| work.percent.is_some()) {
+        Some(work.to_string())
     } else if state.shows("view-seam") {
         let last = state.timeline.frames() - 1;
         Some(format!("seam: frame {last} against 0, differences x 8"))
@@ -154,6 +156,7 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::worker::Work;
     use super::*;
     use crate::base::problem::Problem;
     use crate::layers::timeline::Timeline;
@@ -221,8 +224,11 @@ mod tests {
     fn before_the_first_picture_the_bar_says_what_is_waited_for() {
         let mut state = State::default();
         assert_eq!(said(&state).0, "opening");
-        state.work = Some("synthesising");
+        state.work = Some(Work { what: "synthesising", percent: None });
         assert_eq!(said(&state).0, "synthesising");
+        state.work = Some(Work { what: "synthesising", percent: Some(34) });
+        assert_eq!(said(&state).0, "synthesising: 34 %");
+        assert_eq!(said(&State { work: state.work, ..State::for_tests() }).0, "synthesising: 34 %", "later ones too");
         state.words.progress = Some("fetching sea.jpg: 34 %".into());
         assert_eq!(said(&state).0, "fetching sea.jpg: 34 %");
         state.words.progress = None;

@@ -65,6 +65,7 @@ impl App {
     fn reopen(&mut self) -> Result<()> {
         if let Some(opened) = self.opened.take() {
             self.opened = Some(opened.anew()?);
+            self.send_next();
             self.redraw();
         }
         Ok(())

@@ -17,6 +17,7 @@ use super::mouse::{Asked, Button};
 use super::opened::Opened;
 use super::worker::Event;
 use crate::base::error::{Error, Result};
+use crate::preview::follow::talk::TRY_NOW;
 use crate::preview::views;
 use crate::preview::wire::message::ToEditor;
 
@@ -40,6 +41,7 @@ impl App {
         match command {
             "mark-point" => self.tell(command, self.state.marked),
             "select-point" => self.tell(command, self.state.pointed()),
+            TRY_NOW => self.reply(ToEditor::Command(command.to_owned())),
             switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
                 self.reply(ToEditor::Command(setting));
             }),
@@ -123,6 +125,7 @@ impl ApplicationHandler<Event> for App {
                 app.redraw();
                 Ok(())
             }
+            Event::Sent(sent) => app.sent(event_loop, *sent),
             Event::Fonts(fonts) => {
                 app.letters.take_fonts(*fonts);
                 app.redraw();

@@ -10,7 +10,7 @@ use super::app::App;
 use super::show::{Show, name};
 use super::state::State;
 use super::words::Words;
-use super::worker::Ready;
+use super::worker::{Ready, Sent, send_to_gpu};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::preview::Transport as Leading;
@@ -25,16 +25,61 @@ const APART: f64 = 0.05;
 const LOSE_DEVICE: &str = "lose-device";
 
 impl App {
-    /// Takes a scene that is ready.
+    /// Takes a scene that is ready. Until its pictures are on the GPU the window shows what it showed.
     pub(super) fn take(&mut self, event_loop: &ActiveEventLoop, ready: Ready) -> Result<()> {
+        if self.opened.is_none() {
+            self.load(&ready);
+            self.open(event_loop)?;
+        }
+        self.waiting = Some(ready);
+        self.send_next();
+        Ok(())
+    }
+
+    /// Sends the latest scene to the GPU, one at a time.
+    pub(super) fn send_next(&mut self) {
+        let Some(opened) = self.opened.as_mut().filter(|_| !self.sending) else { return };
+        let Some(ready) = self.waiting.take() else { return };
+        self.sending = true;
+        let most = opened.gpu.device().max_side().min(self.manner.most);
+        let proxy = self.proxy.clone();
+        send_to_gpu(opened.gpu.uploader(), ready, most, move |event| proxy.send_event(event).is_ok());
+    }
+
+    /// Takes a scene whose pictures are on the GPU.
+    pub(super) fn sent(&mut self, event_loop: &ActiveEventLoop, Sent { ready, made, lost }: Sent) -> Result<()> {
+        self.sending = false;
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        match made {
+            Ok((show, reduced, uploaded)) => {
+                opened.gpu.take(uploaded);
+                self.show(event_loop, ready, show, reduced);
+            }
+            // It is sent again to the device that takes its place: at once, or by the drawing that opens it.
+            Err(_) if lost => {
+                let still = opened.gpu.device().is_lost();
+                self.waiting.get_or_insert(ready);
+                self.redraw();
+                if still {
+                    return Ok(());
+                }
+            }
+            Err(error) => return Err(error),
+        }
+        self.send_next();
+        Ok(())
+    }
+
+    fn load(&mut self, ready: &Ready) {
         let (width, height) = ready.synth.size;
         self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
-        self.open(event_loop)?;
-        let Some(opened) = &self.opened else { return Ok(()) };
-        // Sending a large picture to the GPU takes a while: the window stays whole until then.
+    }
+
+    fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, show: Show, reduced: Option<String>) {
+        self.state.work = None;
+        self.load(&ready);
+        // A window that opened without a picture stays as it is until there is one.
         self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
-        let most = opened.gpu.device().max_side().min(self.manner.most);
-        let (show, reduced) = Show::new(ready.scene, ready.synth, most);
         self.shown = Some(show);
         self.state.words.reduced = reduced;
         self.state.words.follow_scene(ready.problems);
@@ -42,7 +87,6 @@ impl App {
         self.owed = Some(ToEditor::Ack { revision: ready.revision, synth_ms: ready.synth_ms });
         self.select(self.state.selection.clone());
         self.report();
-        Ok(())
     }
 
     /// Takes what comes from the editor.
@@ -115,6 +159,7 @@ impl App {
     /// Takes what is wrong with a scene.
     pub(super) fn warn(&mut self, event_loop: &ActiveEventLoop, problems: Vec<Problem>) -> Result<()> {
         self.complain(&problems);
+        self.state.work = None;
         self.state.words.follow_scene(problems);
         self.open(event_loop)?;
         self.report();

@@ -4,6 +4,7 @@ use kurbo::Vec2;
 
 use super::camera::Fit;
 use super::state::{Panel, State};
+use crate::preview::follow::talk::TRY_NOW;
 use crate::preview::views::{self, FIELD};
 
 /// A key moves the border between still and moving by this share of the picture.
@@ -66,7 +67,8 @@ impl State {
             "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
             "close-panel" => return self.close(),
             "view-full-screen" => return Outcome::FullScreen,
-            "select-point" => {} // the editor's answer is a selection
+            // Answered by others: the editor with a selection, whoever follows the scene with a connection.
+            "select-point" | TRY_NOW => {}
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }

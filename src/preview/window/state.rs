@@ -5,6 +5,7 @@ use kurbo::{Point, Size, Vec2};
 use super::camera::{Camera, Fit};
 use super::transport::Transport;
 use super::words::Words;
+use super::worker::Work;
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
 
@@ -35,7 +36,7 @@ pub struct State {
     /// What is to be said.
     pub words: Words,
     /// What is being done to the scene beside the window, before it can be shown.
-    pub work: Option<&'static str>,
+    pub work: Option<Work>,
     /// What lies over the picture.
     pub panel: Panel,
     /// How often the spacing of the field is doubled.
@@ -129,11 +130,11 @@ impl State {
         self.transport.follow(timeline);
     }
 
-    /// What the first picture waits for; nothing where it would wait in vain.
-    pub fn waits_for(&self) -> Option<&'static str> {
+    /// What the first picture waits for.
+    pub fn waits_for(&self) -> String {
         match self.words.problems().next() {
-            Some(_) => Some("nothing to show yet"),
-            None => self.work.or(Some("opening")),
+            Some(_) => "nothing to show yet".to_owned(),
+            None => self.work.map_or("opening".to_owned(), |work| work.to_string()),
         }
     }
 

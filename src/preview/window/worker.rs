@@ -1,19 +1,27 @@
 //! Synthesis beside the event loop. One thread listens to the outside, one synthesises; the latest scene wins, and what
 //! an edit left as it was is taken over from the synthesis before.
 
-use std::sync::Arc;
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use super::show::Show;
 use super::text::Fonts;
+use crate::base::error::Error;
 use crate::base::fault;
 use crate::base::problem::Problem;
+use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
 use crate::preview::follow::Update;
+use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::{self, Synth};
 use crate::scene::Scene;
 
+/// How long after its beginning, and how often from then on, progress is told.
+const BETWEEN: Duration = Duration::from_millis(200);
+const SYNTHESISING: &str = "synthesising";
 /// How often a signal is looked for.
 const LOOK: Duration = Duration::from_millis(250);
 
@@ -28,9 +36,11 @@ pub enum Event {
     /// A scene is ready to be shown.
     Ready(Ready),
     /// What is being done to a scene.
-    Work(&'static str),
+    Work(Work),
     /// A scene cannot be shown: all that is wrong with it.
     Problems(Vec<Problem>),
+    /// What a scene needs is on the GPU: it can be shown.
+    Sent(Box<Sent>),
     /// The fonts of the system.
     Fonts(Box<Fonts>),
     /// A signal asks for the end.
@@ -52,8 +62,75 @@ pub struct Ready {
     pub problems: Vec<Problem>,
 }
 
+/// A scene whose textures are on the GPU.
+pub struct Sent {
+    /// The scene as it was ready.
+    pub ready: Ready,
+    /// The same, reduced to what the GPU can hold, and what is to be said about that; or why that failed.
+    pub made: Result<(Show, Option<String>, Uploaded), Error>,
+    /// Whether the GPU's device was lost meanwhile.
+    pub lost: bool,
+}
+
+impl fmt::Debug for Sent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Sent({})", self.ready.revision)
+    }
+}
+
+/// Sends a scene to the GPU beside the event loop, which goes on drawing the one before. `most`: see [`Show::new`].
+pub fn send_to_gpu(
+    uploader: Uploader,
+    ready: Ready,
+    most: usize,
+    send: impl Fn(Event) -> bool + Clone + Send + 'static,
+) {
+    std::thread::spawn(move || {
+        let sent = progress("sending the picture to the GPU", send.clone());
+        let make = || {
+            let (show, reduced) = Show::new(ready.scene.clone(), ready.synth.clone(), most);
+            let uploaded = uploader.upload(&[&show.frames, &show.still], &sent)?;
+            Ok((show, reduced, uploaded))
+        };
+        let made = fault::caught(make).unwrap_or_else(|fault| Err(Error::at("window", fault)));
+        let lost = uploader.is_lost();
+        send(Event::Sent(Box::new(Sent { ready, made, lost })));
+    });
+}
+
+/// Something that takes long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    /// What is being done.
+    pub what: &'static str,
+    /// How far it is, once it has taken a while.
+    pub percent: Option<u8>,
+}
+
+impl fmt::Display for Work {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.percent {
+            Some(percent) => write!(f, "{}: {percent} %", self.what),
+            None => write!(f, "{}", self.what),
+        }
+    }
+}
+
 /// The event loop is gone.
 struct Gone;
+
+/// How far something is, told to the event loop now and then, and not at all if it is done soon.
+pub fn progress(what: &'static str, send: impl Fn(Event) -> bool + Send + 'static) -> Progress {
+    let state = Mutex::new((Instant::now(), send));
+    Progress::new(move |percent| {
+        // Whoever holds it tells at this moment.
+        let Ok(mut state) = state.try_lock() else { return };
+        if state.0.elapsed() >= BETWEEN {
+            (state.1)(Event::Work(Work { what, percent: Some(percent) }));
+            state.0 = Instant::now();
+        }
+    })
+}
 
 /// Starts both threads. `send` gives an event to the event loop and tells whether that is still there.
 pub fn start(
@@ -89,16 +166,21 @@ fn listen(
     }
 }
 
-fn synthesise(work: &Receiver<(Arc<Scene>, u64)>, mut load: Load, send: &impl Fn(Event) -> bool) -> Result<(), Gone> {
-    let send = |event| if send(event) { Ok(()) } else { Err(Gone) };
+fn synthesise(
+    work: &Receiver<(Arc<Scene>, u64)>,
+    mut load: Load,
+    tell: &(impl Fn(Event) -> bool + Clone + Send + 'static),
+) -> Result<(), Gone> {
+    let send = |event| if tell(event) { Ok(()) } else { Err(Gone) };
     let mut previous: Option<Synth> = None;
     while let Ok(first) = work.recv() {
         let (scene, revision) = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
-        send(Event::Work("reading the pictures"))?;
+        send(Event::Work(Work { what: "reading the pictures", percent: None }))?;
         let made = fault::caught(|| {
-            let (materials, problems) = load(&scene);
-            send(Event::Work("synthesising"))?;
+            let (mut materials, problems) = load(&scene);
+            send(Event::Work(Work { what: SYNTHESISING, percent: None }))?;
+            materials.progress = Some(Arc::new(progress(SYNTHESISING, tell.clone())));
             Ok((render::synth(&scene, &materials, previous.as_ref()), problems))
         });
         let (synth, problems) = match made {
@@ -153,5 +235,19 @@ mod tests {
         let last = all.iter().rfind(|e| !matches!(e, Event::Update(_)));
         let Some(Event::Problems(problems)) = last else { panic!("{all:?}") };
         assert!(problems[0].to_string().contains("/layers/0/image"), "{all:?}");
+    }
+
+    #[test]
+    fn progress_is_told_once_it_takes_a_while() {
+        let (sender, told) = mpsc::channel();
+        let progress = progress("working", move |event| sender.send(event).is_ok());
+        progress.expect(100);
+        progress.done(50);
+        std::thread::sleep(BETWEEN);
+        progress.done(10);
+        progress.done(10);
+        drop(progress);
+        let told: Vec<Event> = told.iter().collect();
+        assert!(matches!(told[..], [Event::Work(Work { what: "working", percent: Some(60) })]), "{told:?}");
     }
 }

@@ -10,7 +10,8 @@ use crate::base::error::{Error, Result};
 const PLACE: &str = "GPU";
 const CURE: &str = "frames can be rendered without a GPU: leave out --gpu";
 
-/// A device and its queue.
+/// A device and its queue; a clone is the same device.
+#[derive(Clone)]
 pub struct Device {
     /// The device.
     pub raw: wgpu::Device,

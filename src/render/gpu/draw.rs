@@ -2,7 +2,7 @@
 //! is encoded.
 
 use super::device::Device;
-use super::kept::{check_size, texture};
+use super::kept::{Kept, check_size, texture};
 use super::run::Runner;
 use crate::base::error::Result;
 use crate::layers::parts::passes::{Blend, COMMON, Program};
@@ -50,6 +50,11 @@ impl Painter {
         }
         device.checked(|| device.queue.submit([encoder.finish()]))?;
         Ok(frame)
+    }
+
+    /// What is kept on the device.
+    pub fn kept(&mut self) -> &mut Kept {
+        self.runner.kept()
     }
 
     /// Lets go what was not drawn since the last call.

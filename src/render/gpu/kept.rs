@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use super::device::{Device, failed};
 use crate::base::error::Result;
+use crate::base::progress::Progress;
 use crate::layers::parts::passes::{Format, Packed, Upload};
 
 /// At most so many bytes are handed over at a time.
 const BAND_BYTES: usize = 32 << 20;
+/// In so many pieces is counted how far one thing is.
+const PIECES: u64 = 1000;
 
 /// A texture on the device.
 #[derive(Clone)]
@@ -17,6 +20,45 @@ pub struct Texture {
     pub view: wgpu::TextureView,
     /// What a texel is.
     pub format: Format,
+}
+
+/// Textures that were made beside whoever draws, on any thread, to be taken over.
+pub struct Uploaded {
+    device: wgpu::Device,
+    rows: Vec<Row>,
+}
+
+impl Uploaded {
+    /// How many things were uploaded.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+}
+
+/// Packs and uploads what of `wanted` is not `known`, one after the other; `sent` counts how far that is.
+pub fn upload_all(
+    device: &Device,
+    wanted: impl Iterator<Item = Arc<dyn Upload>>,
+    known: &[Arc<dyn Upload>],
+    sent: &Progress,
+) -> Result<Uploaded> {
+    let mut new: Vec<Arc<dyn Upload>> = Vec::new();
+    for of in wanted {
+        if !known.iter().chain(&new).any(|known| same(known, &of)) {
+            new.push(of);
+        }
+    }
+    // Packing takes the most of it: how many rows there are in all is not known before.
+    sent.expect(new.len() as u64 * PIECES);
+    let one = |of: Arc<dyn Upload>| {
+        let packed = of.pack();
+        let count = packed.len().max(1) as u64;
+        let done = |share: f64| sent.done((PIECES as f64 * share) as u64 / count);
+        let textures = packed.iter().map(|packed| upload(device, packed, &done)).collect::<Result<_>>()?;
+        drop(packed);
+        Ok(Row { of, textures, used: true })
+    };
+    Ok(Uploaded { device: device.raw.clone(), rows: new.into_iter().map(one).collect::<Result<_>>()? })
 }
 
 /// Textures by what they were packed from.
@@ -34,7 +76,7 @@ struct Row {
 impl Kept {
     /// One of the textures that something is packed into, uploaded if it is new.
     pub fn get(&mut self, device: &Device, of: &Arc<dyn Upload>, part: usize) -> Result<Texture> {
-        let textures = self.all(of, |of| of.pack().iter().map(|packed| upload(device, packed)).collect())?;
+        let textures = self.all(of, |of| of.pack().iter().map(|packed| upload(device, packed, &|_| {})).collect())?;
         textures.get(part).cloned().ok_or_else(|| failed(format!("a plan wants texture {part} of {}", textures.len())))
     }
 
@@ -43,9 +85,7 @@ impl Kept {
         of: &Arc<dyn Upload>,
         make: impl FnOnce(&dyn Upload) -> Result<Vec<Texture>>,
     ) -> Result<&[Texture]> {
-        // Addresses alone: the same thing may be known by several tables of functions.
-        let address = |of: &Arc<dyn Upload>| Arc::as_ptr(of).cast::<()>();
-        let known = self.rows.iter().position(|row| address(&row.of) == address(of));
+        let known = self.rows.iter().position(|row| same(&row.of, of));
         let i = match known {
             Some(i) => i,
             None => {
@@ -58,11 +98,28 @@ impl Kept {
         Ok(&row.textures)
     }
 
+    /// What is here.
+    pub fn known(&self) -> Vec<Arc<dyn Upload>> {
+        self.rows.iter().map(|row| row.of.clone()).collect()
+    }
+
+    /// Takes over what was uploaded; nothing if that was on another device.
+    pub fn take(&mut self, device: &Device, uploaded: Uploaded) {
+        if uploaded.device == device.raw {
+            self.rows.extend(uploaded.rows);
+        }
+    }
+
     /// Lets go what was not asked for since the last call.
     pub fn end_frame(&mut self) {
         self.rows.retain(|row| row.used);
         self.rows.iter_mut().for_each(|row| row.used = false);
     }
+}
+
+/// By their addresses alone: the same thing may be known by several tables of functions.
+fn same(a: &Arc<dyn Upload>, b: &Arc<dyn Upload>) -> bool {
+    Arc::as_ptr(a).cast::<()>() == Arc::as_ptr(b).cast::<()>()
 }
 
 /// The device's name of a format, and bytes a texel.
@@ -74,8 +131,8 @@ pub fn format(format: Format) -> (wgpu::TextureFormat, usize) {
     }
 }
 
-/// Makes a texture, band by band of its rows.
-fn upload(device: &Device, packed: &Packed<'_>) -> Result<Texture> {
+/// Makes a texture, band by band of its rows; `done` hears what share of them was sent.
+fn upload(device: &Device, packed: &Packed<'_>, done: &dyn Fn(f64)) -> Result<Texture> {
     let (width, height) = packed.size;
     check_size(device, width, height)?;
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -98,6 +155,7 @@ fn upload(device: &Device, packed: &Packed<'_>) -> Result<Texture> {
             device.queue.submit([]);
         };
         device.checked(|| (packed.rows)(y..y + rows, &mut send))?;
+        done(rows as f64 / height as f64);
     }
     Ok(Texture { view: texture.create_view(&Default::default()), format: packed.format })
 }

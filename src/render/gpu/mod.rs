@@ -1,10 +1,12 @@
 //! Frames drawn by the GPU: the same pictures as `render::cpu`, at display rate. The only module besides the window that
 //! names wgpu; it owns the device and makes a new one where the old is lost.
 
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 
 use crate::base::error::Result;
 use crate::base::pixels::{Frame, Grid};
+use crate::base::progress::Progress;
+use crate::layers::parts::passes::{Bind, Upload};
 use crate::render::Synth;
 
 pub mod device;
@@ -14,11 +16,39 @@ mod run;
 
 use device::{Device, failed};
 pub use draw::{FRAME, PROGRAMS};
+pub use kept::Uploaded;
 
 /// A GPU that draws frames.
 pub struct Gpu {
     instance: wgpu::Instance,
     parts: Parts,
+}
+
+/// Uploads textures on the device of a [`Gpu`]; see [`Gpu::uploader`].
+pub struct Uploader {
+    device: Device,
+    known: Vec<Arc<dyn Upload>>,
+}
+
+impl Uploader {
+    /// Uploads what the frames of scenes need and is not on the device yet. `sent` counts how far that is.
+    ///
+    /// # Errors
+    /// The device is lost, or has not enough memory.
+    pub fn upload(&self, scenes: &[&Synth], sent: &Progress) -> Result<Uploaded> {
+        let layers = scenes.iter().flat_map(|synth| synth.layers.iter().map(|layer| layer.plan(&synth.moment(0.0))));
+        let binds = layers.flat_map(|plan| plan.draws).flat_map(|draw| draw.binds);
+        let wanted = binds.filter_map(|bind| match bind {
+            Bind::Upload(of, _) => Some(of),
+            Bind::Bytes(_) => None,
+        });
+        kept::upload_all(&self.device, wanted, &self.known, sent)
+    }
+
+    /// Whether its device is gone.
+    pub fn is_lost(&self) -> bool {
+        self.device.is_lost()
+    }
 }
 
 /// What is lost with a device.
@@ -53,6 +83,17 @@ impl Gpu {
     /// The device.
     pub fn device(&self) -> &Device {
         &self.parts.device
+    }
+
+    /// What can upload the textures of scenes on another thread, so that drawing them later does not wait for that.
+    pub fn uploader(&mut self) -> Uploader {
+        Uploader { device: self.parts.device.clone(), known: self.parts.painter.kept().known() }
+    }
+
+    /// Takes over what an [`Uploader`] has uploaded; it stays if the next frame needs it.
+    pub fn take(&mut self, uploaded: Uploaded) {
+        let Parts { device, painter } = &mut self.parts;
+        painter.kept().take(device, uploaded);
     }
 
     /// Draws the frame at `scene_time` in [0, 1] into a texture: linear, premultiplied, [`FRAME`].

@@ -90,6 +90,11 @@ impl Runner {
         Ok(())
     }
 
+    /// What is kept on the device.
+    pub fn kept(&mut self) -> &mut Kept {
+        &mut self.kept
+    }
+
     /// Lets go what no plan has asked for since the last call.
     pub fn end_frame(&mut self) {
         self.kept.end_frame();
