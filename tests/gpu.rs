@@ -10,10 +10,12 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 use plica::base::maths;
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Grid, decode, encode};
+use plica::base::progress::Progress;
 use plica::files;
 use plica::layers::KINDS;
 use plica::layers::parts::materials::{Materials, Of, Use, What};
@@ -231,6 +233,30 @@ fn the_gpu_shows_the_demo_scenes_as_the_cpu_does() {
         checked += 1;
     }
     assert!(checked > 0);
+}
+
+#[test]
+fn what_another_thread_uploads_is_drawn_without_being_uploaded_again() {
+    let Some(mut gpu) = gpu() else { return };
+    let (name, synth) = &scenes()[4];
+    let (told, go_on) = (Arc::new(AtomicU8::new(0)), AtomicBool::new(false));
+    let heard = told.clone();
+    let sent = Progress::new(move |percent| heard.store(percent, Ordering::Relaxed));
+    let uploader = gpu.uploader();
+    let uploaded = std::thread::scope(|scope| scope.spawn(|| uploader.upload(&[synth], &sent, &go_on)).join());
+    let uploaded = uploaded.unwrap().unwrap();
+    assert!(uploaded.count() > 1 && told.load(Ordering::Relaxed) >= 99, "{} of {}", told.load(Ordering::Relaxed), name);
+    assert!(uploader.upload(&[synth], &Progress::new(|_| {}), &AtomicBool::new(true)).is_err(), "stopped");
+    gpu.take(uploaded);
+    let again = gpu.uploader().upload(&[synth], &Progress::new(|_| {}), &go_on).unwrap();
+    assert_eq!(again.count(), 0, "all of it is there");
+    check(&mut gpu, name, synth, 0.25);
+    // What another device was given is of no use after a loss.
+    let late = uploader.upload(&[synth], &Progress::new(|_| {}), &go_on);
+    gpu.device().raw.destroy();
+    drop(gpu.frame(synth, 0.0).unwrap());
+    late.into_iter().for_each(|late| gpu.take(late));
+    check(&mut gpu, name, synth, 0.25);
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! The keys of the window, which are also those of the editor's `z` menu and of playing. In the window `z` may be
-//! pressed before a letter of the menu, and then shows it, or left out.
+//! pressed before a letter of the menu, which it then shows, or left out.
 
 use std::sync::LazyLock;
 
-use super::follow::talk::TRY_NOW;
 use crate::base::keys::KeyRow;
 use crate::render::overlay::overlays;
 
@@ -11,6 +10,8 @@ use crate::render::overlay::overlays;
 pub const PLAY: &str = "play";
 /// The view menu: behind `z` in the editor, direct in the window.
 pub const VIEW: &str = "view";
+/// The command of a window that connects again at once: answered by whatever follows the scene, not by an editor.
+pub const TRY_NOW: &str = "try-now";
 /// The window alone.
 pub const WINDOW: &str = "window";
 
@@ -65,7 +66,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "q", "quit", "Closes the window"),
 ];
 
-/// Whether a command goes on while its key is held: what steps and moves does, a switch would flicker.
+/// Whether a command repeats while its key is held: steps and moves do, a switch would flicker.
 pub fn repeats(command: &str) -> bool {
     let steps = ["frame-", "zoom-in", "zoom-out", "pan-", "wipe-", "field-"];
     steps.iter().any(|step| command.starts_with(step))

@@ -9,8 +9,7 @@ use super::outline::Outline;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Fold {
-    /// An eyelid over an eyeball: inside a region a sampler waits at the edge where it entered; one that never left
-    /// keeps still.
+    /// An eyelid over an eyeball: inside a region a sampler waits at the edge where it entered; one that never left keeps still.
     #[schemars(extend("formula" = "outside e(s) = s; inside e(s) = the crossing nearest to s where it came in; still if it never was outside"))]
     Cover {
         /// The regions, which count as their union.

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::base::system;
 use crate::preview::remote::address;
 
-/// Whether the editor should open a window unasked: there is a display, and it is not somebody else's across SSH.
+/// Whether the editor should open a window unasked: if there is a display, and not one that is reached through ssh.
 pub fn opens_by_itself() -> bool {
     has_display() && !system::over_ssh()
 }
@@ -28,7 +28,7 @@ pub(super) fn no_window(scene: &Path) -> Option<String> {
     (!has_display()).then(|| format!("no display here; {}", home()))
 }
 
-/// What to type at home to see `scene` there, for who came here through ssh.
+/// The command to type on the local machine to see `scene` there; `None` if this is not an ssh session.
 pub fn way_home(scene: &Path) -> Option<String> {
     let address = address::of_scene_here(scene, |name| std::env::var(name).ok())?;
     Some(format!("plica view {address}"))

@@ -31,7 +31,7 @@ pub(in crate::preview) struct Shared {
     state: Mutex<State>,
     changed: Condvar,
     deliver: Box<dyn Fn(Event) + Send + Sync>,
-    /// Where the other end would not notice that this one is gone: how long it may hear nothing.
+    /// The longest silence towards a window that would not notice the end of this process; `None` if it would.
     alive: Option<Duration>,
 }
 
@@ -69,7 +69,7 @@ impl Report {
     }
 }
 
-/// Starts a thread that nobody waits for.
+/// Starts a detached thread.
 pub(in crate::preview) fn thread(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
     let started = std::thread::Builder::new().name(name.into()).spawn(work);
     started.map(drop).map_err(|e| Error::at("link", e))
@@ -126,7 +126,7 @@ impl Shared {
         Shared { state: Mutex::new(state), changed: Condvar::new(), deliver, alive: None }
     }
 
-    /// The same, saying something at least this often.
+    /// The same, with a message at least this often.
     pub fn alive(self, every: Duration) -> Self {
         Shared { alive: Some(every), ..self }
     }
@@ -141,7 +141,7 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    /// Changes the state where that shows in the status.
+    /// Changes the state in a way that shows in the status.
     pub fn tell(&self, how: impl FnOnce(&mut State)) {
         self.change(how);
         (self.deliver)(Event::Status);
@@ -165,13 +165,13 @@ impl Shared {
         self.change(|state| state.say(None, message));
     }
 
-    /// Waits until something is so, or for this long.
+    /// Waits until a condition holds, but not longer than this.
     pub fn wait(&self, most: Duration, until: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
         let waited = self.changed.wait_timeout_while(self.lock(), most, |state| !until(state));
         waited.unwrap_or_else(PoisonError::into_inner).0
     }
 
-    /// Waits for a window to join by itself; the end of the editor is as good.
+    /// Waits for a window to join by itself, or for the editor to close; returns whether either happened in time.
     pub fn a_window_comes(&self, most: Duration) -> bool {
         let state = self.wait(most, |state| state.closing || !state.peers.is_empty());
         state.closing || !state.peers.is_empty()
@@ -216,7 +216,7 @@ impl Shared {
         }
     }
 
-    /// Tells a window everything and hears it, until it is gone.
+    /// Sends a window the whole state, then every change, and handles what it says, until it is gone.
     pub fn talk_with_window(self: &Arc<Self>, wire: Wire, scene: &Path) -> Result<()> {
         let Wire { mut reader, mut writer, hang_up } = wire;
         let (latest, id) = {
@@ -280,7 +280,7 @@ impl Shared {
         });
     }
 
-    /// Takes what the window says until it is gone.
+    /// Handles what the window says until it is gone.
     fn read(&self, id: u64, mut from: &mut (dyn Read + Send)) -> Result<()> {
         while let Some(said) = frame::read::<ToEditor>(&mut from, frame::most())? {
             match said {

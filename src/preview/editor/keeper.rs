@@ -17,7 +17,7 @@ const WITHIN: Duration = Duration::from_secs(60);
 /// How much of the end of standard error is kept, in bytes.
 const KEPT: usize = 4096;
 
-/// When to start a process again that died. Times are since any fixed moment.
+/// Decides when to start a process again that died. Times are measured from any fixed moment.
 #[derive(Debug, Default)]
 struct Backoff {
     recent: Vec<Duration>,
@@ -25,7 +25,7 @@ struct Backoff {
 }
 
 impl Backoff {
-    /// A death at `now`, after a life of `lived`: how long to wait, or `None` to give up.
+    /// The process died at `now`, having run for `lived`. Returns how long to wait before the next start; `None` to give up.
     fn died(&mut self, now: Duration, lived: Duration) -> Option<Duration> {
         self.recent.retain(|&death| now.saturating_sub(death) < WITHIN);
         self.recent.push(now);
@@ -38,11 +38,11 @@ impl Backoff {
 /// How the process is doing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::preview) enum Life {
-    /// Runs, or will again in a moment.
+    /// It runs, or will run again in a moment.
     Running,
-    /// Ended by itself with success: the person closed it.
+    /// It ended with success: the person closed it.
     Closed,
-    /// Died too often; the reason in one line.
+    /// It died too often; the reason in one line.
     GivenUp(String),
 }
 
@@ -64,7 +64,7 @@ struct State {
 
 impl Keeper {
     /// Runs what `command` makes, anew for each start, unless it is not `wanted` (which may take its time to find out).
-    /// `tell` hears how it goes, on the keeper's thread: `None` is that it was not wanted.
+    /// `tell` is called on the keeper's thread with each change of its life; with `None` if it was not wanted.
     pub fn start(
         wanted: impl FnOnce() -> bool + Send + 'static,
         command: impl Fn() -> Command + Send + 'static,
@@ -97,7 +97,7 @@ impl Drop for Keeper {
             let mut state = self.shared.lock();
             state.stop = true;
             if let Some(child) = &mut state.child {
-                // Already gone is as good.
+                // It may be gone already.
                 drop(child.kill());
             }
         }
@@ -175,7 +175,7 @@ pub(in crate::preview) fn tail(mut stream: impl Read) -> String {
     String::from_utf8_lossy(kept.make_contiguous()).into_owned()
 }
 
-/// One line on why a process died: its own message where it has one, else what the system says.
+/// One line on why a process died: its own message if it has one, else what the system says.
 fn last_words(said: &str, status: ExitStatus) -> String {
     let mut lines = said.lines().rev().map(str::trim).filter(|line| !line.is_empty());
     let own = said.lines().rev().find_map(|line| line.strip_prefix("plica: "));

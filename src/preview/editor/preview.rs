@@ -20,7 +20,7 @@ use crate::preview::wire::socket::{Door, Listener};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
-/// How long leaving windows are waited for at the end.
+/// How long the editor waits at its end for windows to leave.
 const FAREWELL: Duration = Duration::from_millis(300);
 /// How long a window that lost an earlier editor has to come back before a new one is opened.
 const ORPHANS: Duration = Duration::from_secs(1);
@@ -31,12 +31,12 @@ pub struct Preview {
     scene: PathBuf,
     options: Options,
     keeper: Option<Keeper>,
-    /// `None` where no window can join.
+    /// `None` if no window can join.
     door: Option<Door>,
 }
 
 impl Preview {
-    /// Starts to listen for windows of `scene`. Where that fails the editor goes on without and the status says why.
+    /// Starts to listen for windows of `scene`. If that fails, the editor goes on without windows and the status says why.
     pub fn start(
         scene: &Path,
         document: &Document,
@@ -125,7 +125,7 @@ impl Preview {
         self.shared.lock().life == Some(Life::Running)
     }
 
-    /// Opens a window and keeps it open; does nothing where one of ours is.
+    /// Opens a window and keeps it open; does nothing if this editor has opened one already.
     pub fn open_window(&mut self) {
         if let Some(reason) = no_window(&self.scene) {
             return self.shared.tell(|state| state.refused = Some(reason));

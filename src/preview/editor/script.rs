@@ -13,16 +13,16 @@ use crate::scene::Document;
 use crate::scene::check::Rules;
 use crate::scene::edit::Edit;
 
-/// How often an edit is made anew when somebody else was faster.
+/// How often an edit is retried if the document changed meanwhile.
 const TRIES: usize = 5;
 
-/// The document as the editor has it. `None` where no editor has the scene open.
+/// The document as the editor has it; `None` if no editor has the scene open.
 pub fn document(scene: &Path) -> Option<Result<Document>> {
     let joined = ask(scene).transpose()?;
     Some(joined.map(|joined| joined.document))
 }
 
-/// Has the editor make an edit of its document. `None` where no editor has the scene open.
+/// Has the editor make an edit of its document; `None` if no editor has the scene open.
 ///
 /// # Errors
 /// What `make` says, or the editor's problems with the edit.

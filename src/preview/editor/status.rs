@@ -5,13 +5,13 @@ use std::fmt;
 /// How the windows are doing; `Display` makes it the words of the status line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
-    /// No window, and none wanted.
+    /// There is no window, and none is wanted.
     Off,
     /// A window was started and has not joined yet.
     Starting,
-    /// Windows are there. The rest is what the one that reported last said.
+    /// Windows are connected. The rest is from the window that reported last.
     Connected {
-        /// How many.
+        /// The number of windows.
         windows: usize,
         /// What synthesis took, in milliseconds.
         synth_ms: Option<f64>,
@@ -19,10 +19,10 @@ pub enum Status {
         fps: Option<f64>,
         /// Name of the graphics adapter.
         adapter: String,
-        /// What the window complains about, empty where all is well.
+        /// What the window complains about; empty if nothing.
         notice: String,
     },
-    /// No window, and why.
+    /// There is no window, and this is why.
     OffBecause(String),
 }
 

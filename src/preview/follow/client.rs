@@ -13,12 +13,12 @@ use crate::files::{self, Options, materials};
 use crate::preview::wire::handshake;
 use crate::preview::wire::message::{FromEditor, Role, ToEditor};
 
-/// How often an editor is looked for while there is none.
+/// How often to look for an editor while there is none.
 const LOOK: Duration = Duration::from_millis(250);
 
 /// Both ends of the talk with a window.
 pub struct Link {
-    /// What the window shows. The first is the scene, or a notice why there is none yet.
+    /// What the window shows. The first update is the scene, or says why there is none yet.
     pub updates: Receiver<Update>,
     /// What the window has to say. Dropping it, or `updates`, ends the link.
     pub replies: Sender<ToEditor>,
@@ -26,14 +26,14 @@ pub struct Link {
 
 /// Follows a scene in its editor or its file. `joined`: the window was opened by the editor, and is to close with it.
 ///
-/// A picture that changes on disk sends the scene again; who loads it through a cache reads only that picture anew.
+/// If a picture changes on disk, the scene is sent again; through a cache only that picture is read again.
 pub fn follow(scene: &Path, options: &Options, joined: bool) -> Link {
     let (updates, receiver) = mpsc::channel();
     let replies = follow_with(scene, options, joined, window_sink(updates));
     Link { updates: receiver, replies }
 }
 
-/// The same for anybody who takes the news.
+/// The same for any receiver of the news.
 pub(in crate::preview) fn follow_with(scene: &Path, options: &Options, joined: bool, sink: Sink) -> Sender<ToEditor> {
     let (talk, replies, heard) = Talk::new(scene.display().to_string(), options, sink);
     let client = Client { scene: scene.to_owned(), joined, talk, watch: None };
@@ -78,7 +78,7 @@ impl Client {
         }
     }
 
-    /// Joins the editor where one answers.
+    /// Joins the editor, if one answers; returns whether it did.
     fn join(&mut self) -> Outcome<bool> {
         let joined = match handshake::join(&self.scene, Role::Window, self.talk.options.limits.message) {
             Ok(Some((hello, wire))) => self.talk.enter(hello, wire),
@@ -100,7 +100,7 @@ impl Client {
         self.talk.show(None)
     }
 
-    /// Does what the editor says; tells whether that was the end.
+    /// Does what the editor says; returns whether that was the end.
     fn take(&mut self, said: FromEditor) -> Outcome<bool> {
         let patched = matches!(said, FromEditor::Patch { .. } | FromEditor::Scene { .. });
         match self.talk.take(said)? {
@@ -121,14 +121,14 @@ impl Client {
         Ok(false)
     }
 
-    /// The editor is gone without a word. What it showed last is newer than the file, and stays until the file changes.
+    /// The editor is gone without a goodbye. What it showed last is newer than the file, and stays until the file changes.
     fn lost(&mut self, error: Option<Error>) -> Outcome {
         self.talk.leave();
         let why = error.map(|error| format!(" ({error})")).unwrap_or_default();
         self.talk.warn(format!("the editor is gone; this is its last state{why}"))
     }
 
-    /// A changed scene counts where the file is followed; a changed picture always.
+    /// A changed scene matters if the file is followed; a changed picture always does.
     fn changed(&mut self, files: &[PathBuf]) -> Outcome {
         let scene = files.contains(&self.scene);
         if scene && !self.talk.is_joined() {
@@ -137,7 +137,7 @@ impl Client {
         if scene && files.len() == 1 { Ok(()) } else { self.talk.tell(News::Files) }
     }
 
-    /// Shows the file. Where it cannot be read the last good scene stays.
+    /// Shows the file. If it cannot be read, the last good scene stays.
     fn load(&mut self) -> Outcome {
         match files::scene::open(&self.scene, &self.talk.options) {
             Ok(document) => {

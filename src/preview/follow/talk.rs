@@ -1,5 +1,5 @@
-//! A window's half of the talk with whoever serves it: the copy of the document that patches are applied to, and where
-//! replies go. What happens is heard by one thread, in order, over one channel, whatever the wire is.
+//! A window's half of the link: the copy of the document that patches are applied to, and where replies go. One thread takes
+//! everything that happens, in order, over one channel, whatever the connection is.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
@@ -10,20 +10,18 @@ use super::news::{News, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::files::Options;
+use crate::preview::keys::TRY_NOW;
 use crate::preview::wire::connection::{HangUp, Wire};
 use crate::preview::wire::frame;
 use crate::preview::wire::message::{FromEditor, ToEditor};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
-/// The command of a window that is not the editor's: connect now, without waiting any longer.
-pub const TRY_NOW: &str = "try-now";
-
-/// What the thread of a talk hears.
+/// What reaches the thread of a talk.
 pub(in crate::preview) enum Heard {
     /// Whoever serves this session says something.
     Said(u64, FromEditor),
-    /// The connection of this session ended; the reason where it was a fault.
+    /// The connection of this session ended; the error if it did not end well.
     Lost(u64, Option<Error>),
     /// Files changed on disk.
     Changed(Vec<PathBuf>),
@@ -35,7 +33,7 @@ pub(in crate::preview) enum Heard {
     Gone,
 }
 
-/// The window is gone: nothing is left to do.
+/// The window is gone: there is nothing left to do.
 pub(in crate::preview) struct WindowGone;
 
 /// How a step of the talk ends.
@@ -53,7 +51,7 @@ pub(in crate::preview) struct Talk {
     pub sender: Sender<Heard>,
     sink: Sink,
     outlet: Outlet,
-    /// Counts connections, so that the last words of an old one are told from a new one's.
+    /// Counts connections, so that late messages of an old one are not taken for those of a new one.
     session: u64,
     /// The connection, while there is one.
     hang_up: Option<HangUp>,
@@ -62,7 +60,7 @@ pub(in crate::preview) struct Talk {
 }
 
 impl Talk {
-    /// A talk with nobody yet; replies go to whoever serves it then.
+    /// A talk without a connection yet; replies go to the end that serves it later.
     pub fn new(place: String, options: &Options, sink: Sink) -> (Talk, Sender<ToEditor>, Receiver<Heard>) {
         let (sender, heard) = mpsc::channel();
         let (replies, said) = mpsc::channel();
@@ -83,12 +81,12 @@ impl Talk {
         (talk, replies, heard)
     }
 
-    /// Whether somebody serves it.
+    /// Whether it is connected.
     pub fn is_joined(&self) -> bool {
         self.hang_up.is_some()
     }
 
-    /// Whether this session is the present one.
+    /// Whether this is the current session.
     pub fn is_present(&self, session: u64) -> bool {
         self.session == session
     }
@@ -103,7 +101,7 @@ impl Talk {
         self.tell(News::Said(message))
     }
 
-    /// A line for the person; the same one is not said again and again.
+    /// A line for the person; not repeated if it is the same as before.
     pub fn notice(&mut self, line: impl Into<String>) -> Outcome {
         let line = line.into();
         if line == self.last_notice {
@@ -113,12 +111,12 @@ impl Talk {
         self.pass_on(FromEditor::Notice(line))
     }
 
-    /// How far something is; nothing once it is done.
+    /// Progress of something; `None` once it is done.
     pub fn progress(&mut self, line: Option<String>) -> Outcome {
         self.tell(News::Progress(line.unwrap_or_default()))
     }
 
-    /// All that is wrong now; the same is not said again.
+    /// All that is wrong now; not repeated if it is the same as before.
     pub fn problems(&mut self, problems: Vec<Problem>) -> Outcome {
         if problems == self.last_problems {
             return Ok(());
@@ -127,24 +125,24 @@ impl Talk {
         self.pass_on(FromEditor::Problems(problems))
     }
 
-    /// What went wrong is all that is wrong now.
+    /// An error is all that is wrong now.
     pub fn failed(&mut self, error: Error) -> Outcome {
         let problems = problems(error, &self.place);
         self.problems(problems)
     }
 
-    /// A line for the person that is a warning too: how the scene is followed, and that this is not how it should be.
+    /// A line for the person that is a warning too: the scene is followed, but not as it should be.
     pub fn warn(&mut self, line: String) -> Outcome {
         self.problems(vec![Problem::warning("", line.clone())])?;
         self.notice(line)
     }
 
-    /// Says something to whoever serves it.
+    /// Sends a message to the end that serves it.
     pub fn say(&self, message: &ToEditor) {
         self.outlet.send(message);
     }
 
-    /// Takes over the document of a hello and starts to listen to who said it.
+    /// Takes over the document of a hello and starts to read from that connection.
     pub fn enter(&mut self, hello: FromEditor, wire: Wire) -> Result<()> {
         let FromEditor::Hello { revision, document, .. } = hello else {
             return Err(Error::at("link", "the editor did not say hello"));
@@ -163,7 +161,7 @@ impl Talk {
         Ok(())
     }
 
-    /// Shows another document, or the first.
+    /// Tells the present document, the first or a changed one.
     pub fn show(&mut self, edit: Option<Edit>) -> Outcome {
         match self.shown.clone() {
             Some((document, revision)) => self.tell(News::Document { document, revision, edit }),
@@ -211,7 +209,7 @@ impl Talk {
         Document::from_json_under(json, self.options.rules()).map_err(|problems| Error::Scene { file, problems })
     }
 
-    /// Ends the connection where there is one; its last words are not heard.
+    /// Ends the connection if there is one; what it still says is dropped.
     pub fn leave(&mut self) {
         self.session += 1;
         self.outlet.set(None);
@@ -236,7 +234,7 @@ impl Outlet {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = writer;
     }
 
-    /// A connection that cannot be written to is lost for reading too, where that is noticed.
+    /// A connection that cannot be written to is lost for reading too; the reading thread notices that.
     fn send(&self, message: &ToEditor) {
         let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if writer.as_mut().is_some_and(|writer| frame::write(writer, message).is_err()) {
@@ -256,7 +254,7 @@ impl Outlet {
     }
 }
 
-/// Hands on what is said, until the other end hangs up or nobody `takes` it any more.
+/// Passes on what is read, until the other end hangs up or `takes` returns false.
 fn listen(mut from: &mut dyn Read, most: u64, takes: impl Fn(FromEditor) -> bool) -> Result<()> {
     while let Some(said) = frame::read(&mut from, most)? {
         if !takes(said) {

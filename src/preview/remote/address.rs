@@ -12,11 +12,11 @@ pub const SCHEME: &str = "ssh://";
 /// Where a scene is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address {
-    /// Who to be there; none leaves it to ssh.
+    /// The user name there; `None` leaves it to ssh.
     pub user: Option<String>,
     /// The machine, by a name that ssh knows.
     pub host: String,
-    /// Where ssh listens; none leaves it to ssh.
+    /// The port of ssh; `None` leaves it to ssh.
     pub port: Option<u16>,
     /// The scene there: absolute, or from the home of the user.
     pub path: String,
@@ -83,7 +83,7 @@ impl fmt::Display for Address {
     }
 }
 
-/// The address of a scene on this machine, for who came here through ssh: `environment` has what sshd left there.
+/// The address of a scene on this machine as an ssh client would write it; `environment` has the variables that sshd set.
 pub fn of_scene_here(scene: &Path, environment: impl Fn(&str) -> Option<String>) -> Option<Address> {
     let connection = environment("SSH_CONNECTION")?;
     let [_, _, host, port] = connection.split_whitespace().collect::<Vec<_>>()[..] else { return None };

@@ -1,5 +1,5 @@
 //! The far end of a window on another machine: follows the scene here, as a window would, and serves it over a pipe, as an
-//! editor would. So the edits are joined here for a slow link, and whether an editor or the file is followed is the same.
+//! editor would. So edits are joined here for a slow link, and it makes no difference whether an editor or the file is followed.
 
 use std::path::Path;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -22,13 +22,13 @@ use crate::scene::edit::Edit;
 
 /// How long the scene may take to be read for the first time.
 const FIRST: Duration = Duration::from_secs(30);
-/// The same once there was a notice: it most likely says why there is none.
+/// The same once there was a notice, which most likely says why there is no scene.
 const AFTER_NOTICE: Duration = Duration::from_millis(300);
 
 /// Serves the scene to the window at the other end of `wire` until that is gone.
 ///
 /// # Errors
-/// The other end is no window of this version, or there is no scene to show; it was told then.
+/// The other end is not a window of this version, or there is no scene to show; the other end was told so.
 pub fn serve(scene: &Path, options: &Options, wire: Wire) -> Result<()> {
     let Wire { mut reader, mut writer, hang_up } = wire.watched(SILENCE);
     let (sender, greeted) = mpsc::channel();
@@ -49,7 +49,7 @@ pub fn serve(scene: &Path, options: &Options, wire: Wire) -> Result<()> {
         Ok((Err(error), _)) => error,
         Err(_) => Error::at("link", "the other end does not answer"),
     };
-    // A courtesy: who does not understand it sees how this process ends.
+    // A courtesy: an end that does not understand it sees how this process ends.
     drop(frame::write(&mut writer, &FromEditor::Bye(refused.to_string())));
     Err(refused)
 }
@@ -90,7 +90,7 @@ fn begin(scene: &Path, options: &Options) -> Result<Far> {
 impl Far {
     fn serve(self, scene: &Path, wire: Wire) -> Result<()> {
         let Far { news, replies, latest, options } = self;
-        // A reply that nobody waits for any more ends with this process.
+        // A reply that cannot be delivered ends with this process.
         let replies = Mutex::new(replies);
         let deliver = move |event| {
             if let Event::Said(reply) = event {
@@ -131,7 +131,7 @@ fn publish(shared: &Shared, news: News) {
     }
 }
 
-/// Tells the window what the scene names, where that is not what it was.
+/// Tells the window what files the scene names, if that has changed.
 fn look_at_files(shared: &Shared, scene: &Path, options: &Options) {
     let (latest, none) = (shared.lock().latest.clone(), Originals::default());
     let before = latest.originals.as_deref().unwrap_or(&none);

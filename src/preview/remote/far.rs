@@ -1,5 +1,5 @@
-//! The window's side across machines: talks with the far end of a way, fetches the files that the scene names, and where the
-//! link is lost keeps the last state, says so and goes there again by itself, later each time.
+//! The window's side across machines: talks with the far end, fetches the files that the scene names, and if the link is lost
+//! keeps the last state, says so and connects again by itself, after longer and longer waits.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -17,9 +17,9 @@ use crate::preview::keys::{KEYS, PLAY, VIEW};
 use crate::preview::wire::connection::{ALIVE, HangUp, Wire};
 use crate::preview::wire::message::{FromEditor, ToEditor};
 
-/// Waits before going there again, by attempts that failed in a row.
+/// Waits before connecting again, by the number of attempts that failed in a row, in seconds.
 const WAITS_SECS: [u64; 5] = [1, 2, 5, 10, 30];
-/// How often the progress of a file is told at most.
+/// The shortest time between two reports of a file's progress.
 const PROGRESS: Duration = Duration::from_millis(300);
 
 /// Follows the scene at the end of `way` from the hello that was said there on. `copies` fills with the files that the scene
@@ -49,7 +49,7 @@ pub fn follow(way: Way, (hello, wire): (FromEditor, Wire), cache: Cache, copies:
     Ok(Link { updates: receiver, replies })
 }
 
-/// Keeps the scene back until the files that it names are here: without them it is nothing but a complaint.
+/// Holds the scene back until the files that it names are here: without them there would only be error messages.
 fn once_settled(mut sink: Sink, settled: Arc<AtomicBool>) -> Sink {
     let mut waiting = None;
     Box::new(move |news| match news {
@@ -67,15 +67,15 @@ struct Far {
     talk: Talk,
     fetch: Fetch,
     settled: Arc<AtomicBool>,
-    /// What the far end said last of how it follows the scene.
+    /// How the far end follows the scene, as it said last.
     standing: String,
     /// Attempts that failed in a row.
     tries: usize,
-    /// When to go there again; none while somebody is on the way or there.
+    /// When to connect again; `None` while connected or connecting.
     next: Option<Instant>,
-    /// Gives up the attempt that is on the way.
+    /// Gives up the attempt under way.
     going: Arc<Mutex<Option<HangUp>>>,
-    /// When the progress was told last.
+    /// When progress was reported last.
     told: Instant,
 }
 
@@ -127,7 +127,7 @@ impl Far {
         }
     }
 
-    /// Goes on fetching; where files came the scene is shown with them.
+    /// Goes on fetching; once files have arrived, the scene is shown with them.
     fn fetched(&mut self, changed: bool) -> Outcome {
         let wants = match self.fetch.wants(Instant::now()) {
             Ok(wants) => wants,
@@ -167,7 +167,7 @@ impl Far {
         self.wait(why)
     }
 
-    /// The last state stays; it is tried again in a while.
+    /// The last state stays; another attempt follows after a while.
     fn wait(&mut self, why: String) -> Outcome {
         let wait = Duration::from_secs(WAITS_SECS[self.tries.min(WAITS_SECS.len() - 1)]);
         self.tries += 1;
@@ -176,7 +176,7 @@ impl Far {
         self.talk.warn(format!("reconnecting: {why}; again in {} s, T tries now", wait.as_secs()))
     }
 
-    /// Goes there again, beside this thread: ssh may have something to ask.
+    /// Connects again, on another thread: ssh may have something to ask.
     fn go(&mut self) {
         self.next = None;
         let (way, sender, going) = (self.way.clone(), self.talk.sender.clone(), self.going.clone());
@@ -202,8 +202,8 @@ impl Far {
     }
 }
 
-/// What the far end says, without commands that change more than the view: nobody there closes a window here, goes full
-/// screen or loses the GPU.
+/// What the far end says, without commands that change more than the view: it cannot close a window here, make it fill the
+/// screen or lose the GPU.
 fn harmless(said: FromEditor) -> Option<FromEditor> {
     // A switch says what it is set to: `view-field on`.
     let is_view = |line: &String| {

@@ -12,7 +12,7 @@ use crate::files::materials::Copies;
 use crate::files::originals::{Contents, Original, PIECE};
 use crate::preview::wire::message::ToEditor;
 
-/// The copies, for whoever loads them.
+/// The copies, shared with the code that loads them.
 pub type Shared = Arc<Mutex<Copies>>;
 
 /// See the top of the file.
@@ -21,16 +21,16 @@ pub(super) struct Fetch {
     copies: Shared,
     /// The most bytes of a file.
     most: u64,
-    /// What is not here yet: contents, and the paths that it stands at.
+    /// What is not here yet: contents, and the paths that have them.
     missing: BTreeMap<String, (Contents, Vec<String>)>,
     /// What is here, by path, by hash.
     have: BTreeMap<String, String>,
     incoming: Option<Incoming>,
     asked: u64,
-    /// When the pieces were asked for that have not come.
+    /// When each piece was requested that has not arrived.
     in_flight: VecDeque<Instant>,
     pace: Pace,
-    /// Whether it was ever told what the scene names.
+    /// Whether a list of the scene's files ever arrived.
     told: bool,
 }
 
@@ -50,7 +50,8 @@ impl Fetch {
         }
     }
 
-    /// Takes what the scene names now. What is here already counts at once; tells whether anything changed by that.
+    /// Takes what the scene names now. Files that are here already are available at once; returns whether that changed
+    /// anything.
     pub fn told(&mut self, originals: Vec<Original>) -> bool {
         self.told = true;
         self.missing.clear();
@@ -102,7 +103,7 @@ impl Fetch {
         changed
     }
 
-    /// Whether every file that the scene names is here, or will not be.
+    /// Whether every file that the scene names is here, or is known not to come.
     pub fn is_settled(&self) -> bool {
         self.told && self.missing.is_empty()
     }
@@ -141,10 +142,11 @@ impl Fetch {
         Ok(wants)
     }
 
-    /// Takes a piece; tells whether it made a file whole.
+    /// Takes a piece; returns whether it completed a file.
     ///
     /// # Errors
-    /// It cannot be written, or the whole is not what was told of. It is not asked for again until it is told of again.
+    /// It cannot be written, or the whole file is not the one announced. It is not requested again until it is announced
+    /// again.
     pub fn piece(&mut self, hash: &str, offset: u64, bytes: &[u8], now: Instant) -> Result<bool> {
         if let Some(asked) = self.in_flight.pop_front() {
             self.pace.arrived(now.saturating_duration_since(asked));
@@ -155,7 +157,7 @@ impl Fetch {
         let taken = incoming.add(bytes);
         if taken.is_ok() && incoming.have() < whole {
             if bytes.is_empty() {
-                // The file is not there any more; what takes its place is told of.
+                // The file is gone; what takes its place will be announced.
                 self.give_up(hash);
             }
             return Ok(false);

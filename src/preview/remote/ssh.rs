@@ -1,5 +1,5 @@
 //! The way to another machine: the person's own ssh, with all its configuration, starts the far end there, and its two pipes
-//! are the wire. What goes wrong on the way is told in one line, with what to do.
+//! are the connection. Whatever goes wrong is one line that also says what to do.
 
 use std::io::Write;
 use std::process::{Child, ChildStderr, Command, ExitStatus, Stdio};
@@ -65,7 +65,7 @@ impl Way {
         format!("{} attach --stdio {options}{}", self.remote_plica, self.address.quoted_path())
     }
 
-    /// Goes there and shakes hands. Blocks as long as ssh has something to ask; `going` is told how to give up.
+    /// Connects and shakes hands. Blocks as long as ssh has something to ask; `going` receives what gives up the attempt.
     ///
     /// # Errors
     /// One line that says why not and what to do.
@@ -150,7 +150,7 @@ impl Process {
 
     fn kill(&self) {
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
-        // Already gone is as good.
+        // It may be gone already.
         drop(child.kill());
         drop(child.wait());
     }

@@ -16,7 +16,7 @@ use super::run::Outcome;
 use super::show::{Cached, Show};
 use super::state::State;
 use super::text::Letters;
-use super::worker::{Event, Ready};
+use super::worker::{Event, Ready, Sending};
 use crate::base::error::{Error, Result};
 use crate::preview::Transport as Leading;
 use crate::preview::wire::message::ToEditor;
@@ -25,7 +25,7 @@ use crate::preview::wire::message::ToEditor;
 pub struct App {
     pub(super) manner: Manner,
     pub(super) replies: Sender<ToEditor>,
-    /// For what is looked for beside the event loop.
+    /// For threads beside the event loop.
     pub(super) proxy: EventLoopProxy<Event>,
     pub(super) instance: Option<wgpu::Instance>,
     pub(super) letters: Letters,
@@ -37,12 +37,12 @@ pub struct App {
     /// Keys that are held with others.
     pub(super) held: ModifiersState,
     pub(super) clock: Clock,
-    /// What the window is to grow to once its first picture is drawn.
+    /// The size that the window is to grow to once its first picture is drawn.
     pub(super) grows_to: Option<PhysicalSize<u32>>,
-    /// A scene is on its way to the GPU; the next one waits.
-    pub(super) sending: bool,
+    /// The scene that is on its way to the GPU, and the next one.
+    pub(super) sending: Option<Sending>,
     pub(super) waiting: Option<Ready>,
-    /// What is to be answered once it is on the screen.
+    /// The answer that is due once the scene is on the screen.
     pub(super) owed: Option<ToEditor>,
     /// What was said last about how the window is doing: frames a second and what is wrong.
     pub(super) reported: Option<(f64, String)>,
@@ -73,7 +73,7 @@ impl App {
             held: ModifiersState::empty(),
             grows_to: None,
             clock: Clock::default(),
-            sending: false,
+            sending: None,
             waiting: None,
             owed: None,
             reported: None,
@@ -82,13 +82,14 @@ impl App {
         }
     }
 
-    /// Why the window ended, where that was an error.
-    pub fn ended(self) -> Result<()> {
+    /// Why the window ended, if that was an error.
+    pub fn ended(mut self) -> Result<()> {
+        drop(self.sending.take());
         tracing::info!("the window drew {} times", self.clock.drawn);
         self.failed.map_or(Ok(()), Err)
     }
 
-    /// Opens the window where it is not open yet.
+    /// Opens the window if it is not open yet.
     pub(super) fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let Some(instance) = self.instance.take() else { return Ok(()) };
         self.opened = Some(Opened::open(event_loop, instance, &self.manner, self.first_size(event_loop))?);
@@ -135,7 +136,7 @@ impl App {
         }
     }
 
-    /// Does what may change the time; the editor follows.
+    /// Makes a change that may move the time; the editor is told.
     pub(super) fn leading(&mut self, change: impl FnOnce(&mut App)) {
         let before = self.state.transport.clone();
         change(self);
@@ -157,7 +158,7 @@ impl App {
         let _ = self.replies.send(reply);
     }
 
-    /// Tells the editor how the window is doing, where that has changed.
+    /// Tells the editor how the window is doing, if that has changed.
     pub(super) fn report(&mut self) {
         self.state.fps = self.state.fps.filter(|_| self.plays_visibly());
         let Some(opened) = &self.opened else { return };

@@ -3,9 +3,10 @@
 
 use kurbo::{Point, Rect};
 
-use super::canvas::{Canvas, Color};
-use super::chrome::{ACCENT, DIM, MARGIN_PX, RAIL, TEXT, TEXT_PX, WARNING};
+use super::canvas::Canvas;
 use super::state::{BAR_PX, State};
+use super::stroke::Color;
+use super::style::{ACCENT, DIM, MARGIN_PX, RAIL, TEXT, TEXT_PX, WARNING};
 use super::text::Letters;
 
 const GROUND: Color = [28, 31, 37, 255];
@@ -156,7 +157,7 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::worker::Work;
+    use super::super::words::Work;
     use super::*;
     use crate::base::problem::Problem;
     use crate::layers::timeline::Timeline;
@@ -246,7 +247,7 @@ mod tests {
             state.pointer = Some(Point::new(width / 2.0, 180.0));
             let mut canvas = Canvas::default();
             draw(&mut canvas, &state, &letters);
-            let mut glyphs: Vec<_> = canvas.strokes.iter().filter(|s| s.form == super::super::canvas::GLYPH).collect();
+            let mut glyphs: Vec<_> = canvas.strokes.iter().filter(|s| s.form == super::super::stroke::GLYPH).collect();
             glyphs.sort_by(|a, b| a.a[0].total_cmp(&b.a[0]));
             assert!(glyphs.windows(2).all(|pair| pair[0].b[0] <= pair[1].a[0] + 2.0), "at {width}");
             assert!(glyphs.iter().all(|glyph| glyph.b[0] <= width as f32), "at {width}");

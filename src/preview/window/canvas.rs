@@ -3,44 +3,8 @@
 
 use kurbo::{Point, Rect, Vec2};
 
+use super::stroke::{BOX, Color, DIAMOND, LINE, Stroke};
 use super::text::Text;
-
-/// sRGB with straight alpha.
-pub type Color = [u8; 4];
-
-/// One instance of screen.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Stroke {
-    /// One end, or a box's corner.
-    pub a: [f32; 2],
-    /// The other.
-    pub b: [f32; 2],
-    /// Half the width; the corner radius of a box.
-    pub radius: f32,
-    /// One of the forms below.
-    pub form: u32,
-    /// Its colour.
-    pub color: Color,
-    /// Where a glyph stands in the atlas.
-    pub texel: [u16; 2],
-}
-
-impl Stroke {
-    /// A glyph between two corners on whole pixels, from its place in the atlas.
-    pub fn glyph(a: [f32; 2], b: [f32; 2], texel: [u16; 2], color: Color) -> Stroke {
-        Stroke { a, b, radius: 0.0, form: GLYPH, color, texel }
-    }
-}
-
-/// A line with round ends; a disc where the ends meet.
-pub const LINE: u32 = 0;
-/// A box between two corners.
-pub const BOX: u32 = 1;
-/// A square on its corner, at `a`.
-pub const DIAMOND: u32 = 2;
-/// A part of the atlas of glyphs, between two corners.
-pub const GLYPH: u32 = 3;
 
 /// Darkens what lies beneath a mark, so that it can be told from any picture.
 const HALO: Color = [0, 0, 0, 120];
@@ -89,7 +53,7 @@ impl Canvas {
         }
     }
 
-    /// One side of a dashed line; `along` is the place in the pattern where it begins, its end's is returned.
+    /// One side of a dashed line. `along` is the position in the pattern at which it begins; returns the one at which it ends.
     #[expect(clippy::too_many_arguments, reason = "one side of one line, called once")]
     fn dashes(&mut self, a: Point, b: Point, along: f64, dash: f64, gap: f64, width: f64, color: Color) -> f64 {
         let length = (b - a).hypot2().sqrt();
@@ -105,7 +69,7 @@ impl Canvas {
         (along + length).rem_euclid(dash + gap)
     }
 
-    /// An arrow with an open head at `b`; a dot where it has no length.
+    /// An arrow with an open head at `b`; a dot if it has no length.
     pub fn arrow(&mut self, a: Point, b: Point, width: f64, head: f64, color: Color) {
         let length = (b - a).hypot2().sqrt();
         if length < 0.5 {

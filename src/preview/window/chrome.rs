@@ -3,24 +3,12 @@
 
 use kurbo::{Point, Vec2};
 
-use super::canvas::{Canvas, Color};
+use super::canvas::Canvas;
 use super::state::{Panel, State};
+use super::style::{ACCENT, TEXT};
 use super::text::Letters;
 use super::{bar, legend, panel, problems};
 use crate::preview::keys::{KEYS, VIEW};
-
-/// The ground around the picture.
-pub const GROUND: Color = [18, 20, 24, 255];
-pub const PANEL: Color = [22, 24, 29, 238];
-pub const RAIL: Color = [58, 64, 74, 255];
-pub const ACCENT: Color = [86, 180, 233, 255];
-pub const TEXT: Color = [205, 210, 218, 255];
-pub const WARNING: Color = [240, 160, 40, 255];
-pub const DIM: Color = [132, 141, 153, 255];
-
-/// Height of a capital, in logical pixels.
-pub const TEXT_PX: f64 = 8.0;
-pub const MARGIN_PX: f64 = 12.0;
 
 /// Draws all of it.
 pub fn draw(state: &State, letters: &Letters) -> Canvas {
@@ -70,6 +58,7 @@ fn marked(canvas: &mut Canvas, state: &State) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::style::PANEL;
     use super::*;
     use crate::base::problem::Problem;
     use crate::layers::timeline::Timeline;

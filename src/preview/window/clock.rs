@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Frames are counted over so many seconds.
+/// Frames are counted over this many seconds.
 const COUNTED: f64 = 1.0;
 /// A whole frame that is waited for has surely begun this much later.
 const SURELY: f64 = 0.0005;
@@ -13,7 +13,7 @@ pub struct Clock {
     due: Instant,
     counted_from: Instant,
     frames: u32,
-    /// All drawings since the window opened.
+    /// The number of drawings since the window opened.
     pub drawn: u64,
 }
 

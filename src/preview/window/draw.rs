@@ -7,7 +7,7 @@ use super::worker::Event;
 use crate::base::error::Result;
 
 impl App {
-    /// Draws the window, where it can be seen. A lost device is replaced, and the drawing asked for again.
+    /// Draws the window, if it can be seen. A lost device is replaced, and another drawing requested.
     pub(super) fn draw(&mut self) -> Result<()> {
         self.advance();
         let Some(opened) = &mut self.opened else { return Ok(()) };
@@ -39,12 +39,12 @@ impl App {
         }
         if self.letters.asks_for_fonts() {
             let proxy = self.proxy.clone();
-            // Where nobody is there any more to take them, they are not needed.
+            // If the window is gone by then, they are not needed.
             std::thread::spawn(move || drop(proxy.send_event(Event::Fonts(Box::new(of_system())))));
         }
     }
 
-    /// The animation runs on, and stops by itself where it plays once.
+    /// The animation runs on; one that plays once stops at its end.
     fn advance(&mut self) {
         let (passed, fps) = self.clock.tick();
         if !self.state.transport.playing {
@@ -61,7 +61,7 @@ impl App {
         }
     }
 
-    /// Goes on after device or surface were lost, with new ones in the same window.
+    /// Replaces a lost device or surface, in the same window.
     fn reopen(&mut self) -> Result<()> {
         if let Some(opened) = self.opened.take() {
             self.opened = Some(opened.anew()?);

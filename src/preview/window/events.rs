@@ -17,17 +17,17 @@ use super::mouse::{Asked, Button};
 use super::opened::Opened;
 use super::worker::Event;
 use crate::base::error::{Error, Result};
-use crate::preview::follow::talk::TRY_NOW;
+use crate::preview::keys::TRY_NOW;
 use crate::preview::views;
 use crate::preview::wire::message::ToEditor;
 
 /// A line of a mouse wheel is one step; a touchpad may give pixels.
 const WHEEL_PX: f64 = 60.0;
-/// How often a hidden window looks whether it can be seen again.
+/// How often a hidden window checks whether it can be seen again.
 const HIDDEN: Duration = Duration::from_millis(250);
 
 impl App {
-    /// Does what can fail; a failure ends the window.
+    /// Does work that may fail; a failure ends the window.
     fn attempt(&mut self, event_loop: &ActiveEventLoop, work: impl FnOnce(&mut App) -> Result<()>) {
         if let Err(error) = work(self) {
             self.failed = Some(error);

@@ -10,16 +10,16 @@ use super::app::App;
 use super::show::{Show, name};
 use super::state::State;
 use super::words::Words;
-use super::worker::{Ready, Sent, send_to_gpu};
+use super::worker::{Ready, Sending, Sent};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
 use crate::preview::Transport as Leading;
 use crate::preview::follow::Update;
 use crate::preview::wire::message::{FromEditor, ToEditor};
 
-/// A scene is given so long before the window opens with a notice alone.
+/// How long to wait for a scene before the window opens with a notice alone.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// Editor and window may be so far apart while both play, as a share of the timeline, before the window follows.
+/// How far editor and window may be apart while both play, as a share of the timeline, before the window follows.
 const APART: f64 = 0.05;
 /// A command that no key gives: the device is lost. For tests of what follows.
 const LOSE_DEVICE: &str = "lose-device";
@@ -38,17 +38,17 @@ impl App {
 
     /// Sends the latest scene to the GPU, one at a time.
     pub(super) fn send_next(&mut self) {
-        let Some(opened) = self.opened.as_mut().filter(|_| !self.sending) else { return };
+        let Some(opened) = self.opened.as_mut().filter(|_| self.sending.is_none()) else { return };
         let Some(ready) = self.waiting.take() else { return };
-        self.sending = true;
         let most = opened.gpu.device().max_side().min(self.manner.most);
         let proxy = self.proxy.clone();
-        send_to_gpu(opened.gpu.uploader(), ready, most, move |event| proxy.send_event(event).is_ok());
+        let send = move |event| proxy.send_event(event).is_ok();
+        self.sending = Some(Sending::start(opened.gpu.uploader(), ready, most, send));
     }
 
     /// Takes a scene whose pictures are on the GPU.
     pub(super) fn sent(&mut self, event_loop: &ActiveEventLoop, Sent { ready, made, lost }: Sent) -> Result<()> {
-        self.sending = false;
+        self.sending = None;
         let Some(opened) = &mut self.opened else { return Ok(()) };
         match made {
             Ok((show, reduced, uploaded)) => {
@@ -119,17 +119,17 @@ impl App {
         }
     }
 
-    /// Says something; a window that has nothing to show opens for that in a while.
+    /// Says something; a window that has nothing to show opens for that after a while.
     fn say(&mut self, what: impl FnOnce(&mut Words)) {
         what(&mut self.state.words);
         self.open_by.get_or_insert(Instant::now() + PATIENCE);
     }
 
-    /// Says what is wrong on standard error too, as long as there is no picture: the window may never open.
+    /// As long as there is no picture, also writes what is wrong to standard error: the window may never open.
     fn complain(&self, problems: &[Problem]) {
         if self.shown.is_none() && self.manner.complains {
             let lines: String = problems.iter().map(|p| format!("plica: {}: {p}\n", self.manner.name)).collect();
-            // Nobody may read it.
+            // Standard error may be closed.
             drop(std::io::stderr().write_all(lines.as_bytes()));
         }
     }
@@ -141,7 +141,8 @@ impl App {
         self.redraw();
     }
 
-    /// Plays or stands as the editor does. Whoever drags the time leads, and two clocks that run need not be set.
+    /// Plays or pauses as the editor does. A window in which the time is dragged leads, and two running clocks that nearly
+    /// agree are left alone.
     fn join_in(&mut self, Leading { playing, time, speed }: Leading) {
         let State { transport, timeline, .. } = &mut self.state;
         let t = time / timeline.duration.max(f64::MIN_POSITIVE);

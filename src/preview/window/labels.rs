@@ -1,5 +1,5 @@
 //! Names and numbers beside what they name, above all other marks: on the side away from a jump vector, off anchors and the
-//! arrows of their jumps, and not on one another. Where there are many of them they keep farther apart.
+//! arrows of their jumps, and not on one another. Many labels keep farther apart.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -7,8 +7,9 @@ use std::rc::Rc;
 use kurbo::{Point, Rect, Size, Vec2};
 
 use super::camera::Camera;
-use super::canvas::{Canvas, Color};
+use super::canvas::Canvas;
 use super::marks::color_of;
+use super::stroke::Color;
 use super::text::{Letters, Text};
 use crate::layers::parts::marks::{Mark, Shape};
 
@@ -20,11 +21,11 @@ const RIM_PX: f64 = 4.0;
 const GROUND: Color = [16, 18, 22, 205];
 /// Side of a cell of what is taken, in logical pixels.
 const CELL_PX: f64 = 4.0;
-/// Labels that would take more than this share of the window keep so many times their height apart.
+/// Labels that would take more than this share of the window keep [`APART`] times their height apart.
 const CROWD: f64 = 0.2;
 const APART: f64 = 2.0;
 
-/// The sides on which a label may stand, in the order in which they are tried where there is no vector.
+/// The sides on which a label may stand, in the order in which they are tried if there is no vector.
 const SIDES: [(f64, f64); 8] =
     [(1.0, -1.0), (1.0, 0.0), (1.0, 1.0), (0.0, -1.0), (0.0, 1.0), (-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0)];
 
@@ -73,7 +74,7 @@ fn found(marks: &[Mark], screen: &impl Fn(Point) -> Point, area: Size, scale: f6
 }
 
 impl Label {
-    /// Where it stands: where it hides least, away from its vector; nowhere on another label.
+    /// The place that hides least, away from its vector; `None` if every place would overlap another label.
     fn place(&self, way: Vec2, taken: &Taken, area: Size, scale: f64) -> Option<Rect> {
         let mut sides = SIDES.map(Vec2::from);
         sides.sort_by(|a, b| way.dot(*a).total_cmp(&way.dot(*b)));
@@ -168,7 +169,7 @@ impl Taken {
 #[cfg(test)]
 mod tests {
     use super::super::camera::Fit;
-    use super::super::canvas::BOX;
+    use super::super::stroke::BOX;
     use super::*;
     use crate::layers::parts::marks::Look;
 
@@ -193,7 +194,7 @@ mod tests {
         let mut camera = Camera::default();
         camera.fit(AREA, AREA, Fit::Window);
         let canvas = draw(marks, &camera, AREA, 1.0, &Letters::default());
-        let rect = |s: &super::super::canvas::Stroke| {
+        let rect = |s: &super::super::stroke::Stroke| {
             let [x0, y0, x1, y1] = [s.a[0], s.a[1], s.b[0], s.b[1]].map(f64::from);
             Rect::new(x0, y0, x1, y1)
         };

@@ -6,8 +6,8 @@ use std::rc::Rc;
 use kurbo::{Point, Rect, Size, Vec2};
 
 use super::canvas::Canvas;
-use super::chrome::{MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::state::State;
+use super::style::{MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::text::{Letters, Text};
 use crate::base::maths::{TAU, cos, pow, sin};
 use crate::layers::parts::marks::{VECTORS, vector_color};
@@ -32,8 +32,8 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
     bar.zip(bar_at).into_iter().for_each(|(bar, at)| bar.draw(canvas, state, at));
 }
 
-/// Where two boxes of these sizes stand: the first in the right corner, the second in the left, above the first where both
-/// have no room beside one another. What finds no room is left out.
+/// Where to place two boxes of these sizes: the first in the right corner, the second in the left corner, or above the first
+/// if they do not fit side by side. A box that does not fit is left out.
 fn places([right, left]: [Option<Size>; 2], free: Rect, margin: f64) -> [Option<Rect>; 2] {
     let room = free.inset(-margin);
     let fits = |place: &Rect| place.x0 >= room.x0 && place.y0 >= room.y0;

@@ -3,7 +3,8 @@
 use kurbo::{Point, Rect, Size, Vec2};
 
 use super::camera::Camera;
-use super::canvas::{Canvas, Color};
+use super::canvas::Canvas;
+use super::stroke::Color;
 use crate::base::geometry::Polygon;
 use crate::layers::parts::marks::{Dot, FILL_ALPHA, Look, Mark, SELECTED, SELECTED_GROWTH, Shape};
 

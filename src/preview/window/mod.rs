@@ -1,5 +1,5 @@
 //! The window: shows a scene as it plays, with what explains it drawn over it, and takes the keys of `preview::keys`.
-//! Drawn only when something changes or plays; where it cannot be opened, the reason is one line.
+//! It is drawn only when something changes or plays; if it cannot be opened, the reason is one line.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
@@ -39,6 +39,8 @@ mod run;
 mod screen;
 mod show;
 mod state;
+mod stroke;
+mod style;
 mod text;
 mod transport;
 mod words;

@@ -7,14 +7,14 @@ use kurbo::Point;
 use super::bar;
 use super::state::State;
 
-/// A click may move the pointer so far, in logical pixels.
+/// A click may move the pointer by this much, in logical pixels.
 const CLICK_PX: f64 = 3.0;
-/// The border of before and after is taken from so far, in logical pixels.
+/// The border of before and after can be grabbed from this distance, in logical pixels.
 const BORDER_PX: f64 = 7.0;
-/// Two clicks within this time, and about the same place, are a double click.
+/// Two clicks within this time, at about the same place, are a double click.
 const DOUBLE: Duration = Duration::from_millis(400);
 
-/// What the window is to do, beside what the state shows already.
+/// What the window is to do, besides what has changed in the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Asked {
     /// Nothing.
@@ -65,9 +65,9 @@ pub struct Mouse {
     pressed_at: Option<Point>,
     /// When and where the last click was.
     clicked: Option<(Instant, Point)>,
-    /// Steps of the wheel that are no whole one yet.
+    /// The fraction of a wheel step that has been turned so far.
     turned: f64,
-    /// A notch that comes twice was heard once.
+    /// The first of two reports of one notch was counted.
     half_heard: bool,
 }
 
@@ -111,7 +111,7 @@ impl Mouse {
         Asked::Nothing
     }
 
-    /// A button comes up; where it does so at the place where it went down that was a click.
+    /// A button comes up; if the pointer has hardly moved since it went down, that was a click.
     pub fn released(&mut self, state: &State, now: Instant) -> Asked {
         self.drag = Drag::Nothing;
         let (Some(_), Some(to)) = (self.pressed_at.take(), state.pointer) else { return Asked::Nothing };
@@ -124,7 +124,8 @@ impl Mouse {
         state.pointed().map_or(Asked::Nothing, Asked::Select)
     }
 
-    /// The wheel or a touchpad turned by so many steps: whole ones zoom about the pointer, parts are kept until they make one.
+    /// The wheel or a touchpad turned by `steps`: whole steps zoom about the pointer, fractions are kept until they add up to
+    /// one.
     pub fn turned(&mut self, state: &mut State, steps: f64) {
         if steps * self.turned < 0.0 {
             self.turned = 0.0;
@@ -139,7 +140,7 @@ impl Mouse {
         }
     }
 
-    /// Whether a notch counts: of two that tell of one and the same, the first does.
+    /// Whether a notch of the wheel counts: if each is reported twice, only the first report does.
     pub fn counts(&mut self, comes_twice: bool) -> bool {
         self.half_heard = comes_twice && !self.half_heard;
         !comes_twice || self.half_heard

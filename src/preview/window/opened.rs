@@ -21,14 +21,14 @@ use crate::render::gpu::Gpu;
 
 /// Smallest and first size of a window, in logical pixels.
 const SMALLEST: (f64, f64) = (480.0, 320.0);
-/// A window is made no smaller than this, where the window manager listens.
+/// A window is made no smaller than this, if the window manager obeys.
 const LEAST: (f64, f64) = (360.0, 240.0);
-/// How often it is looked whether the window can be seen, while it can.
+/// How often to check whether the window can be seen, while it can.
 const LOOK: Duration = Duration::from_millis(250);
 const FIRST: (f64, f64) = (960.0, 640.0);
 /// A window opens on at most this share of the monitor.
 const MOST_OF_MONITOR: f64 = 0.85;
-/// Frames a second where the monitor does not tell.
+/// Frames a second if the monitor does not tell.
 const RATE: f64 = 60.0;
 
 /// What is open once there is something to show.
@@ -36,7 +36,7 @@ pub struct Opened {
     pub window: Arc<Window>,
     pub gpu: Gpu,
     pub screen: Screen,
-    /// There is nothing of it to be seen: minimised, or on another desktop.
+    /// Nothing of it can be seen: it is minimised, or on another desktop.
     pub hidden: bool,
     /// Other windows lie over all of it.
     pub covered: bool,
@@ -46,7 +46,7 @@ pub struct Opened {
 }
 
 impl Opened {
-    /// Opens the window. One that nobody asked for at this moment leaves the keyboard where it is.
+    /// Opens the window. If the person did not ask for it at this moment, it does not take the keyboard focus.
     pub fn open(
         event_loop: &ActiveEventLoop,
         instance: wgpu::Instance,
@@ -79,7 +79,7 @@ impl Opened {
         Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape })
     }
 
-    /// Whether the window can be seen. It is looked for now and then while it can, and always while it cannot.
+    /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
     pub fn is_seen(&mut self) -> bool {
         let due = self.hidden || self.looked.is_none_or(|looked| looked.elapsed() >= LOOK);
         if let Some(desk) = self.desk.as_ref().filter(|_| due) {

@@ -3,8 +3,8 @@
 use kurbo::{Rect, Vec2};
 
 use super::canvas::Canvas;
-use super::chrome::{ACCENT, MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::state::State;
+use super::style::{ACCENT, MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::text::{LINE, Letters};
 use crate::base::keys::KeyRow;
 

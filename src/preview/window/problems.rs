@@ -3,8 +3,8 @@
 use kurbo::{Point, Rect};
 
 use super::canvas::Canvas;
-use super::chrome::{DIM, MARGIN_PX, PANEL, TEXT_PX, WARNING};
 use super::state::State;
+use super::style::{DIM, MARGIN_PX, PANEL, TEXT_PX, WARNING};
 use super::text::Letters;
 
 /// The list takes at most this share of the area.
@@ -13,7 +13,7 @@ const MOST: f64 = 0.6;
 const GAP_PX: f64 = 7.0;
 const STRIPE_PX: f64 = 3.0;
 
-/// Draws the list where there is one; returns what it leaves of the area.
+/// Draws the list if there is one; returns the part of the area that is still free.
 pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters) -> Rect {
     let (area, scale) = (state.area().to_rect(), state.scale);
     let listed = state.words.listed();

@@ -4,7 +4,7 @@ use kurbo::Vec2;
 
 use super::camera::Fit;
 use super::state::{Panel, State};
-use crate::preview::follow::talk::TRY_NOW;
+use crate::preview::keys::TRY_NOW;
 use crate::preview::views::{self, FIELD};
 
 /// A key moves the border between still and moving by this share of the picture.
@@ -19,7 +19,7 @@ pub enum Outcome {
     Redraw,
     /// The whole screen, or the window again.
     FullScreen,
-    /// The window again, where it fills the screen.
+    /// The window again, if it fills the screen.
     Window,
     /// The end.
     Quit,
@@ -75,7 +75,7 @@ impl State {
         Outcome::Redraw
     }
 
-    /// Closes what lies over the picture; if nothing does, leaves the full screen.
+    /// Closes what lies over the picture; if there is nothing, leaves the full screen.
     fn close(&mut self) -> Outcome {
         let panel = std::mem::take(&mut self.panel) != Panel::None;
         let marked = self.marked.take().is_some();

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 use winit::window::Window;
 
-use super::canvas::{Color, Stroke};
-use super::chrome::GROUND;
 use super::glyphs::Glyphs;
 use super::state::State;
+use super::stroke::{Color, Stroke};
+use super::style::GROUND;
 use super::text::Letters;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::linear_from_srgb;
@@ -351,7 +351,7 @@ fn nothing_draws() -> Error {
         .cure("install a Vulkan or OpenGL driver, as Mesa; plica render and plica edit need none")
 }
 
-/// One that takes sRGB codes as they are, where there is one.
+/// One that takes sRGB codes as they are, if there is one.
 fn format(surface: &wgpu::Surface<'_>, gpu: &Gpu) -> Result<wgpu::TextureFormat> {
     let formats = surface.get_capabilities(&gpu.device().adapter).formats;
     let plain =

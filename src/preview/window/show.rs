@@ -48,7 +48,8 @@ pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
     fields.into_iter().find_map(|field| field.at(pixel))
 }
 
-/// What a JSON pointer leads to, by the names of the layer and of the item in it: `face/left eye/motion/3`; none for the scene itself.
+/// What a JSON pointer leads to, by the names of the layer and of the item in it: `face/left
+/// eye/motion/3`; `None` for the scene itself.
 pub fn name(scene: &Scene, pointer: &str) -> Option<String> {
     let mut tokens = pointer.split('/').skip(1);
     let (list, Ok(layer)) = (tokens.next()?, tokens.next().unwrap_or_default().parse::<usize>()) else {
@@ -76,11 +77,11 @@ pub struct Cached {
     pub arrow_scale: f64,
     /// See [`State::longest`].
     pub longest: f64,
-    /// How many scenes there were.
+    /// The number of scenes so far.
     pub revision: u64,
 }
 
-/// How the picture is looked at.
+/// Everything but the overlays that strokes depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Sight {
     camera: Camera,

@@ -4,8 +4,7 @@ use kurbo::{Point, Size, Vec2};
 
 use super::camera::{Camera, Fit};
 use super::transport::Transport;
-use super::words::Words;
-use super::worker::Work;
+use super::words::{Words, Work};
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
 
@@ -148,7 +147,7 @@ impl State {
         self.camera.pan(by, self.picture, self.area());
     }
 
-    /// The place in the picture under the pointer, where it is on the picture.
+    /// The place in the picture under the pointer; `None` if the pointer is not on the picture.
     pub fn pointed(&self) -> Option<Point> {
         let at = self.camera.image_from_screen(self.pointer.filter(|p| p.y < self.area().height)?, self.area());
         self.picture.to_rect().contains(at).then_some(at)
@@ -160,7 +159,7 @@ impl State {
         self.wipe = (at / self.picture.width.max(1.0)).clamp(0.0, 1.0);
     }
 
-    /// The border between still and moving on the screen, where it is shown.
+    /// Where the border between still and moving stands on the screen, if it is shown.
     pub fn wipe_at(&self) -> Option<f64> {
         let at = self.camera.screen_from_image(Point::new(self.picture.width * self.wipe, 0.0), self.area());
         (self.shows("view-wipe") && !self.shows("view-seam")).then(|| at.x.round().clamp(0.0, self.window.width))

@@ -69,7 +69,7 @@ impl Transport {
         }
     }
 
-    /// Runs on by `secs`, where it plays.
+    /// Runs on by `secs`, if it plays.
     pub fn advance(&mut self, secs: f64, timeline: &Timeline) {
         if self.playing {
             self.frame = bounded(self.frame + secs * self.speed * timeline.fps, timeline);
@@ -77,13 +77,13 @@ impl Transport {
         }
     }
 
-    /// Pauses at a whole frame, so many on or back.
+    /// Pauses at a whole frame, `by` frames on (or back, if negative).
     pub fn step(&mut self, by: i64, timeline: &Timeline) {
         let from = if by > 0 { self.frame.floor() } else { self.frame.ceil() };
         self.go_to(from + by as f64, timeline);
     }
 
-    /// Pauses at a frame; none: the last.
+    /// Pauses at the last frame.
     pub fn go_to_end(&mut self, timeline: &Timeline) {
         self.go_to(last(timeline), timeline);
     }

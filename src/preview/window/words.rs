@@ -1,13 +1,33 @@
 //! What the window has to say, as a value: how it is connected, how far something is, and all that is wrong.
 
+use std::fmt;
+
 use crate::base::problem::Problem;
+
+/// Something that takes long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    /// What is being done.
+    pub what: &'static str,
+    /// How far it is, once it has taken a while.
+    pub percent: Option<u8>,
+}
+
+impl fmt::Display for Work {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.percent {
+            Some(percent) => write!(f, "{}: {percent} %", self.what),
+            None => write!(f, "{}", self.what),
+        }
+    }
+}
 
 /// See the top of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Words {
     /// How the scene is followed.
     pub notice: Option<String>,
-    /// How far something is that takes long.
+    /// Progress of something that takes long.
     pub progress: Option<String>,
     /// That the picture is not shown as it is.
     pub reduced: Option<String>,
@@ -15,12 +35,12 @@ pub struct Words {
     link: Vec<Problem>,
     /// What is wrong with what the scene names, or with its synthesis.
     scene: Vec<Problem>,
-    /// The list of problems is put away, until there is another one.
+    /// The list of problems is closed until there is another problem.
     put_away: bool,
 }
 
 impl Words {
-    /// Takes what is wrong with the link; nothing: all is well again.
+    /// Takes what is wrong with the link; an empty list means that all is well again.
     pub fn follow_link(&mut self, problems: Vec<Problem>) {
         self.put_away &= self.link == problems;
         self.link = problems;
@@ -42,14 +62,14 @@ impl Words {
         if self.put_away { Vec::new() } else { self.problems().collect() }
     }
 
-    /// Puts the list away; tells whether it was shown.
+    /// Closes the list; returns whether it was shown.
     pub fn put_away(&mut self) -> bool {
         let shown = !self.listed().is_empty();
         self.put_away |= shown;
         shown
     }
 
-    /// What is wrong in one line, where something is.
+    /// What is wrong, in one line, if anything is.
     pub fn in_one_line(&self) -> Option<String> {
         let count = self.problems().count();
         let first = self.problems().next().map(ToString::to_string);

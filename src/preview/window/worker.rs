@@ -5,10 +5,12 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::show::Show;
 use super::text::Fonts;
+use super::words::Work;
 use crate::base::error::Error;
 use crate::base::fault;
 use crate::base::problem::Problem;
@@ -20,12 +22,12 @@ use crate::render::{self, Synth};
 use crate::scene::Scene;
 
 /// How long after its beginning, and how often from then on, progress is told.
-const BETWEEN: Duration = Duration::from_millis(200);
+const BETWEEN: Duration = Duration::from_millis(500);
 const SYNTHESISING: &str = "synthesising";
-/// How often a signal is looked for.
+/// How often to check for a signal.
 const LOOK: Duration = Duration::from_millis(250);
 
-/// Loads what a scene names: what there is, and what is wrong.
+/// Loads what a scene names; returns that and what is wrong with it.
 pub type Load = Box<dyn FnMut(&Scene) -> (Materials, Vec<Problem>) + Send>;
 
 /// What reaches the event loop.
@@ -58,7 +60,7 @@ pub struct Ready {
     pub revision: u64,
     /// What the synthesis took, in milliseconds.
     pub synth_ms: f64,
-    /// What is wrong with it all the same.
+    /// What is wrong with it, although it can be shown.
     pub problems: Vec<Problem>,
 }
 
@@ -78,41 +80,42 @@ impl fmt::Debug for Sent {
     }
 }
 
-/// Sends a scene to the GPU beside the event loop, which goes on drawing the one before. `most`: see [`Show::new`].
-pub fn send_to_gpu(
-    uploader: Uploader,
-    ready: Ready,
-    most: usize,
-    send: impl Fn(Event) -> bool + Clone + Send + 'static,
-) {
-    std::thread::spawn(move || {
-        let sent = progress("sending the picture to the GPU", send.clone());
-        let make = || {
-            let (show, reduced) = Show::new(ready.scene.clone(), ready.synth.clone(), most);
-            let uploaded = uploader.upload(&[&show.frames, &show.still], &sent)?;
-            Ok((show, reduced, uploaded))
-        };
-        let made = fault::caught(make).unwrap_or_else(|fault| Err(Error::at("window", fault)));
-        let lost = uploader.is_lost();
-        send(Event::Sent(Box::new(Sent { ready, made, lost })));
-    });
+/// A scene on its way to the GPU. Dropping it ends that: nothing may use the GPU once the window is gone.
+pub struct Sending {
+    thread: Option<JoinHandle<()>>,
+    stop: Arc<AtomicBool>,
 }
 
-/// Something that takes long.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Work {
-    /// What is being done.
-    pub what: &'static str,
-    /// How far it is, once it has taken a while.
-    pub percent: Option<u8>,
+impl Sending {
+    /// Sends a scene beside the event loop, which goes on drawing the one before. `most`: see [`Show::new`].
+    pub fn start(
+        uploader: Uploader,
+        ready: Ready,
+        most: usize,
+        send: impl Fn(Event) -> bool + Clone + Send + 'static,
+    ) -> Sending {
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopped = stop.clone();
+        let thread = std::thread::spawn(move || {
+            let sent = progress("sending the picture to the GPU", send.clone());
+            let make = || {
+                let (show, reduced) = Show::new(ready.scene.clone(), ready.synth.clone(), most);
+                let uploaded = uploader.upload(&[&show.frames, &show.still], &sent, &stopped)?;
+                Ok((show, reduced, uploaded))
+            };
+            let made = fault::caught(make).unwrap_or_else(|fault| Err(Error::at("window", fault)));
+            let lost = uploader.is_lost();
+            drop(uploader);
+            send(Event::Sent(Box::new(Sent { ready, made, lost })));
+        });
+        Sending { thread: Some(thread), stop }
+    }
 }
 
-impl fmt::Display for Work {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.percent {
-            Some(percent) => write!(f, "{}: {percent} %", self.what),
-            None => write!(f, "{}", self.what),
-        }
+impl Drop for Sending {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.thread.take().into_iter().for_each(|thread| drop(thread.join()));
     }
 }
 
@@ -132,7 +135,7 @@ pub fn progress(what: &'static str, send: impl Fn(Event) -> bool + Send + 'stati
     })
 }
 
-/// Starts both threads. `send` gives an event to the event loop and tells whether that is still there.
+/// Starts both threads. `send` passes an event to the event loop; it returns false once that is gone.
 pub fn start(
     updates: Receiver<Update>,
     load: Load,

@@ -1,4 +1,4 @@
-//! There is no X server on this system: what `x11.rs` does where there is one.
+//! Stands in for `x11.rs` on systems without an X server.
 
 use winit::window::Window;
 

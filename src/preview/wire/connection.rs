@@ -16,9 +16,9 @@ const STUCK: Duration = Duration::from_secs(10);
 
 /// An open connection: two halves that may live on two threads, and a way to end both.
 pub struct Wire {
-    /// What the other end says.
+    /// Reads what the other end says.
     pub reader: Box<dyn Read + Send>,
-    /// What it is told.
+    /// Writes what the other end is told.
     pub writer: Box<dyn Write + Send>,
     /// Ends both halves from any thread.
     pub hang_up: HangUp,
@@ -29,7 +29,7 @@ pub struct Wire {
 pub struct HangUp(Arc<dyn Fn() + Send + Sync>);
 
 impl HangUp {
-    /// A connection that is ended by `how`, which may be done more than once.
+    /// A connection that is ended by `how`, which may be called more than once.
     pub fn new(how: impl Fn() + Send + Sync + 'static) -> HangUp {
         HangUp(Arc::new(how))
     }
@@ -46,12 +46,12 @@ impl Wire {
         stream.set_read_timeout(None)?;
         stream.set_write_timeout(Some(STUCK))?;
         let (reader, writer) = (stream.try_clone()?, stream.try_clone()?);
-        // Already ended is as good.
+        // It may have ended already.
         let hang_up = HangUp::new(move || drop(stream.shutdown(Shutdown::Both)));
         Ok(Wire { reader: Box::new(reader), writer: Box::new(writer), hang_up })
     }
 
-    /// The same, ended once nothing is heard for so long: for pipes to another machine, which may go without a word.
+    /// The same, ended once nothing has arrived for this long: for pipes to another machine, which may vanish silently.
     pub fn watched(self, most: Duration) -> Wire {
         let heard = Arc::new(Mutex::new(Instant::now()));
         let (seen, hang_up) = (Arc::downgrade(&heard), self.hang_up.clone());
@@ -69,7 +69,7 @@ impl Wire {
     }
 }
 
-/// A reader that notes when it last heard something.
+/// A reader that notes when something last arrived.
 struct Noted {
     reader: Box<dyn Read + Send>,
     heard: Arc<Mutex<Instant>>,

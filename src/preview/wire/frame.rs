@@ -11,20 +11,20 @@ use crate::scene::{self, json};
 
 /// Version of the protocol.
 const PROTOCOL: u8 = 2;
-/// What both ends must have the same: the protocol, and above it how much newer than the first the format of scenes is, since
-/// documents and patches go over the link as they are.
+/// What must be equal at both ends: the version of the protocol, and in the upper byte how much newer than the first the format
+/// of scenes is, since documents and patches go over the link as they are.
 pub const VERSION: u16 = u16::from_le_bytes([PROTOCOL, scene::VERSION as u8 - 1]);
 
 const MAGIC: [u8; 4] = *b"PLCA";
 const HEADER: usize = 12;
-/// Bytes of memory that a message may take once it is read.
+/// The most bytes of memory that a message may take once it is read.
 const MOST_MEMORY: u64 = 1 << 30;
 pub(super) const KIND_JSON: u16 = 1;
 /// JSON, a line end, and bytes that belong to it.
 pub(super) const KIND_BYTES: u16 = 2;
 pub(super) const STEP: usize = 64 << 10;
 
-/// What is wrong where something else speaks, as a shell's start-up files may.
+/// The error if something else speaks, as a shell's start-up files may.
 pub const NOT_PLICA: &str = "the other end is not plica";
 
 /// The most bytes that an editor and a script accept in one message.
@@ -32,7 +32,10 @@ pub fn most() -> u64 {
     Limits::default().message
 }
 
-/// Writes one message, in one go. How long it may be is the reader's to say; fails where the other end is gone.
+/// Writes one message, in one go. Its length is limited by the reader alone.
+///
+/// # Errors
+/// The other end is gone.
 pub fn write(to: &mut impl Write, message: &impl Message) -> Result<()> {
     let mut whole = vec![0; HEADER];
     serde_json::to_writer(&mut whole, message).map_err(|e| Error::at("link", e))?;
@@ -49,8 +52,8 @@ pub fn write(to: &mut impl Write, message: &impl Message) -> Result<()> {
     to.write_all(&whole).and_then(|()| to.flush()).map_err(|e| broken(&e))
 }
 
-/// Reads one message of at most `most` bytes ([`Limits::message`](crate::files::Limits::message)); `None` where the other
-/// end left between messages.
+/// Reads one message of at most `most` bytes ([`Limits::message`](crate::files::Limits::message)); `None` if the
+/// other end left between messages.
 pub fn read<T: Message>(from: &mut impl Read, most: u64) -> Result<Option<T>> {
     let Some((kind, length)) = read_header(from, most)? else { return Ok(None) };
     let mut body = read_body(from, length as usize)?;
@@ -113,7 +116,7 @@ fn read_header(from: &mut impl Read, most: u64) -> Result<Option<(u16, u32)>> {
     if u64::from(length) > most { Err(too_long(length.into(), most)) } else { Ok(Some((kind, length))) }
 }
 
-/// Reads in steps, so that memory is taken for what came and never for what was announced.
+/// Reads in steps, so that memory is taken for what arrived, never for what was announced.
 fn read_body(from: &mut impl Read, len: usize) -> Result<Vec<u8>> {
     let mut body = Vec::new();
     while body.len() < len {

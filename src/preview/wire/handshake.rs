@@ -19,7 +19,8 @@ pub const HANDSHAKE: Duration = Duration::from_secs(2);
 pub const LEFT: &str = "the editor left at once";
 
 impl Caller {
-    /// The editor's part of shaking hands: who is it, and in time. The answer, a [`FromEditor::Hello`], is still to be sent.
+    /// The editor's part of the handshake: finds out in time who connects. The answer, a [`FromEditor::Hello`], is still to be
+    /// sent.
     pub fn greet(self) -> Result<(Role, Wire)> {
         check_peer(&self.0)?;
         let hello = frame::read(&mut Timed { stream: &self.0, until: Instant::now() + HANDSHAKE }, most());
@@ -32,14 +33,14 @@ impl Caller {
             Err(error) => error,
         };
         drop(self.0.set_write_timeout(Some(HANDSHAKE)));
-        // A courtesy: who does not understand it is refused all the same.
+        // A courtesy: an end that does not understand it is refused all the same.
         drop(frame::write(&mut &self.0, &FromEditor::Bye(reason.to_string())));
         Err(reason)
     }
 }
 
-/// The other part: joins the editor that has `scene` open and returns its hello, of `most` bytes. `None` where nobody has,
-/// or nobody can have for want of a folder for sockets.
+/// The other part: joins the editor that has `scene` open and returns its hello, of at most `most` bytes. `None` if no editor
+/// has it open, or if there is no folder for sockets.
 pub fn join(scene: &Path, role: Role, most: u64) -> Result<Option<(FromEditor, Wire)>> {
     let Ok(path) = socket_path(scene) else { return Ok(None) };
     let Ok(stream) = UnixStream::connect(path) else { return Ok(None) };
@@ -51,8 +52,8 @@ pub fn join(scene: &Path, role: Role, most: u64) -> Result<Option<(FromEditor, W
     Ok(Some((hello, wire)))
 }
 
-/// Says hello and returns the answer, a [`FromEditor::Hello`] of at most `most` bytes. Where hello cannot be written, what
-/// the other end has said before it left tells more than the broken pipe does.
+/// Says hello and returns the answer, a [`FromEditor::Hello`] of at most `most` bytes. If hello cannot be written, what the
+/// other end said before it left is a better error than the broken pipe.
 pub fn shake_hands(to: &mut impl Write, from: &mut impl Read, role: Role, most: u64) -> Result<FromEditor> {
     let written = frame::write(to, &ToEditor::Hello { program: env!("CARGO_PKG_VERSION").into(), role });
     let answer = frame::read(from, most)?;
@@ -75,7 +76,7 @@ fn check_peer(stream: &UnixStream) -> Result<()> {
     }
 }
 
-/// Reads that all together end by one time, so that a peer cannot stretch them byte by byte.
+/// Reads with one deadline for all of them, so that a peer cannot stretch them byte by byte.
 struct Timed<'a> {
     stream: &'a UnixStream,
     until: Instant,

@@ -34,7 +34,7 @@ pub enum FromEditor {
         /// The edits, joined.
         patch: Edit,
     },
-    /// The whole document, where a patch would be longer or does not fit.
+    /// The whole document, if a patch would be longer or does not fit.
     Scene {
         /// Revision of `document`.
         revision: u64,
@@ -49,13 +49,13 @@ pub enum FromEditor {
     View(String),
     /// The overlay and zoom commands in force, for a window that was not there when they were given.
     Views(Vec<String>),
-    /// What the scene names, for a window on another machine, which asks for what it has not got.
+    /// The files that the scene names, for a window on another machine, which requests those that it does not have.
     Images(Vec<Original>),
     /// Answers a [`ToEditor::Want`]: the bytes from there on, at most [`PIECE`](crate::files::originals::PIECE).
     Piece {
         /// SHA-256 of the file, in hexadecimal.
         hash: String,
-        /// Where the bytes stand in the file.
+        /// Position of the bytes in the file.
         offset: u64,
         /// The bytes; `None` if the file is not there any more.
         #[serde(skip)]
@@ -63,13 +63,13 @@ pub enum FromEditor {
     },
     /// One line for the person at a window on another machine.
     Notice(String),
-    /// All that is wrong with what is followed there.
+    /// All that is wrong with the scene that is followed there.
     Problems(Vec<Problem>),
-    /// Nothing happened, and the other end is still there.
+    /// Nothing happened; this end is still there.
     Alive,
     /// Answers a [`ToEditor::Edit`]: no problems means done.
     Edited(Vec<Problem>),
-    /// The editor leaves, or will not talk to this peer; the reason, for people.
+    /// The editor leaves, or refuses this peer; the reason, for people.
     Bye(String),
 }
 
@@ -94,7 +94,7 @@ pub enum ToEditor {
         /// Window or script.
         role: Role,
     },
-    /// The document of this revision is synthesised and shown.
+    /// The document of this revision has been synthesised and is shown.
     Ack {
         /// The revision shown.
         revision: u64,
@@ -109,7 +109,7 @@ pub enum ToEditor {
         fps: f64,
         /// Name of the graphics adapter.
         adapter: String,
-        /// One line for the editor's status, empty where all is well.
+        /// One line for the editor's status; empty if all is well.
         notice: String,
     },
     /// The pointer, in pixels of the picture.
@@ -123,14 +123,14 @@ pub enum ToEditor {
     Transport(Transport),
     /// A request by command name.
     Command(String),
-    /// A window on another machine asks for a piece of a file that [`FromEditor::Images`] told of.
+    /// A window on another machine requests a piece of a file that [`FromEditor::Images`] announced.
     Want {
         /// SHA-256 of the file, in hexadecimal.
         hash: String,
-        /// Where the piece begins.
+        /// Position of the piece in the file, in bytes.
         offset: u64,
     },
-    /// Nothing happened, and the window is still there.
+    /// Nothing happened; the window is still there.
     Alive,
     /// A change asked for by a script.
     Edit {
@@ -176,7 +176,7 @@ pub trait Message: Serialize + DeserializeOwned {
         None
     }
 
-    /// Where the bytes that came after its JSON go; nowhere in most messages.
+    /// Where to put the bytes that came after its JSON; `None` for most messages.
     fn bytes_mut(&mut self) -> Option<&mut Vec<u8>> {
         None
     }

@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 use crate::base::error::{Error, Result};
 use crate::base::system;
 
-/// Where the socket of a scene lies.
+/// The path of a scene's socket.
 pub fn socket_path(scene: &Path) -> Result<PathBuf> {
     let folder = system::folders::runtime();
     let folder = folder.map_err(|e| Error::at("folder for sockets", e).cure("set XDG_RUNTIME_DIR to one of yours"))?;
@@ -36,20 +36,20 @@ fn socket_name(canonical: &Path) -> String {
 #[derive(Debug)]
 pub struct Listener(UnixListener);
 
-/// Keeps the socket of a [`Listener`] where windows find it. Dropping it takes the socket away and wakes who listens.
+/// Keeps the socket of a [`Listener`] in its folder. Dropping it removes the socket and wakes the listener.
 #[derive(Debug)]
 pub struct Door {
     path: PathBuf,
-    /// An editor died here before and left its socket; its windows may still be there and come back.
+    /// An editor died and left its socket behind; its windows may still be there and come back.
     pub orphans: bool,
 }
 
 impl Listener {
-    /// Listens for windows of `scene`. Fails where another editor does already.
+    /// Listens for windows of `scene`. Fails if another editor already does.
     pub fn open(scene: &Path) -> Result<(Listener, Door)> {
         let path = socket_path(scene)?;
         let place = |e| Error::at(path.display(), e);
-        // Two editors that start at once must not take each other's fresh socket for a stale one.
+        // Two editors that start at once must not mistake each other's new socket for a stale one.
         let _turn = turn(&path.with_file_name("lock")).map_err(place)?;
         let orphans = remove_stale(&path)?;
         let socket = UnixListener::bind(&path).map_err(place)?;
@@ -65,13 +65,13 @@ impl Listener {
 
 impl Drop for Door {
     fn drop(&mut self) {
-        // Whether anybody hears or the file is still there makes no difference any more.
+        // The listener or the file may be gone already.
         drop(UnixStream::connect(&self.path));
         drop(fs::remove_file(&self.path));
     }
 }
 
-/// Waits for this process's turn; it ends when the file is dropped.
+/// Waits for the lock between starting editors; dropping the file releases it.
 fn turn(path: &Path) -> io::Result<File> {
     let file = File::options()
         .write(true)
@@ -84,7 +84,7 @@ fn turn(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Removes a socket at which nobody answers; tells whether there was one.
+/// Removes a socket that does not answer; returns whether there was one.
 fn remove_stale(path: &Path) -> Result<bool> {
     match UnixStream::connect(path) {
         Ok(_) => Err(Error::at("link", "another editor has this scene open").cure("edit there, or close it")),

@@ -2,6 +2,7 @@
 //! came in, so that an edit of one zone uploads only that zone. What a scene no longer uses is let go.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::device::{Device, failed};
 use crate::base::error::Result;
@@ -40,7 +41,7 @@ pub fn upload_all(
     device: &Device,
     wanted: impl Iterator<Item = Arc<dyn Upload>>,
     known: &[Arc<dyn Upload>],
-    sent: &Progress,
+    (sent, stop): (&Progress, &AtomicBool),
 ) -> Result<Uploaded> {
     let mut new: Vec<Arc<dyn Upload>> = Vec::new();
     for of in wanted {
@@ -53,7 +54,10 @@ pub fn upload_all(
     let one = |of: Arc<dyn Upload>| {
         let packed = of.pack();
         let count = packed.len().max(1) as u64;
-        let done = |share: f64| sent.done((PIECES as f64 * share) as u64 / count);
+        let done = |share: f64| {
+            sent.done((PIECES as f64 * share) as u64 / count);
+            !stop.load(Ordering::Relaxed)
+        };
         let textures = packed.iter().map(|packed| upload(device, packed, &done)).collect::<Result<_>>()?;
         drop(packed);
         Ok(Row { of, textures, used: true })
@@ -76,7 +80,7 @@ struct Row {
 impl Kept {
     /// One of the textures that something is packed into, uploaded if it is new.
     pub fn get(&mut self, device: &Device, of: &Arc<dyn Upload>, part: usize) -> Result<Texture> {
-        let textures = self.all(of, |of| of.pack().iter().map(|packed| upload(device, packed, &|_| {})).collect())?;
+        let textures = self.all(of, |of| of.pack().iter().map(|packed| upload(device, packed, &|_| true)).collect())?;
         textures.get(part).cloned().ok_or_else(|| failed(format!("a plan wants texture {part} of {}", textures.len())))
     }
 
@@ -131,8 +135,9 @@ pub fn format(format: Format) -> (wgpu::TextureFormat, usize) {
     }
 }
 
-/// Makes a texture, band by band of its rows; `done` hears what share of them was sent.
-fn upload(device: &Device, packed: &Packed<'_>, done: &dyn Fn(f64)) -> Result<Texture> {
+/// Makes a texture, band by band of its rows; `done` hears what share of them was sent, and returns
+/// whether to go on.
+fn upload(device: &Device, packed: &Packed<'_>, done: &dyn Fn(f64) -> bool) -> Result<Texture> {
     let (width, height) = packed.size;
     check_size(device, width, height)?;
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -155,7 +160,9 @@ fn upload(device: &Device, packed: &Packed<'_>, done: &dyn Fn(f64)) -> Result<Te
             device.queue.submit([]);
         };
         device.checked(|| (packed.rows)(y..y + rows, &mut send))?;
-        done(rows as f64 / height as f64);
+        if !done(rows as f64 / height as f64) {
+            return Err(failed("stopped"));
+        }
     }
     Ok(Texture { view: texture.create_view(&Default::default()), format: packed.format })
 }

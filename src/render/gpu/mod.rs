@@ -1,6 +1,7 @@
 //! Frames drawn by the GPU: the same pictures as `render::cpu`, at display rate. The only module besides the window that
 //! names wgpu; it owns the device and makes a new one where the old is lost.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, mpsc};
 
 use crate::base::error::Result;
@@ -34,15 +35,15 @@ impl Uploader {
     /// Uploads what the frames of scenes need and is not on the device yet. `sent` counts how far that is.
     ///
     /// # Errors
-    /// The device is lost, or has not enough memory.
-    pub fn upload(&self, scenes: &[&Synth], sent: &Progress) -> Result<Uploaded> {
+    /// The device is lost, or has not enough memory; or `stop` was set, soon after that.
+    pub fn upload(&self, scenes: &[&Synth], sent: &Progress, stop: &AtomicBool) -> Result<Uploaded> {
         let layers = scenes.iter().flat_map(|synth| synth.layers.iter().map(|layer| layer.plan(&synth.moment(0.0))));
         let binds = layers.flat_map(|plan| plan.draws).flat_map(|draw| draw.binds);
         let wanted = binds.filter_map(|bind| match bind {
             Bind::Upload(of, _) => Some(of),
             Bind::Bytes(_) => None,
         });
-        kept::upload_all(&self.device, wanted, &self.known, sent)
+        kept::upload_all(&self.device, wanted, &self.known, (sent, stop))
     }
 
     /// Whether its device is gone.

@@ -13,7 +13,7 @@ use cosmic_text::{
     SwashCache, Wrap,
 };
 
-use super::canvas::{Color, Stroke};
+use super::stroke::{Color, Stroke};
 use atlas::Spot;
 use fonts::OWN;
 

@@ -1,0 +1,16 @@
+//! The colors and sizes of everything around the picture.
+
+use super::stroke::Color;
+
+/// The ground around the picture.
+pub const GROUND: Color = [18, 20, 24, 255];
+pub const PANEL: Color = [22, 24, 29, 238];
+pub const RAIL: Color = [58, 64, 74, 255];
+pub const ACCENT: Color = [86, 180, 233, 255];
+pub const TEXT: Color = [205, 210, 218, 255];
+pub const WARNING: Color = [240, 160, 40, 255];
+pub const DIM: Color = [132, 141, 153, 255];
+
+/// Height of a capital, in logical pixels.
+pub const TEXT_PX: f64 = 8.0;
+pub const MARGIN_PX: f64 = 12.0;
