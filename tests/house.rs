@@ -38,7 +38,7 @@ const SHARED: &str = "parts";
 const LIST: &str = "layers/mod.rs";
 
 /// What still names a technique.
-const NAMES_LEFT: &[&str] = &["export/textures/"];
+const NAMES_LEFT: &[&str] = &[];
 
 const MOST_LINES: usize = 500;
 

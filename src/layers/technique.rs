@@ -5,8 +5,9 @@ use std::any::Any;
 use std::sync::Arc;
 
 use kurbo::{Point, Rect, Vec2};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
+use super::parts::bundle::{Names, Sink};
 use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{Materials, Use};
 use super::parts::passes::Program;
@@ -14,6 +15,7 @@ use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready, Whole};
 use super::timeline::Wrap;
+use crate::base::error::Error;
 use crate::base::problem::Problem;
 
 /// What a layer of the document can be asked.
@@ -134,6 +136,8 @@ pub struct Kind {
     pub name: &'static str,
     /// Every program that its layers are drawn with.
     pub programs: &'static [&'static Program],
+    /// What becomes of its layers for other engines; `None` if it has no textures for them.
+    pub bundle: Option<Bundle>,
     /// What a scene may not have too much of.
     pub counted: &'static [Counted],
     /// What can be drawn over the picture to explain it.
@@ -154,6 +158,24 @@ pub struct Kind {
     pub item: fn(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)>,
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,
+}
+
+/// All layers of one technique as textures for other engines.
+#[derive(Debug)]
+pub struct Bundle {
+    /// The names that the files may have.
+    pub names: fn(layers: &[&dyn Technique]) -> Names,
+    /// Writes the textures, and gives what the manifest says about them, in order.
+    pub write: fn(layers: &[Bundled], to: &mut dyn Sink) -> Result<Map<String, Value>, Error>,
+}
+
+/// A layer to be bundled.
+#[derive(Clone, Copy)]
+pub struct Bundled<'a> {
+    /// What stands in the document.
+    pub layer: &'a dyn Technique,
+    /// What was made of it.
+    pub ready: &'a dyn Ready,
 }
 
 /// A kind of thing that a scene may not have too much of: a row of `--limit`.

@@ -3,11 +3,11 @@
 use std::io::Cursor;
 
 use image::{ExtendedColorType, ImageEncoder, codecs::openexr::OpenExrEncoder};
-use serde::Serialize;
 
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Grid;
 use crate::export::still;
+use crate::layers::parts::bundle::{Channel, ChannelNote, Texture, TextureNote};
 
 /// How many bits a number takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,74 +46,6 @@ impl Depth {
             Depth::Eight => Some(255),
         }
     }
-}
-
-/// What a channel holds.
-#[derive(Clone, Copy, Debug)]
-pub struct Channel {
-    /// Its name.
-    pub name: &'static str,
-    /// What its numbers mean.
-    pub meaning: &'static str,
-    /// Channels of one group have one scale.
-    pub group: u8,
-    /// Pixels a unit, for numbers that are places.
-    pub pixels: Option<f64>,
-}
-
-impl Channel {
-    /// A channel of plain numbers.
-    pub const fn new(name: &'static str, meaning: &'static str, group: u8) -> Self {
-        Channel { name, meaning, group, pixels: None }
-    }
-}
-
-/// A data texture; channels without a meaning hold 0.
-pub struct Texture {
-    /// The numbers.
-    pub values: Grid<[f64; 4]>,
-    /// What they mean, in the order R, G, B, A.
-    pub channels: Vec<Channel>,
-}
-
-/// How a channel is read: value = (code - zero) / (one - zero) * scale; a float is the value itself.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ChannelNote {
-    /// R, G, B or A.
-    pub channel: &'static str,
-    /// Its name.
-    pub name: &'static str,
-    /// What its numbers mean.
-    pub meaning: &'static str,
-    /// The code of 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub zero: Option<u16>,
-    /// The code of `scale`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub one: Option<u16>,
-    /// The value of the code `one`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scale: Option<f64>,
-    /// The largest difference between a number and what is read back, measured over the texture.
-    pub error: f64,
-    /// The same in pixels, for places.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error_px: Option<f64>,
-}
-
-/// A written texture in the manifest.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TextureNote {
-    /// The file, in the folder of the manifest.
-    pub file: String,
-    /// Columns.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Bits a number; 32 are floats.
-    pub bits: u8,
-    /// What the channels hold; those not named hold nothing.
-    pub channels: Vec<ChannelNote>,
 }
 
 impl Texture {

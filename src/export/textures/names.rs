@@ -9,51 +9,63 @@ use serde_json::Value;
 use super::Depth;
 use crate::files::lines;
 use crate::files::scene::hash;
-use crate::layers::Layer;
+use crate::layers::KINDS;
+use crate::layers::parts::bundle;
+use crate::layers::technique::{Kind, Technique};
 use crate::scene::Scene;
 
 /// The file that names all others.
 pub const MANIFEST: &str = "manifest.json";
-/// The color atlas.
-pub const COLOUR: &str = "colour.png";
-/// The same in floats.
-pub const LIGHT: &str = "colour.exr";
+/// The extensions of a picture: in codes and in floats.
+pub const PICTURES: [&str; 2] = ["png", "exr"];
 
 /// The names that the textures of a scene may have.
 pub struct Names {
-    fixed: Vec<String>,
-    /// Beginnings of the names of zones' files.
-    stems: Vec<String>,
+    /// Of each technique, with the beginnings of the names of its items' files.
+    bundles: Vec<(bundle::Names, Vec<String>)>,
     extension: &'static str,
 }
 
 impl Names {
     /// Those of `scene` at this depth.
     pub fn of(scene: &Scene, depth: Depth) -> Names {
-        let several = scene.layers.len() > 1;
-        let pictures = scene.layers.iter().filter_map(|layer| match layer {
-            Layer::Picture(picture) => Some(picture),
-            _ => None,
+        let bundles = KINDS.iter().filter_map(|kind| {
+            let layers: Vec<&dyn Technique> = of_kind(scene, kind).map(|(_, layer)| layer).collect();
+            kind.bundle.as_ref().filter(|_| !layers.is_empty()).map(|bundle| (bundle.names)(&layers))
         });
-        let stems = pictures.flat_map(|picture| {
-            picture.zones.iter().map(move |zone| stem(several.then_some(&*picture.name), &zone.name))
-        });
-        let extension = depth.extension();
-        let fixed = vec![MANIFEST.to_owned(), COLOUR.to_owned(), LIGHT.to_owned(), format!("function.{extension}")];
-        Names { fixed, stems: stems.collect(), extension }
+        let stems = |names: &bundle::Names| {
+            names.items.iter().map(|(layer, item)| stem(layer.as_deref(), item)).collect::<Vec<_>>()
+        };
+        let bundles = bundles.map(|names| (names.clone(), stems(&names)));
+        Names { bundles: bundles.collect(), extension: depth.extension() }
     }
 
     /// Whether a file of this name may be made.
     pub fn may_be(&self, name: &str) -> bool {
+        name == MANIFEST || self.bundles.iter().any(|(bundle, stems)| self.is_of(bundle, stems, name))
+    }
+
+    fn is_of(&self, bundle: &bundle::Names, stems: &[String], name: &str) -> bool {
+        let Some((name, extension)) = name.rsplit_once('.') else { return false };
+        let picture = PICTURES.contains(&extension) && bundle.pictures.iter().any(|picture| picture == name);
         let texture = |stem: &String| {
-            let rest = name.strip_prefix(stem.as_str())?.strip_suffix(self.extension)?.strip_suffix('.')?;
-            // Zones of the same name are numbered.
+            let rest = name.strip_prefix(stem.as_str())?;
+            // Things of the same name are numbered.
             let part = rest.trim_start_matches(|c: char| c.is_ascii_digit());
             let part = if part.len() < rest.len() { part.strip_prefix('-')? } else { part };
-            ["init", "jump", "thresholds"].contains(&part).then_some(())
+            bundle.ends.contains(&part).then_some(())
         };
-        self.fixed.iter().any(|fixed| fixed == name) || self.stems.iter().any(|stem| texture(stem).is_some())
+        let texture = |name: &str| {
+            bundle.textures.iter().any(|own| own == name) || stems.iter().any(|stem| texture(stem).is_some())
+        };
+        picture || (extension == self.extension && texture(name))
     }
+}
+
+/// The layers of a kind, each with its index.
+pub fn of_kind<'a>(scene: &'a Scene, kind: &'a Kind) -> impl Iterator<Item = (usize, &'a dyn Technique)> {
+    let layers = scene.layers.iter().map(|layer| layer.technique()).enumerate();
+    layers.filter(|(_, layer)| layer.kind().name == kind.name)
 }
 
 /// The longest beginning of a file's name, in bytes: with what follows it no file system takes it for too long.

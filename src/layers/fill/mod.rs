@@ -20,6 +20,7 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "fill",
     programs: &[&synth::PROGRAM],
+    bundle: None,
     counted: &[],
     overlays: &[],
     looks: &[],

@@ -5,6 +5,7 @@ pub mod anchor;
 pub mod anchors;
 pub mod atlas;
 pub mod breaks;
+pub mod bundle;
 pub mod check;
 pub mod counts;
 pub mod field;
@@ -46,7 +47,7 @@ use super::parts::materials::{Materials, Use};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Prepared, Ready};
-use super::technique::{Checked, Count, Counted, Kind, Technique, Turned};
+use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
@@ -54,6 +55,7 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "picture",
     programs: passes::PROGRAMS,
+    bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },
         Counted { name: "points", help: "points of a scene's outlines", most: 1_000_000 },

@@ -1,5 +1,6 @@
 //! What crosses the border of a technique: plain data. Names no technique and nothing of what shows or draws.
 
+pub mod bundle;
 pub mod marks;
 pub mod materials;
 pub mod moment;

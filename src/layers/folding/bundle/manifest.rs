@@ -1,28 +1,15 @@
-//! The manifest of a folder of textures: everything a player must know besides the numbers in them.
+//! What a manifest says about layers that fold: everything a player must know besides the numbers in the textures.
 
 use serde::Serialize;
 
-use super::data::TextureNote;
 use super::function::Knot;
 use crate::layers::folding::breaks::Break;
-use crate::layers::timeline::{Timeline, Wrap};
+use crate::layers::parts::bundle::{PictureNote, TextureNote};
+use crate::layers::timeline::Wrap;
 
-/// The version of this format; a player refuses a larger one.
-pub const VERSION: u32 = 1;
-
-/// What `manifest.json` holds.
+/// What the manifest says about layers that fold.
 #[derive(Debug, Serialize)]
 pub struct Manifest {
-    /// [`VERSION`].
-    pub plica_textures: u32,
-    /// The scene's title.
-    pub title: String,
-    /// Width and height of a frame, in pixels.
-    pub size: [usize; 2],
-    /// Length, frame rate and what follows the end.
-    pub timeline: Timeline,
-    /// Number of frames.
-    pub frames: u64,
     /// How all of it is read, in words.
     pub conventions: Conventions,
     /// The colour atlas.
@@ -69,24 +56,15 @@ pub const CONVENTIONS: Conventions = Conventions {
 /// The colour atlas in the manifest.
 #[derive(Debug, Serialize)]
 pub struct Colour {
-    /// The file: sRGB with straight alpha, 8 bits.
-    pub file: String,
-    /// The same in floats, linear light premultiplied by alpha, where a picture holds light that 8 bits cannot.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub float: Option<Light>,
+    /// The files.
+    #[serde(flatten)]
+    pub files: PictureNote,
     /// Columns.
     pub width: usize,
     /// Rows.
     pub height: usize,
     /// Its pieces.
     pub pieces: Vec<PieceNote>,
-}
-
-/// The color atlas in floats.
-#[derive(Debug, Serialize)]
-pub struct Light {
-    /// The file.
-    pub file: String,
 }
 
 /// A piece of the atlas.

@@ -1,10 +1,10 @@
 //! Thresholds of a zone as textures: the first stretch on which each pixel moves, and, where that does not tell all,
 //! every place at which its path meets the fold regions.
 
-use super::data::{Channel, Texture};
 use crate::base::pixels::Grid;
 use crate::layers::folding::field::{Field, Folds};
 use crate::layers::folding::fold::Rule;
+use crate::layers::parts::bundle::{Channel, Texture};
 
 /// Crossings of all pixels, in blocks of the box's size stacked downward.
 pub struct Thresholds {

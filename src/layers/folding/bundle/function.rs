@@ -1,9 +1,9 @@
 //! Position functions as a texture: one row per zone, columns spread evenly in τ. The manifest adds knots between them:
 //! where s jumps or bends, and where it is too steep for straight lines from column to column.
 
-use super::data::{Channel, Texture};
 use crate::base::pixels::Grid;
 use crate::layers::folding::position::Position;
+use crate::layers::parts::bundle::{Channel, Texture};
 
 /// Numbers of columns, the first that will do is taken.
 const COLUMNS: [usize; 4] = [1024, 4096, 16384, 65536];
