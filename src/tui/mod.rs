@@ -19,7 +19,8 @@ pub use commands::own_keys::read as keymap;
 pub use events::Change;
 pub use keys::Keymap;
 pub use outside::offscreen::Offscreen;
-pub use outside::runner::{Options, run};
+pub use outside::options::Options;
+pub use outside::runner::run;
 
 #[cfg(test)]
 mod tests;

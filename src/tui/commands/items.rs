@@ -1,10 +1,11 @@
 //! Rows and nodes as a whole: added, taken away, doubled and moved.
 
+use crate::scene::{Document, address};
+use crate::tui::document::pointers::item_of;
+use crate::tui::text::plain;
 use serde_json::{Map, Value, json as value};
 
 use super::command::{Call, Command, Done, command};
-use super::naming::unused;
-use super::yanking::stem;
 use crate::base::budget;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
@@ -32,13 +33,6 @@ pub fn target(state: &State) -> Result<String, String> {
     }
 }
 
-fn split_item(state: &State, pointer: &str) -> Option<(String, usize)> {
-    let (list, index) = pointer.rsplit_once('/')?;
-    let index = index.parse().ok()?;
-    let is_list = field::field(state.document(), list).is_some_and(|field| matches!(field.kind, Kind::List(_)));
-    is_list.then(|| (list.to_string(), index))
-}
-
 /// The nodes or rows that a command applies to as a whole, in their order: the selection, else as many as the count says
 /// from the one under the cursor on, as far as its list goes.
 pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
@@ -47,7 +41,7 @@ pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
         return Ok(rows(state, call)?.filter_map(|i| sheet.pointer(i)).collect());
     }
     let node = target(state)?;
-    match (call.count, split_item(state, &node)) {
+    match (call.count, item_of(state.document(), &node).map(owned)) {
         (None | Some(1), _) => Ok(vec![node]),
         (Some(_), None) => Err("only items of a list are counted: go to one".into()),
         (Some(count), Some((list, index))) => {
@@ -112,7 +106,10 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
     let in_list = match (&field.kind, there) {
         (Kind::List(_), _) => true,
         (Kind::Map(_), _) | (Kind::Object | Kind::Tagged { .. }, false) => false,
-        _ => split_item(state, &pointer).or_else(|| split_item(state, &state.node)).is_some(),
+        _ => item_of(state.document(), &pointer)
+            .map(owned)
+            .or_else(|| item_of(state.document(), &state.node).map(owned))
+            .is_some(),
     };
     if times > 1 && !in_list {
         return Err("only items of a list are added several at a time".into());
@@ -127,11 +124,11 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         (Kind::Object, false) => add_object(state, &pointer),
         (Kind::List(_), _) => insert(state, &pointer.clone(), end(), times),
         (Kind::Map(_), _) => ask_for_path(state),
-        _ => match split_item(state, &pointer) {
+        _ => match item_of(state.document(), &pointer).map(owned) {
             Some((list, index)) => insert(state, &list, index + 1, times),
             None if pointer.starts_with("/images/") => ask_for_path(state),
             None if state.focus == Pane::Tree => Err("o adds to lists: go to a list or to one of its items".into()),
-            None => match split_item(state, &state.node.clone()) {
+            None => match item_of(state.document(), &state.node.clone()).map(owned) {
                 Some((list, index)) => insert(state, &list, index + 1, times),
                 None => Err("nothing can be added here".into()),
             },
@@ -206,14 +203,14 @@ fn delete(state: &mut State, call: &Call) -> Done {
 /// The items that an edit of whole rows applies to: their list, the first and the last.
 fn block(state: &State) -> Result<(String, usize, usize), String> {
     let one = || -> Option<(String, usize, usize)> {
-        let (list, index) = split_item(state, &target(state).ok()?)?;
+        let (list, index) = item_of(state.document(), &target(state).ok()?).map(owned)?;
         Some((list, index, index))
     };
     if state.focus == Pane::Tree || state.selected_from.is_none() {
         return one().ok_or("only items of lists are duplicated and moved".into());
     }
     let (sheet, rows) = (state.sheet(), entry::rows(state));
-    let end = |row: usize| split_item(state, &sheet.pointer(row)?);
+    let end = |row: usize| item_of(state.document(), &sheet.pointer(row)?).map(owned);
     match (end(*rows.start()), end(*rows.end())) {
         (Some((list, from)), Some((other, to))) if list == other => Ok((list, from, to)),
         _ => Err("only items of one list are duplicated and moved together".into()),
@@ -314,4 +311,28 @@ fn reorder(state: &mut State, call: &Call) -> Done {
     state.edit(edit, false)?;
     follow(state, &list, (from as i64 + by) as usize, by);
     Ok(())
+}
+
+/// Whether nothing names what is to go; else who does. Only pictures are named.
+fn unused(document: &Document, path: &str) -> Done {
+    let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == "/images") else { return Ok(()) };
+    let users = document.scene().users_of_image(&name);
+    let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();
+    match users.as_slice() {
+        [] => Ok(()),
+        [first, rest @ ..] => {
+            let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+            Err(plain(&format!("{name} is used by {first}{more}: choose another picture there first")))
+        }
+    }
+}
+
+/// The name of a file without its folder and its ending.
+pub fn stem(path: &str) -> &str {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    file.split_once('.').map_or(file, |(stem, _)| stem)
+}
+
+fn owned((list, index): (&str, usize)) -> (String, usize) {
+    (list.to_owned(), index)
 }

@@ -3,10 +3,9 @@
 use super::command::{Call, Command, Done, command};
 use super::items::{go_to, target};
 use crate::base::problem::quoted;
-use crate::scene::{Document, Edit, address, field, pointer};
+use crate::scene::{Edit, field, pointer};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::line::Line;
-use crate::tui::text::plain;
 use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] =
@@ -36,18 +35,4 @@ fn rename(state: &mut State, call: &Call) -> Done {
     state.edit(edit, false)?;
     go_to(state, &pointer::join(IMAGES, &name));
     Ok(())
-}
-
-/// Whether nothing names what is to go; else who does. Only pictures are named.
-pub fn unused(document: &Document, path: &str) -> Done {
-    let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == IMAGES) else { return Ok(()) };
-    let users = document.scene().users_of_image(&name);
-    let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();
-    match users.as_slice() {
-        [] => Ok(()),
-        [first, rest @ ..] => {
-            let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
-            Err(plain(&format!("{name} is used by {first}{more}: choose another picture there first")))
-        }
-    }
 }

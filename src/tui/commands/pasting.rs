@@ -4,9 +4,10 @@
 use serde_json::Value;
 
 use super::command::Done;
-use super::yanking::{here, item_of, upward};
+use super::yanking::here;
 use super::{cells, obey};
 use crate::scene::field::{self, Kind};
+use crate::tui::document::pointers::{item_of, upward};
 use crate::tui::document::rows;
 use crate::tui::document::rows::Target;
 use crate::tui::state::{Pane, State};

@@ -35,18 +35,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Tick(seconds) => state.pass(seconds),
         Event::Synthesising => state.seeing.synthesising = true,
         Event::Probed(probed) => state.seeing.probed = Some(probed),
-        Event::Synthesised(Ok(Synthesis { synth, ms, longest, warning })) => {
-            state.seeing.synthesising = false;
-            state.seeing.longest = longest;
-            state.picture_size = Some(synth.size);
-            state.seen.synth = Some(synth);
-            state.seen.synth_ms = Some(ms);
-            state.seen.problem = warning;
-        }
-        Event::Synthesised(Err(problem)) => {
-            state.seeing.synthesising = false;
-            state.seen.problem = Some(problem);
-        }
+        Event::Synthesised(result) => synthesised(state, result),
         Event::Framed(shown) => state.seeing.shown = Some(shown),
         Event::Progress(line) => state.seen.work = Some(line),
         Event::Done(result) => {
@@ -88,6 +77,21 @@ fn hear(state: &mut State, said: editor::Event) {
         editor::Event::Edit(asked) => answer(state, asked),
         // The runner asks for the status after every event.
         editor::Event::Status | editor::Event::Said(_) => {}
+    }
+}
+
+/// Takes what a synthesis has made, or why it made nothing.
+fn synthesised(state: &mut State, result: Result<Synthesis, String>) {
+    state.seeing.synthesising = false;
+    match result {
+        Ok(Synthesis { synth, ms, longest, warning }) => {
+            state.seeing.longest = longest;
+            state.picture_size = Some(synth.size);
+            state.seen.synth = Some(synth);
+            state.seen.synth_ms = Some(ms);
+            state.seen.problem = warning;
+        }
+        Err(problem) => state.seen.problem = Some(problem),
     }
 }
 

@@ -1,5 +1,7 @@
 //! Yank and paste: a node or rows as JSON, rows as CSV, and both back to where they fit.
 
+use crate::tui::commands::items::stem;
+use crate::tui::document::pointers::{is_item, item_of, upward};
 use crate::tui::text::plain;
 use serde_json::{Map, Value};
 
@@ -192,22 +194,6 @@ fn go_to_pasted(state: &mut State, pointer: &str, count: usize) {
     state.say(format!("{what} pasted"));
 }
 
-fn is_item(document: &Document, path: &str) -> bool {
-    item_of(document, path).is_some()
-}
-
-/// The list and the index of an item.
-pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize)> {
-    let (list, last) = pointer::split(path)?;
-    let is_list = matches!(field::field(document, list)?.kind, Kind::List(_));
-    Some((list, pointer::index(&last).filter(|_| is_list)?))
-}
-
-/// `path` and all that hold it, the innermost first.
-pub fn upward(path: &str) -> impl Iterator<Item = &str> {
-    std::iter::successors(Some(path), |path| path.rsplit_once('/').map(|(holder, _)| holder))
-}
-
 /// Where the cursor is: the cell in a table or form, else the node.
 pub fn here(state: &State) -> String {
     let cell = || {
@@ -329,12 +315,6 @@ fn into_map(state: &State, map: &str, yanked: &Yanked, times: usize) -> Result<O
     let count = entries.len() * times;
     let inserted = insert_entries(state, map, &entries, times)?;
     Ok(inserted.map(|(edit, pointer)| Way { edit, pointer, count }))
-}
-
-/// The name of a file without its folder and its ending.
-pub fn stem(path: &str) -> &str {
-    let file = path.rsplit('/').next().unwrap_or(path);
-    file.split_once('.').map_or(file, |(stem, _)| stem)
 }
 
 /// An object whose every key is a field of the form.

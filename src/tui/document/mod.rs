@@ -5,6 +5,7 @@ pub mod door;
 pub mod entry;
 pub mod palette;
 pub mod places;
+pub mod pointers;
 pub mod rows;
 pub mod sheet;
 pub mod tree;

@@ -3,7 +3,8 @@
 use crate::tui::commands::own_keys;
 use std::path::Path;
 
-use super::runner::{Editor, Options, listen};
+use super::editor::{Editor, listen};
+use super::options::Options;
 use super::worker::Job;
 use super::{image_editor, terminal};
 use crate::base::system::folders;
@@ -53,9 +54,7 @@ impl Editor {
                 }
             }
             Effect::Keymap => self.load_keys(),
-            Effect::Open(path) => {
-                self.open(&path, self.options.mode());
-            }
+            Effect::Open(path) => drop(self.open(&path, self.options.mode())),
             Effect::TakeOver => {
                 let path = self.state.door.path().to_owned();
                 self.open(&path, Mode::TakeOver);
@@ -76,14 +75,7 @@ impl Editor {
                 None => text.lines().for_each(terminal::print),
             },
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
-            // What the desktop opens may be run: only what is a picture is handed to it.
-            Effect::EditImage(path) => match picture::size(&path, &self.options.files.limits) {
-                Err(error) => self.state.complain(error.to_string()),
-                Ok(_) => match image_editor::open(&path) {
-                    Ok(said) => self.state.say(said),
-                    Err(why) => self.state.complain(why),
-                },
-            },
+            Effect::EditImage(path) => self.edit_image(&path),
             Effect::View(None) => {
                 // Why there is none is told each time it is asked for.
                 self.window_told.clear();
@@ -93,6 +85,15 @@ impl Editor {
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
+        }
+    }
+
+    /// Opens a picture in another program. What the desktop opens may be run: only what is a picture is handed to it.
+    fn edit_image(&mut self, path: &Path) {
+        let opened = picture::size(path, &self.options.files.limits).map_err(|error| error.to_string());
+        match opened.and_then(|_| image_editor::open(path)) {
+            Ok(said) => self.state.say(said),
+            Err(why) => self.state.complain(why),
         }
     }
 

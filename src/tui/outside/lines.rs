@@ -4,11 +4,11 @@
 
 use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
-use std::io::{BufRead, IsTerminal, Read, Write, stdin, stdout};
+use std::io::{BufRead, Read, Write, stdin, stdout};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use super::runner::Editor;
+use super::editor::Editor;
 use super::terminal;
 use crate::base::error::{Error, Result};
 use crate::scene::address;
@@ -23,11 +23,6 @@ const LONGEST: u64 = 1 << 20;
 const TELL_EVERY: Duration = Duration::from_secs(1);
 /// How long to wait for an event before looking again.
 const PATIENCE: Duration = Duration::from_secs(1);
-
-/// Whether a person types the lines.
-pub fn is_interactive() -> bool {
-    stdin().is_terminal() && stdout().is_terminal()
-}
 
 /// What has come of the lines so far.
 #[derive(Default)]
@@ -52,7 +47,7 @@ impl Editor {
     /// # Errors
     /// Lines that failed, where nobody was there to see it.
     pub fn run_lines(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
-        let interactive = is_interactive();
+        let interactive = terminal::is_interactive();
         let mut session = Session { interactive, ..Session::default() };
         if let Some(aside) = self.state.door.kept_aside() {
             let what = "the journal was damaged, what could not be read is in";

@@ -1,14 +1,18 @@
 //! Outside: terminal, threads, files and windows.
 
 pub mod ask;
+pub mod editor;
 pub mod effects;
 pub mod image_editor;
 pub mod input;
 pub mod lines;
 pub mod offscreen;
+pub mod options;
 pub mod pace;
 pub mod runner;
+pub mod screen;
 pub mod script;
+pub mod scripts;
 pub mod terminal;
 pub mod throttle;
 pub mod worker;

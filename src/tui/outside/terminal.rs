@@ -109,3 +109,8 @@ pub fn on_panic(told: impl Fn(String) + Send + Sync + 'static) {
         }
     }));
 }
+
+/// Whether a person types the lines.
+pub fn is_interactive() -> bool {
+    stdin().is_terminal() && stdout().is_terminal()
+}

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::Pane;
+use super::cursor::Pane;
 use crate::scene::Document;
 use crate::tui::document::places;
 use crate::tui::document::places::Listed;

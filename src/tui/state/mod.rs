@@ -1,5 +1,6 @@
 //! The editor's state: a value that `update` (update.rs) changes and the panes draw. Tests drive it without a terminal.
 
+pub mod cursor;
 pub mod entry;
 pub mod finding;
 pub mod memory;
@@ -11,6 +12,7 @@ pub mod spots;
 pub mod transport;
 pub mod tutor;
 
+pub use self::cursor::Pane;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
@@ -113,17 +115,6 @@ pub struct State {
     pub tutor: Option<Tutor>,
     /// What is still to happen outside.
     pub effects: VecDeque<Effect>,
-}
-
-/// A pane that can have the focus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pane {
-    /// The tree of the scene.
-    Tree,
-    /// The form or table.
-    Table,
-    /// The picture.
-    Picture,
 }
 
 /// What is going on.

@@ -1,6 +1,7 @@
 //! Placing on the picture by keyboard: a cursor with coordinates, and what it can set. What has a place, and which list
 //! takes points, is read from the schema.
 
+use crate::tui::document::pointers::upward;
 use kurbo::{Point, Vec2};
 use serde_json::Value;
 
@@ -51,11 +52,6 @@ fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
             [("x", x), ("y", y)].map(|(name, value)| Edit::set(document, &format!("{pointer}/{name}"), value)),
         ),
     }
-}
-
-/// `pointer` and all that hold it, the innermost first.
-fn upward(pointer: &str) -> impl Iterator<Item = &str> {
-    std::iter::successors(Some(pointer), |pointer| pointer.rsplit_once('/').map(|(parent, _)| parent))
 }
 
 /// The thing in focus that has a place: the row, or what holds it.

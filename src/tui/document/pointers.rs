@@ -1,0 +1,21 @@
+//! Pointers of a document: what holds a place, and which item of which list it is.
+
+use crate::scene::field::{self, Kind};
+use crate::scene::{Document, pointer};
+
+/// Whether an item of a list stands at `path`.
+pub fn is_item(document: &Document, path: &str) -> bool {
+    item_of(document, path).is_some()
+}
+
+/// The list and the index of an item.
+pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize)> {
+    let (list, last) = pointer::split(path)?;
+    let is_list = matches!(field::field(document, list)?.kind, Kind::List(_));
+    Some((list, pointer::index(&last).filter(|_| is_list)?))
+}
+
+/// `path` and all that hold it, the innermost first.
+pub fn upward(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(path), |path| path.rsplit_once('/').map(|(holder, _)| holder))
+}

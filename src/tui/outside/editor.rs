@@ -1,0 +1,309 @@
+//! The editor at work: the state with all that it has outside. Loops take it and hand it events: on a screen (screen.rs), for
+//! a script (script.rs), line by line (lines.rs).
+
+use super::options::Options;
+use super::scripts::Scripts;
+use super::throttle::Throttle;
+use super::worker::{Job, Worker};
+use super::{ask, input, pace, terminal};
+use crate::base::error::{Error, Result};
+use crate::files;
+use crate::files::lines;
+use crate::files::lines::Log;
+use crate::files::watch::Watch;
+use crate::preview::editor::{self, Preview};
+use crate::tui::commands::update::update;
+use crate::tui::document::choice::{Choice, Then};
+use crate::tui::document::door::Door;
+use crate::tui::events::{Effect, Event};
+use crate::tui::graphics;
+use crate::tui::state::tutor::Tutor;
+use crate::tui::state::{Message, Mode, State, USUAL};
+use crate::tui::text::colour::Depth;
+use crate::tui::text::plain;
+use std::path::Path;
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+/// An editor at work.
+pub struct Editor {
+    /// How it was opened.
+    pub(super) options: Options,
+    /// What is shown and changed.
+    pub(super) state: State,
+    /// The terminal; `None` if only a script is run.
+    pub(super) screen: Option<terminal::Screen>,
+    /// Where events come in.
+    pub(super) sender: mpsc::Sender<Event>,
+    /// The thread that synthesises.
+    pub(super) worker: Worker,
+    /// The subcommand that runs.
+    pub(super) job: Option<Job>,
+    /// The windows.
+    pub(super) preview: Preview,
+    /// What was last told of the window.
+    pub(super) window_told: String,
+    /// The files of the scene; `None` if they cannot be watched.
+    pub(super) watch: Option<Watch>,
+    /// The scripts that run.
+    pub(super) scripts: Scripts,
+    /// The log of the session; `None` if there is no folder for it.
+    pub(super) log: Option<Log>,
+    /// What the panes have asked the worker for.
+    pub(super) eyes: Throttle,
+    /// Whether it ends.
+    pub(super) leaving: bool,
+    /// Whether a signal ends it.
+    pub(super) interrupted: bool,
+    /// When the drawing began that the terminal has not read yet.
+    pub(super) drawn: Option<Instant>,
+}
+
+/// How long a terminal has to read what is left, before the editor leaves it.
+const LAST_LOOK: Duration = Duration::from_millis(500);
+
+/// How long lines are run before the screen and the keys have their turn.
+const TURN: Duration = Duration::from_millis(20);
+
+impl Editor {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// The terminal cannot be asked for its size, or the first script cannot be read.
+    pub fn new(
+        options: Options,
+        door: Door,
+        screen: Option<terminal::Screen>,
+        sender: mpsc::Sender<Event>,
+    ) -> Result<Self> {
+        let size = screen.as_ref().map(|screen| screen.size()).transpose().map_err(|e| Error::at("the terminal", e))?;
+        let size = size.map_or(USUAL, |size| (size.width, size.height));
+        let depth = Depth::of_environment(|name| std::env::var(name).ok());
+        let mut typed = Vec::new();
+        let mut graphics = graphics::Graphics::default();
+        if screen.is_some() {
+            let mut pieces = input::Pieces::new();
+            (graphics, typed) = ask::ask(options.graphics, &mut pieces, |name| std::env::var(name).ok());
+            input::read(pieces, sender.clone());
+        }
+        let worker = Worker::start(options.files.clone(), sender.clone());
+        let preview = listen(&door, &options.files, sender.clone());
+        let changed = sender.clone();
+        // Without it changes from outside are met at the next save.
+        let watch = Watch::new(move |files| drop(changed.send(Event::FilesChanged(files))));
+        let watch = watch.inspect_err(|error| tracing::warn!("{error}")).ok();
+        let log = begin_log(&door, size, sender.clone());
+        let mut state = State::new(door, size, depth);
+        state.recorder.set_place(log.as_ref().map(|log| log.path().to_owned()));
+        state.seeing.graphics = graphics;
+        let mut editor = Editor {
+            options,
+            state,
+            screen,
+            sender,
+            worker,
+            job: None,
+            preview,
+            window_told: String::new(),
+            watch,
+            scripts: Scripts::default(),
+            log,
+            eyes: Throttle::default(),
+            leaving: false,
+            interrupted: false,
+            drawn: None,
+        };
+        editor.begin();
+        editor.load_keys();
+        editor.begin_tutor();
+        typed.iter().filter_map(input::event).for_each(|event| editor.take(event));
+        if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
+            editor.preview.open_window();
+        }
+        if let (Some(keep), true) = (editor.options.keep_recovery, editor.state.door.offered().is_some()) {
+            editor.take(Event::Line(format!("recovery {}", if keep { "keep" } else { "drop" })));
+        }
+        if let Some(script) = editor.options.script.clone() {
+            editor.source(&script)?;
+        }
+        Ok(editor)
+    }
+
+    /// Begins the lessons; what they write without a path lies beside their scene.
+    pub fn begin_tutor(&mut self) {
+        let Some(folder) = self.options.tutor.clone() else { return };
+        if let Err(error) = std::env::set_current_dir(&folder) {
+            tracing::warn!("{}: {error}", folder.display());
+        }
+        self.state.tutor = Some(Tutor::begin());
+    }
+
+    /// What is done once for every scene that is opened.
+    pub fn begin(&mut self) {
+        self.state.picture_size = picture_size(&self.state);
+        let greeting = self.state.door.greeting(editor::way_home(self.state.door.path()));
+        self.state.say(greeting);
+        self.watch_files();
+        // Windows learn what is selected before the first key.
+        self.perform(Effect::Show);
+    }
+
+    /// Watches the scene and all that it names.
+    pub fn watch_files(&mut self) {
+        let Some(watch) = &mut self.watch else { return };
+        let path = self.state.door.path();
+        let mut all = files::materials::files(path, self.state.document().scene());
+        all.push(path.to_owned());
+        if let Err(error) = watch.set(&all) {
+            tracing::warn!("{error}");
+        }
+    }
+
+    /// How it ended.
+    ///
+    /// # Errors
+    /// By a signal.
+    pub fn ended(&self) -> Result<()> {
+        if self.interrupted { Err(Error::Interrupted) } else { Ok(()) }
+    }
+
+    /// Brings everything to the disk.
+    pub fn end(&mut self) {
+        self.state.door.tend();
+        self.state.door.flush();
+        self.job.take().into_iter().for_each(Job::end);
+        self.log = None;
+    }
+
+    /// Gives the terminal a moment to read what is left for it.
+    pub fn drain(&mut self) {
+        self.screen.iter_mut().for_each(|screen| pace::drain(screen.backend_mut(), LAST_LOOK));
+    }
+
+    /// Takes an event, and does what it asks for.
+    pub fn take(&mut self, event: Event) {
+        match &event {
+            // The terminal may have lost cells though it is as large again as what was drawn last.
+            Event::Resize(..) => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
+            // What is typed counts by the size that there is now: the signal of a new one may be on its way yet.
+            Event::Key(_) | Event::Paste(_) if self.screen.is_some() => {
+                self.state.size = terminal::size().unwrap_or(self.state.size);
+            }
+            _ => {}
+        }
+        if let (Event::Resize(..), Some(cell)) = (&event, ask::cell()) {
+            self.state.seeing.graphics.cell = cell;
+        }
+        self.interrupted |= matches!(event, Event::End);
+        let effects = update(&mut self.state, event);
+        if let Some(log) = &self.log {
+            self.state.recorder.unwritten().iter().for_each(|line| log.write(line.clone()));
+        }
+        for effect in effects {
+            self.perform(effect);
+        }
+    }
+
+    /// Begins the script of a file.
+    ///
+    /// # Errors
+    /// It cannot be read, or scripts run one another without an end.
+    pub fn source(&mut self, path: &Path) -> Result<()> {
+        let text = lines::read(path)?;
+        self.scripts.begin(&path.display().to_string(), &text)
+    }
+
+    /// Runs a line as if it was typed.
+    ///
+    /// # Errors
+    /// What was said where it could not be done.
+    pub fn obey(&mut self, line: String) -> std::result::Result<(), String> {
+        self.take(Event::Line(line));
+        self.refused()
+    }
+
+    pub fn refused(&self) -> std::result::Result<(), String> {
+        match &self.state.message {
+            Some(Message { text, bad: true }) => Err(text.clone()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Runs the next line of the scripts; the work that the one before began is waited for. A mistake ends all of them.
+    /// False where there is nothing to run now.
+    ///
+    /// # Errors
+    /// FILE:LINE and the mistake.
+    pub fn run_next(&mut self) -> Result<bool> {
+        if self.state.seen.work.is_some() || self.leaving {
+            return Ok(false);
+        }
+        let (place, done) = match self.scripts.waits.take() {
+            Some(place) => (place, self.refused()),
+            None => match self.scripts.next() {
+                Some((place, line)) => (place, self.obey(line)),
+                None => return Ok(false),
+            },
+        };
+        if let Err(why) = done {
+            self.scripts = Scripts::default();
+            return Err(Error::at(place, why).cure("nothing after it was run"));
+        }
+        self.scripts.waits = self.state.seen.work.is_some().then_some(place);
+        Ok(true)
+    }
+
+    /// Runs the scripts for a short while; says where there is a mistake.
+    pub fn run_scripts(&mut self) {
+        let begun = Instant::now();
+        while begun.elapsed() < TURN {
+            match self.run_next() {
+                Ok(true) => {}
+                Ok(false) => return,
+                Err(error) => return self.state.complain(error.to_string()),
+            }
+        }
+    }
+
+    /// What the last line said, which is forgotten by it.
+    pub fn said(&mut self) -> Vec<String> {
+        let pages = match std::mem::replace(&mut self.state.mode, Mode::Normal) {
+            Mode::Pages(pages) => pages.lines,
+            Mode::Choice(Choice { options, then: Then::Go, .. }) => {
+                options.into_iter().map(|(place, text)| format!("{place}: {text}")).collect()
+            }
+            mode => {
+                self.state.mode = mode;
+                Vec::new()
+            }
+        };
+        self.state.message.take().into_iter().map(|message| message.text).chain(pages).collect()
+    }
+}
+
+/// Listens for windows of the scene; what they say comes as events.
+pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
+    let preview = Preview::start(door.path(), door.document(), door.revision(), move |said| {
+        // Nobody listens once the editor has left.
+        let _ = sender.send(Event::Window(said));
+    });
+    preview.with_options(options)
+}
+
+/// The log of this session; it tells the editor where it cannot be written.
+fn begin_log(door: &Door, (width, height): (u16, u16), sender: mpsc::Sender<Event>) -> Option<Log> {
+    let header = vec![
+        format!("plica {}", env!("CARGO_PKG_VERSION")),
+        format!("scene {}", plain(&door.path().display().to_string())),
+        format!("terminal {width} x {height}"),
+    ];
+    // Nobody listens once the editor has left.
+    Log::begin(door.path(), header, move |why| drop(sender.send(Event::Unlogged(why))))
+}
+
+/// The size of the first layer's picture, from its header.
+fn picture_size(state: &State) -> Option<(usize, usize)> {
+    let image = state.document().scene().layers.first()?.technique().frame_of()?;
+    let (sizes, _) = files::materials::sizes(state.door.path(), state.document().scene(), state.door.options());
+    sizes.get(image).copied()
+}

@@ -1,0 +1,104 @@
+//! The loop of the editor on a screen: events in, a drawing out.
+
+use super::editor::Editor;
+use super::pace;
+use crate::base::error::{Error, Result};
+use crate::preview::editor::Status;
+use crate::tui::events::Event;
+use crate::tui::graphics::{self, Protocol};
+use crate::tui::layout::seeing;
+use crate::tui::panes::view;
+use crate::tui::state::transport::Stopwatch;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+/// How often a terminal that does not read is looked at.
+const BEHIND: Duration = Duration::from_millis(20);
+
+impl Editor {
+    /// Edits until the person leaves; gives the folder of the tutor, where it was there.
+    ///
+    /// # Errors
+    /// The terminal cannot be drawn on, or a signal ended it.
+    pub fn run_on_screen(mut self, events: &mpsc::Receiver<Event>) -> Result<Option<PathBuf>> {
+        let mut watch = Stopwatch::default();
+        while !self.leaving {
+            self.eyes.request(&self.state).into_iter().for_each(|request| self.worker.ask(request));
+            self.draw()?;
+            self.wait(events, &mut watch);
+        }
+        if let (Protocol::Kitty, Some(screen)) = (seeing::protocol(&self.state), &mut self.screen) {
+            // A terminal that has gone away has nothing to forget.
+            let _ = screen.backend_mut().write_all(graphics::forget().as_bytes());
+        }
+        self.drain();
+        self.end();
+        self.ended()?;
+        Ok(self.options.tutor)
+    }
+
+    fn draw(&mut self) -> Result<()> {
+        let (state, Some(screen)) = (&self.state, &mut self.screen) else { return Ok(()) };
+        let failed = |e| Error::at("the terminal", e);
+        if pace::is_behind() {
+            Write::flush(screen.backend_mut()).map_err(failed)?;
+            if pace::is_behind() {
+                return Ok(());
+            }
+        }
+        if let Some(begun) = self.drawn.take() {
+            self.eyes.wrote(state, begun.elapsed());
+        }
+        let begun = Instant::now();
+        screen.draw(|frame| view::draw(frame, state)).map_err(failed)?;
+        match pace::is_behind() {
+            true => self.drawn = Some(begun),
+            false => self.eyes.wrote(state, begun.elapsed()),
+        }
+        Ok(())
+    }
+
+    /// Waits for an event and takes all that are there, so that many cost one drawing.
+    fn wait(&mut self, events: &mpsc::Receiver<Event>, watch: &mut Stopwatch) {
+        let script_goes_on = !self.scripts.is_empty() && self.state.seen.work.is_none();
+        let patience = match self.state.playing {
+            _ if script_goes_on => Duration::ZERO,
+            _ if pace::is_behind() => BEHIND,
+            true => Duration::from_millis(33),
+            false => self.eyes.patience(self.state.door.patience()),
+        };
+        self.state.door.tend();
+        let first = events.recv_timeout(patience).ok();
+        for event in first.into_iter().chain(events.try_iter()) {
+            self.take(event);
+        }
+        self.run_scripts();
+        self.see_window();
+        let passed = watch.lap(self.state.playing, Instant::now());
+        if self.state.playing {
+            self.take(Event::Tick(passed));
+        }
+    }
+
+    /// The status line says how the window is doing; why there is none is told once, where there is room for it.
+    fn see_window(&mut self) {
+        let seen = match self.preview.status() {
+            // Windows belong to whoever edits the scene.
+            _ if self.state.door.held_by().is_some() => String::new(),
+            Status::Off => String::new(),
+            status => format!("window: {status}"),
+        };
+        if seen != self.window_told {
+            // What was said of a window that is off does not outlive it.
+            self.state.message.take_if(|message| message.text == self.window_told);
+            self.window_told.clone_from(&seen);
+            let off = matches!(self.preview.status(), Status::OffBecause(_));
+            if off {
+                self.state.complain(seen.clone());
+            }
+            self.state.seen.window = if off { "window: off".into() } else { seen };
+        }
+    }
+}
