@@ -34,20 +34,8 @@ impl Editor {
             }
             Effect::Pass => self.preview.passing(self.state.transport().time),
             Effect::Reload => self.worker.ask(Request { fresh: true, ..seeing::request(&self.state) }),
-            Effect::Save { to, overwrite, leave } => {
-                let result = self.state.door.save(to.as_deref(), overwrite);
-                self.leaving = leave && result.is_ok();
-                if self.leaving {
-                    // The copy has the edits: the scene itself is left as its file has it.
-                    self.state.door.give_up();
-                }
-                self.take(Event::Saved(result.map_err(|error| error.to_string())));
-            }
-            Effect::Write(path, text) => {
-                let written =
-                    write::write_new(&path, text.as_bytes()).map(|()| format!("{} is written", path.display()));
-                self.take(Event::Saved(written.map_err(|error| error.to_string())));
-            }
+            Effect::Save { to, overwrite, leave } => self.save(to.as_deref(), overwrite, leave),
+            Effect::Write(path, text) => self.write(&path, &text),
             Effect::Source(path) => {
                 if let Err(error) = self.source(&path) {
                     self.state.complain(error.to_string());
@@ -86,6 +74,23 @@ impl Editor {
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
         }
+    }
+
+    /// Saves the scene, to another file if one is given, and leaves once it is safe.
+    fn save(&mut self, to: Option<&Path>, overwrite: bool, leave: bool) {
+        let result = self.state.door.save(to, overwrite);
+        self.leaving = leave && result.is_ok();
+        if self.leaving {
+            // The copy has the edits: the scene itself is left as its file has it.
+            self.state.door.give_up();
+        }
+        self.take(Event::Saved(result.map_err(|error| error.to_string())));
+    }
+
+    /// Writes a text to a new file.
+    fn write(&mut self, path: &Path, text: &str) {
+        let written = write::write_new(path, text.as_bytes()).map(|()| format!("{} is written", path.display()));
+        self.take(Event::Saved(written.map_err(|error| error.to_string())));
     }
 
     /// Opens a picture in another program. What the desktop opens may be run: only what is a picture is handed to it.
