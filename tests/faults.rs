@@ -1,5 +1,5 @@
-//! The link across machines when it is bad: slow, cut in the middle, full of pieces. The far end and the window's side are in
-//! this process, and between them goes a wire that counts, delays and cuts.
+//! The link across machines when it is bad: slow, cut in the middle, full of file pieces. The far end and the window's
+//! side are in this process, and between them is a wire that counts, delays and cuts.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -29,7 +29,7 @@ use plica::preview::wire::message::{FromEditor, Role, ToEditor};
 use plica::scene::{Document, Edit};
 use serde_json::json;
 
-/// How long a test waits for what must come, before it fails.
+/// How long a test waits for something that must happen before it fails.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// A piece of a file, with its header.
 const PIECE: u64 = (8 << 10) + 200;
@@ -54,7 +54,7 @@ fn stage() -> Stage {
     stage
 }
 
-/// A wire from the far end to the window, as it is on its way: at most `rate` bytes a second, cut after `cut` bytes.
+/// The wire from the far end to the window: at most `rate` bytes per second, cut after `cut` bytes.
 #[derive(Clone, Copy)]
 struct Bad {
     rate: f64,
@@ -64,7 +64,7 @@ struct Bad {
 const GOOD: Bad = Bad { rate: f64::INFINITY, cut: u64::MAX };
 
 impl Stage {
-    /// A picture that no compression makes small.
+    /// Writes a picture that does not compress.
     fn paint(&self, side: u32) {
         let mut seed = 1u32;
         let noise = image::RgbImage::from_fn(side, side, |_, _| {
@@ -76,7 +76,7 @@ impl Stage {
         std::fs::rename(new, self.folder.path().join("cat.png")).unwrap();
     }
 
-    /// The window's end of a link that is bad, and how many bytes came over it.
+    /// The window's end of a bad link, and how many bytes have come over it.
     fn ends(&self, bad: Bad) -> (UnixStream, Arc<AtomicU64>) {
         let (here, there) = UnixStream::pair().unwrap();
         let (served, serves) = UnixStream::pair().unwrap();
@@ -88,7 +88,7 @@ impl Stage {
         (here, count)
     }
 
-    /// A window at that end.
+    /// A window at the end of a bad link.
     fn window(&self, bad: Bad) -> (Link, Arc<AtomicU64>) {
         let (here, count) = self.ends(bad);
         let address = Address { user: None, host: "far".into(), port: None, path: "s".into() };
@@ -149,7 +149,7 @@ fn notice(link: &Link, part: &str) {
     next(link, |update| matches!(update, Update::Said(FromEditor::Notice(line)) if line.contains(part)).then_some(()));
 }
 
-/// Says one thing after the other until the link has had enough bytes to be cut.
+/// Sends one message after another until the link has carried enough bytes to be cut.
 fn until_lost(link: &Link, editor: &Preview) {
     for _ in 0..1200 {
         match link.updates.recv_timeout(PATIENCE / 1200) {
@@ -163,7 +163,7 @@ fn until_lost(link: &Link, editor: &Preview) {
     panic!("the link is not lost");
 }
 
-/// One more edit of a number, as a key makes it.
+/// One more edit of a number, as by a key.
 fn step(editor: &Preview, document: &mut Document, revision: u64) {
     let radius =
         json!([{"op": "replace", "path": "/layers/0/zones/0/interpolation/radius", "value": 60.0 + revision as f64}]);
@@ -215,7 +215,7 @@ fn an_edit_goes_before_a_picture_on_a_slow_link() {
 fn a_link_cut_anywhere_is_told_and_ends_nothing_else() {
     let stage = stage();
     let editor = stage.editor();
-    // The first fetches the picture, the second tells how long a link says nothing more.
+    // The first fetches the picture; the second shows how many bytes a link carries without that.
     shows(&stage.window(GOOD).0, 0);
     let (link, count) = stage.window(GOOD);
     shows(&link, 0);

@@ -1,6 +1,6 @@
-//! The GPU shows what the CPU shows: every pixel within 2/255, but for at most 0.1 % on silhouette edges, where single
-//! precision may fall on the other side. Runs on Mesa's software driver as well. Where there is no adapter the reason is
-//! printed; in CI that is a failure.
+//! The GPU shows what the CPU shows: every pixel within 2/255, except for at most 0.1 % on silhouette edges, where
+//! single precision may fall on the other side. Runs on Mesa's software driver as well. If there is no adapter the
+//! reason is printed; in CI that is a failure.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -24,7 +24,7 @@ use plica::render::{self, Synth, bands::Bands, cpu, gpu::Gpu, reduce::reduced};
 use plica::scene::Scene;
 use serde_json::{Value, json};
 
-/// Times on frames and between them; s goes below 0 and above 1.
+/// Times on frames and between them; s reaches below 0 and above 1.
 const TIMES: [f64; 6] = [0.0, 0.13, 0.25, 0.5, 0.77, 1.0];
 
 fn gpu() -> Option<Gpu> {
@@ -122,10 +122,11 @@ fn scenes() -> Vec<(&'static str, Synth)> {
     ]
 }
 
-/// Scenes in which every sampler reads near its neighbours' places, so that no pixel falls on the other side of an edge.
+/// Scenes in which neighboring samplers always read neighboring places, so that no pixel can fall on the other side of
+/// an edge.
 const WITHOUT_SILHOUETTES: &[&str] = &["no zone", "no fold", "mask", "mask, transparent picture", "sampler image"];
 
-/// The largest difference of any channel, and the share of pixels that differ by more than 2.
+/// The largest difference in any channel, and the share of pixels that differ by more than 2.
 fn difference(a: &Frame, b: &Frame) -> (u8, f64) {
     assert_eq!((a.width(), a.height()), (b.width(), b.height()));
     let of = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|i| a[i].abs_diff(b[i])).max().unwrap();

@@ -1,5 +1,6 @@
-//! Editor and window over the real socket, in one process and in two: what one says the other shows, and neither minds
-//! what the other dies of. The other process is this same test binary, told by its environment which part to play.
+//! Editor and window over the real socket, in one process and in two: what one sends the other shows, and neither is
+//! affected if the other dies. The other process is this test binary again; an environment variable says which part it
+//! plays.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::io::{BufRead, BufReader, Read, Write};
@@ -25,10 +26,10 @@ use plica::scene::Document;
 use plica::scene::edit::Edit;
 use serde_json::{Value, json};
 
-/// How long a test waits for what must come, before it fails.
+/// How long a test waits for something that must happen before it fails.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// How often each side is killed; `tests/kills.rs` has the rest of a hundred, with a real window.
+/// How often each side is killed; `tests/kills.rs` makes it a hundred kills in total, with a real window.
 const KILLS: usize = 45;
 
 struct Stage {
@@ -59,14 +60,14 @@ impl Stage {
         client::follow(&self.scene, &Options::default(), false)
     }
 
-    /// A peer that speaks the protocol by hand.
+    /// A peer for which the test writes the protocol itself.
     fn peer(&self) -> UnixStream {
         let peer = UnixStream::connect(socket_path(&self.scene).unwrap()).unwrap();
         peer.set_read_timeout(Some(PATIENCE)).unwrap();
         peer
     }
 
-    /// A peer that has joined as a window and got the first document.
+    /// A peer that has joined as a window and received the first document.
     fn joined(&self) -> UnixStream {
         let mut peer = self.peer();
         frame::write(&mut peer, &ToEditor::Hello { program: "test".into(), role: Role::Window }).unwrap();
@@ -93,7 +94,7 @@ fn publish(editor: &Preview, document: &Document, revisions: std::ops::RangeIncl
     })
 }
 
-/// The first update that `wanted` takes; those before it are passed over.
+/// The first update that `wanted` accepts; those before it are skipped.
 fn next<T>(link: &Link, wanted: impl Fn(&Update) -> Option<T>) -> T {
     loop {
         let update = link.updates.recv_timeout(PATIENCE).expect("an update");
@@ -110,7 +111,7 @@ fn next_title(link: &Link) -> (String, u64) {
     })
 }
 
-/// Waits for a problem whose words hold `part`.
+/// Waits for a problem whose text contains `part`.
 fn problem(link: &Link, part: &str) {
     let said = |problems: &[Problem]| problems.iter().any(|problem| problem.to_string().contains(part));
     next(link, |update| matches!(update, Update::Said(FromEditor::Problems(problems)) if said(problems)).then_some(()));
@@ -202,7 +203,7 @@ fn a_stuck_window_holds_nobody_up() {
     let window = stage.window();
     next_title(&window);
     shown(&window, 0);
-    // Far more than any buffer between the two takes.
+    // Far more than fits in any buffer between the two.
     let long = "x".repeat(1 << 20);
     let mut document = stage.document.clone();
     for revision in 1..=50 {
@@ -271,7 +272,7 @@ fn bad_peers_are_refused_and_harm_nobody() {
         if cut {
             peer.shutdown(std::net::Shutdown::Write).unwrap();
         }
-        // The end of the stream is what says that the editor hung up.
+        // The end of the stream shows that the editor hung up.
         let mut answer = Vec::new();
         drop(peer.read_to_end(&mut answer));
         assert!(String::from_utf8_lossy(&answer).contains(reason), "{name}: {}", String::from_utf8_lossy(&answer));
@@ -289,7 +290,7 @@ fn scripts_edit_through_the_editor() {
     let (editor, events) = stage.editor();
     let mut document = publish(&editor, &stage.document, 1..=1);
     let part = std::thread::spawn(move || {
-        // The editor's part: takes what the document takes.
+        // The editor's part: accepts every edit that fits the document.
         let mut revision = 1;
         for event in events {
             let Event::Edit(asked) = event else { continue };

@@ -1,5 +1,5 @@
-//! A window on another machine, with every part real but the machine: the far end is the real binary behind a pipe, reached
-//! by a stand-in for ssh that runs the line on this machine. `tests/sshd.rs` has a real sshd.
+//! A window on another machine, with everything real except the machine: the far end is the real binary behind a pipe,
+//! reached by a stand-in for ssh that runs the command on this machine. `tests/sshd.rs` has a real sshd.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::os::unix::fs::PermissionsExt;
@@ -22,10 +22,10 @@ use plica::preview::wire::message::{FromEditor, ToEditor};
 use plica::scene::{Document, Edit, Scene};
 use serde_json::json;
 
-/// How long a test waits for what must come, before it fails.
+/// How long a test waits for something that must happen before it fails.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A scene with a picture, a cache, and the way to it.
+/// A scene with a picture, a cache, and the way to reach it.
 struct Stage {
     folder: tempfile::TempDir,
     scene: PathBuf,
@@ -54,7 +54,7 @@ fn paint(folder: &Path, width: u32) {
 }
 
 impl Stage {
-    /// A program of ours in the folder.
+    /// Writes a shell script to the folder.
     fn script(&self, name: &str, text: &str) -> String {
         let path = self.folder.path().join(name);
         std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
@@ -62,7 +62,7 @@ impl Stage {
         path.to_str().unwrap().to_owned()
     }
 
-    /// A stand-in for ssh: runs the line here, and leaves its process id for who wants to cut the link.
+    /// A stand-in for ssh: runs the command here, and writes its process id to a file for cutting the link.
     fn ssh(&self) -> String {
         let runs = "while [ \"$1\" != -- ]; do shift; done; shift; cd; exec sh -c \"exec $*\"";
         self.script("ssh", &format!("echo $$ > {}/pid; {runs}", self.folder.path().display()))
@@ -108,7 +108,7 @@ impl Window {
         }
     }
 
-    /// Waits for the scene of this title, and shows it: what it loads of its pictures.
+    /// Waits for the scene with this title and answers that it is shown; returns what is loaded of its pictures.
     fn shows(&self, title: &str) -> Materials {
         let (scene, revision) = self.next(|update| match update {
             Update::Scene { scene, revision } if scene.title == title => Some((scene.clone(), *revision)),
@@ -129,7 +129,7 @@ impl Window {
         });
     }
 
-    /// Waits until the picture is so wide.
+    /// Waits until the picture has this width.
     fn is_wide(&self, width: usize) {
         self.next(|update| match update {
             Update::Scene { scene, .. } if self.load(scene).pictures["cat"].width() == width => Some(()),
@@ -225,7 +225,7 @@ fn a_lost_link_keeps_the_last_state_and_comes_back() {
     });
     let (document, edit) = titled(&document, "after");
     editor.publish(&document, 2, &edit);
-    // Until it shows what came it is sent no more.
+    // It is sent nothing more until it shows what it has.
     window.link.replies.send(ToEditor::Ack { revision: 1, synth_ms: 1.0 }).unwrap();
     window.shows("after");
 }

@@ -1,5 +1,5 @@
-//! The window, as a person meets it: a real window on a display of its own (Xvfb), real keys (xdotool), real screenshots
-//! (ImageMagick's import). Where a tool is missing the reason is printed; in CI that is a failure.
+//! The window, as a person sees it: a real window on its own display (Xvfb), real keys (xdotool), real screenshots
+//! (ImageMagick's import). If a tool is missing the reason is printed; in CI that is a failure.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -213,7 +213,7 @@ fn overlays_stand_where_they_are_computed() {
         let shown = marks::View { spacing_px: spacing, times: vec![0.0], ..marks::View::of(&[name]) };
         let marks = overlay::overlay(&scene, Some(&synth), &shown);
         view.keys(&[key]);
-        // What lies closer than a dot is wide hides a part of the others.
+        // Dots that are closer than they are wide hide parts of each other.
         view.until("dots", |v| found(&v.shot(), &frame, &marks, looks, 0.0) > 0.7);
         assert!(found(&view.shot(), &frame, &marks, looks, 5.0) < 0.4, "dots of {key} are small");
         view.keys(&[key]);
@@ -230,7 +230,7 @@ fn marks_are_as_large_as_the_screen_asks_for() {
     let mut command = place.command();
     let mut view = View::of(&display, command.env("WINIT_X11_SCALE_FACTOR", "2"));
     view.keys(&["1", "a"]);
-    // A dot of an anchor has a radius of 3.5 logical pixels; the bar is twice as high too.
+    // An anchor's dot has a radius of 3.5 logical pixels; the bar is twice as high too.
     let lower = |shot: Frame| {
         let (width, height) = (shot.width(), shot.height() - display::BAR);
         plica::base::pixels::Grid::from_cells(width, height, shot.cells()[..width * height].to_vec())

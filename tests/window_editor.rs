@@ -1,4 +1,4 @@
-//! The window and an editor in this process: what each tells the other, and what the window gets over.
+//! The window and an editor in this process: what each sends the other, and what the window recovers from.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![cfg(feature = "window")]
 
@@ -13,7 +13,7 @@ use plica::preview::editor::{Event, Preview};
 use plica::preview::wire::message::ToEditor;
 use plica::scene::edit::Edit;
 
-/// An editor of the scene, and what its windows say.
+/// An editor of the scene, and the replies of its windows.
 fn editor(place: &Place) -> (Preview, Receiver<ToEditor>) {
     let (sender, replies) = channel();
     let document = scene::open(&place.scene, &Options::default()).unwrap();
@@ -25,7 +25,7 @@ fn editor(place: &Place) -> (Preview, Receiver<ToEditor>) {
     (Preview::start(&place.scene, &document, 0, deliver), replies)
 }
 
-/// The first reply that is looked for.
+/// The first reply that `wanted` accepts.
 fn heard<T>(replies: &Receiver<ToEditor>, wanted: impl Fn(&ToEditor) -> Option<T>) -> T {
     loop {
         let reply = replies.recv_timeout(display::PATIENCE).expect("a reply");

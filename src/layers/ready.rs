@@ -1,4 +1,4 @@
-//! A layer once it is ready to be shown at any time: what every technique makes of its part of the document.
+//! A layer that is ready for rendering at any time: what every technique makes from its part of the document.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -14,12 +14,12 @@ use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 
-/// A layer ready to be shown at any time: pure, shared, no handles.
+/// A layer ready for rendering at any time: pure, shared, no handles.
 pub trait Ready: Any + Debug + Send + Sync {
-    /// The layer at one time, on the CPU: the reference. Asked once a frame.
+    /// The layer at one time, on the CPU: the reference. Called once per frame.
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a>;
 
-    /// The layer at one time, for the GPU: shows what [`Ready::at`] shows.
+    /// The layer at one time, for the GPU: looks the same as [`Ready::at`].
     fn plan(&self, moment: &Moment) -> Plan;
 
     /// The same layer with nothing that moves.
@@ -41,13 +41,13 @@ pub trait Ready: Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Gives a fully transparent pixel (column, row) of a finished frame the color that the layer has there, if it has one:
-    /// straight alpha keeps it.
+    /// Gives a fully transparent pixel (column, row) of a finished frame the color that the layer has there, if it has
+    /// one, since straight alpha can keep it.
     fn keep_clear_color(&self, _pixel: (usize, usize), _code: &mut [u8; 4]) {}
 }
 
 impl dyn Ready {
-    /// The layer as what its technique made, for that technique.
+    /// The layer as its technique's own type, for that technique.
     pub fn downcast<T: Ready>(&self) -> Option<&T> {
         (self as &dyn Any).downcast_ref()
     }
@@ -55,17 +55,17 @@ impl dyn Ready {
 
 /// One layer at one time.
 pub trait Still: Sync {
-    /// Writes row `y` of the frame to `out`, one cell a column, all of them clear before: linear light, premultiplied by
-    /// alpha. Rows are asked for on all cores; what one holds does not depend on which columns are wanted.
+    /// Writes row `y` of the frame to `out`, one cell per column, all transparent before: linear light, premultiplied
+    /// by alpha. Rows are computed on all cores; a cell does not depend on which columns are wanted.
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]);
 }
 
-/// A layer of which parts can be made ready, each without the rest: what one pixel costs, or a band of a large picture.
+/// A layer whose parts can be prepared without the rest, for a single pixel or a band of a large picture.
 pub trait Prepared: Send + Sync {
-    /// These columns and rows of the frame, ready to be shown; what is beyond them is not asked for.
+    /// The layer, ready for rendering these columns and rows of the frame; no others may be asked for.
     ///
     /// # Errors
-    /// There is not enough memory, or nobody wants it any more; the problem's path is relative to the layer.
+    /// If there is not enough memory or it is cancelled; the problem's path is relative to the layer.
     fn part(&self, columns: Range<usize>, rows: Range<usize>, materials: &Materials)
     -> Result<Arc<dyn Ready>, Problem>;
 }

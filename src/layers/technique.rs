@@ -1,5 +1,5 @@
-//! What every technique answers: of a layer ([`Technique`]), and without one ([`Kind`]). Paths are JSON pointers relative
-//! to the layer.
+//! The interface of techniques: of a layer ([`Technique`]), and without one ([`Kind`]). Paths are JSON pointers
+//! relative to the layer.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -18,16 +18,16 @@ use super::timeline::Wrap;
 use crate::base::error::Error;
 use crate::base::problem::Problem;
 
-/// What a layer of the document can be asked.
+/// The interface of a layer in the document.
 pub trait Technique: Any + Send + Sync {
-    /// What is known of its technique.
+    /// Its technique.
     fn kind(&self) -> &'static Kind;
 
     /// The layer's name, unique in its scene.
     fn name(&self) -> &str;
 
-    /// Checks the layer by itself. Parts that are as in the layer `before`, if that is of the same technique, keep what was
-    /// found there.
+    /// Checks the layer on its own. Parts that are the same as in the layer `before`, if that is of the same technique,
+    /// keep their results.
     fn check(&self, before: Option<(&dyn Technique, &Checked)>) -> Checked;
 
     /// Every problem that a check has found; without parts, what it holds.
@@ -35,20 +35,20 @@ pub trait Technique: Any + Send + Sync {
         checked.0.iter().flat_map(|part| part.iter().cloned()).collect()
     }
 
-    /// Calls `each` with what the layer asks for, place by place, before any of it is made.
+    /// Calls `each` with the numbers of things that the layer asks for, place by place, before any are made.
     fn counts(&self, _each: &mut dyn FnMut(Count)) {}
 
-    /// Bytes of memory that places of the layer ask for while it is made ready, one place after the other.
+    /// Bytes of memory that places in the layer need during synthesis, one place after the other.
     fn memory(&self) -> Vec<(String, u64)> {
         Vec::new()
     }
 
-    /// What the pictures and fields that it names say about the layer.
+    /// The problems that only show with the pictures and fields that the layer names.
     fn check_materials(&self, _materials: &Materials) -> Vec<Problem> {
         Vec::new()
     }
 
-    /// What the layer names, each thing as often as it is named.
+    /// The images and files that the layer names, each as often as it is named.
     fn uses(&self) -> Vec<Use<'_>> {
         Vec::new()
     }
@@ -58,16 +58,16 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
-    /// What the `old` thing at `path` becomes as one of the variant `to`; `None` if fields of the same name are all that
-    /// both can have in common.
+    /// The `old` thing at `path`, turned into the variant `to`; `None` if there is nothing to do but keep fields with
+    /// the same name.
     fn turned(&self, _path: &str, _old: &Value, _to: &str) -> Option<Turned> {
         None
     }
 
-    /// The place in the layer's picture that something new at `path` belongs to.
+    /// The part of the layer's picture for something new at `path`.
     fn bounds(&self, path: &str) -> Rect;
 
-    /// The name of the item at `path` of a list whose items have names; `None` if there is none.
+    /// The name of the item at `path`, if it is in a list whose items have names.
     fn item_name(&self, _path: &str) -> Option<&str> {
         None
     }
@@ -77,7 +77,8 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
-    /// What the pixel (column, row) of the layer does at scene time `t`; `None` if there is nothing to say about pixels.
+    /// What the pixel (column, row) of the layer does at scene time `t`; `None` if there is nothing to say about
+    /// pixels.
     ///
     /// # Errors
     /// As [`Technique::synth`].
@@ -96,22 +97,22 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
-    /// What of the layer stands at a place of the picture: the nearest thing not farther than `reach_px`, else the topmost
-    /// area that holds the place. Both in pixels of the picture.
+    /// What of the layer stands at a place of the picture: the nearest thing not farther than `reach_px`, else the
+    /// topmost area that holds the place. Both in pixels of the picture.
     fn pick(&self, _at: Point, _reach_px: f64) -> Option<Hit> {
         None
     }
 
-    /// What happens to the layer where time starts anew.
+    /// What happens to the layer when time starts over.
     fn repeat(&self, _wrap: Wrap) -> Repeat {
         Repeat::default()
     }
 
-    /// Makes the layer ready to be shown at any time. What `previous` has in common with it is taken over. `place` is the
-    /// place in each pixel that is looked at: its centre, or another for supersampling.
+    /// Prepares the layer for rendering at any time. What it has in common with `previous` is reused. `place` is the
+    /// place in each pixel that is evaluated: its centre, or another for supersampling.
     ///
     /// # Errors
-    /// Something that the layer names is not among the materials, or nobody wants it any more.
+    /// If something that the layer names is not among the materials, or the synthesis is cancelled.
     fn synth(
         &self,
         wrap: Wrap,
@@ -129,32 +130,32 @@ pub trait Technique: Any + Send + Sync {
     }
 }
 
-/// What is known of a technique without a layer of it.
+/// A technique, as far as it is known without a layer.
 #[derive(Debug)]
 pub struct Kind {
-    /// What the document's `kind` calls it.
+    /// Its name in the document's `kind`.
     pub name: &'static str,
-    /// Every program that its layers are drawn with.
+    /// All programs that its layers are drawn with.
     pub programs: &'static [&'static Program],
     /// What becomes of its layers for other engines; `None` if it has no textures for them.
     pub bundle: Option<Bundle>,
-    /// What a scene may not have too much of.
+    /// The things whose number in a scene is limited.
     pub counted: &'static [Counted],
     /// What can be drawn over the picture to explain it.
     pub overlays: &'static [Overlay],
     /// How that looks, in ascending order.
     pub looks: &'static [&'static Look],
-    /// A layer that shows the image of this name, of this width and height; `None` if the technique does not begin with
+    /// A layer that shows the image of this name, of this width and height; `None` if the technique does not start from
     /// a picture.
     pub template: Option<fn(image: &str, size: (usize, usize)) -> Value>,
-    /// What the field `field` of a new `variant` starts as, if the schema has no default and zeros will not do.
+    /// The initial value of the field `field` of a new `variant`, if the schema has no default and zeros will not do.
     pub start: fn(variant: &str, field: &str, bounds: Rect) -> Option<Value>,
-    /// What a new item of the list `list` of a `variant` has beyond what must be written: a field and its value.
+    /// An optional field, with its value, that a new item of the list `list` of a `variant` starts with.
     pub beyond: fn(variant: &str, list: &str) -> Option<(&'static str, Value)>,
-    /// Where in its items the list `list` of a `variant` ascends (a JSON pointer), if it does.
+    /// The JSON pointer, within its items, to the numbers in which the list `list` of a `variant` ascends, if it does.
     pub ascending: fn(variant: &str, list: &str) -> Option<&'static str>,
-    /// A new item of the list `list` of a `variant` before item `index`, and the index it gets; `None` if an item does
-    /// not depend on its neighbours.
+    /// A new item for the list `list` of a `variant`, to go before item `index`, and the index it gets; `None` if items
+    /// do not depend on their neighbors.
     pub item: fn(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)>,
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,
@@ -178,53 +179,53 @@ pub struct Bundled<'a> {
     pub ready: &'a dyn Ready,
 }
 
-/// A kind of thing that a scene may not have too much of: a row of `--limit`.
+/// A kind of thing whose number in a scene is limited: a row of `--limit`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counted {
-    /// What it is called: "anchors".
+    /// Its name, such as "anchors".
     pub name: &'static str,
     /// What it limits, in words.
     pub help: &'static str,
-    /// How many a scene may have unless more are allowed.
+    /// How many a scene may have by default.
     pub most: u64,
 }
 
-/// How many things a place of the document asks for.
+/// How many things a place in the document asks for.
 pub struct Count<'a> {
     /// What is counted: the name of one of the technique's [`Counted`].
     pub what: &'static str,
     /// The place.
     pub path: &'a dyn Fn() -> String,
-    /// How many, estimated from above.
+    /// How many; an upper bound.
     pub count: f64,
 }
 
-/// A thing of another kind made out of an old one.
+/// The result of changing the kind of a thing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Turned {
-    /// What stands in its place; more than one thing only in a list, where they follow one another.
+    /// What replaces it; more than one thing only in a list, in order.
     pub items: Vec<Value>,
     /// What could not be kept, in words.
     pub lost: Option<String>,
 }
 
 impl Turned {
-    /// One thing that keeps all.
+    /// One thing that keeps everything.
     pub fn whole(item: Value) -> Turned {
         Turned { items: vec![item], lost: None }
     }
 
-    /// The same, and something is lost.
+    /// The same, with a message that something is lost.
     pub fn but(self, lost: impl Into<String>) -> Turned {
         Turned { lost: Some(lost.into()), ..self }
     }
 
-    /// The same, and something may be lost.
+    /// The same, with a message if something is lost.
     pub fn but_if(self, lost: Option<String>) -> Turned {
         Turned { lost, ..self }
     }
 }
 
-/// The problems of a layer, part by part, each relative to its part: what an edit leaves alone keeps them.
+/// The problems of a layer, part by part, each relative to its part: parts that an edit does not touch keep theirs.
 #[derive(Clone, Debug, Default)]
 pub struct Checked(pub Vec<Arc<[Problem]>>);

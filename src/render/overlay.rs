@@ -1,5 +1,5 @@
-//! What is drawn over a picture to explain it: the marks of all layers, in the order in which they lie over one another. A
-//! pure function from scene, synthesis and view to marks in pixels of the picture.
+//! What is drawn over a picture to explain it: the marks of all layers, from bottom to top. A pure function from scene,
+//! synthesis and view to marks in pixels of the picture.
 
 use kurbo::Point;
 
@@ -8,13 +8,13 @@ use crate::layers::KINDS;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
 use crate::scene::Scene;
 
-/// Every overlay of every technique; one that several share stands once.
+/// Every overlay of every technique; shared ones once.
 pub fn overlays() -> impl Iterator<Item = &'static Overlay> {
     let all = || KINDS.iter().flat_map(|kind| kind.overlays);
     all().enumerate().filter(move |(i, overlay)| all().take(*i).all(|other| other.name != overlay.name)).map(|(_, o)| o)
 }
 
-/// The marks of a scene, from those that lie below to those on top. What is made of the synthesis is left out without it.
+/// The marks of a scene, from bottom to top. Marks that need the synthesis are left out without it.
 pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let of_pixels = overlays().any(|overlay| overlay.when == When::Synthesis && view.shows(overlay.name));
     let longest_px = synth.filter(|_| of_pixels).map_or(0.0, longest);
@@ -40,8 +40,8 @@ pub fn longest(synth: &Synth) -> f64 {
     fields.map(|field| field.longest()).fold(0.0, f64::max)
 }
 
-/// What is at a place, in pixels of the picture: the nearest thing not farther than `reach_px`, else the topmost area that
-/// holds it; its path is a pointer into the document.
+/// What is at a place, in pixels of the picture: the nearest thing within `reach_px`, otherwise the topmost area that
+/// contains it; its path is a pointer into the document.
 pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
     let layers = scene.layers.iter().enumerate().rev();
     let hits = layers.filter_map(|(i, layer)| {
@@ -51,12 +51,12 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
     hits.min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
 }
 
-/// A mark is selected if the selection lies in it, or if it lies in the selection and that is an item of the layer or
+/// A mark is selected if the selection is in it, or if it is in the selection and that is an item of the layer or
 /// something smaller.
 fn is_selected(mark: &str, selection: &str) -> bool {
     let within =
         |inner: &str, outer: &str| inner.strip_prefix(outer).is_some_and(|r| r.is_empty() || r.starts_with('/'));
-    // `/layers/0/zones/2` and what is deeper.
+    // `/layers/0/zones/2` and deeper.
     let is_item = selection.split('/').count() > 4;
     within(selection, mark) || (is_item && within(mark, selection))
 }

@@ -1,5 +1,5 @@
-//! The pixels of a zone: membership, jump vectors and thresholds, row by row on all cores. Each pixel's sums are made in
-//! one order, so that the bytes do not depend on the number of threads.
+//! The pixels of a zone: membership, jump vectors and thresholds, row by row on all cores. Each pixel's sums are always
+//! made in the same order, so that the bytes do not depend on the number of threads.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -32,14 +32,14 @@ pub struct Field {
     pub inside: Grid<bool>,
     /// Jump vectors in pixels; zero outside the zone.
     pub jumps: Grid<[f32; 2]>,
-    /// Where paths meet the fold regions; none without regions.
+    /// Where paths meet the fold regions; `None` without regions.
     pub folds: Option<Folds>,
 }
 
-/// Where the paths of a zone's pixels meet the fold regions, over all s that the position function takes.
+/// Where the paths of a zone's pixels meet the fold regions, over the whole range of s of the position function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Folds {
-    /// What the regions do.
+    /// The rule of the regions.
     pub rule: Rule,
     /// Whether each pixel of the box is itself in a region (s = 0).
     pub inside: Grid<bool>,
@@ -52,7 +52,7 @@ pub struct Folds {
 /// A list of numbers for every pixel of a box, row by row: pixel i has `values[starts[i]..starts[i + 1]]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ragged {
-    /// Where each pixel's numbers begin; one more than there are pixels.
+    /// Where each pixel's numbers begin, and where the last one's end: one entry more than there are pixels.
     pub starts: Vec<u32>,
     /// The numbers.
     pub values: Vec<f64>,
@@ -73,7 +73,7 @@ impl Ragged {
         ragged
     }
 
-    /// One after the other.
+    /// The concatenation of several.
     fn concat<'a>(parts: impl Iterator<Item = &'a Ragged>) -> Self {
         let mut all = Ragged { starts: vec![0], values: Vec::new() };
         for part in parts {
@@ -91,17 +91,17 @@ impl Folds {
         self.inside.cells()[i] || !self.ahead.of(i).is_empty()
     }
 
-    /// The effective place e(s) of pixel `i` of the box, `None` if it is still.
+    /// The effective place e(s) of pixel `i` of the box; `None` if it is still.
     pub fn effective(&self, i: usize, s: f64) -> Option<f64> {
         let crossings = if s < 0.0 { self.behind.of(i) } else { self.ahead.of(i) };
         self.rule.effective(self.inside.cells()[i], crossings, s)
     }
 }
 
-/// Pixels whose paths share one look at the sides of regions.
+/// How many neighboring pixels share one search for the sides of regions.
 const FEW: usize = 16;
 
-/// All that a field depends on; equal inputs make equal fields.
+/// Everything that a field depends on; equal inputs make equal fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inputs {
     outline: Outline,
@@ -113,12 +113,13 @@ pub struct Inputs {
     range: (f64, f64),
     /// Width and height of the layer's picture.
     size: (usize, usize),
-    /// The place in each pixel that is looked at, from its top-left corner.
+    /// The place in each pixel that is evaluated, from its top-left corner.
     place: Vec2,
 }
 
 impl Inputs {
-    /// What the field of `zone` depends on, on a picture of `size`, for a `place` in each pixel; (0.5, 0.5) is the centre.
+    /// The inputs of the field of `zone`, on a picture of `size`, for a `place` in each pixel; (0.5, 0.5) is the
+    /// centre.
     pub fn new(zone: &Zone, size: (usize, usize), place: Vec2) -> Self {
         let (low, high) = zone.position.range();
         Inputs {
@@ -140,7 +141,7 @@ pub fn pixels(zone: &Zone, (width, height): (usize, usize)) -> u64 {
     held.map_or(0, |(_, _, width, height)| width as u64 * height as u64)
 }
 
-/// A zone made ready to be asked for any of its pixels.
+/// A zone prepared for evaluating any of its pixels.
 pub struct Prepared {
     outline: Polygon,
     interpolator: Interpolator,
@@ -154,7 +155,7 @@ pub struct Prepared {
 /// One pixel of a zone, in double precision.
 #[derive(Clone, Debug, Default)]
 pub struct Pixel {
-    /// Whether it belongs to the zone; nothing else is known where not.
+    /// Whether it belongs to the zone; if not, nothing else is computed.
     pub inside: bool,
     /// Jump vector in pixels.
     pub jump: Vec2,
@@ -163,7 +164,7 @@ pub struct Pixel {
 }
 
 impl Prepared {
-    /// Makes a zone ready: anchors, the equations of its interpolation, outlines as polygons.
+    /// Prepares a zone: anchors, the equations of its interpolation, outlines as polygons.
     ///
     /// # Errors
     /// As [`Interpolator::new`].
@@ -215,7 +216,7 @@ impl Prepared {
         }
     }
 
-    /// Crossings of a few neighbouring pixels: only the sides within reach of their paths are looked at.
+    /// Crossings of a few neighboring pixels: only the sides within reach of their paths are looked at.
     fn cross(
         &self,
         regions: &Regions,
@@ -245,21 +246,21 @@ impl Prepared {
 }
 
 impl Field {
-    /// The field of `zone`; `None` where no pixel of the picture is in its bounding box.
+    /// The field of `zone`; `None` if no pixel of the picture is in its bounding box.
     ///
     /// # Errors
-    /// It needs too much memory, or nobody wants it any more; the problem's path is relative to the zone.
+    /// If it needs too much memory or is cancelled; the problem's path is relative to the zone.
     pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Made {
         let (width, height) = inputs.size;
         Prepared::new(zone, inputs, materials)?.field((0..width, 0..height), materials)
     }
 }
 
-/// A field and the memory that it takes, where there is one.
+/// A field and the memory that it takes, if there is one.
 pub type Made = Result<Option<(Arc<Field>, Share)>, Problem>;
 
 impl Prepared {
-    /// The field in these columns and rows of the picture alone; `None` and errors as with [`Field::new`].
+    /// The field in these columns and rows of the picture only; `None` and errors as for [`Field::new`].
     pub fn field(&self, part: (Range<usize>, Range<usize>), materials: &Materials) -> Made {
         let prepared = self;
         let Some((x0, y0, width, height)) = pixel_box(prepared.outline.bounds(), part) else { return Ok(None) };
@@ -269,7 +270,7 @@ impl Prepared {
                 return Err(Problem::error("", "stopped"));
             }
             let row = Row::of(&prepared.row(x0, y, width));
-            // Rows and the whole of them stand beside one another for a moment.
+            // The rows and the whole field are both in memory for a moment.
             let share = take(2 * row.bytes())?;
             materials.made(width as u64);
             Ok((row, share))
@@ -294,7 +295,7 @@ impl Prepared {
     }
 }
 
-/// A row of a field as it is kept, without the room that its pixels took while they were made.
+/// A row of a field in its final form, without the memory that its pixels took while being computed.
 struct Row {
     inside: Vec<bool>,
     jumps: Vec<[f32; 2]>,
@@ -304,7 +305,7 @@ struct Row {
 }
 
 impl Row {
-    /// Bytes that it takes.
+    /// How many bytes it takes.
     fn bytes(&self) -> u64 {
         let flags = self.inside.len() + self.in_region.len();
         let lists = |ragged: &Ragged| size_of_val(&ragged.starts[..]) + size_of_val(&ragged.values[..]);

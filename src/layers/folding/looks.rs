@@ -1,4 +1,5 @@
-//! The overlays of folding, and how their marks look. The colors keep apart for color-blind eyes (after Okabe and Ito).
+//! The overlays of folding, and how their marks look. The colors are distinguishable for color-blind eyes (after Okabe
+//! and Ito).
 
 use crate::layers::parts::marks::{Dot, Look, Overlay, VECTOR_COLORS, VECTORS, When};
 
@@ -40,7 +41,7 @@ pub static FOLD_REGION: Look =
     Look::new("fold region", 3, [240, 160, 40, 255], 1.6).dashed(6.0, 4.0).dots(Dot::Square, 3.0).stroke("x");
 /// The jump path of a pixel.
 pub static PATH: Look = Look::new("jump path", 4, [240, 230, 190, 190], 1.0).dots(Dot::Disc, 1.5);
-/// A curve along which anchors stand.
+/// A curve with anchors along it.
 pub static CURVE: Look = Look::new("curve", 5, [214, 130, 190, 255], 1.6).dots(Dot::Diamond, 4.0).stroke("~");
 /// A lasso, where it is.
 pub static LASSO: Look =
@@ -60,7 +61,7 @@ pub static RESTING: Look = Look::new("resting sampler", 12, [150, 160, 175, 255]
 /// A sampler, at its effective place.
 pub static SAMPLER: Look = Look::new("sampler", 13, [255, 236, 150, 255], 1.2).dots(Dot::Disc, 2.2);
 
-/// Every look, from what lies below to what lies on top.
+/// Every look, from bottom to top.
 pub static LOOKS: &[&Look] = &[
     &VECTOR_COLORS,
     &VECTORS,

@@ -1,4 +1,4 @@
-//! What is drawn of the document of a layer: outlines, fold regions, anchors, curves.
+//! The marks for the document of a layer: outlines, fold regions, anchors, curves.
 
 use kurbo::{Point, Vec2};
 
@@ -65,7 +65,7 @@ impl Drawing<'_> {
         let labels = self.view.shows(LABELS);
         let mut numbered = None;
         for anchor in anchors(zone) {
-            // Of the anchors that one tool gives, the first has its number.
+            // The first anchor of each tool is labelled with its number.
             let number =
                 if numbered.replace(anchor.tool) == Some(anchor.tool) { "" } else { &format!("{}: ", anchor.tool) };
             let at = format!("{at}/motion/{}", anchor.tool);
@@ -120,7 +120,7 @@ fn short(number: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The curve through open nodes as a line, to within a twentieth of a pixel.
+/// The open curve through nodes as a line, to within a twentieth of a pixel.
 fn flattened(nodes: &[Node]) -> Vec<Point> {
     let mut points = Vec::new();
     kurbo::flatten(bezier(nodes, false), 0.05, |el| match el {

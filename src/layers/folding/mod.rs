@@ -1,5 +1,5 @@
-//! Folding textures (Thorben 2012; Ren, TU Delft 2023): every pixel of a zone owns a sampler that moves along a jump path
-//! through the picture as time passes; thresholds along the path let one part slide over another.
+//! Folding textures (Thorben 2012; Ren, TU Delft 2023): every pixel of a zone owns a sampler that moves along a jump
+//! path through the picture as time passes; thresholds along the path let one part slide over another.
 
 pub mod anchor;
 pub mod anchors;
@@ -51,7 +51,7 @@ use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned}
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
-/// What is known of folding without a layer of it.
+/// The technique.
 pub static KIND: Kind = Kind {
     name: "picture",
     programs: passes::PROGRAMS,

@@ -1,4 +1,4 @@
-//! What of a layer stands at a place of the picture, for a selection by pointer.
+//! What is at a place of the picture in a layer, for selection by pointer.
 
 use kurbo::Point;
 
@@ -7,7 +7,8 @@ use super::marks::zone_path;
 use super::model::{PictureLayer, Zone};
 use crate::layers::parts::marks::Hit;
 
-/// The tool of the anchor nearest to a place, not farther than `reach_px`; else the topmost zone that holds it; else `None`.
+/// The tool of the nearest anchor within `reach_px` of a place, otherwise the topmost zone that contains it, otherwise
+/// `None`.
 pub fn pick(layer: &PictureLayer, at: Point, reach_px: f64) -> Option<Hit> {
     let zones = || layer.zones.iter().enumerate().rev();
     let near = zones().filter_map(|(z, zone)| {

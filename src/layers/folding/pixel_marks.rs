@@ -1,5 +1,5 @@
-//! What is drawn of single pixels of zones, one every so many: jump vectors as arrows and colors, jump paths, where they meet
-//! fold regions, and the samplers that run along them.
+//! The marks for single pixels of zones, at a regular spacing: jump vectors as arrows and colors, jump paths, where
+//! they meet fold regions, and the samplers that move along them.
 
 use kurbo::{Point, Vec2};
 
@@ -9,7 +9,7 @@ use super::marks::zone_path;
 use super::synth::{Synth, ZoneSynth};
 use crate::layers::parts::marks::{Look, Mark, Shape, VECTOR_COLORS, VECTORS, View, vector_color};
 
-/// The marks of a layer that are made of its synthesis.
+/// The marks of a layer that need its synthesis.
 pub fn marks(synth: &Synth, view: &View) -> Vec<Mark> {
     let mut drawing = Drawing { view, marks: Vec::new() };
     synth.zones.iter().for_each(|zone| drawing.zone(zone, &zone_path(zone.index)));
@@ -26,7 +26,7 @@ struct Pixel {
     jump: Vec2,
 }
 
-/// One pixel every `spacing`, the same ones whatever the zone's box is.
+/// One pixel every `spacing`, at the same places whatever the zone's box is.
 fn lattice(field: &Field, spacing: f64) -> impl Iterator<Item = Pixel> + '_ {
     let spacing = spacing.max(1.0);
     let steps = move |from: usize, n: usize| {
@@ -110,7 +110,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The samplers at their effective places; the earlier ones first, so that they lie below.
+    /// The samplers at their effective places; the earlier ones first, so that they are below.
     fn samplers(&mut self, zone: &ZoneSynth, times: &[f64], at: &str) {
         let fading = times.len() as f32;
         for (age, &time) in times.iter().enumerate().rev() {
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(found, [(23, Point::new(6.5, 2.5)), (27, Point::new(10.5, 2.5))]);
     }
 
-    /// What is drawn of a zone whose only path of interest jumps 8 to the right and meets a region at s = 0.25 and 0.5.
+    /// The marks of a zone whose only path of interest jumps 8 to the right and meets a region at s = 0.25 and 0.5.
     fn shapes(shown: &'static str, times: &[f64]) -> Vec<(&'static str, Shape, f32)> {
         let layer: PictureLayer = serde_json::from_str(
             r#"{ "name": "l", "image": "a",

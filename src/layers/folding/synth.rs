@@ -1,4 +1,4 @@
-//! Synthesis: a picture layer and its materials to everything a frame needs except the time. A pure function.
+//! Synthesis: from a picture layer and its materials to everything that a frame needs except the time. A pure function.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -17,12 +17,12 @@ use crate::layers::parts::materials::Materials;
 use crate::layers::ready::{self, Ready};
 use crate::layers::timeline::Wrap;
 
-/// What a frame of a picture layer needs except the time.
+/// Everything that a frame of a picture layer needs except the time.
 #[derive(Clone, Debug)]
 pub struct Synth {
     /// The layer's own picture.
     pub picture: Arc<Picture>,
-    /// The zones that reach into the picture, in the layer's order.
+    /// The zones that overlap the picture, in the layer's order.
     pub zones: Vec<ZoneSynth>,
 }
 
@@ -40,29 +40,30 @@ pub struct ZoneSynth {
     /// When they read it.
     pub clock: Clock,
     inputs: Inputs,
-    /// The memory that the field takes, counted for as long as anybody has it.
+    /// The memory that the field takes, counted until its last owner drops it.
     share: Arc<Share>,
 }
 
-/// What the samplers of a zone read, and how it is laid on what is beneath.
+/// What the samplers of a zone read, and how it is blended with what is beneath.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// The sampler image: the layer's own picture, a named one, or a mask.
     pub picture: Arc<Picture>,
     /// Added to where every sampler reads, in pixels.
     pub offset: Vec2,
-    /// What a read beyond the edge gives.
+    /// The result of a read beyond the edge.
     pub beyond: Beyond,
-    /// Whether the read is laid over what is beneath (a named image or a mask) or takes its place (the layer's own).
+    /// Whether the read is drawn over what is beneath (a named image or a mask) or replaces it (the layer's own
+    /// picture).
     pub over: bool,
 }
 
-/// Makes a layer ready to be shown at any time. Fields of `previous` whose inputs are equal are taken over. `place` is
-/// the place in each pixel that is looked at: its centre, or another for supersampling.
+/// Prepares a layer for rendering at any time. Fields of `previous` with equal inputs are reused. `place` is the place
+/// in each pixel that is evaluated: its centre, or another for supersampling.
 ///
 /// # Errors
-/// A picture that the layer names is not among the materials; the problem's path is relative to the layer. Or nobody wants
-/// it any more.
+/// If a picture that the layer names is not among the materials, or the synthesis is cancelled; the problem's path is
+/// relative to the layer.
 pub fn synth(
     layer: &PictureLayer,
     wrap: Wrap,
@@ -104,13 +105,13 @@ pub fn synth(
     Ok(Synth { picture, zones })
 }
 
-/// A layer of which parts can be made ready, each without the rest.
+/// A layer whose parts can be prepared without the rest.
 pub struct PreparedLayer {
     picture: Arc<Picture>,
     zones: Vec<(ZoneParts, Prepared)>,
 }
 
-/// A zone but for its field.
+/// A zone without its field.
 struct ZoneParts {
     name: String,
     index: usize,
@@ -120,7 +121,7 @@ struct ZoneParts {
 }
 
 impl PreparedLayer {
-    /// Makes everything that all parts share.
+    /// Prepares everything that the parts share.
     ///
     /// # Errors
     /// As [`synth`].
@@ -166,7 +167,7 @@ impl ready::Prepared for PreparedLayer {
     }
 }
 
-/// Whether the zone's field depends on more than its inputs: the content of a file.
+/// Whether the zone's field depends on more than its inputs, namely on the content of a file.
 fn reads_file(zone: &Zone) -> bool {
     zone.motion.iter().any(|tool| tool.file().is_some())
 }
@@ -174,7 +175,7 @@ fn reads_file(zone: &Zone) -> bool {
 /// What the samplers of zone `index` read; `own` is the layer's picture.
 ///
 /// # Errors
-/// A picture that the zone names is not among the materials; the problem's path is relative to the layer.
+/// If a picture that the zone names is not among the materials; the problem's path is relative to the layer.
 pub fn source(
     layer: &PictureLayer,
     index: usize,

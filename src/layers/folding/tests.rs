@@ -1,4 +1,4 @@
-//! The slice as a whole: fields, frames and probes of small layers.
+//! The technique as a whole: fields, frames and probes of small layers.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub fn variants<T: schemars::JsonSchema>(tag: &str) -> Vec<String> {
     branches.iter().map(|branch| branch["properties"][tag]["const"].as_str().unwrap().to_owned()).collect()
 }
 
-/// A picture whose red tells the column and whose green the row.
+/// A picture whose red encodes the column and whose green the row.
 fn ramp(width: usize, height: usize) -> Grid<Rgba> {
     let cell = |i: usize| [(i % width) as f32 / 100.0, (i / width) as f32 / 100.0, 0.0, 1.0];
     Grid::from_cells(width, height, (0..width * height).map(cell).collect())

@@ -1,4 +1,4 @@
-//! What a technique draws over the picture to explain it: marks in pixels of the picture, how they look, and the overlays
+//! What a technique draws over the picture to explain it: marks in pixels of the picture, their looks, and the overlays
 //! that switch them on. The window, plots and the terminal only draw them.
 
 use std::collections::BTreeSet;
@@ -12,20 +12,20 @@ use crate::base::oklab::srgb;
 pub struct Overlay {
     /// The command that switches it, `view-...`. Techniques that share a name share the switch.
     pub name: &'static str,
-    /// Its key in the window; in the editor it stands behind `z`.
+    /// Its key in the window; in the editor it follows `z`.
     pub key: &'static str,
     /// What it shows, in a few words.
     pub help: &'static str,
-    /// What its marks are made of, and so when they change.
+    /// What its marks depend on, and so when they change.
     pub when: When,
 }
 
-/// What the marks of an overlay are made of.
+/// What the marks of an overlay depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// The document alone.
     Document,
-    /// The vectors of pixels: the layer must be ready to be shown.
+    /// The vectors of pixels: the layer must be synthesised.
     Synthesis,
     /// The same, and the scene time: they change with every frame.
     EveryFrame,
@@ -36,20 +36,21 @@ pub enum When {
 pub struct View {
     /// Overlays, by their names.
     pub shown: BTreeSet<&'static str>,
-    /// Distance of two pixels of which something is drawn, in pixels of the picture.
+    /// The distance between pixels that have marks, in pixels of the picture.
     pub spacing_px: f64,
-    /// The same for those that are drawn as cells of color.
+    /// The same for marks that are cells of color.
     pub cell_px: f64,
-    /// Scene times in [0, 1] of what changes with every frame: the present one, then earlier ones, drawn ever fainter.
+    /// Scene times in [0, 1] for marks that change with every frame: the current one, then earlier ones, each drawn
+    /// fainter.
     pub times: Vec<f64>,
-    /// The longest vector of a pixel in the scene, in pixels; filled in by whoever collects the marks of all layers.
+    /// The longest vector of a pixel in the scene, in pixels; filled in when the marks of all layers are collected.
     pub longest_px: f64,
     /// JSON pointer of what is selected.
     pub selection: Option<String>,
 }
 
 impl View {
-    /// These overlays.
+    /// A view with these overlays.
     pub fn of(names: &[&'static str]) -> View {
         View { shown: names.iter().copied().collect(), ..View::default() }
     }
@@ -59,8 +60,8 @@ impl View {
         self.shown.contains(name)
     }
 
-    /// Length of a drawn arrow as a share of its vector, so that arrows keep apart: the longest of the scene reaches to the
-    /// next arrow.
+    /// The length of a drawn arrow as a share of its vector, so that arrows do not overlap: the longest in the scene
+    /// reaches the next arrow.
     pub fn arrow_scale(&self) -> f64 {
         (self.spacing_px.max(1.0) / self.longest_px).min(1.0)
     }
@@ -73,16 +74,16 @@ pub struct Mark {
     pub look: &'static Look,
     /// Its shape, in pixels of the picture.
     pub shape: Shape,
-    /// JSON pointer of what it shows: relative to the layer as a technique makes it, to the document once collected.
+    /// JSON pointer of what it shows: relative to the layer when a technique makes it, to the document once collected.
     pub path: String,
-    /// Whether it belongs to what is selected; set by whoever collects.
+    /// Whether it belongs to what is selected; set when collected.
     pub selected: bool,
-    /// Opacity beside that of its color, 0 to 1.
+    /// Opacity, multiplied by that of its color, 0 to 1.
     pub strength: f32,
 }
 
 impl Mark {
-    /// A mark of what stands at `path`, not selected, of full strength.
+    /// A mark for what is at `path`, not selected, of full strength.
     pub fn new(look: &'static Look, path: impl Into<String>, shape: Shape) -> Mark {
         Mark { look, shape, path: path.into(), selected: false, strength: 1.0 }
     }
@@ -100,7 +101,7 @@ pub enum Shape {
     },
     /// The inside of a polygon, even-odd.
     Fill(Vec<Point>),
-    /// A square of a color of its own around a point: center, side, sRGB with straight alpha.
+    /// A square with its own color around a point: center, side, sRGB with straight alpha.
     Cell(Point, f64, [u8; 4]),
     /// A dot at a point.
     Dot(Point),
@@ -113,9 +114,9 @@ pub enum Shape {
 /// How marks of one kind look. Looks differ in more than their colors. Lengths are in logical pixels of the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// What is drawn so: "zone outline".
+    /// What has this look: "zone outline".
     pub name: &'static str,
-    /// Marks of a higher order lie above.
+    /// Marks of a higher order are drawn above.
     pub order: u8,
     /// sRGB with straight alpha.
     pub color: [u8; 4],
@@ -129,7 +130,7 @@ pub struct Look {
     pub dot_px: f32,
     /// The character of lines in a terminal without pictures.
     pub stroke: &'static str,
-    /// Whether labels keep off its dots and arrows.
+    /// Whether labels avoid its dots and arrows.
     pub keeps_labels_off: bool,
 }
 
@@ -155,7 +156,7 @@ impl Look {
         Look { stroke, ..self }
     }
 
-    /// The same, and labels keep off it.
+    /// The same, with labels avoiding it.
     pub const fn off_labels(self) -> Look {
         Look { keeps_labels_off: true, ..self }
     }
@@ -179,10 +180,10 @@ pub const SELECTED_GROWTH: f32 = 1.6;
 /// Opacity of a [`Shape::Fill`] in the color of its look.
 pub const FILL_ALPHA: f32 = 0.16;
 
-/// Vectors of pixels as colors: the look of [`vector_color`], whatever technique they are of.
+/// Vectors of pixels as colors, by [`vector_color`], for all techniques.
 pub static VECTOR_COLORS: Look =
     Look::new("vector field as colors", 0, [255, 255, 255, 220], 0.0).dots(Dot::Square, 0.0);
-/// Vectors of pixels as arrows, whatever technique they are of.
+/// Vectors of pixels as arrows, for all techniques.
 pub static VECTORS: Look = Look::new("vector field", 1, [190, 205, 220, 230], 1.0);
 
 /// The color of a vector if the longest is `longest`: its hue is the direction on the screen, and the longer it is, the
@@ -195,15 +196,15 @@ pub fn vector_color(vector: Vec2, longest: f64) -> [u8; 4] {
     [r, g, b, VECTOR_COLORS.color[3]]
 }
 
-/// What stands at a place of the picture.
+/// What is at a place of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hit {
-    /// JSON pointer of it, relative as the path of a [`Mark`].
+    /// Its JSON pointer, relative like the path of a [`Mark`].
     pub path: String,
-    /// How far away it is, in pixels of the picture; infinite if it is an area that holds the place, which anything that is
-    /// near precedes.
+    /// How far away it is, in pixels of the picture; infinite for an area that contains the place, so that anything
+    /// near takes precedence.
     pub distance_px: f64,
-    /// What follows the path to the cell that the editor's cursor goes to.
+    /// What to append to the path for the cell that the editor's cursor goes to.
     pub cell: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What a layer is made of: what it names, and the values that stand for it.
+//! The materials of a layer: the files and images that it names, and their values.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub struct Use<'a> {
     pub at: String,
     /// How it is named.
     pub of: Of<'a>,
-    /// What it is taken for.
+    /// What it is used as.
     pub what: What<'a>,
 }
 
@@ -30,12 +30,12 @@ pub enum Of<'a> {
     Path(&'a str),
 }
 
-/// What a layer takes something for.
+/// What a layer uses something as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What<'a> {
     /// A picture.
     Picture,
-    /// A mask; without alpha it is laid on the image `on`.
+    /// A mask; if it has no alpha it is applied to the image `on` by its brightness.
     Mask {
         /// The name of the image in the scene.
         on: &'a str,
@@ -44,20 +44,20 @@ pub enum What<'a> {
     Vectors,
 }
 
-/// What a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.
+/// Everything that a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.
 #[derive(Clone, Debug, Default)]
 pub struct Materials {
     /// Pictures by their name in the scene's images.
     pub pictures: BTreeMap<String, Arc<Picture>>,
-    /// Masks without alpha laid on the pictures that they are for, by the names of both.
+    /// Masks without alpha, applied to the pictures that they are for, by the names of both.
     pub masks: BTreeMap<(String, String), Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
-    /// Cancellation flag: once set, a synthesis under way ends with an error.
+    /// Cancellation flag: once set, a running synthesis ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
     /// Where a synthesis counts how far it is, in pixels.
     pub progress: Option<Arc<Progress>>,
-    /// The memory that is left for what is made of them.
+    /// The memory that is left for what is made from them.
     pub budget: Budget,
 }
 
@@ -77,7 +77,7 @@ impl Materials {
         self.progress.iter().for_each(|progress| progress.done(pixels));
     }
 
-    /// What samplers read through the mask `name` of the picture `own`.
+    /// The picture that samplers read for the mask `name` of the picture `own`.
     ///
     /// # Errors
     /// It is not there; `path` tells where it is named.

@@ -1,4 +1,5 @@
-//! What crosses the border of a technique: plain data. Names no technique and nothing of what shows or draws.
+//! The data that techniques and the rest of the program exchange. Names no technique, and nothing of what shows or
+//! draws.
 
 pub mod bundle;
 pub mod marks;

@@ -1,12 +1,12 @@
-//! The one owner of the device. Finding no adapter, losing the device and every error of the driver are answers, never
-//! panics: errors are kept and handed to whoever asked for the work.
+//! The only owner of the device. A missing adapter, a lost device and all driver errors are results, never panics:
+//! errors are captured and returned to the caller that asked for the work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::base::error::{Error, Result};
 
-/// What an error of the GPU is named by, and what helps where it fails.
+/// The place in error messages about the GPU, and the hint if it fails.
 const PLACE: &str = "GPU";
 const CURE: &str = "frames can be rendered without a GPU: leave out --gpu";
 
@@ -17,14 +17,14 @@ pub struct Device {
     pub raw: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// The adapter it was opened on.
+    /// The adapter that it was opened on.
     pub adapter: wgpu::Adapter,
     lost: Arc<AtomicBool>,
     uncaught: Arc<Mutex<Option<String>>>,
 }
 
 impl Device {
-    /// The fastest device, one that can show on `surface` where that is given. Vulkan first, OpenGL where there is none.
+    /// The fastest device, one that can present to `surface` if that is given. Vulkan if possible, otherwise OpenGL.
     pub fn open(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Device> {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -60,9 +60,9 @@ impl Device {
         }));
     }
 
-    /// Whether the device is gone: a new one is needed. Asks the device, which tells of a loss only when it is polled.
+    /// Whether the device is lost, so that a new one is needed. This polls the device, which reports a loss only then.
     pub fn is_lost(&self) -> bool {
-        let _ = self.raw.poll(wgpu::PollType::Poll); // an error here is the loss that the callback tells of
+        let _ = self.raw.poll(wgpu::PollType::Poll); // an error here is the loss that the callback reports
         self.lost.load(Ordering::Acquire)
     }
 
@@ -71,12 +71,12 @@ impl Device {
         self.adapter.get_info().name
     }
 
-    /// Largest side of a picture.
+    /// The largest side of a picture, in pixels.
     pub fn max_side(&self) -> usize {
         self.raw.limits().max_texture_dimension_2d as usize
     }
 
-    /// Does `work`; an error that it caused on the device becomes its result.
+    /// Runs `work`; an error that it causes on the device becomes the result.
     pub fn checked<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -89,7 +89,7 @@ impl Device {
         }
     }
 
-    /// The first error that no check caught since the last call.
+    /// The first error since the last call that no check caught.
     pub fn take_uncaught(&self) -> Result<()> {
         match self.uncaught.lock().ok().and_then(|mut kept| kept.take()) {
             Some(error) => Err(failed(error)),
@@ -103,7 +103,7 @@ impl Device {
     }
 }
 
-/// The libraries that lead to adapters; opened at run time, so nothing is missing where none is there.
+/// The graphics libraries that lead to adapters; they are loaded at run time, so the program starts without them.
 pub fn instance(display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.flags = wgpu::InstanceFlags::empty();

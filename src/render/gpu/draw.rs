@@ -1,5 +1,5 @@
-//! A frame: every layer's plan, later layers over earlier. The frame stays linear and premultiplied in half floats until it
-//! is encoded.
+//! Draws frames: every layer's plan, later layers over earlier. The frame stays linear and premultiplied in half floats
+//! until it is encoded.
 
 use super::device::Device;
 use super::kept::{Kept, check_size, texture};
@@ -17,10 +17,10 @@ const COMPOSE: &[&str] = &[COMMON, include_str!("compose.wgsl")];
 static LAY: Program = Program { name: "compose.wgsl", source: COMPOSE, vertex: "whole_frame", fragment: "lay" };
 static ENCODE: Program = Program { name: "compose.wgsl", source: COMPOSE, vertex: "whole_frame", fragment: "encode" };
 
-/// The programs of frames; those of their layers are the techniques'.
+/// The programs for frames; those for layers belong to the techniques.
 pub static PROGRAMS: &[&Program] = &[&LAY, &ENCODE];
 
-/// What draws frames.
+/// Draws frames.
 #[derive(Default)]
 pub struct Painter {
     runner: Runner,
@@ -29,8 +29,8 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Draws the frame at a scene time into a texture of the scene's size, the same one for every frame of this number, 0
-    /// or 1.
+    /// Draws the frame at a scene time into a texture of the scene's size; there is one texture for each number, 0 or
+    /// 1.
     pub fn frame(
         &mut self,
         device: &Device,
@@ -57,12 +57,12 @@ impl Painter {
         self.runner.kept()
     }
 
-    /// Lets go what was not drawn since the last call.
+    /// Releases what has not been drawn since the last call.
     pub fn end_frame(&mut self) {
         self.runner.end_frame();
     }
 
-    /// Encodes a frame for the outside: sRGB, straight alpha, 8 bits.
+    /// Encodes a frame for output: sRGB, straight alpha, 8 bits.
     pub fn encode(&mut self, device: &Device, frame: &wgpu::Texture) -> Result<wgpu::Texture> {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let encoded = texture(device, (frame.width() as usize, frame.height() as usize), ENCODED, usage)?;
@@ -73,7 +73,7 @@ impl Painter {
     }
 }
 
-/// A texture to draw into, kept from frame to frame.
+/// A texture to draw into, reused from frame to frame.
 #[derive(Default)]
 struct Target(Option<wgpu::Texture>);
 

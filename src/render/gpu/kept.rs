@@ -1,5 +1,5 @@
-//! What is kept on the device between frames: pictures, fields and whatever else a plan uploads, known by the `Arc` they
-//! came in, so that an edit of one zone uploads only that zone. What a scene no longer uses is let go.
+//! What is kept on the device between frames: pictures, fields and anything else that a plan uploads, identified by its
+//! `Arc`, so that an edit of one zone uploads only that zone. What a scene no longer uses is released.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,7 +9,7 @@ use crate::base::error::Result;
 use crate::base::progress::Progress;
 use crate::layers::parts::passes::{Format, Packed, Upload};
 
-/// At most so many bytes are handed over at a time.
+/// At most this many bytes are uploaded at a time.
 const BAND_BYTES: usize = 32 << 20;
 /// In so many pieces is counted how far one thing is.
 const PIECES: u64 = 1000;
@@ -17,9 +17,9 @@ const PIECES: u64 = 1000;
 /// A texture on the device.
 #[derive(Clone)]
 pub struct Texture {
-    /// All of it.
+    /// A view of the whole texture.
     pub view: wgpu::TextureView,
-    /// What a texel is.
+    /// The format of a texel.
     pub format: Format,
 }
 
@@ -114,7 +114,7 @@ impl Kept {
         }
     }
 
-    /// Lets go what was not asked for since the last call.
+    /// Releases what has not been asked for since the last call.
     pub fn end_frame(&mut self) {
         self.rows.retain(|row| row.used);
         self.rows.iter_mut().for_each(|row| row.used = false);
@@ -126,7 +126,7 @@ fn same(a: &Arc<dyn Upload>, b: &Arc<dyn Upload>) -> bool {
     Arc::as_ptr(a).cast::<()>() == Arc::as_ptr(b).cast::<()>()
 }
 
-/// The device's name of a format, and bytes a texel.
+/// The device's format, and its bytes per texel.
 pub fn format(format: Format) -> (wgpu::TextureFormat, usize) {
     match format {
         Format::Rgba32Float => (wgpu::TextureFormat::Rgba32Float, 16),
@@ -167,7 +167,7 @@ fn upload(device: &Device, packed: &Packed<'_>, done: &dyn Fn(f64) -> bool) -> R
     Ok(Texture { view: texture.create_view(&Default::default()), format: packed.format })
 }
 
-/// A texture of one level.
+/// A texture with one mip level.
 pub fn texture(
     device: &Device,
     (width, height): (usize, usize),
@@ -188,7 +188,7 @@ pub fn texture(
     })
 }
 
-/// Refuses what the device cannot hold as one texture.
+/// Refuses sizes that are too large for one texture of the device.
 pub fn check_size(device: &Device, width: usize, height: usize) -> Result<()> {
     let most = device.max_side();
     if width == 0 || height == 0 {

@@ -1,5 +1,5 @@
-//! Frames drawn by the GPU: the same pictures as `render::cpu`, at display rate. The only module besides the window that
-//! names wgpu; it owns the device and makes a new one where the old is lost.
+//! Frames drawn by the GPU: the same pictures as from `render::cpu`, at display rate. The only module besides the
+//! window that uses wgpu; it owns the device and replaces it if it is lost.
 
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, mpsc};
@@ -52,7 +52,7 @@ impl Uploader {
     }
 }
 
-/// What is lost with a device.
+/// Everything that is lost with a device.
 struct Parts {
     device: Device,
     painter: draw::Painter,
@@ -65,18 +65,21 @@ impl Parts {
 }
 
 impl Gpu {
-    /// The fastest GPU of the machine, without a window. An error says that there is none.
+    /// The fastest GPU of the machine, without a window.
+    ///
+    /// # Errors
+    /// If there is none.
     pub fn new() -> Result<Gpu> {
         Gpu::open(device::instance(None), None)
     }
 
-    /// A GPU of `instance` that can show on `surface` where that is given.
+    /// A GPU of `instance` that can present to `surface`, if one is given.
     pub fn open(instance: wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Gpu> {
         let parts = Parts::open(&instance, surface)?;
         Ok(Gpu { instance, parts })
     }
 
-    /// What adapters and surfaces come from.
+    /// The instance that adapters and surfaces come from.
     pub fn instance(&self) -> &wgpu::Instance {
         &self.instance
     }
@@ -102,7 +105,7 @@ impl Gpu {
         self.textures((synth, scene_time), None).map(|(frame, _)| frame)
     }
 
-    /// As [`Gpu::texture`], with a second frame in a texture of its own where one is wanted.
+    /// As [`Gpu::texture`], with a second frame in a separate texture if one is wanted.
     pub fn textures(
         &mut self,
         first: (&Synth, f64),
@@ -134,7 +137,7 @@ impl Gpu {
     }
 }
 
-/// The texels of an encoded frame. Rows of a copy are aligned to 256 bytes.
+/// Reads back an encoded frame. Rows of a copy are aligned to 256 bytes.
 fn read_back(device: &Device, texture: &wgpu::Texture) -> Result<Frame> {
     let (width, height) = (texture.width() as usize, texture.height() as usize);
     let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
@@ -154,7 +157,7 @@ fn read_back(device: &Device, texture: &wgpu::Texture) -> Result<Frame> {
     })?;
     let (done, mapped) = mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        let _ = done.send(result); // the receiver is gone only where the wait failed
+        let _ = done.send(result); // the receiver is gone only if the wait failed
     });
     device.wait()?;
     mapped.try_recv().map_err(failed)?.map_err(failed)?;

@@ -1,4 +1,4 @@
-//! Runs plans: the one place that turns what techniques say of their draws into pipelines, bindings and passes.
+//! Executes plans: the only place that turns the techniques' descriptions of draws into pipelines, bindings and passes.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use super::kept::{Kept, Texture};
 use crate::base::error::Result;
 use crate::layers::parts::passes::{Bind, Blend, Draw, Format, Plan, Program};
 
-/// What runs plans, with everything that it keeps from frame to frame.
+/// Executes plans, with everything that is kept from frame to frame.
 #[derive(Default)]
 pub struct Runner {
     pipelines: HashMap<Key, Pipeline>,
@@ -26,7 +26,7 @@ struct Key {
     into: wgpu::TextureFormat,
 }
 
-/// What stands at a binding.
+/// The kind of resource at a binding.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Kind {
     Uniform,
@@ -40,7 +40,7 @@ struct Pipeline {
     bindings: wgpu::BindGroupLayout,
 }
 
-/// A draw with all that it needs on the device.
+/// A draw with everything that it needs on the device.
 struct Ready {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
@@ -48,14 +48,14 @@ struct Ready {
     scissor: Option<[u32; 4]>,
 }
 
-/// Something on the device that a program reads.
+/// A resource on the device that a program reads.
 enum Bound {
     Buffer(wgpu::Buffer),
     Texture(Texture),
 }
 
 impl Runner {
-    /// Draws a plan into a texture, which is cleared before.
+    /// Draws a plan into a texture, which is cleared first.
     pub fn run(
         &mut self,
         device: &Device,
@@ -75,7 +75,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Runs a program that reads one texture of floats over all of another texture.
+    /// Runs a program that reads one float texture, over all of another texture.
     pub fn lay(
         &mut self,
         device: &Device,
@@ -95,7 +95,7 @@ impl Runner {
         &mut self.kept
     }
 
-    /// Lets go what no plan has asked for since the last call.
+    /// Releases what no plan has asked for since the last call.
     pub fn end_frame(&mut self) {
         self.kept.end_frame();
     }
@@ -116,7 +116,7 @@ impl Runner {
         }
     }
 
-    /// A pipeline, compiled if it is new, and its bindings.
+    /// A pipeline, compiled if it is new, and its bind group.
     fn pipeline(
         &mut self,
         device: &Device,
@@ -186,7 +186,7 @@ impl Kind {
     }
 }
 
-/// The pixels of `into` that are drawn; `None` if there are none.
+/// The pixels of `into` to draw; `None` if there are none.
 fn scissor(draw: &Draw, into: &wgpu::Texture) -> Option<[u32; 4]> {
     let Some([x, y, width, height]) = draw.scissor_px else { return Some([0, 0, into.width(), into.height()]) };
     let width = width.min(into.width().saturating_sub(x));
