@@ -51,7 +51,7 @@ pub fn told(document: &Document, pointer: &str) -> String {
 pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Place) -> String {
     let step = match body {
         Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
-        Body::Numbers(_) => pointer::index(token).and_then(|i| shape.column(i)).map(str::to_owned),
+        Body::Numbers(_) | Body::Row(_) => pointer::index(token).and_then(|i| shape.column(i)).map(str::to_owned),
         _ => None,
     };
     let step = step.unwrap_or_else(|| spelled(token, false));
@@ -121,7 +121,7 @@ fn key(place: Place, token: &Token) -> Option<String> {
             let index = bare(within(&token.text, items.len())).or_else(|| named().map(|index| index.to_string()));
             index.or_else(|| bare(token.text == "-"))
         }
-        Body::Numbers(count) => {
+        Body::Numbers(count) | Body::Row(count) => {
             // x and y are understood even if the columns have other names (dx, dy).
             let named = (0..count).find(|&i| place.shape.column(i) == Some(&token.text));
             let named = named.or_else(|| ["x", "y"].iter().position(|axis| *axis == token.text && count == 2));
@@ -141,7 +141,9 @@ fn unknown(document: &Document, address: &str, path: &str, place: Place, token: 
     let what = match place.shape.body() {
         Body::List(..) if names.is_empty() => format!("{inside} is empty"),
         Body::List(..) => format!("there is no {} in {inside}", quoted(token)),
-        Body::Object | Body::Tagged(_) | Body::Numbers(_) => format!("there is no field {} in {inside}", quoted(token)),
+        Body::Object | Body::Tagged(_) | Body::Numbers(_) | Body::Row(_) => {
+            format!("there is no field {} in {inside}", quoted(token))
+        }
         _ => format!("{inside} has no parts"),
     };
     let error = Error::at(address, what);
@@ -158,7 +160,7 @@ fn names_below(place: Place) -> Vec<String> {
             let items = place.value.and_then(Value::as_array).into_iter().flatten().enumerate();
             items.map(|(i, item)| name_of(Some(item)).unwrap_or_else(|| i.to_string())).collect()
         }
-        Body::Numbers(count) => {
+        Body::Numbers(count) | Body::Row(count) => {
             (0..count).map(|i| place.shape.column(i).map_or_else(|| i.to_string(), str::to_owned)).collect()
         }
         Body::Map(_) => {

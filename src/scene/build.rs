@@ -246,6 +246,7 @@ impl<'a> Fresh<'a> {
             Body::Bool => json!(false),
             Body::Choice => shape.choices().next().map_or(Value::Null, |(name, _)| json!(name)),
             Body::Numbers(count) => Value::from(vec![shape.range().map_or(json!(0), least); count]),
+            Body::Row(count) => (0..count).filter_map(|i| Some(self.value(shape.part(i)?))).collect(),
             Body::List(item, min, _) => Value::from(vec![self.value(item); min]),
             Body::Map(_) => json!({}),
             Body::Object => self.object(shape, ""),

@@ -118,7 +118,7 @@ pub fn children(document: &Document, pointer: &str) -> Vec<Child> {
 
 /// The places directly below `place`, which is at `pointer`, each with its own place for its value.
 pub fn below<'a>(place: Place<'a>, pointer: &str) -> Vec<(Child, Place<'a>)> {
-    steps(place).into_iter().map(|(token, below)| (described(pointer, &token, below), below)).collect()
+    steps(place).into_iter().map(|(token, below)| (described(place, pointer, &token, below), below)).collect()
 }
 
 /// The places directly below `place`, each with its token; without the version of the format, which nobody edits.
@@ -129,6 +129,10 @@ pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
             let items = value.and_then(Value::as_array).into_iter().flatten().enumerate();
             let item = |value| Place { shape, value: Some(value), set: place.set, required: true };
             items.map(|(i, value)| (i.to_string(), item(value))).collect()
+        }
+        Body::Row(count) => {
+            let part = |i: usize| Some((i.to_string(), place.step(&i.to_string())?));
+            (0..count).filter(|_| value.is_some()).filter_map(part).collect()
         }
         Body::Map(_) => {
             let keys = value.and_then(Value::as_object).into_iter().flat_map(|map| map.keys());
@@ -153,11 +157,15 @@ pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
 /// The place one token below `place`, which is at `pointer`.
 pub fn child<'a>(place: Place<'a>, pointer: &str, token: &str) -> Option<(Child, Place<'a>)> {
     let below = place.step(token)?;
-    Some((described(pointer, token, below), below))
+    Some((described(place, pointer, token, below), below))
 }
 
-fn described(pointer: &str, token: &str, place: Place) -> Child {
-    let name = name_of(place.value).unwrap_or_else(|| token.to_owned());
+fn described(parent: Place, pointer: &str, token: &str, place: Place) -> Child {
+    let column = match parent.shape.body() {
+        Body::Row(_) => pointer::index(token).and_then(|i| parent.shape.column(i)),
+        _ => None,
+    };
+    let name = name_of(place.value).unwrap_or_else(|| column.unwrap_or(token).to_owned());
     let field = Field::new(name.clone(), place);
     Child { name, pointer: pointer::join(pointer, token), set: place.set, field }
 }
@@ -220,7 +228,7 @@ fn kind(shape: Shape) -> Kind {
         }
         Body::List(item, ..) => Kind::List(Field::item(item)),
         Body::Map(item) => Kind::Map(Field::item(item)),
-        Body::Object => Kind::Object,
+        Body::Object | Body::Row(_) => Kind::Object,
         Body::Tagged(tag) => Kind::Tagged { tag, variants: choices() },
     }
 }

@@ -107,6 +107,8 @@ pub enum Body {
     Choice,
     /// This many numbers.
     Numbers(usize),
+    /// This many values, each of its own shape: [`Shape::part`].
+    Row(usize),
     /// A list of items of a shape, with its least and greatest length.
     List(Shape, usize, usize),
     /// An object with arbitrary keys and values of a shape.
@@ -165,7 +167,19 @@ impl Shape {
         }
     }
 
+    fn parts(self) -> &'static [Value] {
+        self.body.get("prefixItems").and_then(Value::as_array).map_or(&[], Vec::as_slice)
+    }
+
+    /// Value `index` of a row; its name is [`Shape::column`].
+    pub fn part(self, index: usize) -> Option<Shape> {
+        Some(Shape::of(self.parts().get(index)?, None))
+    }
+
     fn array(self) -> Body {
+        if !self.parts().is_empty() {
+            return Body::Row(self.parts().len());
+        }
         let item = Shape::of(&self.body["items"], Some(self.outer.unwrap_or(self.site)));
         let length = |key, otherwise| self.body.get(key).and_then(Value::as_u64).map_or(otherwise, |n| n as usize);
         let (min, max) = (length("minItems", 0), length("maxItems", usize::MAX));
@@ -310,6 +324,7 @@ impl Shape {
     pub fn below(self, token: &str) -> Vec<Shape> {
         match self.body() {
             Body::List(item, ..) => pointer::index(token).map(|_| item).into_iter().collect(),
+            Body::Row(_) => pointer::index(token).and_then(|index| self.part(index)).into_iter().collect(),
             Body::Tagged(_) => {
                 let branches = self.choices().filter_map(|(name, _)| self.variant(name));
                 branches.filter_map(|branch| branch.property(None, token)).collect()
@@ -383,6 +398,11 @@ impl<'a> Place<'a> {
                 let index = pointer::index(token).filter(|&index| index < count)?;
                 let shape = Shape::of(&self.shape.body["items"], Some(self.shape.outer.unwrap_or(self.shape.site)));
                 Some(Place { shape, value: here.and_then(|v| v.get(index)), set: self.set, required: true })
+            }
+            Body::Row(_) => {
+                let index = pointer::index(token)?;
+                let (shape, value) = (self.shape.part(index)?, here.and_then(|value| value.get(index)));
+                Some(Place { shape, value, set: self.set, required: true })
             }
             _ => {
                 let shape = self.shape.property(here, token)?;

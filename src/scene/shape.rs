@@ -113,6 +113,12 @@ impl Walk {
                     _ => walk.report(format!("expected a number, found {}", found(item)), None),
                 });
             }
+            (Body::Row(count), Value::Array(items)) if items.len() == count => {
+                for (i, item) in items.iter().enumerate() {
+                    let part = shape.part(i).into_iter();
+                    self.under(&i.to_string(), |walk| part.for_each(|part| walk.value(part, item)));
+                }
+            }
             (Body::List(item, min, max), Value::Array(items)) => self.list(item, items, min, max),
             (Body::Map(item), Value::Object(map)) => {
                 for (key, value) in map {
@@ -198,6 +204,11 @@ pub fn expected(shape: Shape) -> String {
             shape.choices().map(|(name, _)| quoted(name)).collect::<Vec<_>>().join(", ").replace(", ", " or ")
         }
         Body::Numbers(count) => format!("a list of {count} numbers{range}"),
+        Body::Row(count) => {
+            let parts = (0..count).filter_map(|i| Some((shape.column(i)?, expected(shape.part(i)?))));
+            let parts: Vec<String> = parts.map(|(name, expected)| format!("{name} ({expected})")).collect();
+            format!("a list of {}", parts.join(" and "))
+        }
         Body::List(..) => "a list".into(),
         Body::Map(_) | Body::Object => "an object".into(),
         Body::Tagged(tag) => format!("an object with {}", quoted(tag)),
@@ -211,6 +222,7 @@ pub fn found(value: &Value) -> String {
         Value::Bool(value) => value.to_string(),
         Value::Number(number) => number.to_string(),
         Value::String(text) => format!("the text {}", quoted(text)),
+        Value::Array(items) if items.len() == 1 && items[0].is_number() => "a list of 1 number".into(),
         Value::Array(items) if items.iter().all(Value::is_number) => format!("a list of {} numbers", items.len()),
         Value::Array(items) => format!("a list of {}", items.len()),
         Value::Object(_) => "an object".into(),

@@ -162,7 +162,7 @@ fn place(json: &Value, path: &str, new: Option<&Value>) -> String {
                 let index = pointer::index(token).map_or_else(|| token.clone(), |index| index.to_string());
                 steps.push((index, true));
             }
-            (Some(Body::Numbers(_)), _) => {
+            (Some(Body::Numbers(_) | Body::Row(_)), _) => {
                 let column = pointer::index(token).and_then(|i| here?.shape.column(i));
                 steps.push((column.map_or_else(|| token.clone(), str::to_owned), true));
             }

@@ -40,7 +40,7 @@ mod tests {
     fn light_changes_evenly_between_stops_and_not_beyond_them() {
         let layer = serde_json::from_str(
             r##"{"name": "f", "gradient": {"from": [10, 0], "to": [30, 0],
-                "stops": [{"along": 0, "color": "#ff0000"}, {"along": 0.5, "color": "#00000000"}]}}"##,
+                "stops": [[0, "#ff0000"], [0.5, "#00000000"]]}}"##,
         )
         .unwrap();
         let synth = Synth::new(&layer, Vec2::ZERO);

@@ -69,26 +69,26 @@ fn start(_variant: &str, field: &str, bounds: Rect) -> Option<Value> {
     match field {
         "from" => Some(json!([bounds.x0, bounds.y0])),
         "to" => Some(json!([bounds.x0, bounds.y1])),
-        "stops" => Some(json!([{ "along": 0, "color": "#000000" }, { "along": 1, "color": "#ffffff" }])),
+        "stops" => Some(json!([[0, "#000000"], [1, "#ffffff"]])),
         "color" => Some(json!("#808080")),
         _ => None,
     }
 }
 
 fn ascending(_variant: &str, list: &str) -> Option<&'static str> {
-    (list == "stops").then_some("/along")
+    (list == "stops").then_some("/0")
 }
 
 /// A new stop half way between its neighbors, with the color of the one before.
 fn item(_variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
-    let along = |i: usize| items.get(i)?.get("along")?.as_f64();
+    let along = |i: usize| items.get(i)?.get(0)?.as_f64();
     // Nothing fits before the first or after the last stop if those are at the ends of the line.
     let index = if along(0) == Some(0.0) { index.max(1) } else { index };
     let index = if along(items.len().checked_sub(1)?) == Some(1.0) { index.min(items.len() - 1) } else { index };
     let before = index.checked_sub(1);
     let middle = (before.and_then(along).unwrap_or(0.0) + along(index).unwrap_or(1.0)) / 2.0;
     let mut item = items.get(before.unwrap_or(0))?.clone();
-    item["along"] = json!(middle);
+    item[0] = json!(middle);
     (list == "stops").then_some((index, item))
 }
 
@@ -105,10 +105,10 @@ mod tests {
         let stops = field("stops");
         for (index, at) in [(0, 1), (1, 1), (2, 1)] {
             let (found, new) = item("", "stops", stops.as_array().unwrap(), index).unwrap();
-            assert_eq!((found, new), (at, json!({ "along": 0.5, "color": "#000000" })), "{index}");
+            assert_eq!((found, new), (at, json!([0.5, "#000000"])), "{index}");
         }
-        let one = [json!({ "along": 0.5, "color": "#ffffff" })];
-        let along = |index| item("", "stops", &one, index).map(|(at, new)| (at, new["along"].as_f64()));
+        let one = [json!([0.5, "#ffffff"])];
+        let along = |index| item("", "stops", &one, index).map(|(at, new)| (at, new[0].as_f64()));
         assert_eq!((along(0), along(1)), (Some((0, Some(0.25))), Some((1, Some(0.75)))));
         assert_eq!(item("", "other", &one, 0), None);
     }

@@ -42,16 +42,16 @@ pub struct Gradient {
     pub stops: Vec<Stop>,
 }
 
-/// A color of a gradient.
+/// A color of a gradient: its place, and the color there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Stop {
+#[schemars(extend("columns" = ["along", "color"]))]
+pub struct Stop(
     /// Its place, as a share of the line.
     #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
-    pub along: f64,
+    pub f64,
     /// sRGB with straight alpha: #rrggbb or #rrggbbaa.
-    pub color: String,
-}
+    pub String,
+);
 
 fn white() -> String {
     "#ffffff".into()
@@ -71,9 +71,9 @@ impl FillLayer {
             problems.push(Problem::error("/gradient/stops", message));
         }
         let at = |i: usize| format!("/gradient/stops/{i}");
-        let ascending = check::ascending("places of colors", stops.iter().map(|stop| stop.along), |i| at(i) + "/along");
+        let ascending = check::ascending("places of colors", stops.iter().map(|stop| stop.0), |i| at(i) + "/0");
         let colors = stops.iter().enumerate();
-        let colors = colors.filter_map(|(i, stop)| color_problem(&stop.color, &(at(i) + "/color")));
+        let colors = colors.filter_map(|(i, stop)| color_problem(&stop.1, &(at(i) + "/1")));
         problems.into_iter().chain(ascending).chain(colors).collect()
     }
 
@@ -82,7 +82,7 @@ impl FillLayer {
         let light = |text: &str| parse(text).map_or([0.0; 4], decode);
         match &self.gradient {
             None => vec![(0.0, light(&self.color))],
-            Some(gradient) => gradient.stops.iter().map(|stop| (stop.along, light(&stop.color))).collect(),
+            Some(gradient) => gradient.stops.iter().map(|stop| (stop.0, light(&stop.1))).collect(),
         }
     }
 
@@ -134,10 +134,10 @@ mod tests {
     fn what_is_wrong_is_told_with_its_place() {
         let layer: FillLayer = serde_json::from_str(
             r##"{"name": "f", "color": "red", "gradient": {"from": [1, 2], "to": [1, 2],
-                "stops": [{"along": 0.5, "color": "#000000"}, {"along": 0.5, "color": "#00"}]}}"##,
+                "stops": [[0.5, "#000000"], [0.5, "#00"]]}}"##,
         )
         .unwrap();
         let paths: Vec<String> = layer.check().into_iter().map(|problem| problem.path).collect();
-        assert_eq!(paths, ["/color", "/gradient/to", "/gradient/stops/1/along", "/gradient/stops/1/color"]);
+        assert_eq!(paths, ["/color", "/gradient/to", "/gradient/stops/1/0", "/gradient/stops/1/1"]);
     }
 }

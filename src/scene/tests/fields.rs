@@ -13,6 +13,7 @@ fn walk(shape: Shape, name: &str, depth: usize, each: &mut impl FnMut(&str, Shap
     }
     match shape.body() {
         Body::List(item, ..) | Body::Map(item) => walk(item, name, depth + 1, each),
+        Body::Row(count) => (0..count).for_each(|i| walk(shape.part(i).unwrap(), name, depth + 1, each)),
         Body::Object => shape.properties(None).into_iter().for_each(|(name, field)| walk(field, name, depth + 1, each)),
         Body::Tagged(tag) => {
             for (variant, help) in shape.choices() {
@@ -170,4 +171,27 @@ fn children_also_list_what_is_not_written() {
     assert_eq!(children("/layers/0/zones/0/fold"), named(&[]));
     let zone = children("/layers/0/zones/0");
     assert_eq!((zone[0].clone(), zone.len()), (("name".into(), true), 10));
+}
+
+#[test]
+fn a_row_of_several_kinds_is_told_by_its_columns() {
+    let document = Document::parse(include_str!("../../layers/fill/example.json")).unwrap();
+    let stop = "/layers/0/gradient/stops/1";
+    let children: Vec<_> = children(&document, stop).into_iter().map(|child| (child.name, child.pointer)).collect();
+    let [along, color] = ["0", "1"].map(|token| format!("{stop}/{token}"));
+    assert_eq!(children, [("along".into(), along.clone()), ("color".into(), color.clone())]);
+    let pointer = |address: &str| crate::scene::address::resolve(&document, address).unwrap();
+    assert_eq!(pointer("layers.ground.gradient.stops.1.color"), color);
+    assert_eq!(crate::scene::address::address(&document, &along), "layers.ground.gradient.stops.1.along");
+    let found = |value: Value| {
+        crate::scene::shape::problems(crate::scene::schema::Place::of(document.json(), stop).unwrap().shape, &value)
+    };
+    assert_eq!(found(json!([0.5, "#000000"])), []);
+    for (value, path) in [(json!([0.5]), ""), (json!([2, "#000000"]), "/0"), (json!([0.5, 1]), "/1"), (json!({}), "")] {
+        assert_eq!(
+            found(value.clone()).iter().map(|problem| problem.path.as_str()).collect::<Vec<_>>(),
+            [path],
+            "{value}"
+        );
+    }
 }
