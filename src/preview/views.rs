@@ -144,6 +144,7 @@ pub(super) fn wanted(command: &str) -> (&str, Option<bool>) {
 }
 
 /// The command that sets a switch to what it is; `None` if there is no such switch.
+#[cfg(feature = "window")]
 pub(super) fn setting(name: &str, switches: &Switches) -> Option<String> {
     switch(name).map(|name| set(name, switches.is_on(name)))
 }

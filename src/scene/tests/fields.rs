@@ -180,12 +180,10 @@ fn a_row_of_several_kinds_is_told_by_its_columns() {
     let children: Vec<_> = children(&document, stop).into_iter().map(|child| (child.name, child.pointer)).collect();
     let [along, color] = ["0", "1"].map(|token| format!("{stop}/{token}"));
     assert_eq!(children, [("along".into(), along.clone()), ("color".into(), color.clone())]);
-    let pointer = |address: &str| crate::scene::address::resolve(&document, address).unwrap();
+    let pointer = |address: &str| address::resolve(&document, address).unwrap();
     assert_eq!(pointer("layers.ground.gradient.stops.1.color"), color);
-    assert_eq!(crate::scene::address::address(&document, &along), "layers.ground.gradient.stops.1.along");
-    let found = |value: Value| {
-        crate::scene::shape::problems(crate::scene::schema::Place::of(document.json(), stop).unwrap().shape, &value)
-    };
+    assert_eq!(address::address(&document, &along), "layers.ground.gradient.stops.1.along");
+    let found = |value: Value| shape::problems(schema::Place::of(document.json(), stop).unwrap().shape, &value);
     assert_eq!(found(json!([0.5, "#000000"])), []);
     for (value, path) in [(json!([0.5]), ""), (json!([2, "#000000"]), "/0"), (json!([0.5, 1]), "/1"), (json!({}), "")] {
         assert_eq!(
