@@ -27,7 +27,7 @@ pub enum Mode {
     Edit,
     /// The same, but read-only if somebody else is editing the scene already: see [`Session::held_by`].
     EditOrLook,
-    /// Edit, even if somebody whose lock cannot be seen may be editing too.
+    /// Edit, even if another editor, whose lock cannot be checked from here, may have the scene open.
     TakeOver,
     /// Read-only, with edits at most in memory: no lock, no journal.
     ReadOnly,

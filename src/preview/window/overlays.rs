@@ -44,7 +44,7 @@ impl State {
         View { times, ..view }
     }
 
-    /// The overlays that are shown, as dense as the screen bears.
+    /// The overlays that are shown, no denser than stays legible on the screen.
     fn view(&self, wanted: impl Fn(When) -> bool) -> View {
         let shown = overlays().filter(|overlay| wanted(overlay.when) && self.shows(overlay.name));
         View {

@@ -166,8 +166,8 @@ fn over_selection(state: &mut State, value: &Value, call: &Call) -> Done {
     Ok(())
 }
 
-/// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, over a
-/// field. Of several ways the first counts that the scene bears. What goes into a list goes there so many times.
+/// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, or over
+/// a field; the first of these that gives a valid scene is taken. Into a list the value is pasted `times` times.
 fn paste_value(state: &mut State, yanked: &Yanked, times: usize) -> Done {
     let mut why = None;
     for fit in fits(state) {

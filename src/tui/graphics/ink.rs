@@ -170,8 +170,10 @@ fn blend(frame: &mut Frame, at: Point, [r, g, b, a]: [u8; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::folding::looks::{ANCHOR, CURVE, FOLD_REGION, ZONE_OUTLINE};
     use crate::layers::parts::marks::Look;
+
+    static SOLID: Look = Look::new("solid", 0, [200, 200, 200, 255], 1.5).dots(Dot::Disc, 3.5);
+    static DASHED: Look = Look::new("dashed", 0, [200, 200, 200, 255], 1.5).dashed(6.0, 4.0);
 
     fn text(frame: &Frame) -> Vec<String> {
         let glyph = |cell: &[u8; 4]| if *cell == [0, 0, 0, 255] { '.' } else { '#' };
@@ -189,14 +191,14 @@ mod tests {
     fn marks_stand_where_they_are_in_the_picture() {
         let rectangle = [(14.0, 12.0), (28.0, 12.0), (28.0, 18.0), (14.0, 18.0)].map(Point::from).to_vec();
         let outline = Shape::Line { points: rectangle.clone(), closed: true };
-        let found = drawn(outline, &ZONE_OUTLINE, false);
+        let found = drawn(outline, &SOLID, false);
         assert_eq!(
             found,
             ["............", "..########..", "..#......#..", "..#......#..", "..########..", "............"]
         );
         let far = Shape::Line { points: vec![Point::new(-1e9, 15.0), Point::new(1e9, 15.0)], closed: false };
-        assert_eq!(drawn(far, &CURVE, false)[2], "############");
-        assert_eq!(drawn(Shape::Fill(rectangle), &FOLD_REGION, false)[1..4].concat().matches('#').count(), 3);
+        assert_eq!(drawn(far, &SOLID, false)[2], "############");
+        assert_eq!(drawn(Shape::Fill(rectangle), &DASHED, false)[1..4].concat().matches('#').count(), 3);
     }
 
     #[test]
@@ -204,7 +206,7 @@ mod tests {
         let mut frame = Frame::filled(12, 6, DARK);
         let part = Part { corner: Point::ZERO, scale: 8.0, dots: (12, 6) };
         let mut ink = Ink { frame: &mut frame, part: &part, by: 4 };
-        ink.draw(&[Mark::new(&ANCHOR, "", Shape::Dot(Point::new(20.0, 20.0)))]);
+        ink.draw(&[Mark::new(&SOLID, "", Shape::Dot(Point::new(20.0, 20.0)))]);
         assert_eq!(text(&frame).concat().matches('#').count(), 1);
     }
 
@@ -212,7 +214,7 @@ mod tests {
     fn what_is_selected_is_wider_and_dashes_tell_kinds_apart() {
         let line = || Shape::Line { points: vec![Point::new(10.0, 14.0), Point::new(34.0, 14.0)], closed: false };
         let count = |rows: Vec<String>| rows.concat().matches('#').count();
-        assert_eq!((count(drawn(line(), &CURVE, false)), count(drawn(line(), &CURVE, true))), (12, 24));
-        assert_eq!(drawn(line(), &FOLD_REGION, false)[2], "######....##");
+        assert_eq!((count(drawn(line(), &SOLID, false)), count(drawn(line(), &SOLID, true))), (12, 24));
+        assert_eq!(drawn(line(), &DASHED, false)[2], "######....##");
     }
 }

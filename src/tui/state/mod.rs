@@ -63,7 +63,7 @@ pub struct State {
     pub focus: Pane,
     /// Pointer of the node in the middle.
     pub node: String,
-    /// Nodes of the tree that are folded.
+    /// Nodes of the tree that are collapsed.
     pub folded: BTreeSet<String>,
     /// The row of the sheet under the cursor.
     pub row: usize,
@@ -85,7 +85,7 @@ pub struct State {
     pub placing: Placing,
     /// Width and height of the picture, once known.
     pub picture_size: Option<(usize, usize)>,
-    /// Scene time t of folding.md, in [0, 1].
+    /// Scene time, in [0, 1].
     pub time: f64,
     /// Whether the animation runs.
     pub playing: bool,
