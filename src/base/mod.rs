@@ -1,4 +1,4 @@
-//! Facts about numbers and pictures. Knows no scene.
+//! Facts about numbers, pictures and meshes. Knows no scene.
 
 pub mod budget;
 pub mod chains;
@@ -11,6 +11,7 @@ pub mod geometry;
 pub mod keys;
 pub mod mask;
 pub mod maths;
+pub mod mesh;
 pub mod oklab;
 pub mod picture;
 pub mod pixels;
