@@ -5,7 +5,7 @@ use std::ffi::{OsStr, OsString};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
-use super::{disk, scene};
+use super::{disk, hash};
 
 /// The longest file name on most file systems, in bytes.
 const LONGEST: usize = 255;
@@ -25,7 +25,7 @@ pub fn path(scene_path: &Path, purpose: &str) -> PathBuf {
     hidden.push(OsStr::from_bytes(shown));
     hidden.push(format!(".{mark}{purpose}"));
     if hidden.len() > LONGEST {
-        hidden = format!(".{}.{mark}{purpose}", &scene::hash(bytes)[..32]).into();
+        hidden = format!(".{}.{mark}{purpose}", &hash::of(bytes)[..32]).into();
     }
     disk::folder_of(scene_path).join(hidden)
 }

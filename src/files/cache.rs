@@ -156,10 +156,10 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::files::scene::hash;
+    use crate::files::hash;
 
     fn told(bytes: &[u8]) -> Contents {
-        Contents { hash: hash(bytes), bytes: bytes.len() as u64 }
+        Contents { hash: hash::of(bytes), bytes: bytes.len() as u64 }
     }
 
     fn keep(cache: &Cache, bytes: &[u8]) -> PathBuf {
@@ -212,7 +212,7 @@ mod tests {
         cache.trim(&BTreeSet::new());
         assert_eq!(paths.iter().map(|path| path.exists()).collect::<Vec<_>>(), [true, false, true]);
         keep(&cache, b"dddd");
-        cache.trim(&[hash(b"cccc"), hash(b"dddd")].into());
+        cache.trim(&[hash::of(b"cccc"), hash::of(b"dddd")].into());
         assert_eq!(paths.iter().map(|path| path.exists()).collect::<Vec<_>>(), [false, false, true]);
     }
 }

@@ -6,6 +6,7 @@ pub mod cache;
 pub mod disk;
 pub mod draft;
 pub mod fields;
+pub mod hash;
 pub mod holder;
 pub mod journal;
 pub mod limits;

@@ -170,7 +170,7 @@ mod tests {
         let told: Vec<_> = list.iter().map(|one| (one.path.as_str(), one.file.is_ok())).collect();
         assert_eq!(told, [("../b.png", false), ("a.png", true), ("c.png", false)]);
         let contents = list[1].file.clone().unwrap();
-        assert_eq!(contents, Contents { hash: super::super::scene::hash(&long), bytes: 20_000 });
+        assert_eq!(contents, Contents { hash: super::super::hash::of(&long), bytes: 20_000 });
         assert_eq!(first.piece(&contents.hash, 0).len(), PIECE);
         // Replaced by rename meanwhile: what was announced is still sent completely.
         std::fs::write(folder.path().join("new"), "short").unwrap();

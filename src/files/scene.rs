@@ -3,8 +3,6 @@
 use std::io::Read;
 use std::path::Path;
 
-use sha2::{Digest, Sha256};
-
 use super::{Limits, Options, paths, picture, through, write_atomic};
 use crate::base::error::{Error, Result};
 use crate::scene::{Document, json};
@@ -86,9 +84,4 @@ pub fn save(path: &Path, text: &str) -> Result<()> {
     } else {
         write_atomic(path, text.as_bytes())
     }
-}
-
-/// SHA-256 of a file's bytes, in hexadecimal: shows whether another program wrote the file.
-pub fn hash(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -7,8 +7,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::Depth;
+use crate::files::hash;
 use crate::files::lines;
-use crate::files::scene::hash;
 use crate::layers::KINDS;
 use crate::layers::parts::bundle;
 use crate::layers::technique::{Kind, Technique};
@@ -79,7 +79,7 @@ pub fn stem(layer: Option<&str>, zone: &str) -> String {
     if whole.len() < LONGEST {
         return whole + "-";
     }
-    let mark = hash(whole.as_bytes());
+    let mark = hash::of(whole.as_bytes());
     format!("{}-{}-", &whole[..whole.floor_char_boundary(LONGEST - MARK - 2)], &mark[..MARK])
 }
 

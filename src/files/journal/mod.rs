@@ -16,7 +16,7 @@ mod writer;
 
 pub use format::{Contents, Header, Kind, Record, Unreadable, encode, read};
 
-use super::{beside, disk, scene};
+use super::{beside, disk, hash};
 use crate::base::system::{self, folders};
 use crate::scene::Document;
 use writer::{Message, Shared, Writer};
@@ -79,7 +79,7 @@ pub fn path_beside(scene_path: &Path) -> PathBuf {
 /// The path of a scene's journal if its folder cannot be written: in the user's state folder, named by a hash of the
 /// scene's path.
 pub fn path_in_state(scene_path: &Path) -> Option<PathBuf> {
-    let hash = scene::hash(scene_path.as_os_str().as_encoded_bytes());
+    let hash = hash::of(scene_path.as_os_str().as_encoded_bytes());
     Some(folders::state()?.join("journals").join(format!("{}.journal", &hash[..32])))
 }
 

@@ -8,16 +8,7 @@ use moxcms::{
 use moxcms::{LutType, ToneReprCurve, Xyzd};
 
 use super::Model;
-use super::color::{Curve, D50, Shaper, Table, multiply};
-
-/// The conversion that a profile defines.
-pub(super) enum Profile {
-    Shaper(Box<Shaper>),
-    Table(Table),
-}
-
-/// The most samples per pixel, and values per color.
-const MOST: usize = 4;
+use super::conversion::{Curve, D50, MOST, Profile, Shaper, Table, between, from_lab, from_lightness, mix, multiply};
 
 /// Nodes per side of the table made from a profile's table, by the number of samples per pixel.
 const NODES: [usize; MOST] = [256, 65, 33, 17];
@@ -138,18 +129,6 @@ fn black_point(profile: &ColorProfile, lut: &Lut, inputs: usize) -> [f64; 3] {
     let [_, y, _] = lut.color(&darkest[..inputs]);
     let y = y.clamp(0.0, from_lightness(50.0));
     D50.map(|white| white * y)
-}
-
-/// Y from L*.
-pub(super) fn from_lightness(l: f64) -> f64 {
-    from_lab([l, 0.0, 0.0])[1]
-}
-
-/// CIE L*a*b* to XYZ, both relative to D50.
-pub(super) fn from_lab([l, a, b]: [f64; 3]) -> [f64; 3] {
-    let y = (l + 16.0) / 116.0;
-    let back = |t: f64| if t > 24.0 / 116.0 { t * t * t } else { (t - 16.0 / 116.0) * 108.0 / 841.0 };
-    [back(y + a / 500.0) * D50[0], back(y) * D50[1], back(y - b / 200.0) * D50[2]]
 }
 
 /// A table of a profile.
@@ -312,38 +291,4 @@ fn run_new(lut: &LutMultidimensionalType, input: &[f64], out: &mut [f64; MOST]) 
         curves(&lut.a_curves, &mut v);
     }
     *out = v;
-}
-
-/// The value at `x` between `count` values that are evenly spaced from 0 to 1.
-pub(super) fn between(x: f64, count: usize, value: impl Fn(usize) -> f64) -> f64 {
-    let at = x.clamp(0.0, 1.0) * (count - 1) as f64;
-    let below = (at as usize).min(count - 1);
-    let above = (below + 1).min(count - 1);
-    value(below) + (value(above) - value(below)) * (at - below as f64)
-}
-
-/// The nodes around a place in a grid, each with its weight (the corners of the simplex that contains it; in three
-/// dimensions a tetrahedron). The first coordinate varies slowest.
-pub(super) fn mix(place: &[f64], nodes: &[usize; MOST], mut each: impl FnMut(usize, f64)) {
-    let count = place.len();
-    let (mut at, mut parts) = (0, [(0.0, 0); MOST]);
-    let mut stride = 1;
-    for c in (0..count).rev() {
-        let last = nodes[c] - 1;
-        let x = place[c].clamp(0.0, 1.0) * last as f64;
-        let below = (x as usize).min(last);
-        at += below * stride;
-        // The last node has no next one; the weight of that would be 0.
-        parts[c] = (x - below as f64, if below < last { stride } else { 0 });
-        stride *= nodes[c];
-    }
-    let parts = &mut parts[..count];
-    parts.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut before = 1.0;
-    for &(part, step) in parts.iter() {
-        each(at, before - part);
-        at += step;
-        before = part;
-    }
-    each(at, before);
 }

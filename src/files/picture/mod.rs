@@ -16,6 +16,7 @@ use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
 
 mod color;
+mod conversion;
 mod exr;
 mod icc;
 mod ifd;
@@ -31,7 +32,7 @@ mod upright;
 
 pub(super) use exr::vectors;
 pub(super) use limits::within;
-pub(super) use plain::words;
+pub(super) use png::words;
 
 use kinds::Kind;
 
@@ -138,7 +139,7 @@ impl Raw {
 enum Color {
     Untagged,
     Icc(Vec<u8>),
-    Spoken(color::Spoken),
+    Spoken(conversion::Spoken),
 }
 
 /// Reads the picture at `path` (`a.exr#beauty` is a layer of it), within the limits.

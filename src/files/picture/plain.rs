@@ -102,21 +102,3 @@ fn kept(image: DynamicImage) -> Option<(Model, Raw)> {
     };
     Some((model, samples))
 }
-
-/// The samples of a PNG with red, green and blue of 16 bits each, as KITTI stores vectors; `allow` is asked first for
-/// the bytes that this takes.
-pub(in crate::files) fn words(
-    file: std::fs::File,
-    place: &str,
-    limits: &Limits,
-    allow: impl FnOnce(u64) -> Result<()>,
-) -> Result<((usize, usize), Vec<[u16; 3]>)> {
-    let opened = super::png::open(file, place, limits)?;
-    allow(opened.bytes)?;
-    let decoded = (opened.decode)()?;
-    match (decoded.model, decoded.samples) {
-        (Model::Rgb, Raw::Words(words)) => Ok((decoded.size, words.as_chunks::<3>().0.to_vec())),
-        _ => Err(Error::at(place, "is a picture, not a vector field")
-            .cure("a KITTI PNG has red, green and blue with 16 bits each")),
-    }
-}

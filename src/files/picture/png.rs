@@ -7,9 +7,9 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
 use image::ImageFormat;
 
-use super::color::{Spoken, Transfer};
-use super::{Color, Decoded, Opened, limits, plain};
-use crate::base::error::Result;
+use super::conversion::{Spoken, Transfer};
+use super::{Color, Decoded, Model, Opened, Raw, limits, plain};
+use crate::base::error::{Error, Result};
 use crate::files::Limits;
 
 /// Chunks that affect pixels or their orientation.
@@ -34,6 +34,24 @@ pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
         Ok(colored(decoded, said, has_profile))
     });
     Ok(Opened { decode, ..opened })
+}
+
+/// The samples of a PNG with red, green and blue of 16 bits each, as KITTI stores vectors; `allow` is asked first for
+/// the bytes that this takes.
+pub(in crate::files) fn words(
+    file: File,
+    place: &str,
+    limits: &Limits,
+    allow: impl FnOnce(u64) -> Result<()>,
+) -> Result<((usize, usize), Vec<[u16; 3]>)> {
+    let opened = open(file, place, limits)?;
+    allow(opened.bytes)?;
+    let decoded = (opened.decode)()?;
+    match (decoded.model, decoded.samples) {
+        (Model::Rgb, Raw::Words(words)) => Ok((decoded.size, words.as_chunks::<3>().0.to_vec())),
+        _ => Err(Error::at(place, "is a picture, not a vector field")
+            .cure("a KITTI PNG has red, green and blue with 16 bits each")),
+    }
 }
 
 /// Sets the color of the picture from the chunks, by precedence.

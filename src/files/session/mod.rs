@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::holder::{Holder, Sign};
 use super::journal::{self, Found, Kind, Unopened};
-use super::{Options, disk, now_ms, scene, temporary, through};
+use super::{Options, disk, hash, now_ms, scene, temporary, through};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::scene::history::{Applied, Stamp, Way};
@@ -137,7 +137,7 @@ impl Session {
             history: History::new(document.clone()),
             keeping: Keeping::Nowhere,
             aside: None,
-            file: scene::hash(text.as_bytes()),
+            file: hash::of(text.as_bytes()),
             offer: None,
             source: text,
             base: Some(document.clone()),
@@ -294,7 +294,7 @@ impl Session {
             tracing::warn!("saving without a journal: {reason}");
         }
         let text = self.text();
-        let ours = scene::hash(text.as_bytes());
+        let ours = hash::of(text.as_bytes());
         if let Err(error) = scene::save(&self.path, &text) {
             // The file may be written without being safe on the disk: it is ours all the same.
             if self.file_holds(&ours) {

@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 
 use super::{Kind, Session};
 use crate::base::error::{Error, Result};
-use crate::files::{now_ms, paths, scene, through};
+use crate::files::{hash, now_ms, paths, scene, through};
 use crate::scene::history::{Applied, Stamp};
 use crate::scene::merge::{Merged, Side, merge};
 use crate::scene::{Document, Edit, words};
@@ -111,7 +111,7 @@ impl Session {
     /// The document in the file, the file's hash and its text.
     fn file_version(&self) -> Result<(Document, String, String)> {
         let text = scene::read_text(&self.path, &self.options.limits)?;
-        Ok((scene::parse(&self.path, &text, &self.options)?, scene::hash(text.as_bytes()), text))
+        Ok((scene::parse(&self.path, &text, &self.options)?, hash::of(text.as_bytes()), text))
     }
 
     /// The document in the file, if that can be read.
@@ -143,7 +143,7 @@ impl Session {
     /// Why it must not be overwritten.
     pub fn may_overwrite(&self) -> Result<()> {
         match paths::read(&self.path, self.options.limits.scene) {
-            Ok(bytes) if scene::hash(&bytes) == self.file => Ok(()),
+            Ok(bytes) if hash::of(&bytes) == self.file => Ok(()),
             Ok(_) => Err(Error::at(self.path.display(), "was changed by another program")),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
             Err(error) => Err(Error::at(self.path.display(), error)),
@@ -152,7 +152,7 @@ impl Session {
 
     /// Whether the file has exactly this content; for after a save that failed on the way.
     pub(super) fn file_holds(&self, hash: &str) -> bool {
-        paths::read(&self.path, self.options.limits.scene).is_ok_and(|bytes| scene::hash(&bytes) == hash)
+        paths::read(&self.path, self.options.limits.scene).is_ok_and(|bytes| hash::of(&bytes) == hash)
     }
 
     /// Takes over the document in the file, as one edit.

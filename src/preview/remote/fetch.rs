@@ -241,7 +241,7 @@ impl Default for Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::scene::hash;
+    use crate::files::hash;
 
     /// A link of this many bytes a second and this delay, played in its own time: how long all takes, and the most pieces
     /// that an edit would have before it.
@@ -249,7 +249,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let content = vec![7; bytes as usize];
         let mut fetch = Fetch::new(Cache::at(folder.path().into(), u64::MAX).unwrap(), Shared::default(), u64::MAX);
-        let contents = Contents { hash: hash(&content), bytes };
+        let contents = Contents { hash: hash::of(&content), bytes };
         let told = |path: &str| Original { path: path.into(), file: Ok(contents.clone()) };
         fetch.told(vec![told("a.png"), told("b.png")]);
         let began = Instant::now();
@@ -291,7 +291,7 @@ mod tests {
         let mut fetch = Fetch::new(Cache::at(folder.path().into(), 10).unwrap(), Shared::default(), 100);
         let told = |path: &str, content: &[u8]| Original {
             path: path.into(),
-            file: Ok(Contents { hash: hash(content), bytes: content.len() as u64 }),
+            file: Ok(Contents { hash: hash::of(content), bytes: content.len() as u64 }),
         };
         fetch.told(vec![told("a", b"123456"), told("b", b"123456"), told("c", b"78901"), told("d", b"2345")]);
         assert_eq!(fetch.missing.len(), 2, "a is b; c is too much; d fits again");
@@ -306,7 +306,7 @@ mod tests {
         let mut fetch = Fetch::new(Cache::at(folder.path().into(), u64::MAX).unwrap(), Shared::default(), 100);
         let told = |path: &str, content: &[u8]| Original {
             path: path.into(),
-            file: Ok(Contents { hash: hash(content), bytes: content.len() as u64 }),
+            file: Ok(Contents { hash: hash::of(content), bytes: content.len() as u64 }),
         };
         let now = Instant::now();
         assert!(!fetch.is_settled(), "nothing was told yet");
@@ -322,19 +322,19 @@ mod tests {
         // Saved again meanwhile: the old piece is passed over, the new file asked for once it has come.
         fetch.told(vec![told("a", b"new")]);
         assert!(fetch.wants(now).unwrap().is_empty());
-        assert!(!fetch.piece(&hash(b"abc"), 0, b"abc", now).unwrap());
-        assert_eq!(fetch.wants(now).unwrap(), [ToEditor::Want { hash: hash(b"new"), offset: 0 }]);
+        assert!(!fetch.piece(&hash::of(b"abc"), 0, b"abc", now).unwrap());
+        assert_eq!(fetch.wants(now).unwrap(), [ToEditor::Want { hash: hash::of(b"new"), offset: 0 }]);
         // Lost, told again, and wrong.
         fetch.lost();
         fetch.told(vec![told("a", b"new")]);
         assert_eq!(fetch.wants(now).unwrap().len(), 1);
-        assert!(fetch.piece(&hash(b"new"), 0, b"not", now).is_err());
+        assert!(fetch.piece(&hash::of(b"new"), 0, b"not", now).is_err());
         assert!(fetch.is_settled(), "not asked for again");
         fetch.told(vec![told("a", b"new"), told("empty", b"")]);
         for _ in 0..2 {
             let wants = fetch.wants(now).unwrap();
             let [ToEditor::Want { hash: wanted, .. }] = &wants[..] else { panic!("{wants:?}") };
-            let content: &[u8] = if *wanted == hash(b"") { b"" } else { b"new" };
+            let content: &[u8] = if *wanted == hash::of(b"") { b"" } else { b"new" };
             assert!(fetch.piece(wanted, 0, content, now).unwrap());
         }
         assert!(fetch.is_settled());

@@ -6,7 +6,7 @@ mod saving;
 use std::path::{Path, PathBuf};
 
 use super::{Mode, Overwrite, Session, Taken};
-use crate::files::{Options, journal, scene};
+use crate::files::{Options, hash, journal, scene};
 use crate::scene::merge::Side;
 use crate::scene::{Document, Edit};
 
@@ -359,7 +359,7 @@ fn a_long_journal_drops_its_oldest_part() {
     let text = std::fs::read_to_string(&place.scene).unwrap();
     let mut document = Document::parse(&text).unwrap();
     let mut history = crate::scene::History::new(document.clone());
-    let file = scene::hash(text.as_bytes());
+    let file = hash::of(text.as_bytes());
     let header = journal::Header { file: file.clone(), document: document.json().clone(), is_file: true };
     let mut found = journal::find(&place.scene).unwrap();
     let mut journal = found.open(&header, 0, 0).unwrap().journal;
