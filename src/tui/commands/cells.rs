@@ -37,8 +37,8 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 pub fn current(state: &State) -> Option<(Row, Cell)> {
-    let row = state.sheet().row(state.row)?;
-    let cell = row.cells.get(state.column)?.clone();
+    let row = state.row()?;
+    let cell = state.cursor.cell(&row)?.clone();
     Some((row, cell))
 }
 
@@ -50,7 +50,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
         return add_here(state, 1);
     }
     // The kind of an item with an inside of its own stands for the item; its form has the kind again.
-    let into = row.item && state.column == 0 && row.cells.iter().any(Cell::is_node);
+    let into = row.item && state.cursor.column == 0 && row.cells.iter().any(Cell::is_node);
     if cell.is_node() || into {
         state.show(if into { row.pointer } else { cell.pointer });
         return Ok(());
@@ -59,9 +59,9 @@ fn enter(state: &mut State, call: &Call) -> Done {
     let sheet = state.sheet();
     let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
     if is_typed(&cell) {
-        state.mode = Mode::Entry(Entry::new(state.document(), &cell, call.text == "clear"));
+        state.typing.mode = Mode::Entry(Entry::new(state.document(), &cell, call.text == "clear"));
     } else if let Some(choice) = choice::of_cell(state.document(), &cell, others) {
-        state.mode = Mode::Choice(choice);
+        state.typing.mode = Mode::Choice(choice);
     } else {
         return Err(format!("{} cannot be edited here", row.label));
     }
@@ -86,7 +86,7 @@ fn put(state: &mut State, call: &Call) -> Done {
         let word = word_of(&choice, &text)?;
         take(state, call, choice, &word)?;
     }
-    state.mode = Mode::Normal;
+    state.typing.mode = Mode::Normal;
     Ok(())
 }
 
@@ -97,7 +97,7 @@ fn is_typed(cell: &Cell) -> bool {
 
 /// Takes the entry. Where it cannot be taken it stays as it was typed.
 fn commit(state: &mut State, call: &Call) -> Done {
-    let Mode::Entry(typed) = &state.mode else { return Ok(()) };
+    let Mode::Entry(typed) = &state.typing.mode else { return Ok(()) };
     let text = quoted(typed.text.value());
     call.obey(state, &format!("put {text}"))?;
     if call.text == "next" {
@@ -111,12 +111,12 @@ fn commit(state: &mut State, call: &Call) -> Done {
 
 fn digit(state: &mut State, call: &Call) -> Done {
     let by = number(call, "digit")?.saturating_mul(call.times());
-    let Mode::Entry(entry) = &mut state.mode else { return Ok(()) };
+    let Mode::Entry(entry) = &mut state.typing.mode else { return Ok(()) };
     if entry.text.step_digit(by) { Ok(()) } else { Err("there is no digit under the cursor".into()) }
 }
 
 fn choice(state: &mut State, call: &Call) -> Done {
-    let Mode::Choice(choice) = &mut state.mode else { return Ok(()) };
+    let Mode::Choice(choice) = &mut state.typing.mode else { return Ok(()) };
     match call.text {
         "next" => choice.step(call.times()),
         "previous" => choice.step(-call.times()),
@@ -124,16 +124,16 @@ fn choice(state: &mut State, call: &Call) -> Done {
             (Some(word), Then::Answer(_)) => {
                 // Elsewhere, where a log is run again, nothing of the kind has happened.
                 let choice = choice.clone();
-                state.mode = Mode::Normal;
-                state.recorder.remark(&format!("{}: {word}", choice.title));
+                state.typing.mode = Mode::Normal;
+                state.memory.recorder.remark(&format!("{}: {word}", choice.title));
                 return take(state, call, choice, &word);
             }
             (Some(word), Then::Go) => {
-                state.mode = Mode::Normal;
+                state.typing.mode = Mode::Normal;
                 return messages::go_to(state, call, &word);
             }
             (Some(word), _) => return call.obey(state, &format!("choose {}", quoted(&word))),
-            (None, _) => state.mode = Mode::Normal,
+            (None, _) => state.typing.mode = Mode::Normal,
         },
         text => {
             let letter = text.strip_prefix("to ").and_then(|text| text.chars().next());
@@ -159,12 +159,12 @@ fn unknown(call: &Call, takes: &str) -> String {
 }
 
 fn choose(state: &mut State, call: &Call) -> Done {
-    let Mode::Choice(choice) = &state.mode else {
+    let Mode::Choice(choice) = &state.typing.mode else {
         return Err("there is no list to choose from: Enter opens one".into());
     };
     let word = word_of(choice, &unquoted(call.text))?;
     let choice = choice.clone();
-    state.mode = Mode::Normal;
+    state.typing.mode = Mode::Normal;
     take(state, call, choice, &word)
 }
 
@@ -210,7 +210,7 @@ fn step(state: &mut State, call: &Call) -> Done {
     if !cell.is_number() {
         return Err(format!("{} is no number: only numbers step (Enter opens it)", cell.field.name));
     }
-    let unit = step_of(state.step);
+    let unit = step_of(state.typing.step);
     let edit = entry::each(state, |_, cell, _| {
         Ok(numbers::tidy(cell.number(state.document()).unwrap_or(0.0) + by as f64 * unit))
     })?;
@@ -222,11 +222,11 @@ fn step(state: &mut State, call: &Call) -> Done {
 fn step_size(state: &mut State, call: &Call) -> Done {
     let times = call.times() as i32;
     let power = match call.text {
-        "smaller" => state.step - times,
-        "larger" => state.step + times,
+        "smaller" => state.typing.step - times,
+        "larger" => state.typing.step + times,
         _ => call.text.parse().map_err(|_| unknown(call, "step-size takes smaller, larger or a power of ten"))?,
     };
-    state.step = power.clamp(-3, 3);
-    state.say(format!("step {}", step_of(state.step)));
+    state.typing.step = power.clamp(-3, 3);
+    state.say(format!("step {}", step_of(state.typing.step)));
     Ok(())
 }

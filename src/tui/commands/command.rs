@@ -7,8 +7,8 @@ use crate::base::problem;
 use crate::files::paths;
 use crate::ops;
 use crate::tui::events::Effect;
+use crate::tui::state::State;
 use crate::tui::state::recorder::{Ended, Kept};
-use crate::tui::state::{Mode, State};
 use crate::tui::text::said::{Said, one_of, words};
 
 /// How a command ends: what to say where it could not be done.
@@ -269,8 +269,8 @@ impl Table {
         crate::tui::tests::coverage::ran(said.name);
         let command = self.find(said.name);
         let kept = command.map_or(Kept::Line, |command| command.kept);
-        let (revision, asked) = (state.door.revision(), asks(state));
-        state.recorder.begin(kept);
+        let (revision, asked) = (state.door.revision(), state.typing.mode.asks());
+        state.memory.recorder.begin(kept);
         let done = match command {
             Some(command) => command.takes(&said).and_then(|()| {
                 // Nothing is typed or chosen that would be refused at its end.
@@ -281,13 +281,13 @@ impl Table {
             }),
             None => self.subcommand(state, &said),
         };
-        let asks = asks(state) && !asked;
+        let asks = state.typing.mode.asks() && !asked;
         // Only a run of steps joins into one step of undo, whatever was looked at meanwhile.
         if done.is_ok() && !matches!(kept, Kept::Inside | Kept::Played) && !asks && said.name != "step" {
             state.door.close_step();
         }
         let refused = done.as_ref().err().map(String::as_str);
-        state.recorder.end(Ended {
+        state.memory.recorder.end(Ended {
             line: said.to_string(),
             kept,
             refused,
@@ -310,9 +310,4 @@ impl Table {
         state.ask(Effect::Run(words));
         Ok(())
     }
-}
-
-/// Whether something is being typed or chosen: a line that answers follows.
-fn asks(state: &State) -> bool {
-    matches!(state.mode, Mode::Entry(_) | Mode::Choice(_) | Mode::Line(_))
 }

@@ -5,10 +5,10 @@ use crate::tui::state::{Mode, Pane, State, entry};
 
 /// The contexts of the key table that are in force, the innermost first.
 pub fn contexts(state: &State) -> Vec<&'static str> {
-    if state.is_small() && !matches!(state.mode, Mode::Line(_)) {
+    if state.is_small() && !matches!(state.typing.mode, Mode::Line(_)) {
         return vec![keys::SMALL];
     }
-    let mut contexts = match (&state.mode, state.focus) {
+    let mut contexts = match (&state.typing.mode, state.cursor.focus) {
         (Mode::Entry(_), _) if entry::of_number(state) => vec![keys::NUMBER, keys::ENTRY, keys::TYPING],
         (Mode::Entry(_), _) => vec![keys::ENTRY, keys::TYPING],
         (Mode::Line(_), _) => vec![keys::LINE, keys::TYPING],
@@ -20,7 +20,7 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],
     };
-    if matches!(state.mode, Mode::Normal) && state.recorder.recording().is_some() {
+    if matches!(state.typing.mode, Mode::Normal) && state.memory.recorder.recording().is_some() {
         contexts.insert(0, keys::RECORDING);
     }
     contexts

@@ -12,7 +12,7 @@ use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
 use crate::tui::document::rows::{self, is_polar};
 use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
-use crate::tui::state::{State, entry};
+use crate::tui::state::State;
 use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] =
@@ -27,7 +27,7 @@ fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
 fn fill(state: &mut State, call: &Call) -> Done {
     let table: Vec<Vec<String>> = serde_json::from_str(call.text)
         .map_err(|_| "fill takes a JSON list of rows, each a list of texts: [[\"dx\", \"dy\"], [\"1\", \"2\"]]")?;
-    let selected: Vec<usize> = entry::rows(state).collect();
+    let selected: Vec<usize> = state.cursor.rows().collect();
     let header = header(&table);
     let values = &table[usize::from(header.is_some())..];
     if values.len() != 1 && values.len() != selected.len() {
@@ -40,7 +40,7 @@ fn fill(state: &mut State, call: &Call) -> Done {
         let texts = if values.len() == 1 { &values[0] } else { &values[i] };
         let mut cells = Vec::new();
         for (k, text) in texts.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
-            let cell = cell(&row, header, state.column, k).map_err(|why| format!("row {i}: {why}"))?;
+            let cell = cell(&row, header, state.cursor.column, k).map_err(|why| format!("row {i}: {why}"))?;
             cells.push((k, cell, text));
         }
         // A direction turns the length that was given; what follows from numbers that are given counts for nothing.

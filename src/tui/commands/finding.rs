@@ -33,15 +33,19 @@ fn letter(call: &Call) -> Result<char, String> {
 
 fn mark(state: &mut State, call: &Call) -> Done {
     let (letter, spot) = (letter(call)?, state.spot());
-    state.finding.mark(letter, spot);
+    state.memory.finding.mark(letter, spot);
     state.say(format!("mark {letter} is set: '{letter} comes back"));
     Ok(())
 }
 
 fn jump_mark(state: &mut State, call: &Call) -> Done {
     let letter = letter(call)?;
-    let spot =
-        state.finding.marked(letter).cloned().ok_or_else(|| format!("mark {letter} is not set: m{letter} sets it"))?;
+    let spot = state
+        .memory
+        .finding
+        .marked(letter)
+        .cloned()
+        .ok_or_else(|| format!("mark {letter} is not set: m{letter} sets it"))?;
     leave(state);
     state.return_to(&spot);
     Ok(())
@@ -54,7 +58,7 @@ fn jumps(state: &mut State, call: &Call) -> Done {
     let way = if call.text == "newer" { "newer" } else { "older" };
     for done in 0..call.times() {
         let here = state.spot();
-        match state.finding.back(way == "older", here) {
+        match state.memory.finding.back(way == "older", here) {
             Some(spot) => state.return_to(&spot),
             None if done > 0 => break,
             None => return Err(format!("there is no {way} jump")),
@@ -67,7 +71,7 @@ fn jumps(state: &mut State, call: &Call) -> Done {
 fn list_jumps(state: &mut State) -> Done {
     let document = state.document();
     let mut options: Vec<(String, String)> = Vec::new();
-    for place in state.finding.jumps().filter(|place| field::is_there(document, place)) {
+    for place in state.memory.finding.jumps().filter(|place| field::is_there(document, place)) {
         let address = match address::told(document, place) {
             whole if whole.is_empty() => "scene".to_owned(),
             address => address,
@@ -81,14 +85,14 @@ fn list_jumps(state: &mut State) -> Done {
     if options.is_empty() {
         return Err("there were no jumps yet".into());
     }
-    state.mode = Mode::Choice(Choice { title: "jumps".into(), options, at: 0, then: Then::Go });
+    state.typing.mode = Mode::Choice(Choice { title: "jumps".into(), options, at: 0, then: Then::Go });
     Ok(())
 }
 
 /// A jump leaves this place.
 pub fn leave(state: &mut State) {
     let spot = state.spot();
-    state.finding.left(spot);
+    state.memory.finding.left(spot);
 }
 
 fn go(state: &mut State, call: &Call) -> Done {
@@ -99,29 +103,29 @@ fn go(state: &mut State, call: &Call) -> Done {
     let before = state.spot();
     reveal(state, &pointer);
     // Whoever names a list means its rows.
-    if state.focus == Pane::Tree && state.sheet().table {
-        state.focus = Pane::Table;
+    if state.cursor.focus == Pane::Tree && state.sheet().table {
+        state.cursor.focus = Pane::Table;
     }
-    if before.node != state.node {
-        state.finding.left(before);
+    if before.node != state.cursor.node {
+        state.memory.finding.left(before);
     }
     Ok(())
 }
 
 /// Goes to the next place whose name or value is looked for, in the order of the document, around its end.
 fn search(state: &mut State, call: &Call) -> Done {
-    let before = state.finding.sought.clone();
+    let before = state.memory.finding.sought.clone();
     match call.text {
         "next" | "previous" => {}
-        text => state.finding.sought = unquoted(text),
+        text => state.memory.finding.sought = unquoted(text),
     }
-    if state.finding.sought.is_empty() {
+    if state.memory.finding.sought.is_empty() {
         return Err("nothing was searched for yet: / searches".into());
     }
     let steps = if call.text == "previous" { -call.times() } else { call.times() };
     let Some(found) = find(state, steps) else {
         // What is refused changes nothing: n goes on with the search before.
-        let sought = std::mem::replace(&mut state.finding.sought, before);
+        let sought = std::mem::replace(&mut state.memory.finding.sought, before);
         return Err(format!("nothing here is called or says {sought}"));
     };
     leave(state);
@@ -142,8 +146,8 @@ struct Found {
 /// The match so many steps from the cursor.
 fn find(state: &mut State, steps: i64) -> Option<Found> {
     let document = state.document().clone();
-    let listed = state.finding.listed(&document);
-    let sought = Sought::new(&state.finding.sought);
+    let listed = state.memory.finding.listed(&document);
+    let sought = Sought::new(&state.memory.finding.sought);
     let matches = listed.iter().enumerate().filter_map(|(i, one)| Some((i, one.matched(&sought)?)));
     let matches: Vec<(usize, usize)> = matches.collect();
     let count = matches.len();
@@ -161,30 +165,30 @@ fn find(state: &mut State, steps: i64) -> Option<Found> {
 
 /// What is under the cursor: the cell, else the row, else the node.
 fn here(state: &State) -> String {
-    if state.focus == Pane::Tree {
-        return state.node.clone();
+    if state.cursor.focus == Pane::Tree {
+        return state.cursor.node.clone();
     }
-    let Some(row) = state.sheet().row(state.row) else { return state.node.clone() };
-    row.cells.get(state.column).map_or(row.pointer, |cell| cell.pointer.clone())
+    let Some(row) = state.row() else { return state.cursor.node.clone() };
+    state.cursor.cell(&row).map_or(&row.pointer, |cell| &cell.pointer).clone()
 }
 
 /// A search is being typed: the cursor goes to what would be found.
 pub fn search_typed(state: &mut State, typed: &str) {
-    let Some(origin) = state.finding.origin.clone() else { return };
+    let Some(origin) = state.memory.finding.origin.clone() else { return };
     state.return_to_origin(&origin);
-    let before = std::mem::replace(&mut state.finding.sought, typed.to_owned());
+    let before = std::mem::replace(&mut state.memory.finding.sought, typed.to_owned());
     let found = if typed.is_empty() { None } else { find(state, 1) };
-    state.finding.sought = before;
+    state.memory.finding.sought = before;
     if let Some(found) = found {
-        let mode = std::mem::replace(&mut state.mode, Mode::Normal);
+        let mode = std::mem::replace(&mut state.typing.mode, Mode::Normal);
         reveal_part(state, &found.pointer, found.part);
-        state.mode = mode;
+        state.typing.mode = mode;
     }
 }
 
 /// The search is no longer being typed: the cursor is where it was before.
 pub fn search_left(state: &mut State) {
-    if let Some(origin) = state.finding.origin.take() {
+    if let Some(origin) = state.memory.finding.origin.take() {
         state.return_to_origin(&origin);
     }
 }
@@ -205,15 +209,15 @@ fn reveal_part(state: &mut State, at: &str, part: usize) {
         Some((list, row, column)) => (list, Some(row), column),
         None => (if node { at } else { parent() }.to_owned(), None, 0),
     };
-    state.mode = Mode::Normal;
-    state.unfold(&shown);
-    state.unselect();
+    state.typing.mode = Mode::Normal;
+    state.cursor.expand_to(&shown);
+    state.cursor.unselect();
     state.show(shown);
-    state.row = row.or_else(|| state.sheet().position(at)).unwrap_or(state.row);
-    state.focus = if node { Pane::Tree } else { Pane::Table };
-    state.column = if node { state.column } else { column };
+    state.cursor.row = row.or_else(|| state.sheet().position(at)).unwrap_or(state.cursor.row);
+    state.cursor.focus = if node { Pane::Tree } else { Pane::Table };
+    state.cursor.column = if node { state.cursor.column } else { column };
     if !node && row.is_none() {
-        state.column = state.sheet().row(state.row).map_or(0, |row| column_of(&row, at, part).unwrap_or(0));
+        state.cursor.column = state.row().map_or(0, |row| column_of(&row, at, part).unwrap_or(0));
     }
     state.settle();
     state.ask(Effect::Show);
@@ -238,15 +242,15 @@ fn column_of(row: &crate::tui::document::sheet::Row, at: &str, part: usize) -> O
 /// Goes to the same place in the next item like the innermost one that holds the node.
 fn sibling(state: &mut State, call: &Call) -> Done {
     let next = call.text != "previous";
-    let (mut node, row, column) = (state.node.clone(), state.row, state.column);
+    let (mut node, row, column) = (state.cursor.node.clone(), state.cursor.row, state.cursor.column);
     for _ in 0..call.times() {
         let end = if next { "last" } else { "first" };
         node = beside(state, &node, next)?.ok_or_else(|| format!("this is the {end} of its kind"))?;
     }
     leave(state);
-    state.unfold(&node);
+    state.cursor.expand_to(&node);
     state.show(node);
-    (state.row, state.column) = (row, column);
+    (state.cursor.row, state.cursor.column) = (row, column);
     state.settle();
     Ok(())
 }

@@ -51,7 +51,7 @@ fn help(state: &mut State, call: &Call) -> Done {
             .map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)),
     );
     lines.extend(call.table.subcommands().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
-    state.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
+    state.typing.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
     Ok(())
 }
 
@@ -76,18 +76,18 @@ fn help_of(state: &mut State, call: &Call) -> Done {
         (None, None) => return Err(call.table.unknown(name)),
     };
     // What is being typed is there again once the help is closed.
-    if let Mode::Entry(entry) = &state.mode {
-        state.kept.entry = Some(entry.clone());
+    if let Mode::Entry(entry) = &state.typing.mode {
+        state.memory.entry = Some(entry.clone());
     }
-    state.mode = Mode::Pages(Pages { title: format!("help: {name}"), lines, scroll: 0 });
+    state.typing.mode = Mode::Pages(Pages { title: format!("help: {name}"), lines, scroll: 0 });
     Ok(())
 }
 
 /// The field under the cursor, in the tree the node: help, value, range, default, path, formula.
 fn under_cursor(state: &State) -> Vec<String> {
-    let row = (state.focus != Pane::Tree).then(|| state.sheet().row(state.row)).flatten();
-    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
-    let at = cell.map_or_else(|| state.node.clone(), |cell| cell.pointer.clone());
+    let row = (state.cursor.focus != Pane::Tree).then(|| state.row()).flatten();
+    let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
+    let at = cell.map_or_else(|| state.cursor.node.clone(), |cell| cell.pointer.clone());
     let document = state.document();
     let Some(field) = field::field(document, &at) else { return Vec::new() };
     let name = if at.is_empty() { "scene".to_owned() } else { plain(&field.name) };
@@ -176,7 +176,7 @@ pub fn entries() -> Vec<String> {
 
 fn scroll(state: &mut State, call: &Call) -> Done {
     let by = number(call, "scroll")?.saturating_mul(call.times());
-    if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.mode {
+    if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.typing.mode {
         *scroll = (*scroll as i64).saturating_add(by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
     }
     Ok(())
@@ -192,7 +192,7 @@ mod tests {
     fn the_help_holds_every_key_and_command() {
         let mut state = crate::tui::tests::support::state();
         obey(&mut state, "help", None).unwrap();
-        let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+        let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages") };
         let text = pages.lines.join("\n");
         assert!(keys::KEYS.iter().all(|row| text.contains(row.help)));
         assert!(super::super::all().all(|command| text.contains(command.help)));

@@ -13,7 +13,7 @@ use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::sheet::Cell;
 use crate::tui::state::recorder::Work;
-use crate::tui::state::{Mode, Pane, State, entry, first};
+use crate::tui::state::{Mode, Pane, State, first};
 use crate::tui::text::line::Line;
 
 pub const COMMANDS: &[Command] = &[
@@ -27,9 +27,9 @@ pub const COMMANDS: &[Command] = &[
 
 /// What the node or the row under the cursor is: its pointer.
 pub fn target(state: &State) -> Result<String, String> {
-    match state.focus {
-        Pane::Tree => Ok(state.node.clone()),
-        _ => state.sheet().pointer(state.row).ok_or("there is no row here".into()),
+    match state.cursor.focus {
+        Pane::Tree => Ok(state.cursor.node.clone()),
+        _ => state.sheet().pointer(state.cursor.row).ok_or("there is no row here".into()),
     }
 }
 
@@ -37,7 +37,7 @@ pub fn target(state: &State) -> Result<String, String> {
 /// from the one under the cursor on, as far as its list goes.
 pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
     let sheet = state.sheet();
-    if state.focus != Pane::Tree {
+    if state.cursor.focus != Pane::Tree {
         return Ok(rows(state, call)?.filter_map(|i| sheet.pointer(i)).collect());
     }
     let node = target(state)?;
@@ -55,10 +55,12 @@ pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
 /// as there are rows like the one under it.
 pub fn rows(state: &State, call: &Call) -> Result<std::ops::RangeInclusive<usize>, String> {
     match call.count {
-        None => Ok(entry::rows(state)),
-        Some(_) if state.selected_from.is_some() => Err("the selection says which rows, not a count".into()),
+        None => Ok(state.cursor.rows()),
+        Some(_) if state.cursor.selected_from.is_some() => Err("the selection says which rows, not a count".into()),
         Some(count) => {
-            Ok(state.row..=(state.row + count.max(1) - 1).min(alike(state).map_or(state.row, |(_, last)| last)))
+            let row = state.cursor.row;
+            let last = alike(state).map_or(row, |(_, last)| last);
+            Ok(row..=(row + count.max(1) - 1).min(last))
         }
     }
 }
@@ -70,14 +72,14 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
     if sheet.table {
         return Some((0, sheet.len().checked_sub(1)?));
     }
-    let row = sheet.row(state.row)?;
+    let row = sheet.row(state.cursor.row)?;
     let list = |row: &crate::tui::document::sheet::Row| {
         row.item.then(|| row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned())).flatten()
     };
     let own = list(&row);
     let like = |i: &usize| sheet.row(*i).is_some_and(|row| list(&row) == own);
-    let first = (0..=state.row).rev().take_while(like).last()?;
-    let last = (state.row..sheet.len()).take_while(like).last()?;
+    let first = (0..=state.cursor.row).rev().take_while(like).last()?;
+    let last = (state.cursor.row..sheet.len()).take_while(like).last()?;
     Some((first, last))
 }
 
@@ -100,7 +102,7 @@ fn add_picture(state: &mut State, path: &str) -> Done {
 
 /// Adds so many items where the cursor is; what is asked for is typed or chosen then.
 pub fn add_here(state: &mut State, times: usize) -> Done {
-    let pointer = target(state).unwrap_or(state.node.clone());
+    let pointer = target(state).unwrap_or(state.cursor.node.clone());
     let field = field::field(state.document(), &pointer).ok_or("nothing can be added here")?;
     let there = field::is_there(state.document(), &pointer);
     let in_list = match (&field.kind, there) {
@@ -108,7 +110,7 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         (Kind::Map(_), _) | (Kind::Object | Kind::Tagged { .. }, false) => false,
         _ => item_of(state.document(), &pointer)
             .map(owned)
-            .or_else(|| item_of(state.document(), &state.node).map(owned))
+            .or_else(|| item_of(state.document(), &state.cursor.node).map(owned))
             .is_some(),
     };
     if times > 1 && !in_list {
@@ -118,7 +120,7 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
     match (&field.kind, there) {
         (Kind::Tagged { .. }, false) => {
             let options = choice::options(state.document(), &field.kind);
-            state.mode = Mode::Choice(Choice { title: field.name, options, at: 0, then: Then::Become(pointer) });
+            state.typing.mode = Mode::Choice(Choice { title: field.name, options, at: 0, then: Then::Become(pointer) });
             Ok(())
         }
         (Kind::Object, false) => add_object(state, &pointer),
@@ -127,8 +129,10 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         _ => match item_of(state.document(), &pointer).map(owned) {
             Some((list, index)) => insert(state, &list, index + 1, times),
             None if pointer.starts_with("/images/") => ask_for_path(state),
-            None if state.focus == Pane::Tree => Err("o adds to lists: go to a list or to one of its items".into()),
-            None => match item_of(state.document(), &state.node.clone()).map(owned) {
+            None if state.cursor.focus == Pane::Tree => {
+                Err("o adds to lists: go to a list or to one of its items".into())
+            }
+            None => match item_of(state.document(), &state.cursor.node.clone()).map(owned) {
                 Some((list, index)) => insert(state, &list, index + 1, times),
                 None => Err("nothing can be added here".into()),
             },
@@ -137,7 +141,7 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
 }
 
 fn ask_for_path(state: &mut State) -> Done {
-    state.mode = Mode::Line(Line::with("add "));
+    state.typing.mode = Mode::Line(Line::with("add "));
     state.say("the picture's file, relative to the scene (Tab completes)");
     Ok(())
 }
@@ -162,21 +166,21 @@ fn insert(state: &mut State, list: &str, index: usize, times: usize) -> Done {
     }
     state.edit(edit, false)?;
     go_to(state, &pointer);
-    let row = state.sheet().row(state.row).filter(|_| state.focus == Pane::Table);
+    let row = state.row().filter(|_| state.cursor.focus == Pane::Table);
     let number = row.and_then(|row| row.cells.iter().position(Cell::is_number));
-    state.column = number.unwrap_or(state.column);
+    state.cursor.column = number.unwrap_or(state.cursor.column);
     Ok(())
 }
 
 /// Puts the cursor on the item at `pointer`: its row where its list is shown, else its node.
 pub fn go_to(state: &mut State, pointer: &str) {
     match state.sheet().position(pointer) {
-        Some(row) => state.row = row,
-        None if state.focus == Pane::Tree => state.show(pointer),
+        Some(row) => state.cursor.row = row,
+        None if state.cursor.focus == Pane::Tree => state.show(pointer),
         None => {
             let list = pointer.rsplit_once('/').map_or("", |(list, _)| list).to_string();
             state.show(list);
-            state.row = state.sheet().position(pointer).unwrap_or(0);
+            state.cursor.row = state.sheet().position(pointer).unwrap_or(0);
         }
     }
     state.settle();
@@ -191,10 +195,10 @@ fn delete(state: &mut State, call: &Call) -> Done {
         return Err("there is nothing to delete here".into());
     }
     pointers.iter().try_for_each(|pointer| unused(state.document(), pointer))?;
-    let top = *entry::rows(state).start();
+    let top = *state.cursor.rows().start();
     state.edit(Edit::all(edits), false)?;
-    if state.selected_from.take().is_some() {
-        state.row = top;
+    if state.cursor.selected_from.take().is_some() {
+        state.cursor.row = top;
         state.settle();
     }
     Ok(())
@@ -206,10 +210,10 @@ fn block(state: &State) -> Result<(String, usize, usize), String> {
         let (list, index) = item_of(state.document(), &target(state).ok()?).map(owned)?;
         Some((list, index, index))
     };
-    if state.focus == Pane::Tree || state.selected_from.is_none() {
+    if state.cursor.focus == Pane::Tree || state.cursor.selected_from.is_none() {
         return one().ok_or("only items of lists are duplicated and moved".into());
     }
-    let (sheet, rows) = (state.sheet(), entry::rows(state));
+    let (sheet, rows) = (state.sheet(), state.cursor.rows());
     let end = |row: usize| item_of(state.document(), &sheet.pointer(row)?).map(owned);
     match (end(*rows.start()), end(*rows.end())) {
         (Some((list, from)), Some((other, to))) if list == other => Ok((list, from, to)),
@@ -220,10 +224,10 @@ fn block(state: &State) -> Result<(String, usize, usize), String> {
 /// Puts the cursor and the selection on the items that a block has become, `by` rows on.
 fn follow(state: &mut State, list: &str, at: usize, by: i64) {
     let moved = |row: usize| usize::try_from(row as i64 + by).unwrap_or(0);
-    match state.selected_from.filter(|_| state.focus != Pane::Tree) {
+    match state.cursor.selected_from.filter(|_| state.cursor.focus != Pane::Tree) {
         Some(from) => {
-            (state.selected_from, state.row) = (Some(moved(from)), moved(state.row));
-            state.selected_to = state.selected_to.map(moved);
+            (state.cursor.selected_from, state.cursor.row) = (Some(moved(from)), moved(state.cursor.row));
+            state.cursor.selected_to = state.cursor.selected_to.map(moved);
         }
         None => go_to(state, &pointer::join(list, at)),
     }
@@ -286,7 +290,7 @@ fn duplicate(state: &mut State, call: &Call) -> Done {
     if state.door.revision() == revision {
         return Err("copies of several of these would stand where they do: duplicate them one by one".into());
     }
-    match state.selected_from {
+    match state.cursor.selected_from {
         Some(_) => follow(state, &list, to + 1, (to + 1 - from) as i64),
         None => go_to(state, &path),
     }

@@ -27,6 +27,6 @@ fn keys(state: &mut State, call: &Call) -> Done {
     lines.push("-- your keys --".into());
     let own = state.keymap.rows().iter().filter(|row| row.own);
     lines.extend(own.map(|row| format!("{:<12} {:<20} {}", plain(&row.key), row.context, plain(&row.command))));
-    state.mode = Mode::Pages(Pages { title: "keys".into(), lines, scroll: 0 });
+    state.typing.mode = Mode::Pages(Pages { title: "keys".into(), lines, scroll: 0 });
     Ok(())
 }

@@ -2,7 +2,7 @@
 //! well, somebody else who edits the scene, another program that writes its file.
 
 use crate::tui::document::choice::About;
-use crate::tui::state::questions::{about_recovery, few, question};
+use crate::tui::state::outside::{about_recovery, few, question};
 use crate::tui::text::plain;
 use std::path::PathBuf;
 
@@ -54,7 +54,7 @@ fn recover(state: &mut State, take: bool) -> Done {
 fn recovery(state: &mut State, call: &Call) -> Done {
     let asked = about_recovery(&state.door).ok_or("no unsaved edits were left behind")?;
     match call.text {
-        "" => state.life.waiting = Some(asked),
+        "" => state.outside.waiting = Some(asked),
         "keep" => return recover(state, true),
         "drop" => return recover(state, false),
         _ => return Err("recovery takes keep, drop or nothing".into()),
@@ -66,8 +66,8 @@ fn recovery(state: &mut State, call: &Call) -> Done {
 fn look(state: &mut State, lines: Vec<String>, then: Choice) {
     let lines = if lines.is_empty() { vec!["there is no difference".into()] } else { lines };
     let lines = lines.iter().map(|line| plain(line)).collect();
-    state.mode = Mode::Pages(Pages { title: "what differs".into(), lines, scroll: 0 });
-    state.life.waiting = Some(then);
+    state.typing.mode = Mode::Pages(Pages { title: "what differs".into(), lines, scroll: 0 });
+    state.outside.waiting = Some(then);
 }
 
 /// Another program wrote the scene or one of its pictures.
@@ -90,7 +90,7 @@ fn merge(state: &mut State, call: &Call) -> Done {
         _ => return Err("merge takes mine, theirs or nothing".into()),
     };
     take_in(state, side)?;
-    if state.message.is_none() && state.life.waiting.is_none() {
+    if state.message.is_none() && state.outside.waiting.is_none() {
         state.say("the file is as it was left");
     }
     Ok(())
@@ -101,16 +101,16 @@ fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
     let (taken, change) = match state.door.take_in(prefer) {
         Ok(taken) => taken,
         Err(error) => {
-            state.life.file = Some("file unreadable");
+            state.outside.file = Some("file unreadable");
             return Err(format!("what is here stays: {}", first_line(&error)));
         }
     };
     change.into_iter().for_each(|change| state.changed(change));
-    state.life.file = None;
+    state.outside.file = None;
     match taken {
         Taken::Nothing => {}
         Taken::Gone => {
-            state.life.file = Some("file gone");
+            state.outside.file = Some("file gone");
             state.complain("the file was taken away: :w writes it again");
         }
         Taken::Whole if state.door.read_only() => state.say("the file was saved: this is what it holds now"),
@@ -124,7 +124,7 @@ fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
 }
 
 fn ask_about_file(state: &mut State, places: &[String]) {
-    state.life.file = Some(UNDECIDED);
+    state.outside.file = Some(UNDECIDED);
     let options = [
         ("mine", "There, keep what is here; take in the rest"),
         ("theirs", "There, take what the file has; keep the rest"),
@@ -132,7 +132,7 @@ fn ask_about_file(state: &mut State, places: &[String]) {
         ("later", "Leave it open: :merge asks again, :w waits"),
     ];
     let title = "another program changed the same places".into();
-    state.life.waiting = Some(question(About::File, title, few(places), &options));
+    state.outside.waiting = Some(question(About::File, title, few(places), &options));
 }
 
 /// An error on one line.

@@ -13,15 +13,15 @@ pub const COMMANDS: &[Command] = &[
 
 fn record(state: &mut State, call: &Call) -> Done {
     if call.text.is_empty() {
-        let (letter, lines) = state.recorder.end_macro().ok_or("no macro is being recorded: qa begins a")?;
+        let (letter, lines) = state.memory.recorder.end_macro().ok_or("no macro is being recorded: qa begins a")?;
         let lines = if lines == 1 { "1 line".into() } else { format!("{lines} lines") };
         state.say(format!("macro {letter} has {lines}: @{letter} plays it"));
         return Ok(());
     }
-    if let Some(letter) = state.recorder.recording() {
+    if let Some(letter) = state.memory.recorder.recording() {
         return Err(format!("macro {letter} is being recorded: q ends it"));
     }
-    state.recorder.begin_macro(letter(call.text)?);
+    state.memory.recorder.begin_macro(letter(call.text)?);
     Ok(())
 }
 
@@ -33,10 +33,10 @@ fn letter(text: &str) -> Result<char, String> {
 
 fn play(state: &mut State, call: &Call) -> Done {
     let letter = match call.text {
-        "last" => state.recorder.played().ok_or("no macro was played yet: @a plays a")?,
+        "last" => state.memory.recorder.played().ok_or("no macro was played yet: @a plays a")?,
         text => letter(text)?,
     };
-    let lines = state.recorder.play(letter)?;
+    let lines = state.memory.recorder.play(letter)?;
     for _ in 0..call.times_of("play-macro")? {
         for (at, line) in lines.iter().enumerate() {
             repeat(state, call, line)
@@ -48,17 +48,17 @@ fn play(state: &mut State, call: &Call) -> Done {
 
 /// Runs a line of several; one that is refused leaves no list open.
 fn repeat(state: &mut State, call: &Call, line: &str) -> Done {
-    state.recorder.spend(state.door.document())?;
+    state.memory.recorder.spend(state.door.document())?;
     call.obey(state, line).inspect_err(|_| {
-        if matches!(state.mode, Mode::Choice(_)) {
-            state.mode = Mode::Normal;
+        if matches!(state.typing.mode, Mode::Choice(_)) {
+            state.typing.mode = Mode::Normal;
         }
     })
 }
 
 /// A count takes the place of the change's own.
 fn again(state: &mut State, call: &Call) -> Done {
-    let mut lines = state.recorder.change().to_vec();
+    let mut lines = state.memory.recorder.change().to_vec();
     let last = lines.last_mut().ok_or("nothing was changed yet: . repeats the last change")?;
     if call.count.is_some() {
         *last = Said { count: None, ..Said::parse(last, None) }.to_string();

@@ -18,19 +18,19 @@ pub const COMMANDS: &[Command] = &[
 const WIDTH: u16 = 70;
 
 fn messages(state: &mut State, _: &Call) -> Done {
-    let lines: Vec<String> = state.said.iter().flat_map(|message| folded(&message.text, WIDTH)).collect();
+    let lines: Vec<String> = state.memory.said.iter().flat_map(|message| folded(&message.text, WIDTH)).collect();
     if lines.is_empty() {
         return Err("nothing was said yet".into());
     }
     // The newest are looked for first.
     let scroll = lines.len().saturating_sub(usize::from(state.size.1 / 2));
-    state.mode = Mode::Pages(Pages { title: "messages".into(), lines, scroll });
+    state.typing.mode = Mode::Pages(Pages { title: "messages".into(), lines, scroll });
     Ok(())
 }
 
 /// What is wrong, a place and a message each; the place empty where it is the whole scene.
 fn found(state: &State) -> Vec<(String, String)> {
-    let unseen = state.seen.problem.iter().map(|problem| (String::new(), plain(problem)));
+    let unseen = state.outside.problem.iter().map(|problem| (String::new(), plain(problem)));
     let warnings = state.document().warnings().iter();
     let told = |problem: &Problem| {
         let kind = if problem.severity == Severity::Warning { "" } else { "error: " };
@@ -51,7 +51,7 @@ fn problems(state: &mut State, _: &Call) -> Done {
         place => place,
     };
     let options = found.into_iter().map(|(path, message)| (place(&path), message)).collect();
-    state.mode = Mode::Choice(Choice { title: "problems".into(), options, at: 0, then: Then::Go });
+    state.typing.mode = Mode::Choice(Choice { title: "problems".into(), options, at: 0, then: Then::Go });
     Ok(())
 }
 
@@ -62,7 +62,7 @@ fn problem(state: &mut State, call: &Call) -> Done {
     if n == 0 {
         return Err("no problems".into());
     }
-    let here = [state.focused(), state.node.clone()];
+    let here = [state.focused(), state.cursor.node.clone()];
     let at = here.iter().find_map(|here| found.iter().rposition(|(path, _)| path == here));
     let by = match call.text {
         "" | "next" => call.times(),

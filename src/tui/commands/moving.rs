@@ -23,9 +23,9 @@ fn page(state: &State) -> i64 {
 }
 
 fn go(state: &mut State, call: &Call) -> Done {
-    let rows = (state.focus == Pane::Tree).then(|| tree::rows(state.document(), &state.folded));
+    let rows = (state.cursor.focus == Pane::Tree).then(|| tree::rows(state.document(), &state.cursor.collapsed));
     let count = rows.as_ref().map_or_else(|| state.sheet().len(), Vec::len);
-    let at = rows.as_ref().map_or(state.row, |rows| tree::row_of(rows, &state.node));
+    let at = rows.as_ref().map_or(state.cursor.row, |rows| tree::row_of(rows, &state.cursor.node));
     let by = |steps: i64| (at as i64 + steps).clamp(0, (count as i64 - 1).max(0)) as usize;
     let to = match call.text {
         "down" => by(call.times()),
@@ -47,7 +47,7 @@ fn go(state: &mut State, call: &Call) -> Done {
         Some(mut rows) if to < rows.len() => state.show(rows.swap_remove(to).pointer),
         Some(_) => {}
         None => {
-            state.row = to;
+            state.cursor.row = to;
             state.ask(Effect::Show);
             state.settle();
         }
@@ -56,11 +56,11 @@ fn go(state: &mut State, call: &Call) -> Done {
 }
 
 fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
-    let cells = state.sheet().row(state.row).map_or(0, |row| row.cells.len());
-    let by = |steps: i64| (state.column as i64 + steps).clamp(0, cells.saturating_sub(1) as i64) as usize;
-    state.column = match way {
-        "left" if state.column == 0 => {
-            state.focus = Pane::Tree;
+    let cells = state.row().map_or(0, |row| row.cells.len());
+    let by = |steps: i64| (state.cursor.column as i64 + steps).clamp(0, cells.saturating_sub(1) as i64) as usize;
+    state.cursor.column = match way {
+        "left" if state.cursor.column == 0 => {
+            state.cursor.focus = Pane::Tree;
             state.settle();
             return Ok(());
         }
@@ -75,18 +75,18 @@ fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
 
 /// Goes to the next cell, after the last of a row to the first of the row below.
 fn move_on(state: &mut State) {
-    let cells = state.sheet().row(state.row).map_or(0, |row| row.cells.len());
-    (state.row, state.column) = match state.column + 1 < cells {
-        true => (state.row, state.column + 1),
-        false => (state.row + 1, 0),
+    let cells = state.row().map_or(0, |row| row.cells.len());
+    (state.cursor.row, state.cursor.column) = match state.cursor.column + 1 < cells {
+        true => (state.cursor.row, state.cursor.column + 1),
+        false => (state.cursor.row + 1, 0),
     };
     state.settle();
 }
 
 fn pane(state: &mut State, call: &Call) -> Done {
     const PANES: [Pane; 3] = [Pane::Tree, Pane::Table, Pane::Picture];
-    let at = PANES.iter().position(|&pane| pane == state.focus).unwrap_or(0);
-    state.focus = match call.text {
+    let at = PANES.iter().position(|&pane| pane == state.cursor.focus).unwrap_or(0);
+    state.cursor.focus = match call.text {
         "tree" => Pane::Tree,
         "table" => Pane::Table,
         "picture" => Pane::Picture,
@@ -105,10 +105,10 @@ fn fold(state: &mut State, call: &Call) -> Done {
 }
 
 fn fold_once(state: &mut State) {
-    let rows = tree::rows(state.document(), &state.folded);
-    let at = tree::row_of(&rows, &state.node);
+    let rows = tree::rows(state.document(), &state.cursor.collapsed);
+    let at = tree::row_of(&rows, &state.cursor.node);
     if rows[at].folded == Some(false) {
-        state.folded.insert(rows[at].pointer.clone());
+        state.cursor.collapsed.insert(rows[at].pointer.clone());
         return;
     }
     let parent = rows[..at].iter().rposition(|row| row.depth < rows[at].depth).unwrap_or(0);
@@ -120,30 +120,30 @@ fn open(state: &mut State, call: &Call) -> Done {
 }
 
 fn open_once(state: &mut State) -> Done {
-    let rows = tree::rows(state.document(), &state.folded);
-    let at = tree::row_of(&rows, &state.node);
+    let rows = tree::rows(state.document(), &state.cursor.collapsed);
+    let at = tree::row_of(&rows, &state.cursor.node);
     if rows[at].folded == Some(true) {
-        state.folded.remove(&rows[at].pointer);
+        state.cursor.collapsed.remove(&rows[at].pointer);
         return Ok(());
     }
-    state.focus = Pane::Table;
+    state.cursor.focus = Pane::Table;
     state.settle();
     Ok(())
 }
 
 fn up(state: &mut State, call: &Call) -> Done {
     for _ in call.steps() {
-        let Some((parent, _)) = state.node.rsplit_once('/') else { break };
-        let (parent, child) = (parent.to_string(), state.node.clone());
+        let Some((parent, _)) = state.cursor.node.rsplit_once('/') else { break };
+        let (parent, child) = (parent.to_string(), state.cursor.node.clone());
         state.show(parent);
-        state.row = state.sheet().position(&child).unwrap_or(0);
+        state.cursor.row = state.sheet().position(&child).unwrap_or(0);
     }
     Ok(())
 }
 
 /// Ends one thing: a count, the selection, running work.
 fn back(state: &mut State, call: &Call) -> Done {
-    if call.count.is_none() && !state.unselect() && state.seen.work.is_some() {
+    if call.count.is_none() && !state.cursor.unselect() && state.outside.work.is_some() {
         state.ask(Effect::Cancel);
     }
     Ok(())

@@ -21,7 +21,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
     let old = image.clone().or_else(|| field::name_of(value.as_ref())).ok_or("this has no name")?;
     let name = unquoted(call.text);
     if name.is_empty() {
-        state.mode = Mode::Line(Line::with(&format!("rename {old}")));
+        state.typing.mode = Mode::Line(Line::with(&format!("rename {old}")));
         return Ok(());
     }
     if image.is_none() {

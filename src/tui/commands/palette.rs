@@ -12,15 +12,15 @@ pub const COMMANDS: &[Command] = &[
         .inside()
         .counted_with(&["next", "previous"]),
     command("leader", "[menu]", "Show the keys of the leader menu", |state, _| {
-        state.pressed = "Space".into();
+        state.typing.pressed = "Space".into();
         Ok(())
     })
     .inside(),
 ];
 
 fn palette(state: &mut State, call: &Call) -> Done {
-    let Mode::Palette(palette) = &mut state.mode else {
-        state.mode = Mode::Palette(opened(call.table, state));
+    let Mode::Palette(palette) = &mut state.typing.mode else {
+        state.typing.mode = Mode::Palette(opened(call.table, state));
         return Ok(());
     };
     match call.text {
@@ -28,7 +28,7 @@ fn palette(state: &mut State, call: &Call) -> Done {
         "previous" => palette.step(-call.times()),
         "take" => {
             let row = palette.row(palette.at);
-            state.mode = Mode::Normal;
+            state.typing.mode = Mode::Normal;
             if let Some(row) = row {
                 return call.obey(state, &row.line);
             }
@@ -41,7 +41,7 @@ fn palette(state: &mut State, call: &Call) -> Done {
 /// The list with everything in it, commands first.
 fn opened(table: &Table, state: &mut State) -> Palette {
     let document = state.document().clone();
-    let places = state.finding.listed(&document);
+    let places = state.memory.finding.listed(&document);
     Palette::new(actions(table, state), places)
 }
 

@@ -29,13 +29,13 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     if json {
         return obey(state, &format!("paste {}", trimmed.replace(['\n', '\r'], " ")), None);
     }
-    let in_table = state.focus == Pane::Table;
+    let in_table = state.cursor.focus == Pane::Table;
     let on_number = in_table && cells::current(state).is_some_and(|(_, cell)| cell.is_number());
     // A comma within one number is a decimal comma, as where it is typed.
     if let (true, Some(number)) = (on_number, rows::number(trimmed)) {
         return obey(state, &format!("put {}", numbers::exact(number)), None);
     }
-    if state.selected_from.is_some() && in_table {
+    if state.cursor.selected_from.is_some() && in_table {
         let lines: Vec<&str> = trimmed.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
         let column = on_number && lines.iter().all(|line| rows::number(line).is_some());
         let rows: Vec<Vec<String>> = match column {
@@ -56,7 +56,7 @@ fn target(state: &State) -> Option<Target<'_>> {
     let document = state.document();
     let here = here(state);
     let lists = upward(&here).map(|path| item_of(document, path).map_or(path, |(list, _)| list).to_owned());
-    let inside = field::children(document, &state.node).into_iter();
+    let inside = field::children(document, &state.cursor.node).into_iter();
     let inside = inside.filter(|child| matches!(child.field.kind, Kind::List(_))).map(|child| child.pointer);
     lists.chain(inside).find_map(|list| Target::of(document, &list))
 }

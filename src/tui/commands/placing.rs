@@ -37,9 +37,12 @@ fn cursor(state: &mut State, call: &Call) -> Done {
     if place && call.count.is_some() {
         return Err("cursor at takes no count".into());
     }
-    let to =
-        if place { Vec2::new(x, y) - state.placing.cursor.to_vec2() } else { Vec2::new(x, y) * call.times() as f64 };
-    state.placing.step(to, state.picture_size);
+    let to = if place {
+        Vec2::new(x, y) - state.picture.placing.cursor.to_vec2()
+    } else {
+        Vec2::new(x, y) * call.times() as f64
+    };
+    state.picture.step(to);
     seeing::settle(state);
     Ok(())
 }
@@ -58,20 +61,20 @@ fn placed(state: &mut State, call: &Call) -> Done {
         }
         "aim" => {
             place::aim_here(state)?;
-            state.mode = Mode::Aim;
+            state.typing.mode = Mode::Aim;
             Ok(())
         }
         "jump" => {
-            state.mode = Mode::Normal;
+            state.typing.mode = Mode::Normal;
             let edit = place::aim_here(state)?;
             state.edit(edit, false)
         }
         way => {
             let by = if way == "previous" { -call.times() } else { call.times() };
             let (row, at) = place::next_point(state, by).ok_or("no row here has a place")?;
-            state.row = row;
+            state.cursor.row = row;
             state.settle();
-            state.placing.cursor = at;
+            state.picture.placing.cursor = at;
             seeing::settle(state);
             state.ask(Effect::Show);
             Ok(())
@@ -81,10 +84,10 @@ fn placed(state: &mut State, call: &Call) -> Done {
 
 /// Goes to what stands at a place of the picture: an anchor near it, else the zone.
 fn select(state: &mut State, call: &Call, at: Point) -> Done {
-    if !matches!(state.mode, Mode::Normal) {
+    if !matches!(state.typing.mode, Mode::Normal) {
         return Err("something is being typed or chosen: end that first (Esc)".into());
     }
-    let (width, height) = state.picture_size.unwrap_or_default();
+    let (width, height) = state.picture.size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
     let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("no zone is there")?;
     call.obey(state, &format!("go {}{}", hit.path, hit.cell))
@@ -94,15 +97,15 @@ fn select(state: &mut State, call: &Call, at: Point) -> Done {
 /// under the cursor where it has a place, or the end of its jump vector where the cell is one; unless the point is only
 /// marked.
 fn pointer(state: &mut State, call: &Call) -> Done {
-    let (x, y) = state.seen.pointer.ok_or("the window's pointer is not over the picture")?;
+    let (x, y) = state.outside.pointer.ok_or("the window's pointer is not over the picture")?;
     if call.text == "select" {
         return select(state, call, (x, y).into());
     }
-    if matches!(state.mode, Mode::Entry(_)) {
+    if matches!(state.typing.mode, Mode::Entry(_)) {
         return entry::offer(state, (x, y).into());
     }
     call.obey(state, &format!("cursor at {x} {y}"))?;
-    match (call.text, state.focus) {
+    match (call.text, state.cursor.focus) {
         ("mark", _) => {
             state.say(format!("marked {}, {}: in the picture (g i) a adds a point there", short(x), short(y)));
             Ok(())

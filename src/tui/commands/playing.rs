@@ -3,7 +3,7 @@
 use super::command::{Call, Command, Done, command};
 use crate::tui::events::Effect;
 use crate::tui::state::State;
-use crate::tui::state::transport::SPEEDS;
+use crate::tui::state::play::SPEEDS;
 
 pub const COMMANDS: &[Command] = &[
     command("play", "", "Play or pause", play).inside(),
@@ -14,13 +14,13 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 fn play(state: &mut State, _: &Call) -> Done {
-    state.playing = !state.playing;
+    state.play.playing = !state.play.playing;
     state.ask(Effect::Show);
     Ok(())
 }
 
 fn frame(state: &mut State, call: &Call) -> Done {
-    let (at, frames) = state.frame();
+    let (at, frames) = state.play.frame(state.timeline());
     let by = |steps: i64| (at as i64 + steps).rem_euclid(frames as i64) as u64;
     let to = match call.text {
         "next" => by(call.times()),
@@ -32,8 +32,8 @@ fn frame(state: &mut State, call: &Call) -> Done {
     if to >= frames {
         return Err(format!("there are {frames} frames, from 0"));
     }
-    state.playing = false;
-    state.time = state.document().scene().timeline.time_of(to);
+    state.play.playing = false;
+    state.play.time = state.timeline().time_of(to);
     state.ask(Effect::Show);
     Ok(())
 }
@@ -43,14 +43,14 @@ fn speed(state: &mut State, call: &Call) -> Done {
     let slower = |here: f64| SPEEDS.iter().rfind(|&&speed| speed < here).copied().unwrap_or(here);
     let faster = |here: f64| SPEEDS.iter().find(|&&speed| speed > here).copied().unwrap_or(here);
     let to = match call.text {
-        "slower" => times.fold(state.speed, |here, _| slower(here)),
-        "faster" => times.fold(state.speed, |here, _| faster(here)),
+        "slower" => times.fold(state.play.speed, |here, _| slower(here)),
+        "faster" => times.fold(state.play.speed, |here, _| faster(here)),
         number => {
             let speed = number.parse().ok().filter(|speed| (SPEEDS[0]..=SPEEDS[SPEEDS.len() - 1]).contains(speed));
             speed.ok_or("speed takes slower, faster or a number from 0.1 to 4")?
         }
     };
-    state.speed = to;
+    state.play.speed = to;
     state.say(format!("plays {to} times as fast"));
     state.ask(Effect::Show);
     Ok(())
@@ -58,8 +58,8 @@ fn speed(state: &mut State, call: &Call) -> Done {
 
 fn time(state: &mut State, call: &Call) -> Done {
     let time = call.text.parse::<f64>().ok().filter(|time| (0.0..=1.0).contains(time));
-    state.time = time.ok_or("time takes a number from 0 to 1")?;
-    state.playing = false;
+    state.play.time = time.ok_or("time takes a number from 0 to 1")?;
+    state.play.playing = false;
     state.ask(Effect::Show);
     Ok(())
 }

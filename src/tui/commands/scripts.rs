@@ -11,18 +11,18 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 fn log(state: &mut State, call: &Call) -> Done {
-    let lines = state.recorder.log().to_vec();
+    let lines = state.memory.recorder.log().to_vec();
     if let Some(path) = call.path()? {
         let text = lines.iter().map(|line| format!("{line}\n")).collect();
         state.ask(Effect::Write(path, text));
         return Ok(());
     }
-    let place = match state.recorder.place() {
+    let place = match state.memory.recorder.place() {
         Some(place) => format!("this log is {}", place.display()),
         None => "this log is only here: :log FILE writes it".into(),
     };
     let lines = vec![format!("-- {} --", plain(&place))].into_iter().chain(lines).collect();
-    state.mode = Mode::Pages(Pages { title: "log".into(), lines, scroll: 0 });
+    state.typing.mode = Mode::Pages(Pages { title: "log".into(), lines, scroll: 0 });
     Ok(())
 }
 

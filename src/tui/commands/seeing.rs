@@ -23,16 +23,16 @@ fn zoom(state: &mut State, call: &Call) -> Done {
     let (_, same) = known.iter().find(|(way, _)| *way == call.text).ok_or("zoom takes in, out, fit or one")?;
     let steps = call.steps();
     steps.clone().for_each(|_| state.ask(Effect::View(Some((*same).to_string()))));
-    let (Some(before), Some(size)) = (seeing::part(state), state.picture_size) else { return Ok(()) };
+    let (Some(before), Some(size)) = (seeing::part(state), state.picture.size) else { return Ok(()) };
     let fit = sight::fit(size, before.dots);
-    state.placing.zoom = match call.text {
+    state.picture.placing.zoom = match call.text {
         "fit" => None,
         "one" => (fit > 1.0).then_some(1.0),
-        way => steps.fold(state.placing.zoom, |zoom, _| sight::zoomed(zoom.unwrap_or(fit), fit, way == "in")),
+        way => steps.fold(state.picture.placing.zoom, |zoom, _| sight::zoomed(zoom.unwrap_or(fit), fit, way == "in")),
     };
     // What is under the cursor stays there.
-    let (cursor, scale) = (state.placing.cursor, state.placing.zoom.unwrap_or(fit));
-    state.placing.middle = cursor + (before.corner + before.seen() / 2.0 - cursor) * (scale / before.scale);
+    let (cursor, scale) = (state.picture.placing.cursor, state.picture.placing.zoom.unwrap_or(fit));
+    state.picture.placing.middle = cursor + (before.corner + before.seen() / 2.0 - cursor) * (scale / before.scale);
     seeing::settle(state);
     Ok(())
 }
@@ -44,24 +44,24 @@ fn pan(state: &mut State, call: &Call) -> Done {
         "up" => (0.0, -1.0),
         "down" => (0.0, 1.0),
         "cursor" => {
-            state.placing.middle = state.placing.cursor;
+            state.picture.placing.middle = state.picture.placing.cursor;
             return Ok(());
         }
         _ => return Err("pan takes left, right, up, down or cursor".into()),
     };
     for _ in call.steps() {
-        if let (Some(part), Some(size)) = (seeing::part(state), state.picture_size) {
-            sight::pan(&mut state.placing, &part, size, Vec2::new(x, y));
+        if let (Some(part), Some(size)) = (seeing::part(state), state.picture.size) {
+            sight::pan(&mut state.picture.placing, &part, size, Vec2::new(x, y));
         }
     }
-    state.placing.step(Vec2::ZERO, state.picture_size);
+    state.picture.step(Vec2::ZERO);
     seeing::settle(state);
     Ok(())
 }
 
 fn graphics(state: &mut State, call: &Call) -> Done {
     let mut words = call.text.split_whitespace();
-    let graphics = &mut state.seeing.graphics;
+    let graphics = &mut state.picture.graphics;
     match (words.next(), words.next()) {
         (None, _) => {}
         (Some("auto"), None) => graphics.forced = None,
@@ -78,37 +78,38 @@ fn graphics(state: &mut State, call: &Call) -> Done {
         }
         _ => return Err("graphics takes auto, kitty, iterm2, sixel, blocks or bytes N".into()),
     }
-    let (playing, still) = state.seeing.graphics.bytes;
-    let (width, height) = state.seeing.graphics.cell;
-    let taken = state.seeing.shown.as_ref().map(|shown| format!(", the last took {}", shown.bytes)).unwrap_or_default();
+    let (playing, still) = state.picture.graphics.bytes;
+    let (width, height) = state.picture.graphics.cell;
+    let taken =
+        state.picture.shown.as_ref().map(|shown| format!(", the last took {}", shown.bytes)).unwrap_or_default();
     state.say(format!(
         "graphics: {} (the terminal: {}), cells of {width} x {height} px, at most {playing} bytes a frame while playing, \
          {still} still{taken}",
         seeing::protocol(state).name(),
-        state.seeing.graphics.found.name(),
+        state.picture.graphics.found.name(),
     ));
     Ok(())
 }
 
 /// Opens the read-out of the pixel under the cursor, or of X,Y, and closes it when it is open already.
 fn probe(state: &mut State, call: &Call) -> Done {
-    if call.text == "off" || (call.text.is_empty() && state.seeing.probing) {
-        state.seeing.probing = false;
+    if call.text == "off" || (call.text.is_empty() && state.picture.probing) {
+        state.picture.probing = false;
         seeing::settle(state);
         return Ok(());
     }
     if !call.text.is_empty() {
         let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
         let [x, y] = numbers[..] else { return Err("probe takes X,Y or off".into()) };
-        state.placing.cursor = (x, y).into();
-        state.placing.step(Vec2::ZERO, state.picture_size);
+        state.picture.placing.cursor = (x, y).into();
+        state.picture.step(Vec2::ZERO);
     } else {
-        state.focus = Pane::Picture;
+        state.cursor.focus = Pane::Picture;
     }
-    state.seeing.probing = true;
+    state.picture.probing = true;
     seeing::settle(state);
-    let at = state.placing.cursor;
-    let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.time.to_string()];
+    let at = state.picture.placing.cursor;
+    let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.play.time.to_string()];
     state.ask(Effect::Probe(words.map(str::to_owned).to_vec()));
     Ok(())
 }

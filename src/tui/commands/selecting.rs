@@ -3,6 +3,7 @@
 use super::command::{Call, Command, Done, command};
 use super::items::rows;
 use crate::tui::state::State;
+use crate::tui::state::cursor::Selection;
 
 pub const COMMANDS: &[Command] =
     &[command("select", "[all|again]", "Begin or end a selection of rows; take all, or the last one again", select)
@@ -12,10 +13,11 @@ fn select(state: &mut State, call: &Call) -> Done {
     match call.text {
         "" if call.count.is_some() => {
             let rows = rows(state, call)?;
-            (state.selected_from, state.selected_to, state.row) = (Some(*rows.start()), None, *rows.end());
+            (state.cursor.selected_from, state.cursor.selected_to, state.cursor.row) =
+                (Some(*rows.start()), None, *rows.end());
         }
-        "" if state.unselect() => {}
-        "" => (state.selected_from, state.selected_to) = (Some(state.row), None),
+        "" if state.cursor.unselect() => {}
+        "" => (state.cursor.selected_from, state.cursor.selected_to) = (Some(state.cursor.row), None),
         "all" => all(state)?,
         _ => again(state)?,
     }
@@ -25,23 +27,24 @@ fn select(state: &mut State, call: &Call) -> Done {
 /// All rows of the table; in a form all items of the list under the cursor, else all fields.
 fn all(state: &mut State) -> Done {
     let sheet = state.sheet();
-    let row = sheet.row(state.row).ok_or("there are no rows here")?;
+    let row = sheet.row(state.cursor.row).ok_or("there are no rows here")?;
     let list = row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned()).filter(|_| row.item && !sheet.table);
     let within = |row: usize| match &list {
         Some(list) => sheet.pointer(row).is_some_and(|one| one.rsplit_once('/').is_some_and(|(own, _)| own == list)),
         None => row < sheet.len(),
     };
-    let first = (0..=state.row).rev().take_while(|&row| within(row)).last();
-    let last = (state.row..sheet.len()).take_while(|&row| within(row)).last();
+    let first = (0..=state.cursor.row).rev().take_while(|&row| within(row)).last();
+    let last = (state.cursor.row..sheet.len()).take_while(|&row| within(row)).last();
     // The cursor stays: its row and column say what an edit is about.
-    (state.selected_from, state.selected_to) = (first, last);
+    (state.cursor.selected_from, state.cursor.selected_to) = (first, last);
     Ok(())
 }
 
 fn again(state: &mut State) -> Done {
-    let (node, from, row) = state.kept.selection.clone().ok_or("nothing was selected yet: v begins")?;
+    let Selection { node, from, to } =
+        state.cursor.last_selection.clone().ok_or("nothing was selected yet: v begins")?;
     state.show(node);
-    (state.selected_from, state.selected_to, state.row) = (Some(from), None, row);
+    (state.cursor.selected_from, state.cursor.selected_to, state.cursor.row) = (Some(from), None, to);
     state.settle();
     Ok(())
 }

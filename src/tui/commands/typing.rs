@@ -15,11 +15,11 @@ pub const COMMANDS: &[Command] = &[
     command("line", "[/|:TEXT]", "Type a command, one that begins so, or with / a search", |state, call| {
         let mut begun = call.text.chars();
         let mut line = Line::new(begun.next().unwrap_or(':'));
-        state.finding.origin = (line.kind == '/').then(|| state.origin());
+        state.memory.finding.origin = (line.kind == '/').then(|| state.origin());
         if !begun.as_str().is_empty() {
             line.text = Text::new(format!("{} ", begun.as_str()), false);
         }
-        state.mode = Mode::Line(line);
+        state.typing.mode = Mode::Line(line);
         Ok(())
     })
     .inside(),
@@ -39,8 +39,8 @@ pub const COMMANDS: &[Command] = &[
         if call.count.is_some() {
             return Ok(());
         }
-        let under = state.kept.entry.take().filter(|_| matches!(state.mode, Mode::Pages(_)));
-        state.mode = under.map_or(Mode::Normal, Mode::Entry);
+        let under = state.memory.entry.take().filter(|_| matches!(state.typing.mode, Mode::Pages(_)));
+        state.typing.mode = under.map_or(Mode::Normal, Mode::Entry);
         search_left(state);
         Ok(())
     })
@@ -51,7 +51,7 @@ pub const COMMANDS: &[Command] = &[
 /// Quotes, as JSON has them, keep spaces at the ends.
 fn type_text(state: &mut State, call: &Call) -> Done {
     let typed = unquoted(call.text);
-    match &mut state.mode {
+    match &mut state.typing.mode {
         Mode::Entry(entry) => entry.text.insert(&typed),
         Mode::Line(line) => {
             line.typed();
@@ -69,7 +69,7 @@ fn type_text(state: &mut State, call: &Call) -> Done {
 
 /// While a search is being typed the cursor goes along.
 fn seek(state: &mut State) {
-    if let Mode::Line(line) = &state.mode
+    if let Mode::Line(line) = &state.typing.mode
         && line.kind == '/'
     {
         let typed = line.text.value().trim().to_owned();
@@ -78,9 +78,9 @@ fn seek(state: &mut State) {
 }
 
 fn run_typed(state: &mut State, call: &Call) -> Done {
-    let Mode::Line(line) = &state.mode else { return Ok(()) };
+    let Mode::Line(line) = &state.typing.mode else { return Ok(()) };
     let (kind, typed) = (line.kind, line.text.value().trim().to_string());
-    state.mode = Mode::Normal;
+    state.typing.mode = Mode::Normal;
     search_left(state);
     if typed.is_empty() {
         return Ok(());
@@ -91,13 +91,13 @@ fn run_typed(state: &mut State, call: &Call) -> Done {
     if state.is_small() && !call.table.leaves(&typed) {
         return Err("the terminal is too small for that: :q leaves, :wq saves and leaves".into());
     }
-    state.lines.retain(|old| *old != typed);
-    state.lines.push(typed.clone());
+    state.memory.lines.retain(|old| *old != typed);
+    state.memory.lines.push(typed.clone());
     call.obey(state, &typed)
 }
 
 fn complete(state: &mut State, call: &Call) -> Done {
-    let Mode::Line(mut line) = state.mode.clone() else { return Ok(()) };
+    let Mode::Line(mut line) = state.typing.mode.clone() else { return Ok(()) };
     let wanted = completing::path_of(line.text.value()).filter(|_| line.kind == ':' && line.offered().is_none());
     if let Some((name, path, beside)) = wanted {
         let beside = beside.then(|| state.door.path().parent().map(Path::to_owned)).flatten();
@@ -107,24 +107,24 @@ fn complete(state: &mut State, call: &Call) -> Done {
     if line.kind == ':' {
         line.complete(|typed| completing::candidates(call.table, state, typed));
     }
-    state.mode = Mode::Line(line);
+    state.typing.mode = Mode::Line(line);
     Ok(())
 }
 
 fn recall(state: &mut State, call: &Call) -> Done {
-    if let Mode::Line(line) = &mut state.mode {
-        line.recall(&state.lines, if call.text == "older" { 1 } else { -1 });
+    if let Mode::Line(line) = &mut state.typing.mode {
+        line.recall(&state.memory.lines, if call.text == "older" { 1 } else { -1 });
     }
     Ok(())
 }
 
 fn text(state: &mut State, call: &Call) -> Done {
-    let changed = match &mut state.mode {
+    let changed = match &mut state.typing.mode {
         Mode::Entry(entry) => entry.text.change(call.text),
         Mode::Line(line) => {
             // Rubbing out an empty line leaves it, as in vim.
             if call.text == "rub" && line.text.value().is_empty() {
-                state.mode = Mode::Normal;
+                state.typing.mode = Mode::Normal;
                 search_left(state);
                 return Ok(());
             }

@@ -194,7 +194,7 @@ fn history(state: &mut State, _: &Call) -> Done {
     lines.extend(
         aside.iter().map(|told| line(format!("after #{}", told.before), told.state, ago(told.time_ms), &told.words)),
     );
-    state.mode = Mode::Pages(Pages { title: "history".into(), lines, scroll });
+    state.typing.mode = Mode::Pages(Pages { title: "history".into(), lines, scroll });
     Ok(())
 }
 

@@ -26,27 +26,27 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             commands::run(state, &line, None);
         }
         Event::Completed(lines) => {
-            if let Mode::Line(line) = &mut state.mode {
+            if let Mode::Line(line) = &mut state.typing.mode {
                 line.complete(|_| lines);
             }
         }
         Event::Paste(text) => paste(state, &text),
         Event::Resize(width, height) => state.size = (width, height),
         Event::Tick(seconds) => state.pass(seconds),
-        Event::Synthesising => state.seeing.synthesising = true,
-        Event::Probed(probed) => state.seeing.probed = Some(probed),
+        Event::Synthesising => state.picture.synthesising = true,
+        Event::Probed(probed) => state.picture.probed = Some(probed),
         Event::Synthesised(result) => synthesised(state, result),
-        Event::Framed(shown) => state.seeing.shown = Some(shown),
-        Event::Progress(line) => state.seen.work = Some(line),
+        Event::Framed(shown) => state.picture.shown = Some(shown),
+        Event::Progress(line) => state.outside.work = Some(line),
         Event::Done(result) => {
-            if let (Some(work), Ok(_)) = (state.seen.work.take(), &result) {
+            if let (Some(work), Ok(_)) = (state.outside.work.take(), &result) {
                 tutor::ended(state, &work);
             }
             report(state, result);
         }
         Event::Saved(result) => {
             if state.door.is_saved() {
-                state.life.file = None;
+                state.outside.file = None;
             }
             report(state, result);
         }
@@ -55,7 +55,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Window(said) => hear(state, said),
         Event::Fault(fault) => state.complain(fault),
         Event::Unlogged(why) => {
-            state.recorder.set_place(None);
+            state.memory.recorder.set_place(None);
             // A line that is running is not to blame.
             state.say(format!("the log of this session is not kept: {why}"));
         }
@@ -71,7 +71,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
 /// Takes what windows and scripts say.
 fn hear(state: &mut State, said: editor::Event) {
     match said {
-        editor::Event::Said(ToEditor::Pointer { x, y }) => state.seen.pointer = Some((x, y)),
+        editor::Event::Said(ToEditor::Pointer { x, y }) => state.outside.pointer = Some((x, y)),
         editor::Event::Said(ToEditor::Transport(transport)) => state.follow(transport),
         editor::Event::Said(ToEditor::Command(name)) => run_of_window(state, &name),
         editor::Event::Edit(asked) => answer(state, asked),
@@ -82,16 +82,16 @@ fn hear(state: &mut State, said: editor::Event) {
 
 /// Takes what a synthesis has made, or why it made nothing.
 fn synthesised(state: &mut State, result: Result<Synthesis, String>) {
-    state.seeing.synthesising = false;
+    state.picture.synthesising = false;
     match result {
         Ok(Synthesis { synth, ms, longest, warning }) => {
-            state.seeing.longest = longest;
-            state.picture_size = Some(synth.size);
-            state.seen.synth = Some(synth);
-            state.seen.synth_ms = Some(ms);
-            state.seen.problem = warning;
+            state.picture.longest = longest;
+            state.picture.size = Some(synth.size);
+            state.picture.synth = Some(synth);
+            state.picture.synth_ms = Some(ms);
+            state.outside.problem = warning;
         }
-        Err(problem) => state.seen.problem = Some(problem),
+        Err(problem) => state.outside.problem = Some(problem),
     }
 }
 
@@ -110,9 +110,9 @@ fn answer(state: &mut State, asked: Asked) {
 fn report(state: &mut State, result: Result<String, String>) {
     match result {
         // Nobody who is typing is interrupted: `:messages` has it then.
-        Ok(text) if text.trim_end().contains('\n') && matches!(state.mode, Mode::Normal | Mode::Pages(_)) => {
+        Ok(text) if text.trim_end().contains('\n') && matches!(state.typing.mode, Mode::Normal | Mode::Pages(_)) => {
             let lines = text.lines().map(plain).collect();
-            state.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
+            state.typing.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
         }
         Ok(text) => state.say(text.trim_end()),
         Err(text) => state.complain(text),
@@ -121,14 +121,14 @@ fn report(state: &mut State, result: Result<String, String>) {
 
 /// Pasted text is typed where something is typed, if it is one line.
 fn paste(state: &mut State, text: &str) {
-    state.pressed.clear();
-    state.count = None;
-    if state.is_small() && !matches!(state.mode, Mode::Line(_)) {
+    state.typing.pressed.clear();
+    state.typing.count = None;
+    if state.is_small() && !matches!(state.typing.mode, Mode::Line(_)) {
         return state.complain(TOO_SMALL);
     }
     // Terminals send the ends of lines as the Enter key does.
     let text = &text.replace("\r\n", "\n").replace('\r', "\n");
-    match &state.mode {
+    match &state.typing.mode {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_pasted(state, text),
         Mode::Normal => {
             if let Err(why) = pasting::pasted(state, text) {
@@ -156,14 +156,14 @@ fn type_text(state: &mut State, text: &str) {
 
 /// A click goes to the pane under it, and in the tree to the row.
 fn click(state: &mut State, x: u16, y: u16) {
-    if !matches!(state.mode, Mode::Normal) || state.is_small() {
+    if !matches!(state.typing.mode, Mode::Normal) || state.is_small() {
         return;
     }
     let Some(pane) = layout::pane_at(state, Position::new(x, y)) else { return };
     if pane == Pane::Tree {
-        let area = layout::areas(layout::screen(state), state.seeing.probing).tree;
-        let rows = tree::rows(state.document(), &state.folded);
-        let first = first_row(tree::row_of(&rows, &state.node), rows.len(), area.height.saturating_sub(2));
+        let area = layout::areas(layout::screen(state), state.picture.probing).tree;
+        let rows = tree::rows(state.document(), &state.cursor.collapsed);
+        let first = first_row(tree::row_of(&rows, &state.cursor.node), rows.len(), area.height.saturating_sub(2));
         let row = rows.get(first + usize::from(y.saturating_sub(area.y + 1)));
         if let Some(row) = row {
             commands::run(state, &format!("go {}", row.pointer), None);
@@ -181,26 +181,27 @@ fn click(state: &mut State, x: u16, y: u16) {
 const TOO_SMALL: &str = ":q leaves, :wq saves and leaves";
 
 fn press(state: &mut State, key: &str) {
-    let counting = matches!(state.mode, Mode::Normal | Mode::Aim | Mode::Choice(_) | Mode::Pages(_));
-    let counting = counting && state.pressed.is_empty() && !state.is_small();
+    let counting = matches!(state.typing.mode, Mode::Normal | Mode::Aim | Mode::Choice(_) | Mode::Pages(_));
+    let counting = counting && state.typing.pressed.is_empty() && !state.is_small();
     if let (true, Some(digit)) =
-        (counting, key.parse::<usize>().ok().filter(|&d| d < 10 && (d > 0 || state.count.is_some())))
+        (counting, key.parse::<usize>().ok().filter(|&d| d < 10 && (d > 0 || state.typing.count.is_some())))
     {
         // One that is too large is refused with the key that it is for.
-        state.count = Some(state.count.unwrap_or(0).saturating_mul(10).saturating_add(digit));
+        state.typing.count = Some(state.typing.count.unwrap_or(0).saturating_mul(10).saturating_add(digit));
         return;
     }
-    let pressed = if state.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.pressed) };
-    state.pressed.clear();
+    let pressed =
+        if state.typing.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.typing.pressed) };
+    state.typing.pressed.clear();
     match state.keymap.find(&contexts(state), &pressed) {
-        Found::Prefix => state.pressed = pressed,
+        Found::Prefix => state.typing.pressed = pressed,
         Found::Line(line) => {
-            let count = state.count.take();
+            let count = state.typing.count.take();
             state.message = None;
             commands::run(state, &line, count);
         }
         Found::Nothing => {
-            state.count = None;
+            state.typing.count = None;
             match after_escape(key) {
                 Some(after) => {
                     // An Esc after the first key of several only ends those.
@@ -227,7 +228,7 @@ fn after_escape(key: &str) -> Option<String> {
 fn unbound(state: &mut State, key: &str, pressed: &str) {
     let typed = if key == "Space" { " " } else { key };
     let one = typed.chars().count() == 1;
-    match &state.mode {
+    match &state.typing.mode {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         _ if state.is_small() => state.complain(TOO_SMALL),

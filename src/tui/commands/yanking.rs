@@ -33,13 +33,13 @@ fn yank(state: &mut State, call: &Call) -> Done {
             let pointers: Vec<String> = rows.clone().filter_map(|i| sheet.pointer(i)).collect();
             let text = rows::write(state.document(), &sheet, rows.clone());
             // Here they are pasted as they are, with what a table has no column for.
-            state.kept.yanked = Some(values(state, &pointers));
+            state.memory.yanked = Some(values(state, &pointers));
             (text, format!("{} as CSV", counted(rows.count(), "row")))
         }
         "" | "json" => {
             let (yanked, said) = yanked(state, call)?;
             let text = json::to_text(&yanked.value).trim_end().to_owned();
-            state.kept.yanked = Some(yanked);
+            state.memory.yanked = Some(yanked);
             (text, said)
         }
         other => return Err(format!("yank takes json or csv, not {}", quoted(other))),
@@ -70,7 +70,7 @@ pub fn counted(count: usize, name: &str) -> String {
 /// The rows that are yanked as CSV: those of the selection, or all of the list in focus.
 fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<usize>), String> {
     let sheet = state.sheet();
-    let rows = match state.focus {
+    let rows = match state.cursor.focus {
         Pane::Table => rows_of(state, call)?,
         _ => 0..=call.count.unwrap_or(usize::MAX).clamp(1, sheet.len().max(1)) - 1,
     };
@@ -82,7 +82,7 @@ fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<
 
 /// What `y` takes, and what it is called.
 fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
-    let several = call.count.is_some() || state.focus == Pane::Table && state.selected_from.is_some();
+    let several = call.count.is_some() || state.cursor.focus == Pane::Table && state.cursor.selected_from.is_some();
     let pointers = if several { targets(state, call)? } else { Vec::new() };
     let one = match pointers.as_slice() {
         [] => target(state)?,
@@ -121,7 +121,7 @@ fn in_map(document: &Document, path: &str) -> bool {
 
 fn paste(state: &mut State, call: &Call) -> Done {
     let yanked = match call.text {
-        "" => state.kept.yanked.clone().ok_or("nothing was yanked yet: y yanks")?,
+        "" => state.memory.yanked.clone().ok_or("nothing was yanked yet: y yanks")?,
         text => {
             let value = json::parse(text).map_err(|problem| format!("what was pasted is not JSON: {problem}"))?;
             Yanked { value, name: None }
@@ -129,7 +129,7 @@ fn paste(state: &mut State, call: &Call) -> Done {
     };
     let times = call.times_of("paste")?;
     bearable(state, json::bytes(&yanked.value).saturating_mul(times as u64))?;
-    match state.focus == Pane::Table && state.selected_from.is_some() {
+    match state.cursor.focus == Pane::Table && state.cursor.selected_from.is_some() {
         true => over_selection(state, &yanked.value, call),
         false => paste_value(state, &yanked, times),
     }
@@ -140,7 +140,7 @@ fn over_selection(state: &mut State, value: &Value, call: &Call) -> Done {
     let count = rows_of(state, call)?.count();
     let (document, sheet) = (state.document(), state.sheet());
     let takes = |path: &String, value: &Value| misfit(document, path, value).is_none();
-    let rows: Vec<String> = entry::rows(state).filter_map(|i| sheet.pointer(i)).collect();
+    let rows: Vec<String> = state.cursor.rows().filter_map(|i| sheet.pointer(i)).collect();
     let cells: Vec<String> = entry::cells(state, &sheet).into_iter().map(|(_, cell)| cell.pointer).collect();
     let set = |paths: &[String], values: &[Value]| {
         let edits =
@@ -198,12 +198,12 @@ fn go_to_pasted(state: &mut State, pointer: &str, count: usize) {
 pub fn here(state: &State) -> String {
     let cell = || {
         let sheet = state.sheet();
-        let row = sheet.row(state.row)?;
-        Some(row.cells.get(state.column).map_or(&row.pointer, |cell| &cell.pointer).clone())
+        let row = sheet.row(state.cursor.row)?;
+        Some(state.cursor.cell(&row).map_or(&row.pointer, |cell| &cell.pointer).clone())
     };
-    match state.focus {
-        Pane::Tree => state.node.clone(),
-        _ => cell().unwrap_or_else(|| state.node.clone()),
+    match state.cursor.focus {
+        Pane::Tree => state.cursor.node.clone(),
+        _ => cell().unwrap_or_else(|| state.cursor.node.clone()),
     }
 }
 
@@ -250,7 +250,7 @@ fn fits(state: &State) -> Vec<Fit> {
         fits.extend(loose.then(|| Fit::Over(path.to_owned())));
     }
     fits.push(Fit::Fields);
-    for child in field::children(document, &state.node) {
+    for child in field::children(document, &state.cursor.node) {
         into(&mut fits, &child.pointer, &child.field);
     }
     fits
@@ -267,14 +267,14 @@ fn way(state: &State, yanked: &Yanked, fit: &Fit, times: usize) -> Result<Option
         Fit::Over(path) => {
             Some(Way { edit: Edit::set(document, path, value.clone()), pointer: path.clone(), count: 1 })
         }
-        Fit::Fields => fields(document, &state.node, value),
+        Fit::Fields => fields(document, &state.cursor.node, value),
     })
 }
 
 /// A number over a number, a text over a text: in every selected row, as if it were typed.
 fn over_cells(state: &State, value: &Value) -> Option<Way> {
-    let row = state.sheet().row(state.row)?;
-    let cell = row.cells.get(state.column).filter(|_| state.focus == Pane::Table)?;
+    let row = state.row()?;
+    let cell = state.cursor.cell(&row).filter(|_| state.cursor.focus == Pane::Table)?;
     let text = match value {
         Value::Number(number) if cell.is_number() => numbers::exact(number.as_f64()?),
         Value::String(text) if cell.field.kind == Kind::Text => text.clone(),

@@ -59,12 +59,12 @@ pub fn screen(state: &State) -> Rect {
 
 /// Whether the picture stands in the middle, for want of room at the right.
 pub fn picture_in_middle(state: &State, areas: &Areas) -> bool {
-    areas.right.is_none() && (state.focus == Pane::Picture || matches!(state.mode, Mode::Aim))
+    areas.right.is_none() && (state.cursor.focus == Pane::Picture || matches!(state.typing.mode, Mode::Aim))
 }
 
 /// The pane that a place of the screen belongs to, as it is drawn, of those that can have the focus.
 pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
-    let areas = areas(screen(state), state.seeing.probing);
+    let areas = areas(screen(state), state.picture.probing);
     let in_middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
     let picture = areas.right.map(|[.., picture]| picture).or(in_middle);
     let panes = [(Pane::Tree, Some(areas.tree)), (Pane::Picture, picture), (Pane::Table, Some(areas.table))];
@@ -73,7 +73,7 @@ pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
 
 /// The middle column, as far as the read-out leaves it.
 pub fn middle(state: &State, areas: &Areas) -> Rect {
-    if state.seeing.probing { areas.table } else { areas.table.union(areas.detail) }
+    if state.picture.probing { areas.table } else { areas.table.union(areas.detail) }
 }
 
 /// The inside of the picture's pane, where it is on the screen.
@@ -81,7 +81,7 @@ pub fn picture(state: &State) -> Option<Rect> {
     if !fits(state.size) {
         return None;
     }
-    let areas = areas(screen(state), state.seeing.probing);
+    let areas = areas(screen(state), state.picture.probing);
     let middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
     areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
 }

@@ -16,33 +16,33 @@ use crate::tui::state::{Mode, State, place};
 pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
     let path = state.door.path().to_owned();
-    Request { scene, path, time: state.time, fresh: false, picture: wanted(state), probe: asked(state) }
+    Request { scene, path, time: state.play.time, fresh: false, picture: wanted(state), probe: asked(state) }
 }
 
 /// The pixel under the cursor, where its read-out is open.
 pub fn asked(state: &State) -> Option<Asked> {
-    let at = state.placing.cursor;
+    let at = state.picture.placing.cursor;
     let pixel = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
-    let layer = tree::layer_of(&state.node).unwrap_or(0);
-    state.seeing.probing.then_some(Asked { layer, pixel, time: state.time })
+    let layer = tree::layer_of(&state.cursor.node).unwrap_or(0);
+    state.picture.probing.then_some(Asked { layer, pixel, time: state.play.time })
 }
 
 /// The protocol in force.
 pub fn protocol(state: &State) -> Protocol {
-    state.seeing.graphics.protocol(state.depth)
+    state.picture.graphics.protocol(state.depth)
 }
 
 /// The part of the picture that its pane shows; `None` if there is no such pane on the screen.
 pub fn part(state: &State) -> Option<Part> {
     let area = layout::picture(state)?;
-    let dots = state.seeing.graphics.dots(protocol(state), (area.width, area.height));
-    Some(sight::part(&state.placing, state.picture_size?, dots))
+    let dots = state.picture.graphics.dots(protocol(state), (area.width, area.height));
+    Some(sight::part(&state.picture.placing, state.picture.size?, dots))
 }
 
 /// Remembers what is in sight, so that the picture only moves when the cursor would leave it.
 pub fn settle(state: &mut State) {
     if let Some(part) = part(state) {
-        state.placing.middle = part.corner + part.seen() / 2.0;
+        state.picture.placing.middle = part.corner + part.seen() / 2.0;
     }
 }
 
@@ -55,27 +55,27 @@ pub fn overlays(state: &State) -> View {
 
 fn wanted(state: &State) -> Option<Wanted> {
     let area = layout::picture(state)?;
-    let graphics = &state.seeing.graphics;
+    let graphics = &state.picture.graphics;
     let (playing, still) = graphics.bytes;
     let protocol = protocol(state);
     let marks = || Marks {
         view: overlays(state),
-        cursor: state.placing.cursor,
-        aim: place::selected(state).filter(|_| matches!(state.mode, Mode::Aim)),
+        cursor: state.picture.placing.cursor,
+        aim: place::selected(state).filter(|_| matches!(state.typing.mode, Mode::Aim)),
     };
     Some(Wanted {
         part: part(state)?,
         cells: (area.width, area.height),
         protocol,
         tmux: graphics.tmux,
-        bytes: if state.playing { playing } else { still },
+        bytes: if state.play.playing { playing } else { still },
         marks: (protocol != Protocol::Blocks).then(marks),
     })
 }
 
 /// The place of the cursor on its pane, in cells from its corner.
 pub fn cursor_cell(state: &State, part: &Part) -> Point {
-    let (across, down) = state.seeing.graphics.dots_a_cell(protocol(state));
-    let dot = part.dot_of(state.placing.cursor);
+    let (across, down) = state.picture.graphics.dots_a_cell(protocol(state));
+    let dot = part.dot_of(state.picture.placing.cursor);
     Point::new((dot.x / across as f64).floor(), (dot.y / down as f64).floor())
 }

@@ -94,8 +94,8 @@ impl Editor {
         let watch = watch.inspect_err(|error| tracing::warn!("{error}")).ok();
         let log = begin_log(&door, size, sender.clone());
         let mut state = State::new(door, size, depth);
-        state.recorder.set_place(log.as_ref().map(|log| log.path().to_owned()));
-        state.seeing.graphics = graphics;
+        state.memory.recorder.set_place(log.as_ref().map(|log| log.path().to_owned()));
+        state.picture.graphics = graphics;
         let mut editor = Editor {
             options,
             state,
@@ -140,7 +140,7 @@ impl Editor {
 
     /// What is done once for every scene that is opened.
     pub fn begin(&mut self) {
-        self.state.picture_size = picture_size(&self.state);
+        self.state.picture.size = picture_size(&self.state);
         let greeting = self.state.door.greeting(editor::way_home(self.state.door.path()));
         self.state.say(greeting);
         self.watch_files();
@@ -192,12 +192,12 @@ impl Editor {
             _ => {}
         }
         if let (Event::Resize(..), Some(cell)) = (&event, ask::cell()) {
-            self.state.seeing.graphics.cell = cell;
+            self.state.picture.graphics.cell = cell;
         }
         self.interrupted |= matches!(event, Event::End);
         let effects = update(&mut self.state, event);
         if let Some(log) = &self.log {
-            self.state.recorder.unwritten().iter().for_each(|line| log.write(line.clone()));
+            self.state.memory.recorder.unwritten().iter().for_each(|line| log.write(line.clone()));
         }
         for effect in effects {
             self.perform(effect);
@@ -235,7 +235,7 @@ impl Editor {
     /// # Errors
     /// FILE:LINE and the mistake.
     pub fn run_next(&mut self) -> Result<bool> {
-        if self.state.seen.work.is_some() || self.leaving {
+        if self.state.outside.work.is_some() || self.leaving {
             return Ok(false);
         }
         let (place, done) = match self.scripts.waits.take() {
@@ -249,7 +249,7 @@ impl Editor {
             self.scripts = Scripts::default();
             return Err(Error::at(place, why).cure("nothing after it was run"));
         }
-        self.scripts.waits = self.state.seen.work.is_some().then_some(place);
+        self.scripts.waits = self.state.outside.work.is_some().then_some(place);
         Ok(true)
     }
 
@@ -267,13 +267,13 @@ impl Editor {
 
     /// What the last line said, which is forgotten by it.
     pub fn said(&mut self) -> Vec<String> {
-        let pages = match std::mem::replace(&mut self.state.mode, Mode::Normal) {
+        let pages = match std::mem::replace(&mut self.state.typing.mode, Mode::Normal) {
             Mode::Pages(pages) => pages.lines,
             Mode::Choice(Choice { options, then: Then::Go, .. }) => {
                 options.into_iter().map(|(place, text)| format!("{place}: {text}")).collect()
             }
             mode => {
-                self.state.mode = mode;
+                self.state.typing.mode = mode;
                 Vec::new()
             }
         };

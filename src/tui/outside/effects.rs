@@ -130,11 +130,11 @@ impl Editor {
                 if window {
                     self.preview.open_window();
                 }
-                let recorder = std::mem::take(&mut self.state.recorder);
-                let keymap = std::mem::take(&mut self.state.keymap);
-                let graphics = self.state.seeing.graphics.clone();
-                self.state = State { recorder, keymap, ..State::new(door, self.state.size, self.state.depth) };
-                self.state.seeing.graphics = graphics;
+                let State { size, depth, .. } = self.state;
+                let before = std::mem::replace(&mut self.state, State::new(door, size, depth));
+                self.state.keymap = before.keymap;
+                self.state.memory.recorder = before.memory.recorder;
+                self.state.picture.graphics = before.picture.graphics;
                 self.begin();
                 true
             }
@@ -160,7 +160,7 @@ impl Editor {
 
     /// Runs a subcommand on the scene that is open, as it is now.
     fn start(&mut self, words: &[String]) {
-        if self.state.seen.work.is_some() {
+        if self.state.outside.work.is_some() {
             return self.state.complain("something runs already: Esc ends it");
         }
         let path = self.state.door.path().to_owned();
@@ -172,7 +172,7 @@ impl Editor {
             Ok(command) => {
                 let name = words[0].clone();
                 let open = Some(ops::Open { path, document: self.state.document().clone() });
-                self.state.seen.work = Some(name.clone());
+                self.state.outside.work = Some(name.clone());
                 self.job = Some(Job::start(command, name, open, self.sender.clone()));
             }
             Err(error) => self.state.complain(error.to_string()),

@@ -63,14 +63,14 @@ impl Editor {
             self.answer(&mut session);
             self.state.door.tend();
             session.see_journal(self.state.door.failing());
-            let busy = self.state.seen.work.is_some() || !self.scripts.is_empty();
+            let busy = self.state.outside.work.is_some() || !self.scripts.is_empty();
             if !busy && !reading {
                 session.prompt(&self.state);
                 read_line(self.sender.clone());
                 reading = true;
             }
             let patience =
-                if self.scripts.is_empty() || self.state.seen.work.is_some() { PATIENCE } else { Duration::ZERO };
+                if self.scripts.is_empty() || self.state.outside.work.is_some() { PATIENCE } else { Duration::ZERO };
             for event in events.recv_timeout(patience).into_iter().chain(events.try_iter()) {
                 if let Event::Typed(line) = event {
                     reading = false;
@@ -94,15 +94,15 @@ impl Editor {
         if line.is_empty() || line.starts_with('#') {
             return;
         }
-        match &self.state.mode {
+        match &self.state.typing.mode {
             Mode::Choice(choice) if choice.options.iter().any(|(word, _)| word == line) => {
                 self.take(Event::Line(format!("choose {}", quoted(line))));
             }
-            Mode::Choice(_) if line == "cancel" => self.state.mode = Mode::Normal,
+            Mode::Choice(_) if line == "cancel" => self.state.typing.mode = Mode::Normal,
             _ if line == "?" || line == "help" => help().iter().for_each(|line| terminal::print(line)),
             _ => {
-                if !line.starts_with("choose") && matches!(&self.state.mode, Mode::Choice(_)) {
-                    self.state.mode = Mode::Normal;
+                if !line.starts_with("choose") && matches!(&self.state.typing.mode, Mode::Choice(_)) {
+                    self.state.typing.mode = Mode::Normal;
                 }
                 let before = place(&self.state);
                 self.take(Event::Line(line.to_owned()));
@@ -142,14 +142,14 @@ impl Editor {
             lines.for_each(|line| if session.interactive { terminal::print(line) } else { terminal::remark(line) });
         }
         self.said().iter().for_each(|line| terminal::print(line));
-        session.tell(self.state.seen.work.as_deref());
+        session.tell(self.state.outside.work.as_deref());
     }
 }
 
 impl Session {
     /// Shows what is asked, and that a line may be typed.
     fn prompt(&self, state: &State) {
-        if let Mode::Choice(choice) = &state.mode {
+        if let Mode::Choice(choice) = &state.typing.mode {
             let lines = question(choice);
             if self.interactive {
                 lines.iter().for_each(|line| terminal::print(line));
@@ -212,10 +212,10 @@ impl Session {
 
 /// Where the cursor is, and what stands there.
 fn place(state: &State) -> String {
-    let row = (state.focus != Pane::Tree).then(|| state.sheet().row(state.row)).flatten();
-    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let row = (state.cursor.focus != Pane::Tree).then(|| state.row()).flatten();
+    let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
     let Some((row, cell)) = row.as_ref().zip(cell) else {
-        let node = address::told(state.document(), &state.node);
+        let node = address::told(state.document(), &state.cursor.node);
         return if node.is_empty() { "scene".into() } else { node };
     };
     let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };

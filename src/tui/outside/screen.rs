@@ -8,7 +8,7 @@ use crate::tui::events::Event;
 use crate::tui::graphics::{self, Protocol};
 use crate::tui::layout::seeing;
 use crate::tui::panes::view;
-use crate::tui::state::transport::Stopwatch;
+use crate::tui::state::play::Stopwatch;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::mpsc;
@@ -62,8 +62,8 @@ impl Editor {
 
     /// Waits for an event and takes all that are there, so that many cost one drawing.
     fn wait(&mut self, events: &mpsc::Receiver<Event>, watch: &mut Stopwatch) {
-        let script_goes_on = !self.scripts.is_empty() && self.state.seen.work.is_none();
-        let patience = match self.state.playing {
+        let script_goes_on = !self.scripts.is_empty() && self.state.outside.work.is_none();
+        let patience = match self.state.play.playing {
             _ if script_goes_on => Duration::ZERO,
             _ if pace::is_behind() => BEHIND,
             true => Duration::from_millis(33),
@@ -76,8 +76,8 @@ impl Editor {
         }
         self.run_scripts();
         self.see_window();
-        let passed = watch.lap(self.state.playing, Instant::now());
-        if self.state.playing {
+        let passed = watch.lap(self.state.play.playing, Instant::now());
+        if self.state.play.playing {
             self.take(Event::Tick(passed));
         }
     }
@@ -98,7 +98,7 @@ impl Editor {
             if off {
                 self.state.complain(seen.clone());
             }
-            self.state.seen.window = if off { "window: off".into() } else { seen };
+            self.state.outside.window = if off { "window: off".into() } else { seen };
         }
     }
 }

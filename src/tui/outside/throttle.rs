@@ -41,7 +41,7 @@ impl Throttle {
 
     /// A screen has been written, and it took so long.
     pub fn wrote(&mut self, state: &State, took: Duration) {
-        let shown = state.seeing.shown.as_ref();
+        let shown = state.picture.shown.as_ref();
         if self.written.as_ref().map(Arc::as_ptr) != shown.map(Arc::as_ptr) {
             self.written = shown.cloned();
             self.free = Some(Instant::now() + (took * 2).min(LONGEST));

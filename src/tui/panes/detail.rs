@@ -15,8 +15,8 @@ use crate::tui::text::{colour, numbers};
 
 /// Draws it: name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
-    let Some(row) = state.sheet().row(state.row) else { return };
-    let Some(cell) = row.cells.get(state.column) else { return };
+    let Some(row) = state.row() else { return };
+    let Some(cell) = state.cursor.cell(&row) else { return };
     let number = cell.number(state.document()).filter(|_| cell.is_number());
     let value = number.map_or(cell.text.clone(), numbers::exact);
     let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };

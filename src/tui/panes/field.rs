@@ -25,7 +25,7 @@ const LONG: f64 = 0.5;
 /// Draws the arrows, and below them the legend and the value under the cursor.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some((field, longest)) = field(state) else {
-        let why = if item_of(&state.node).is_none() { "select a zone" } else { "not there yet" };
+        let why = if item_of(&state.cursor.node).is_none() { "select a zone" } else { "not there yet" };
         write(buffer, area, 1, 0, why, colour::faint());
         return;
     };
@@ -64,7 +64,7 @@ fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer:
 
 /// The jump vector of the pixel under the picture's cursor.
 fn under_cursor(state: &State, field: &VectorField) -> String {
-    let at = state.placing.cursor;
+    let at = state.picture.placing.cursor;
     let (x, y) = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
     let Some(jump) = field.at((x, y)) else { return format!("at {x},{y}: outside the zone") };
     let (length, degrees) = polar(jump);
@@ -73,12 +73,12 @@ fn under_cursor(state: &State, field: &VectorField) -> String {
 
 /// The field of the thing that is shown, and its longest vector.
 fn field(state: &State) -> Option<(VectorField<'_>, f64)> {
-    let item = item_of(&state.node)?;
+    let item = item_of(&state.cursor.node)?;
     let layer = tree::layer_of(item)?;
-    let fields = state.seen.synth.as_ref()?.layers.get(layer)?.fields();
+    let fields = state.picture.synth.as_ref()?.layers.get(layer)?.fields();
     let own = |path: &str| item.strip_prefix(&format!("/layers/{layer}")) == Some(path);
     let field = fields.into_iter().find(|field| own(&field.path))?;
-    let longest = state.seeing.longest.iter().find(|(path, _)| path == item);
+    let longest = state.picture.longest.iter().find(|(path, _)| path == item);
     Some((field, longest.map_or(0.0, |(_, longest)| *longest)))
 }
 

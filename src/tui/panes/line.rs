@@ -14,7 +14,7 @@ use crate::tui::text::wrap::{folded, width};
 
 /// Draws it; the cursor is in the line being typed.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    if let Mode::Line(line) = &state.mode {
+    if let Mode::Line(line) = &state.typing.mode {
         write(buffer, area, 0, 0, &line.kind.to_string(), Style::new());
         let cursor = typed(
             buffer,
@@ -29,7 +29,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         return Some(cursor);
     }
     let Some(message) = &state.message else {
-        if let Some(problem) = &state.seen.problem {
+        if let Some(problem) = &state.outside.problem {
             let problem = plain(problem);
             let more = if width(&problem) + 2 > area.width { " … (:problems) " } else { "" };
             write(buffer, area, 1, 0, &problem, colour::faint());

@@ -20,11 +20,11 @@ use crate::tui::text::numbers::short;
 
 /// The cursor's coordinates, how large the picture is shown, and how it comes to the terminal.
 pub fn title(state: &State) -> String {
-    let at = state.placing.cursor;
+    let at = state.picture.placing.cursor;
     let part = seeing::part(state);
     let scale = part.map(|part| format!("  {}", sight::words(part.scale))).unwrap_or_default();
-    let fit = if state.placing.zoom.is_none() { " fit" } else { "" };
-    let reduced = state.seeing.shown.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
+    let fit = if state.picture.placing.zoom.is_none() { " fit" } else { "" };
+    let reduced = state.picture.shown.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
     let protocol = seeing::protocol(state).name();
     format!("picture  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
@@ -33,7 +33,7 @@ pub fn title(state: &State) -> String {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let Some(part) = seeing::part(state).filter(|_| area.width > 0 && area.height > 0) else {
         write(buffer, area, 1, 0, "no picture yet", colour::faint());
-        return (state.focus == Pane::Picture).then(|| area.as_position());
+        return (state.cursor.focus == Pane::Picture).then(|| area.as_position());
     };
     match pixels(state, area) {
         Some(cells) => {
@@ -46,12 +46,12 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let cursor = seeing::cursor_cell(state, &part);
     let within = |cell: f64, cells: u16| cell.clamp(0.0, f64::from(cells - 1)) as u16;
     let cursor = Position::new(area.x + within(cursor.x, area.width), area.y + within(cursor.y, area.height));
-    (state.focus == Pane::Picture).then_some(cursor)
+    (state.cursor.focus == Pane::Picture).then_some(cursor)
 }
 
 /// The cells of the picture in a pane of this size, where the terminal takes pixels.
 fn pixels(state: &State, area: Rect) -> Option<&Buffer> {
-    let shown = state.seeing.shown.as_ref()?;
+    let shown = state.picture.shown.as_ref()?;
     let fits = shown.wanted.cells == (area.width, area.height) && shown.wanted.protocol == seeing::protocol(state);
     shown.cells.as_ref().filter(|_| fits)
 }
@@ -79,11 +79,11 @@ fn draw_blocks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     // In half-blocks, whatever the dots of the terminal are.
     let scale = part.scale * part.dots.0 as f64 / f64::from(area.width);
     let part = Part { scale, dots: (area.width.into(), usize::from(area.height) * 2), ..*part };
-    if let Some(shown) = &state.seeing.shown {
+    if let Some(shown) = &state.picture.shown {
         draw_pixels(shown, &part, state.depth, area, buffer);
     }
     draw_marks(state, &part, area, buffer);
-    let (x, half) = cell(&part, state.placing.cursor);
+    let (x, half) = cell(&part, state.picture.placing.cursor);
     let style = Style::new().fg(Color::Reset).bg(Color::Reset).add_modifier(Modifier::REVERSED);
     write(buffer, area, x as i32, half.div_euclid(2).max(0) as u16, "┼", style);
 }
@@ -128,15 +128,15 @@ fn both(upper: Option<[u8; 3]>, lower: Option<[u8; 3]>) -> [u8; 3] {
 
 /// Outlines, regions, curves, anchors and their jumps, the selected ones on top.
 fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
-    let synth = state.seen.synth.as_deref();
+    let synth = state.picture.synth.as_deref();
     let mut marks = overlay::overlay(state.document().scene(), synth, &seeing::overlays(state));
     marks.sort_by_key(|mark| mark.selected);
     for mark in &marks {
         draw_mark(mark, state.depth, part, area, buffer);
     }
-    if let (Mode::Aim, Some(from)) = (&state.mode, place::selected(state)) {
+    if let (Mode::Aim, Some(from)) = (&state.typing.mode, place::selected(state)) {
         let style = Style::new().add_modifier(Modifier::BOLD);
-        line(from, state.placing.cursor, part, |x, half| put(buffer, area, x, half, "•", style));
+        line(from, state.picture.placing.cursor, part, |x, half| put(buffer, area, x, half, "•", style));
     }
 }
 

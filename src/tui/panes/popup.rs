@@ -17,11 +17,11 @@ use crate::tui::text::wrap::{folded, width};
 
 /// Draws what there is; the cursor is in the list.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
-    match &state.mode {
+    match &state.typing.mode {
         Mode::Choice(choice) => Some(draw_choice(choice, screen, buffer)),
         Mode::Pages(pages) => Some(draw_pages(pages, screen, buffer)),
         Mode::Palette(palette) => Some(super::palette::draw(state, palette, screen, buffer)),
-        _ if !state.pressed.is_empty() => {
+        _ if !state.typing.pressed.is_empty() => {
             draw_hints(state, screen, buffer);
             None
         }
@@ -108,8 +108,8 @@ const MENUS: &[(&str, &str)] =
 /// The keys that may follow, above the status line; in as many columns as they need.
 fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     let contexts = contexts(state);
-    let rest = |key: &str| key.strip_prefix(&state.pressed).unwrap_or(key).trim().to_owned();
-    let rows: Vec<_> = state.keymap.continuations(&contexts, &state.pressed).collect();
+    let rest = |key: &str| key.strip_prefix(&state.typing.pressed).unwrap_or(key).trim().to_owned();
+    let rows: Vec<_> = state.keymap.continuations(&contexts, &state.typing.pressed).collect();
     let keys = rows.iter().map(|row| width(&rest(&row.key))).max().unwrap_or(0);
     let wide = keys + rows.iter().map(|row| width(&row.help)).max().unwrap_or(0) + 4;
     let most = usize::from(screen.height.saturating_sub(6)).max(1);
@@ -123,8 +123,8 @@ fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
         height: (tall as u16 + 2).min(screen.height),
     };
     Clear.render(area, buffer);
-    let menu = MENUS.iter().find(|(key, _)| *key == state.pressed).map(|(_, name)| format!(": {name}"));
-    let block = Block::bordered().title(format!(" {}{} ", state.pressed, menu.unwrap_or_default()));
+    let menu = MENUS.iter().find(|(key, _)| *key == state.typing.pressed).map(|(_, name)| format!(": {name}"));
+    let block = Block::bordered().title(format!(" {}{} ", state.typing.pressed, menu.unwrap_or_default()));
     let inner = block.inner(area);
     block.render(area, buffer);
     let each = inner.width / columns as u16;

@@ -36,25 +36,25 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         return;
     }
     if area.width < 12 || area.height < 3 {
-        draw_legend(&curves, state.time, true, area, buffer);
+        draw_legend(&curves, state.play.time, true, area, buffer);
         return;
     }
     // The axis where there is room for it.
     let axis = u16::from(area.height >= 5);
     let plot = Rect { height: area.height - 1 - axis, ..area };
-    draw_curves(&curves, state.time, plot, buffer);
+    draw_curves(&curves, state.play.time, plot, buffer);
     if axis > 0 {
-        draw_axis(state.time, Rect { y: plot.bottom(), height: 1, ..area }, buffer);
+        draw_axis(state.play.time, Rect { y: plot.bottom(), height: 1, ..area }, buffer);
     }
-    draw_legend(&curves, state.time, false, Rect { y: area.bottom() - 1, height: 1, ..area }, buffer);
+    draw_legend(&curves, state.play.time, false, Rect { y: area.bottom() - 1, height: 1, ..area }, buffer);
 }
 
 /// The curves of the layer that is shown, the first where none is; the selected one last, so that it lies on top.
 fn curves<'a>(state: &'a State) -> Vec<Curve<'a>> {
-    let index = tree::layer_of(&state.node).unwrap_or(0);
+    let index = tree::layer_of(&state.cursor.node).unwrap_or(0);
     let scene = state.document().scene();
     let Some(layer) = scene.layers.get(index) else { return Vec::new() };
-    let selected = item_of(&state.node).and_then(|item| item.strip_prefix(&format!("/layers/{index}")));
+    let selected = item_of(&state.cursor.node).and_then(|item| item.strip_prefix(&format!("/layers/{index}")));
     let curve = |(i, of): (usize, readout::Curve<'a>)| {
         let selected = selected == Some(&of.path);
         let style = state.depth.ink(Style::new(), COLOURS[i % COLOURS.len()]);

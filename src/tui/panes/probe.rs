@@ -15,7 +15,7 @@ use crate::tui::text::numbers::{polar, short};
 
 /// Draws it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
-    let Some(probed) = &state.seeing.probed else {
+    let Some(probed) = &state.picture.probed else {
         write(buffer, area, 0, 0, "looking ...", colour::faint());
         return;
     };

@@ -32,7 +32,7 @@ const LEAST_NAME: u16 = 12;
 
 /// Three letters for what the keys do.
 fn mode(state: &State) -> &'static str {
-    match (&state.mode, state.focus) {
+    match (&state.typing.mode, state.cursor.focus) {
         (Mode::Entry(_), _) => "INS",
         (Mode::Line(line), _) if line.kind == '/' => "SEA",
         (Mode::Line(_), _) => "CMD",
@@ -40,7 +40,7 @@ fn mode(state: &State) -> &'static str {
         (Mode::Palette(_), _) => "FND",
         (Mode::Pages(_), _) => "HLP",
         (Mode::Aim, _) => "AIM",
-        (Mode::Normal, _) if state.selected_from.is_some() => "SEL",
+        (Mode::Normal, _) if state.cursor.selected_from.is_some() => "SEL",
         (Mode::Normal, Pane::Picture) => "PIC",
         (Mode::Normal, _) => "NOR",
     }
@@ -48,8 +48,8 @@ fn mode(state: &State) -> &'static str {
 
 /// The layer that is shown, and the thing with a name in it.
 fn place(state: &State) -> String {
-    let Some((layer, _)) = inside(state, &state.node) else { return "scene".into() };
-    let item = item_of(&state.node).and_then(|item| layer.item_name(inside(state, item)?.1));
+    let Some((layer, _)) = inside(state, &state.cursor.node) else { return "scene".into() };
+    let item = item_of(&state.cursor.node).and_then(|item| layer.item_name(inside(state, item)?.1));
     plain(&[layer.name(), item.map_or("", |_| "/"), item.unwrap_or_default()].concat())
 }
 
@@ -60,7 +60,7 @@ fn marks(state: &State) -> String {
         mark(!state.door.is_saved(), "  *"),
         mark(!state.door.is_synced(), " ~"),
         mark(state.door.read_only(), "  RO"),
-        &state.life.file.map(|word| format!("  {word}")).unwrap_or_default(),
+        &state.outside.file.map(|word| format!("  {word}")).unwrap_or_default(),
         failing.as_deref().unwrap_or_default(),
     ]
     .concat()
@@ -68,45 +68,45 @@ fn marks(state: &State) -> String {
 
 fn right(state: &State) -> String {
     let mut parts = Vec::new();
-    if let Some(letter) = state.recorder.recording() {
+    if let Some(letter) = state.memory.recorder.recording() {
         parts.push(format!("recording {letter}"));
     }
-    if let Some(count) = state.count {
+    if let Some(count) = state.typing.count {
         parts.push(count.to_string());
     }
-    if !state.pressed.is_empty() {
-        parts.push(format!("{}-", state.pressed));
+    if !state.typing.pressed.is_empty() {
+        parts.push(format!("{}-", state.typing.pressed));
     }
-    if let Some(work) = &state.seen.work {
+    if let Some(work) = &state.outside.work {
         // What it is about to say counts more than what stands still meanwhile.
         parts.push(format!("{}  Esc cancels", plain(work)));
         return parts.join("  ");
     }
-    parts.push(format!("{}t {}", if state.playing { "> " } else { "" }, short(state.time)));
+    parts.push(format!("{}t {}", if state.play.playing { "> " } else { "" }, short(state.play.time)));
     if let Some((symbol, value)) = now(state) {
         parts.push(format!("{symbol} {}", short(value)));
     }
-    if state.seeing.synthesising {
+    if state.picture.synthesising {
         parts.push("field ...".into());
-    } else if let Some(ms) = state.seen.synth_ms {
+    } else if let Some(ms) = state.picture.synth_ms {
         parts.push(format!("field {ms:.0} ms"));
     }
-    parts.push(format!("step {}", short(step_of(state.step))));
-    if let Some((x, y)) = state.seen.pointer {
+    parts.push(format!("step {}", short(step_of(state.typing.step))));
+    if let Some((x, y)) = state.outside.pointer {
         parts.push(format!("at {}, {}", short(x), short(y)));
     }
-    if !state.seen.window.is_empty() {
-        parts.push(plain(&state.seen.window));
+    if !state.outside.window.is_empty() {
+        parts.push(plain(&state.outside.window));
     }
     parts.join("  ")
 }
 
 /// What changes over time in the thing that is shown, now: its symbol and value.
 fn now(state: &State) -> Option<(&'static str, f64)> {
-    let item = item_of(&state.node)?;
+    let item = item_of(&state.cursor.node)?;
     let (layer, path) = inside(state, item)?;
-    let curves = layer.curves(state.document().scene().timeline.wrap);
-    curves.iter().find(|curve| curve.path == path).map(|curve| (curve.symbol, (curve.value)(state.time)))
+    let curves = layer.curves(state.timeline().wrap);
+    curves.iter().find(|curve| curve.path == path).map(|curve| (curve.symbol, (curve.value)(state.play.time)))
 }
 
 /// The layer that a place belongs to, and the place relative to it.

@@ -19,7 +19,7 @@ use crate::tui::text::{colour, numbers};
 
 /// The node's address.
 pub fn title(state: &State) -> String {
-    let address = address::address(state.document(), &state.node);
+    let address = address::address(state.document(), &state.cursor.node);
     plain(if address.is_empty() { "scene" } else { &address })
 }
 
@@ -28,10 +28,10 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let sheet = state.sheet();
     if sheet.is_empty() {
         write(buffer, area, 1, 0, if sheet.table { "empty: o adds an item" } else { "nothing here" }, colour::faint());
-        return (state.focus == Pane::Table).then(|| area.as_position());
+        return (state.cursor.focus == Pane::Table).then(|| area.as_position());
     }
     let height = area.height - u16::from(sheet.table);
-    let first = first_row(state.row, sheet.len(), height);
+    let first = first_row(state.cursor.row, sheet.len(), height);
     let near = neighbours(first, height);
     let rows = sheet.rows(near.clone());
     let labels = rows.iter().map(|row| label(row).1 + i32::from(width(&label(row).0))).max().unwrap_or(0);
@@ -40,7 +40,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let columns = Columns::of(&rows, sheet.table, room);
     let shown = &rows[first - near.start..rows.len().min(first - near.start + usize::from(height))];
     let laid: Vec<Vec<Placed>> = shown.iter().map(|row| columns.lay(row)).collect();
-    let sights = sights(state, shown, &laid, state.row - first, room);
+    let sights = sights(state, shown, &laid, state.cursor.row - first, room);
     let below = u16::from(!columns.heads.is_empty());
     let cells = Rect { x: area.x + labels as u16, width: room as u16, ..area };
     if below > 0 {
@@ -49,16 +49,16 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let body = Rect { y: area.y + below, height: area.height - below, ..area };
     let cells = Rect { y: body.y, height: body.height, ..cells };
     let mut cursor = None;
-    let selection = entry::rows(state);
+    let selection = state.cursor.rows();
     for (y, (row, placed)) in shown.iter().zip(&laid).enumerate() {
         let i = first + y;
-        let selected = state.selected_from.is_some() && selection.contains(&i);
+        let selected = state.cursor.selected_from.is_some() && selection.contains(&i);
         draw_label(row, selected, body, y as u16, buffer);
         let end = draw_marks(placed, sights[y], cells, y as u16, buffer);
         let limit = room - if sights[y].goes_on(placed) { GAP } else { 0 };
         for (c, placed, shift) in sights[y].cells(placed) {
-            let here = i == state.row && c == state.column && state.focus == Pane::Table;
-            let style = style(row, here, selected && c == state.column);
+            let here = i == state.cursor.row && c == state.cursor.column && state.cursor.focus == Pane::Table;
+            let style = style(row, here, selected && c == state.cursor.column);
             if let Some(head) = placed.head {
                 write(buffer, cells, head - shift, y as u16, &placed.cell.head, colour::faint());
             }
@@ -70,7 +70,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
             }
         }
     }
-    match (&state.mode, cursor) {
+    match (&state.typing.mode, cursor) {
         (Mode::Entry(typed), Some((at, end))) => {
             let (cursor, typed) = draw_entry(&typed.text, at, cells, buffer);
             draw_hint(state, end.max(typed) + GAP, at.y - cells.y, cells, buffer);
@@ -83,7 +83,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
 /// Which cells of each row are in sight: like rows show the same ones, and the row under the cursor its cell.
 fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i32) -> Vec<Sight> {
     let Some(own) = rows.get(at) else { return vec![Sight::default(); rows.len()] };
-    let here = Sight::of(&laid[at], own.item, state.column, room);
+    let here = Sight::of(&laid[at], own.item, state.cursor.column, room);
     let like = |row: &Row| {
         let heads = |row: &Row| row.cells.iter().map(|cell| cell.head.clone()).collect::<Vec<_>>();
         row.item == own.item && heads(row) == heads(own)

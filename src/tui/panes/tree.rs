@@ -13,15 +13,15 @@ use crate::tui::text::wrap::{clipped, width};
 
 /// Draws it; the cursor is on the node that is shown, where the tree has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let rows = tree::rows(state.document(), &state.folded);
-    let at = tree::row_of(&rows, &state.node);
+    let rows = tree::rows(state.document(), &state.cursor.collapsed);
+    let at = tree::row_of(&rows, &state.cursor.node);
     let first = first_row(at, rows.len(), area.height);
     let mut cursor = None;
     for (y, (i, row)) in rows.iter().enumerate().skip(first).take(usize::from(area.height)).enumerate() {
         let y = y as u16;
         let mark = row.folded.map_or("  ", |folded| if folded { "▸ " } else { "▾ " });
         let style = match i == at {
-            true if state.focus == Pane::Tree => colour::focus(),
+            true if state.cursor.focus == Pane::Tree => colour::focus(),
             true => Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED),
             false => Style::new(),
         };
@@ -33,7 +33,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         let end = write(buffer, area, x, y, &label, style);
         let room = i32::from(area.width) - i32::from(width(&row.note));
         write(buffer, area, (end + 1).max(room.min(end + 2)), y, &row.note, colour::faint());
-        if i == at && state.focus == Pane::Tree {
+        if i == at && state.cursor.focus == Pane::Tree {
             cursor = Some(Position::new(area.x + (x as u16).min(area.width.saturating_sub(1)), area.y + y));
         }
     }

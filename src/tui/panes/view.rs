@@ -23,7 +23,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
         panes::lesson::draw(tutor, &state.keymap, screen, frame.buffer_mut());
     }
     let screen = layout::lesson::above(state, screen);
-    let areas = areas(screen, state.seeing.probing);
+    let areas = areas(screen, state.picture.probing);
     let mut cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
     if picture_in_middle(state, &areas) {
         let inner = pane(frame, state, middle(state, &areas), Pane::Picture, &panes::picture::title(state));
@@ -31,12 +31,12 @@ pub fn draw(frame: &mut Frame, state: &State) {
     } else {
         let inner = pane(frame, state, areas.table, Pane::Table, &panes::table::title(state));
         cursor = panes::table::draw(state, inner, frame.buffer_mut()).or(cursor);
-        if !state.seeing.probing {
+        if !state.picture.probing {
             let inner = block(frame, areas.detail, "");
             panes::detail::draw(state, inner, frame.buffer_mut());
         }
     }
-    if state.seeing.probing {
+    if state.picture.probing {
         let inner = block(frame, areas.detail, "probe");
         panes::probe::draw(state, inner, frame.buffer_mut());
     }
@@ -59,7 +59,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
 
 /// The frame of a pane that can have the focus; the one that has it shows `>` and a bold title.
 fn pane(frame: &mut Frame, state: &State, area: Rect, which: Pane, title: &str) -> Rect {
-    let focused = state.focus == which;
+    let focused = state.cursor.focus == which;
     let title = Line::from(format!("{}{title} ", if focused { ">" } else { " " }));
     let title = if focused { title.style(colour::strong()) } else { title };
     bordered(frame, area, title)
@@ -84,7 +84,7 @@ fn too_small(frame: &mut Frame, state: &State, screen: Rect) {
     frame.render_widget(Paragraph::new(Text::from(text)).alignment(Alignment::Center), middle);
     let below = screen.height.min(1);
     let line = Rect { y: screen.bottom() - below, height: below, ..screen };
-    let said = screen.height > 2 || matches!(state.mode, Mode::Line(_));
+    let said = screen.height > 2 || matches!(state.typing.mode, Mode::Line(_));
     let cursor = if said { panes::line::draw(state, line, frame.buffer_mut()) } else { None };
     frame.set_cursor_position(cursor.unwrap_or(Position::new(screen.x, screen.y)));
 }

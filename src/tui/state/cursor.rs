@@ -1,4 +1,9 @@
-//! Where the cursor can be.
+//! Where the cursor is, and which rows are selected.
+
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+
+use crate::tui::document::sheet::{Cell, Row, Sheet};
 
 /// A pane that can have the focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,4 +14,88 @@ pub enum Pane {
     Table,
     /// The picture.
     Picture,
+}
+
+/// A selection of rows that has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Selection {
+    /// Pointer of the node whose rows were selected.
+    pub node: String,
+    /// The row where it began.
+    pub from: usize,
+    /// The row where it ended.
+    pub to: usize,
+}
+
+/// The cursor in the tree and in the sheet of the node that it is on.
+#[derive(Clone, Debug)]
+pub struct Cursor {
+    /// The pane that takes the keys.
+    pub focus: Pane,
+    /// Pointer of the node in the middle.
+    pub node: String,
+    /// Nodes of the tree that are collapsed.
+    pub collapsed: BTreeSet<String>,
+    /// The row of the sheet under the cursor.
+    pub row: usize,
+    /// The cell of the row under the cursor.
+    pub column: usize,
+    /// The row where the selection began.
+    pub selected_from: Option<usize>,
+    /// The row where the selection ends; `None` if it ends at the cursor.
+    pub selected_to: Option<usize>,
+    /// The last selection that has ended, for `gv`.
+    pub last_selection: Option<Selection>,
+}
+
+impl Cursor {
+    /// In the tree, on a node.
+    pub fn new(node: String) -> Cursor {
+        Cursor {
+            focus: Pane::Tree,
+            node,
+            collapsed: BTreeSet::new(),
+            row: 0,
+            column: 0,
+            selected_from: None,
+            selected_to: None,
+            last_selection: None,
+        }
+    }
+
+    /// The rows that an edit applies to: the selection, else the row under the cursor.
+    pub fn rows(&self) -> RangeInclusive<usize> {
+        let from = self.selected_from.unwrap_or(self.row);
+        let to = self.selected_to.filter(|_| self.selected_from.is_some()).unwrap_or(self.row);
+        from.min(to)..=from.max(to)
+    }
+
+    /// Ends the selection, which `gv` takes up again; false if there is none.
+    pub fn unselect(&mut self) -> bool {
+        let (from, to) = (self.selected_from.take(), self.selected_to.take().unwrap_or(self.row));
+        if let Some(from) = from {
+            self.last_selection = Some(Selection { node: self.node.clone(), from, to });
+        }
+        from.is_some()
+    }
+
+    /// The cell of this row that the cursor is on.
+    pub fn cell<'a>(&self, row: &'a Row) -> Option<&'a Cell> {
+        row.cells.get(self.column)
+    }
+
+    /// Goes back to a row and a cell that are there.
+    pub fn settle(&mut self, sheet: &Sheet) {
+        let last = sheet.len().saturating_sub(1);
+        self.row = self.row.min(last);
+        self.column = self.column.min(sheet.row(self.row).map_or(0, |row| row.cells.len().saturating_sub(1)));
+        self.selected_from = self.selected_from.map(|row| row.min(last));
+        self.selected_to = self.selected_to.map(|row| row.min(last)).filter(|_| self.selected_from.is_some());
+    }
+
+    /// Expands what holds the node at `pointer` in the tree.
+    pub fn expand_to(&mut self, pointer: &str) {
+        let holds = |node: &str| pointer.strip_prefix(node).is_some_and(|rest| rest.starts_with('/'));
+        self.collapsed.retain(|node| !holds(node));
+    }
 }

@@ -15,18 +15,11 @@ use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
 use crate::tui::text::input::Text;
 use crate::tui::text::numbers;
 
-/// The rows that an edit applies to: the selection, else the row under the cursor.
-pub fn rows(state: &State) -> std::ops::RangeInclusive<usize> {
-    let from = state.selected_from.unwrap_or(state.row);
-    let to = state.selected_to.filter(|_| state.selected_from.is_some()).unwrap_or(state.row);
-    from.min(to)..=from.max(to)
-}
-
 /// The cells that an edit of the cell under the cursor applies to, with their rows: the like ones of every selected row.
 pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
     let document = state.document();
-    let Some(row) = sheet.row(state.row) else { return Vec::new() };
-    let Some(model) = row.cells.get(state.column) else { return Vec::new() };
+    let Some(row) = sheet.row(state.cursor.row) else { return Vec::new() };
+    let Some(model) = state.cursor.cell(&row) else { return Vec::new() };
     let like =
         |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
     let list = row.pointer.rsplit_once('/').map(|(list, _)| list).filter(|_| row.item);
@@ -39,23 +32,23 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
         let cell = match alike {
             true => Cell { pointer: pointer + inner, ..model.clone() },
             // Elsewhere the column may have another place; in a form all that has no name of its own is alike.
-            false if model.head.is_empty() => sheet.row(i)?.cells.get(state.column).filter(like)?.clone(),
+            false if model.head.is_empty() => sheet.row(i)?.cells.get(state.cursor.column).filter(like)?.clone(),
             false => sheet.row(i)?.cells.iter().find(like)?.clone(),
         };
         Some((i, cell))
     };
-    rows(state).filter_map(of_row).collect()
+    state.cursor.rows().filter_map(of_row).collect()
 }
 
 fn sheet_head(state: &State) -> String {
-    let row = state.sheet().row(state.row);
-    let head = row.as_ref().and_then(|row| row.cells.get(state.column)).map(|cell| cell.head.clone());
+    let row = state.row();
+    let head = row.as_ref().and_then(|row| state.cursor.cell(row)).map(|cell| cell.head.clone());
     head.filter(|head| !head.is_empty()).unwrap_or_else(|| "that".into())
 }
 
 /// How many of the selected rows have the column under the cursor, where some have not.
 pub fn skipped(state: &State) -> Option<String> {
-    let all = rows(state).count();
+    let all = state.cursor.rows().count();
     let some = cells(state, &state.sheet()).len();
     let head = sheet_head(state);
     (some < all).then(|| format!("{some} of {all} rows have {head}"))
@@ -70,8 +63,7 @@ fn kind_of<'a>(document: &'a Document, field: &Field, pointer: &str) -> Option<&
 /// The edit that `text` says for the cell under the cursor and the like ones of the selection.
 pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
     let sheet = state.sheet();
-    let is_number = sheet.row(state.row).is_some_and(|row| row.cells.get(state.column).is_some_and(Cell::is_number));
-    if is_number {
+    if of_number(state) {
         return each(state, |row, cell, place| evaluate(state, &sheet, row, cell, place, text));
     }
     let cells = cells(state, &sheet).into_iter();
@@ -98,7 +90,7 @@ pub fn each(
 /// no number is being typed.
 pub fn hint(state: &State) -> Option<Result<String, String>> {
     const SHOWN: usize = 3;
-    let Mode::Entry(Entry { text }) = &state.mode else { return None };
+    let Mode::Entry(Entry { text }) = &state.typing.mode else { return None };
     let sheet = state.sheet();
     let cells = cells(state, &sheet);
     let n = cells.len();
@@ -111,7 +103,7 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
     });
     let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
         let more = if n > SHOWN { " …" } else { "" };
-        let all = rows(state).count();
+        let all = state.cursor.rows().count();
         let counted = match n {
             n if n < all => format!(" ({n} of {all} rows)"),
             n if n > SHOWN => format!(" ({n} rows)"),
@@ -164,7 +156,7 @@ fn variables(
             }
         }
     }
-    if let Some((width, height)) = state.picture_size {
+    if let Some((width, height)) = state.picture.size {
         known.extend([("w".to_string(), width as f64), ("h".to_string(), height as f64)]);
     }
     known.extend([("i".to_string(), i as f64), ("n".to_string(), n as f64)]);
@@ -188,7 +180,7 @@ fn length(document: &Document, cell: &Cell) -> f64 {
 
 /// Whether a number is being typed.
 pub fn of_number(state: &State) -> bool {
-    state.sheet().row(state.row).is_some_and(|row| row.cells.get(state.column).is_some_and(Cell::is_number))
+    state.row().is_some_and(|row| state.cursor.cell(&row).is_some_and(Cell::is_number))
 }
 
 /// Types the coordinate of `at` that the field takes; a jump's is that from its point to there.
@@ -196,8 +188,8 @@ pub fn of_number(state: &State) -> bool {
 /// # Errors
 /// The field takes none.
 pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
-    let row = state.sheet().row(state.row);
-    let cell = row.as_ref().and_then(|row| row.cells.get(state.column));
+    let row = state.row();
+    let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
     let label = row.as_ref().map_or("", |row| &row.label);
     let name = cell.map_or("", |cell| if cell.head.is_empty() { label } else { &cell.head });
     let from = place::selected(state).unwrap_or_default();
@@ -209,7 +201,7 @@ pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
         "dy" => at.y - from.y,
         _ => return Err(format!("the window's pointer is at {x}, {y}: this field takes no coordinate")),
     };
-    if let Mode::Entry(entry) = &mut state.mode {
+    if let Mode::Entry(entry) = &mut state.typing.mode {
         entry.text = Text::new(numbers::exact(numbers::tidy(value)), true);
     }
     state.say(format!("the window's pointer is at {x}, {y}: Enter takes it"));

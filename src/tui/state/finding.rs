@@ -1,10 +1,10 @@
 //! Where the person has been and what was looked for: marks, the jump list, the search. Places go along with the items
 //! that they stand on.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::cursor::Pane;
+use super::cursor::{Cursor, Pane};
 use crate::scene::Document;
 use crate::tui::document::places;
 use crate::tui::document::places::Listed;
@@ -26,17 +26,13 @@ pub struct Spot {
     pub column: usize,
 }
 
-/// Where the cursor was, and all else that going elsewhere changes.
+/// Where the cursor was when a search began, to be brought back as if nothing had happened.
 #[derive(Clone, Debug)]
 pub struct Origin {
-    /// The place.
+    /// The place, which may go along with edits made meanwhile.
     pub spot: Spot,
-    /// Nodes of the tree that were folded.
-    pub folded: BTreeSet<String>,
-    /// The selection: where it began, and where it ends if not at the cursor.
-    pub selected: (Option<usize>, Option<usize>),
-    /// The selection before, its node, first and last row.
-    pub selection: Option<(String, usize, usize)>,
+    /// The cursor with its selection and the collapsed nodes.
+    pub cursor: Cursor,
 }
 
 /// Marks, jumps and the search.

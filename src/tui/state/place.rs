@@ -64,13 +64,13 @@ fn placed(state: &State) -> Option<(String, Place, Point)> {
 /// Moves the thing in focus to the cursor.
 pub fn move_here(state: &State) -> Result<Edit, String> {
     let (_, place, _) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
-    Ok(move_to(state.document(), &place, state.placing.cursor))
+    Ok(move_to(state.document(), &place, state.picture.placing.cursor))
 }
 
 /// JSON pointer of the cell in focus.
 fn cell(state: &State) -> Option<String> {
-    let sheet = state.sheet();
-    sheet.row(state.row)?.cells.get(state.column).map(|cell| cell.pointer.clone())
+    let row = state.row()?;
+    state.cursor.cell(&row).map(|cell| cell.pointer.clone())
 }
 
 /// The jump vector of the thing in focus whose cell that is, for the cursor to be its end.
@@ -79,7 +79,7 @@ pub fn jump_in_focus(state: &State) -> Option<Vec2> {
     let cell = cell(state)?;
     let children = field::children(state.document(), &pointer);
     let is_jump = children.iter().any(|child| is_pair(&child.field, ["dx", "dy"]) && child.pointer == cell);
-    is_jump.then(|| state.placing.cursor - at)
+    is_jump.then(|| state.picture.placing.cursor - at)
 }
 
 /// Lets the jump vector (or the dragged place) of the thing in focus end at the cursor.
@@ -87,7 +87,7 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
     let document = state.document();
     let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     let children = field::children(document, &pointer);
-    let cursor = state.placing.cursor;
+    let cursor = state.picture.placing.cursor;
     let cell = cell(state);
     let vectors = || children.iter().filter(|child| is_pair(&child.field, ["dx", "dy"]));
     let in_focus = vectors().find(|child| Some(&child.pointer) == cell.as_ref());
@@ -117,7 +117,7 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
         for list in lists {
             let end = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
             let index = if is_list { after.map_or(end, |i| i + 1) } else { end };
-            if let Some(added) = add_to(document, &list, index, state.placing.cursor) {
+            if let Some(added) = add_to(document, &list, index, state.picture.placing.cursor) {
                 return Ok(added);
             }
         }
@@ -143,7 +143,7 @@ pub fn next_point(state: &State, by: i64) -> Option<(usize, Point)> {
     let sheet = state.sheet();
     let n = sheet.len() as i64;
     (1..=n).find_map(|step| {
-        let row = (state.row as i64 + by * step).rem_euclid(n) as usize;
+        let row = (state.cursor.row as i64 + by * step).rem_euclid(n) as usize;
         place(state.document(), &sheet.pointer(row)?).map(|(_, at)| (row, at))
     })
 }

@@ -26,12 +26,11 @@ fn said(state: &State) -> (bool, String) {
 
 /// All that a count can change.
 fn everything(state: &State) -> String {
-    let State { node, row, column, focus, folded, selected_from, mode, count, step, placing, time, speed, .. } = state;
+    let State { cursor, typing, picture, play, memory, .. } = state;
     let effects: Vec<&Effect> =
         state.effects.iter().filter(|effect| matches!(effect, Effect::View(_) | Effect::Copy(_))).collect();
-    let yanked = &state.kept.yanked;
-    let cursor = format!("{node} {row} {column} {focus:?} {folded:?} {selected_from:?} {count:?} {step} {placing:?}");
-    format!("{} {cursor} {mode:?} {time} {speed} {effects:?} {yanked:?}", state.document().json())
+    let (placing, yanked) = (picture.placing, &memory.yanked);
+    format!("{} {cursor:?} {typing:?} {placing:?} {play:?} {effects:?} {yanked:?}", state.document().json())
 }
 
 /// Every command that takes a count: the keys before it, and the line.
@@ -264,7 +263,7 @@ fn lists_end_where_they_end_and_take_counts_and_letters() {
         let mut state = state();
         press(&mut state, "/ \"function\" Enter Enter");
         press(&mut state, keys);
-        let taken = match &state.mode {
+        let taken = match &state.typing.mode {
             Mode::Choice(choice) => choice.taken().unwrap_or_default().to_owned(),
             _ => String::new(),
         };
@@ -296,16 +295,16 @@ fn a_scene_that_is_only_looked_at_refuses_at_the_first_key() {
     ] {
         let mut state = open();
         press(&mut state, keys);
-        assert!(matches!(state.mode, Mode::Normal), "{keys}");
+        assert!(matches!(state.typing.mode, Mode::Normal), "{keys}");
         assert!(said(&state).1.contains("for reading only"), "{keys}: {:?}", said(&state));
     }
     let mut state = open();
     press(&mut state, "/ \"motion\" Enter Enter g i w");
-    assert_eq!((state.row, said(&state).0), (1, false), "points are gone to");
+    assert_eq!((state.cursor.row, said(&state).0), (1, false), "points are gone to");
     press(&mut state, "g t Backspace Enter");
-    state.row = state.sheet().position(&zone("/outline")).unwrap();
+    state.cursor.row = state.sheet().position(&zone("/outline")).unwrap();
     press(&mut state, "Enter");
-    assert_eq!(state.node, zone("/outline"));
+    assert_eq!(state.cursor.node, zone("/outline"));
     assert!(!said(&state).0, "nodes are gone into: {:?}", said(&state));
 }
 
@@ -313,17 +312,17 @@ fn a_scene_that_is_only_looked_at_refuses_at_the_first_key() {
 fn going_to_a_list_leads_to_its_rows_and_jumps_are_listed() {
     let mut state = state();
     press(&mut state, ": \"go layers.0.zones.0.motion\" Enter");
-    assert_eq!((state.node.as_str(), state.focus), (zone("/motion").as_str(), Pane::Table));
+    assert_eq!((state.cursor.node.as_str(), state.cursor.focus), (zone("/motion").as_str(), Pane::Table));
     press(&mut state, "V");
-    assert_eq!(state.selected_from, Some(0));
+    assert_eq!(state.cursor.selected_from, Some(0));
     press(&mut state, ": \"go layers.0.zones.1\" Enter");
-    assert_eq!((state.node.as_str(), state.focus), ("/layers/0/zones/1", Pane::Tree));
+    assert_eq!((state.cursor.node.as_str(), state.cursor.focus), ("/layers/0/zones/1", Pane::Tree));
     press(&mut state, ": \"jumps\" Enter");
-    let Mode::Choice(choice) = &state.mode else { panic!("no list: {:?}", said(&state)) };
+    let Mode::Choice(choice) = &state.typing.mode else { panic!("no list: {:?}", said(&state)) };
     let places: Vec<&str> = choice.options.iter().map(|(place, _)| place.as_str()).collect();
     assert_eq!(places, ["layers.face.zones.\"left eye\".motion.0", "layers.face.zones.\"left eye\".name"]);
     press(&mut state, "Enter");
-    assert_eq!(state.node, zone("/motion/0"));
+    assert_eq!(state.cursor.node, zone("/motion/0"));
     let mut fresh = self::state();
     press(&mut fresh, ": \"jumps\" Enter");
     assert!(said(&fresh).1.contains("no jumps"));

@@ -111,9 +111,9 @@ fn every_kind_of_node_can_be_yanked_and_pasted() {
             if !seen.insert(format!("{place:?} {} {:?}", child.field.help, child.field.kind)) {
                 continue;
             }
-            state.focus = if seen.len() % 2 == 0 { Pane::Tree } else { Pane::Table };
-            state.show(if state.focus == Pane::Tree { &child.pointer } else { &holder }.clone());
-            state.row = state.sheet().position(&child.pointer).unwrap_or(0);
+            state.cursor.focus = if seen.len() % 2 == 0 { Pane::Tree } else { Pane::Table };
+            state.show(if state.cursor.focus == Pane::Tree { &child.pointer } else { &holder }.clone());
+            state.cursor.row = state.sheet().position(&child.pointer).unwrap_or(0);
             press(&mut state, "y p");
             assert!(!said(&state).0, "{}: {}", child.pointer, said(&state).1);
             while !state.door.is_saved() {
@@ -148,7 +148,7 @@ fn rows_are_pasted_into_tables() {
         assert!(!said(&state).0, "{text}: {}", said(&state).1);
         assert!(same(&at(&state, &zone("/motion/1")), &first), "{text}: {}", at(&state, &zone("/motion/1")));
         assert_eq!(at(&state, &zone("/motion")).as_array().unwrap().len(), 4 + count, "{text}");
-        assert_eq!(state.row, 1);
+        assert_eq!(state.cursor.row, 1);
         press(&mut state, "u");
         assert!(state.door.is_saved(), "one step: {text}");
     }
@@ -229,7 +229,7 @@ fn a_number_is_pasted_into_its_cell() {
 
 #[test]
 fn one_line_is_typed_and_several_are_refused() {
-    let typed = |state: &State| match &state.mode {
+    let typed = |state: &State| match &state.typing.mode {
         Mode::Entry(entry) => entry.text.value().to_owned(),
         Mode::Line(line) => line.text.value().to_owned(),
         _ => "nothing".into(),
@@ -321,14 +321,14 @@ pub fn undo_says_what_it_undid() {
 fn the_history_lists_what_each_step_did() {
     let mut state = state();
     press(&mut state, "/ \"radius\" Enter + k j / \"feather\" Enter + k j + u : \"history\" Enter");
-    let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+    let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages") };
     let told: Vec<&str> = pages.lines.iter().map(|line| line.split("just now").last().unwrap().trim()).collect();
     let expected = ["left eye · feather 1 → 2", "-- now --", "left eye · feather 0 → 1", "left eye · radius 60 → 61"];
     assert_eq!(told[..4], expected);
     assert_eq!(told[4].split_whitespace().collect::<Vec<_>>().join(" "), "#0 the beginning (as saved)");
     assert!(pages.lines[0].starts_with("redo 1") && pages.lines[3].starts_with("undo 2"), "{:?}", pages.lines);
     press(&mut state, "q u / \"feather\" Enter 9 + : \"history\" Enter");
-    let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+    let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages") };
     let told: Vec<String> =
         pages.lines.iter().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
     let expected = [
@@ -357,7 +357,7 @@ fn the_history_marks_the_state_that_is_saved() {
     for (keys, now) in [("", "-- now --"), ("u", "-- now (saved) --"), ("2 u", "-- now --"), ("3 Ctrl-r", "-- now --")]
     {
         press(&mut state, &format!("{keys} : \"history\" Enter"));
-        let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+        let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages") };
         let marked: Vec<&String> = pages.lines.iter().filter(|line| line.contains("(as saved)")).collect();
         assert!(matches!(marked[..], [line] if line.contains("#2 ")), "{keys}: {:#?}", pages.lines);
         assert!(pages.lines.iter().any(|line| line == now), "{keys}: {:#?}", pages.lines);
@@ -436,7 +436,7 @@ fn paths_are_asked_for_and_completed() {
         assert_eq!((asked.as_str(), typed.as_str(), folder.clone()), (name, path, folder_wanted), "{keys}");
         update(&mut state, Event::Completed(vec![format!("{name} one"), format!("{name} two")]));
         press(&mut state, "Tab");
-        assert!(matches!(&state.mode, Mode::Line(line) if line.text.value() == format!("{name} two")), "{keys}");
+        assert!(matches!(&state.typing.mode, Mode::Line(line) if line.text.value() == format!("{name} two")), "{keys}");
     }
 }
 
@@ -454,11 +454,11 @@ fn every_list_of_the_schema_can_be_added_to() {
             continue;
         }
         state.show(pointer.clone());
-        (state.focus, state.mode) = (Pane::Table, Mode::Normal);
+        (state.cursor.focus, state.typing.mode) = (Pane::Table, Mode::Normal);
         press(&mut state, "o");
         let (bad, text) = said(&state);
         let told = bad && text.contains("expected 2 items");
-        let asked = matches!(state.mode, Mode::Line(_));
+        let asked = matches!(state.typing.mode, Mode::Line(_));
         assert!(asked || told || !state.door.is_saved() && !bad, "{pointer}: {text}");
         while !state.door.is_saved() {
             press(&mut state, "u");

@@ -10,11 +10,13 @@ use crate::tui::state::{Mode, Pane, State};
 
 /// What is under the cursor: the node in the tree, else the cell by its pointer and its name.
 fn place(state: &State) -> String {
-    if state.focus == Pane::Tree {
-        return state.node.clone();
+    if state.cursor.focus == Pane::Tree {
+        return state.cursor.node.clone();
     }
-    let row = state.sheet().row(state.row).unwrap();
-    row.cells.get(state.column).map_or(row.pointer, |cell| format!("{} {}", cell.pointer, cell.head).trim().to_owned())
+    let row = state.row().unwrap();
+    row.cells
+        .get(state.cursor.column)
+        .map_or(row.pointer, |cell| format!("{} {}", cell.pointer, cell.head).trim().to_owned())
 }
 
 /// Keys from the opened editor, the place that they lead to, and a part of what is said there.
@@ -125,7 +127,11 @@ fn the_palette_goes_to_places_and_begins_lines() {
     for (keys, typed) in [("\"go path\"", "go "), ("\"time t\"", "time "), ("\"synth\"", "synth ")] {
         let mut state = state();
         press(&mut state, &format!("Space Space {keys} Enter"));
-        assert!(matches!(&state.mode, Mode::Line(line) if line.text.value() == typed), "{keys}: {:?}", state.mode);
+        assert!(
+            matches!(&state.typing.mode, Mode::Line(line) if line.text.value() == typed),
+            "{keys}: {:?}",
+            state.typing.mode
+        );
     }
 }
 
@@ -142,7 +148,7 @@ fn the_help_begins_with_what_is_under_the_cursor() {
     ] {
         let mut state = state();
         press(&mut state, keys);
-        let Mode::Pages(pages) = &state.mode else { panic!("no pages after {keys}") };
+        let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages after {keys}") };
         let text = pages.lines[..16].join("\n");
         expected.iter().for_each(|part| assert!(text.contains(part), "{keys}: {part}\n{text}"));
     }

@@ -45,7 +45,7 @@ impl Place {
 
 /// What is asked: the words that answer it, and what is told.
 fn asked(state: &State) -> Option<(Vec<&str>, String)> {
-    let Mode::Choice(choice) = &state.mode else { return None };
+    let Mode::Choice(choice) = &state.typing.mode else { return None };
     let Then::Answer(question) = &choice.then else { return None };
     Some((choice.options.iter().map(|(word, _)| word.as_str()).collect(), question.text.join("\n")))
 }
@@ -82,7 +82,7 @@ pub fn unsaved_edits_that_were_left_behind_are_told_in_words_and_offered() {
         assert_eq!(words, ["recover", "leave", "difference"]);
         assert!(text.contains("left eye · speed 1 → 3"), "{text}");
         press(&mut state, "j j Enter");
-        assert!(matches!(&state.mode, Mode::Pages(pages) if pages.lines[0].contains("speed")));
+        assert!(matches!(&state.typing.mode, Mode::Pages(pages) if pages.lines[0].contains("speed")));
         press(&mut state, "q");
         assert!(asked(&state).is_some(), "asked again after a look");
         press(&mut state, "k k");
@@ -166,7 +166,7 @@ fn a_question_waits_until_nothing_else_goes_on_and_the_file_is_safe_meanwhile() 
     let mut state = place.open();
     press(&mut state, "/ \"speed\" Enter + i \"5\"");
     place.outside(&mut state, "\"cycles\": 0.5 }", "\"cycles\": 0.5 }, \"speed\": 7");
-    assert!(matches!(state.mode, Mode::Entry(_)), "what is typed is not interrupted");
+    assert!(matches!(state.typing.mode, Mode::Entry(_)), "what is typed is not interrupted");
     press(&mut state, "Esc");
     assert!(asked(&state).is_some());
     press(&mut state, "Esc");
@@ -174,7 +174,7 @@ fn a_question_waits_until_nothing_else_goes_on_and_the_file_is_safe_meanwhile() 
     assert!(refused.contains(":merge") && refused.contains(":w!"), "{refused}");
     assert!(place.saved().contains("\"speed\": 7"));
     save(&mut state, "w!").unwrap();
-    assert!(place.saved().contains("\"speed\": 2") && state.life.file.is_none());
+    assert!(place.saved().contains("\"speed\": 2") && state.outside.file.is_none());
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn a_file_that_is_gone_or_broken_leaves_the_last_good_state() {
     update(&mut state, Event::FilesChanged(vec![place.scene.clone()]));
     let message = state.message.clone().unwrap();
     assert!(message.bad && message.text.starts_with("what is here stays"), "{message:?}");
-    assert_eq!(state.life.file, Some("file unreadable"));
+    assert_eq!(state.outside.file, Some("file unreadable"));
     let refused = save(&mut state, "w").unwrap_err();
     assert!(refused.contains(":w!") && !refused.contains(":merge"), "somebody may be mending it: {refused}");
     std::fs::remove_file(&place.scene).unwrap();
@@ -193,5 +193,5 @@ fn a_file_that_is_gone_or_broken_leaves_the_last_good_state() {
     assert!(state.message.clone().unwrap().text.contains(":w writes it again"));
     assert!(press(&mut state, ": \"q\" Enter").is_empty(), "it is not saved any more");
     save(&mut state, "w").unwrap();
-    assert!(place.saved().contains("left eye") && state.life.file.is_none() && state.door.is_saved());
+    assert!(place.saved().contains("left eye") && state.outside.file.is_none() && state.door.is_saved());
 }

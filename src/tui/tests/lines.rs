@@ -11,7 +11,7 @@ use crate::tui::commands::{self, obey};
 use crate::tui::state::{Mode, Pane, State};
 
 fn log(state: &State) -> Vec<&str> {
-    state.recorder.log().iter().map(String::as_str).collect()
+    state.memory.recorder.log().iter().map(String::as_str).collect()
 }
 
 #[test]
@@ -154,12 +154,19 @@ fn a_step_of_undo_is_the_same_when_the_log_is_replayed() {
 struct Place(String, usize, usize, Option<usize>, i32, Pane);
 
 fn place(state: &State) -> Place {
-    Place(state.node.clone(), state.row, state.column, state.selected_from, state.step, state.focus)
+    Place(
+        state.cursor.node.clone(),
+        state.cursor.row,
+        state.cursor.column,
+        state.cursor.selected_from,
+        state.typing.step,
+        state.cursor.focus,
+    )
 }
 
 /// A key as somebody might press it who does not know any: one that means something here, or something to type.
 fn any_key(state: &State, next: &mut impl FnMut(usize) -> usize) -> String {
-    let typed: &[&str] = match &state.mode {
+    let typed: &[&str] = match &state.typing.mode {
         Mode::Entry(_) => &["\"7\" Enter", "\"+=3\" Enter", "\"*0.5\" Tab", "\"w/2\" Enter", "\"nonsense\" Enter"],
         Mode::Line(line) if line.kind == ':' => {
             &["\"put 7\" Enter", "\"3 move down\" Enter", "\"set title=a\" Enter", "\"undo 2\" Enter"]
@@ -194,13 +201,13 @@ fn whatever_is_pressed_the_log_leads_to_the_same_place() {
             let key = any_key(&state, &mut next);
             press(&mut state, &key);
             keys.push(key);
-            for line in &state.recorder.log()[replayed..] {
+            for line in &state.memory.recorder.log()[replayed..] {
                 if !line.starts_with('#') {
                     obey(&mut other, line, None).unwrap_or_else(|why| panic!("{line}: {why}\n{keys:?}"));
                 }
             }
-            replayed = state.recorder.log().len();
-            if matches!(state.mode, Mode::Normal) {
+            replayed = state.memory.recorder.log().len();
+            if matches!(state.typing.mode, Mode::Normal) {
                 assert_eq!(other.document().json(), state.document().json(), "{keys:?}\n{:#?}", log(&state));
                 assert_eq!(place(&other), place(&state), "{keys:?}\n{:#?}", log(&state));
             }

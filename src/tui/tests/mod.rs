@@ -30,7 +30,12 @@ fn check(rows: &[(&str, &str, Value)]) {
         press(&mut state, keys);
         let found = state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null);
         assert_eq!(&found, expected, "{keys}: {pointer}; said {:?}", state.message);
-        assert_eq!(replayed(&state).document().json(), state.document().json(), "{keys}: {:#?}", state.recorder.log());
+        assert_eq!(
+            replayed(&state).document().json(),
+            state.document().json(),
+            "{keys}: {:#?}",
+            state.memory.recorder.log()
+        );
     }
 }
 
@@ -116,7 +121,7 @@ fn out_of_range_tells_the_range_and_keeps_what_was_typed() {
     press(&mut state, "/ \"radius\" Enter i \"-5\" Enter");
     let message = state.message.clone().unwrap();
     assert!(message.bad && message.text.contains("0.001 to 1000000 px"), "{message:?}");
-    assert!(matches!(&state.mode, Mode::Entry(entry) if entry.text.value() == "-5"));
+    assert!(matches!(&state.typing.mode, Mode::Entry(entry) if entry.text.value() == "-5"));
     press(&mut state, "Ctrl-u \"1/0\" Enter");
     assert!(state.message.clone().unwrap().text.contains("finite"));
     press(&mut state, "Ctrl-u \"80\" Enter");
@@ -210,7 +215,7 @@ fn time_goes_by_frames() {
     {
         let mut state = state();
         press(&mut state, keys);
-        assert_eq!(state.time, time, "{keys}");
+        assert_eq!(state.play.time, time, "{keys}");
     }
 }
 
@@ -220,7 +225,8 @@ fn escape_ends_one_thing_after_the_other() {
     press(&mut state, &motion("v i"));
     for left in ["entry", "selection", "nothing", "nothing"] {
         press(&mut state, "Esc");
-        let now = (matches!(state.mode, Mode::Entry(_)), state.selected_from.is_some(), state.focus);
+        let now =
+            (matches!(state.typing.mode, Mode::Entry(_)), state.cursor.selected_from.is_some(), state.cursor.focus);
         let expected = match left {
             "entry" => (false, true, super::state::Pane::Table),
             _ => (false, false, super::state::Pane::Table),
@@ -260,7 +266,7 @@ fn nothing_is_edited_on_a_terminal_that_is_too_small() {
         let mut state = state();
         press(&mut state, &motion("l"));
         update(&mut state, Event::Resize(small.0, small.1));
-        let before = (state.document().json().clone(), state.row, state.column, state.focus);
+        let before = (state.document().json().clone(), state.cursor.row, state.cursor.column, state.cursor.focus);
         for key in keys {
             let effects = press(&mut state, key);
             assert!(effects.is_empty(), "{key}: {effects:?}");
@@ -270,8 +276,8 @@ fn nothing_is_edited_on_a_terminal_that_is_too_small() {
         }
         update(&mut state, Event::Click(3, 3));
         press(&mut state, ": \"set layers.0.name=x\" Enter / \"x\" Enter");
-        assert!(matches!(state.mode, Mode::Normal) && state.recorder.recording().is_none());
-        let after = (state.document().json().clone(), state.row, state.column, state.focus);
+        assert!(matches!(state.typing.mode, Mode::Normal) && state.memory.recorder.recording().is_none());
+        let after = (state.document().json().clone(), state.cursor.row, state.cursor.column, state.cursor.focus);
         assert_eq!(after, before, "{small:?}");
         assert!(matches!(press(&mut state, ": \"quit\" Enter")[..], [Effect::Quit]));
         update(&mut state, Event::Resize(60, 20));

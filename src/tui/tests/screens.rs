@@ -48,7 +48,7 @@ pub const STATES: &[(&str, &str)] = &[
 pub fn opened(size: (u16, u16)) -> State {
     let mut state = state();
     update(&mut state, Event::Resize(size.0, size.1));
-    state.time = 0.25;
+    state.play.time = 0.25;
     see(&mut state);
     state
 }
@@ -67,7 +67,7 @@ pub fn see(state: &mut State) {
         update(state, Event::Probed(Arc::new(probed)));
     }
     if let Some(wanted) = request.picture {
-        let before = state.seeing.shown.clone();
+        let before = state.picture.shown.clone();
         let shown = Shown::new(&synth, &request.scene, request.time, wanted, before.as_deref());
         update(state, Event::Framed(shown));
     }

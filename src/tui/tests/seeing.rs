@@ -42,7 +42,7 @@ fn a_click_belongs_to_the_pane_that_is_seen_there() {
         let mut state = opened(size);
         press(&mut state, keys);
         update(&mut state, Event::Click(at.0, at.1));
-        assert_eq!(state.focus, pane, "{size:?} {keys} {at:?}");
+        assert_eq!(state.cursor.focus, pane, "{size:?} {keys} {at:?}");
     }
 }
 
@@ -50,7 +50,7 @@ fn a_click_belongs_to_the_pane_that_is_seen_there() {
 fn shown_by(protocol: Protocol, keys: &str) -> State {
     let mut state = opened((160, 48));
     state.depth = Depth::True;
-    state.seeing.graphics.forced = Some(protocol);
+    state.picture.graphics.forced = Some(protocol);
     press(&mut state, keys);
     see(&mut state);
     state
@@ -80,7 +80,7 @@ pub fn zooming_keeps_the_cursor_and_panning_takes_it_along() {
         assert_eq!(part.dots, (62, 44), "{keys}");
         assert!((part.scale - scale).abs() < 1e-9, "{keys}: {}", part.scale);
         corner.into_iter().for_each(|corner| assert_eq!(part.corner, Point::from(corner), "{keys}"));
-        assert_eq!(state.placing.cursor, Point::from(cursor), "{keys}");
+        assert_eq!(state.picture.placing.cursor, Point::from(cursor), "{keys}");
     }
 }
 
@@ -103,7 +103,7 @@ fn every_protocol_fills_its_pane_and_stays_within_its_bytes() {
     {
         for bytes in [4_000, 64_000] {
             let state = shown_by(protocol, &format!(": \"graphics bytes {bytes}\" Enter"));
-            let shown = state.seeing.shown.clone().unwrap();
+            let shown = state.picture.shown.clone().unwrap();
             assert!(shown.bytes <= bytes, "{protocol:?}: {} bytes", shown.bytes);
             assert_eq!(shown.by > 1, bytes == 4_000, "{protocol:?} {bytes}: by {}", shown.by);
             let area = layout::picture(&state).unwrap();
@@ -122,19 +122,19 @@ fn every_protocol_fills_its_pane_and_stays_within_its_bytes() {
 #[test]
 fn half_blocks_stay_within_their_bytes_too() {
     let state = shown_by(Protocol::Blocks, ": \"graphics bytes 8000\" Enter");
-    let shown = state.seeing.shown.clone().unwrap();
+    let shown = state.picture.shown.clone().unwrap();
     assert!(shown.bytes <= 8000 && shown.by > 1 && shown.cells.is_none());
 }
 
 #[test]
 fn a_picture_is_sharp_again_after_playing() {
     let mut state = shown_by(Protocol::Sixel, "");
-    assert_eq!(state.seeing.shown.as_ref().unwrap().by, 1);
-    state.seeing.graphics.bytes = (4_000, 256_000);
+    assert_eq!(state.picture.shown.as_ref().unwrap().by, 1);
+    state.picture.graphics.bytes = (4_000, 256_000);
     for (playing, reduced) in [(true, true), (false, false)] {
-        state.playing = playing;
+        state.play.playing = playing;
         see(&mut state);
-        assert_eq!(state.seeing.shown.as_ref().unwrap().by > 1, reduced, "playing: {playing}");
+        assert_eq!(state.picture.shown.as_ref().unwrap().by > 1, reduced, "playing: {playing}");
     }
 }
 
@@ -203,7 +203,7 @@ pub fn the_read_out_opens_follows_and_closes() {
         let mut state = opened((80, 24));
         press(&mut state, keys);
         see(&mut state);
-        assert_eq!(state.seeing.probing, open, "{keys}");
+        assert_eq!(state.picture.probing, open, "{keys}");
         assert_eq!(seeing::asked(&state).map(|asked| asked.pixel), pixel, "{keys}");
         assert_eq!(screen(&state).contains("┬ probe ─") || screen(&state).contains(" probe ─"), open, "{keys}");
     }
@@ -222,7 +222,7 @@ pub fn the_read_out_opens_follows_and_closes() {
         assert!(text.contains(part), "{part}:\n{text}");
     }
     press(&mut state, "] ]");
-    assert_ne!(seeing::asked(&state), state.seeing.probed.as_ref().map(|probed| probed.asked), "it follows the time");
+    assert_ne!(seeing::asked(&state), state.picture.probed.as_ref().map(|probed| probed.asked), "it follows the time");
 }
 
 #[test]
@@ -236,7 +236,7 @@ fn thresholds_stand_on_the_path() {
         state.edit(edit, false).unwrap();
         press(&mut state, ": \"probe 20,20\" Enter g i");
         see(&mut state);
-        let read = state.seeing.probed.clone().unwrap().read.clone().unwrap();
+        let read = state.picture.probed.clone().unwrap().read.clone().unwrap();
         let axis = read.axis.as_ref().unwrap();
         assert_eq!((axis.ticks.len(), axis.stretches.len()), (2, 2), "{axis:?}");
         let active = |entry: &Entry| matches!(entry.value, Value::Flag { on: true, .. });
@@ -282,7 +282,7 @@ fn every_zone_has_its_curve_and_few_rows_its_place() {
 #[test]
 fn colours_say_nothing_by_themselves() {
     let chrome = |state: &State| {
-        let areas = layout::areas(Rect::new(0, 0, 160, 48), state.seeing.probing);
+        let areas = layout::areas(Rect::new(0, 0, 160, 48), state.picture.probing);
         let [field, _, picture] = areas.right.unwrap();
         let all = cells(state);
         let kept = all.area.positions().filter(|at| !field.contains(*at) && !picture.contains(*at));
@@ -297,7 +297,7 @@ fn colours_say_nothing_by_themselves() {
             see(&mut state);
             let found = chrome(&state);
             let text: String = found.iter().map(|cell| cell.symbol()).collect();
-            let covered = !state.pressed.is_empty() || name == &"help";
+            let covered = !state.typing.pressed.is_empty() || name == &"help";
             assert!(covered || *plain.get_or_insert_with(|| text.clone()) == text, "{name} {depth:?}");
             for colour in found.iter().flat_map(|cell| [cell.fg, cell.bg]) {
                 let own = !matches!(colour, Color::Rgb(..) | Color::Indexed(_));

@@ -52,7 +52,7 @@ pub fn state() -> State {
     });
     let door = Door::in_memory(&FOLDER.path().join("cat.plica.json"));
     let mut state = State::new(door, (80, 24), Depth::None);
-    state.picture_size = Some((64, 64));
+    state.picture.size = Some((64, 64));
     state
 }
 
@@ -84,8 +84,8 @@ pub fn press(state: &mut State, keys: &str) -> Vec<Effect> {
 /// Another editor on [`SCENE`] that has run the lines of this one's log.
 pub fn replayed(state: &State) -> State {
     let mut other = self::state();
-    for line in state.recorder.log().iter().filter(|line| !line.starts_with('#')) {
-        obey(&mut other, line, None).unwrap_or_else(|why| panic!("{line}: {why}\n{:#?}", state.recorder.log()));
+    for line in state.memory.recorder.log().iter().filter(|line| !line.starts_with('#')) {
+        obey(&mut other, line, None).unwrap_or_else(|why| panic!("{line}: {why}\n{:#?}", state.memory.recorder.log()));
     }
     other
 }

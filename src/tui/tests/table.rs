@@ -23,7 +23,7 @@ fn with_motion(motion: serde_json::Value) -> State {
         "outline": { "kind": "rectangle", "x": 0, "y": 0, "width": 9, "height": 9 }, "motion": motion }] }] });
     let mut state = state_of(&scene.to_string());
     state.show("/layers/0/zones/0/motion");
-    state.focus = Pane::Table;
+    state.cursor.focus = Pane::Table;
     state
 }
 
@@ -37,9 +37,9 @@ fn no_number_is_shown_in_part() {
     let sheet = state.sheet();
     let known: Vec<String> = sheet.rows(0..3).iter().flat_map(|row| row.cells.clone()).map(|cell| cell.text).collect();
     for row in 0..2 {
-        state.row = row;
+        state.cursor.row = row;
         for column in 0..7 {
-            state.column = column;
+            state.cursor.column = column;
             let own = &sheet.row(row).unwrap().cells[column].text;
             for width in 20..70 {
                 let lines = table(&state, width);
@@ -65,7 +65,7 @@ fn no_number_is_shown_in_part() {
 #[test]
 fn a_number_wider_than_its_room_is_rounded_with_a_mark() {
     let mut state = with_motion(json!([{ "tool": "point", "at": [123456.125, 2] }]));
-    state.column = 1;
+    state.cursor.column = 1;
     for (width, shown) in [(30, "123456.125"), (22, "~123456.1"), (20, "~123456"), (16, "…")] {
         let line = table(&state, width)[1].clone();
         assert!(line.split_whitespace().any(|word| word == shown), "{line:?} in {width}");
@@ -85,9 +85,9 @@ fn handles_are_called_handles() {
     let expected = ["x", "y", "in dx", "in dy", "in r", "in °", "out dx", "out dy", "out r", "out °"];
     assert_eq!(heads(&state), expected);
     for (column, title) in [(0, "-- at x --"), (2, "-- in dx --"), (6, "-- out dx --"), (9, "-- out ° --")] {
-        state.column = column;
+        state.cursor.column = column;
         press(&mut state, "?");
-        let crate::tui::state::Mode::Pages(pages) = &state.mode else { panic!("no help") };
+        let crate::tui::state::Mode::Pages(pages) = &state.typing.mode else { panic!("no help") };
         assert_eq!(pages.lines[0], title);
         assert!(
             !pages.lines.iter().take(9).any(|line| line.contains("1000000000") || line.contains("(2)")),
@@ -96,7 +96,7 @@ fn handles_are_called_handles() {
         press(&mut state, "Esc");
     }
     // dx and dy are those of the handle that is edited.
-    state.column = 6;
+    state.cursor.column = 6;
     press(&mut state, "i \"dx+dy\" Enter");
     assert_eq!(state.document().json().pointer("/layers/0/zones/0/motion/0/nodes/0/out"), Some(&json!([11, 6])));
     state.show("/layers/0/zones/0/motion/0/jumps");
@@ -116,7 +116,7 @@ fn one_index_counts_from_zero_everywhere() {
 #[test]
 fn the_column_of_degrees_says_which_way_they_turn() {
     let mut state = with_motion(json!([{ "tool": "point", "at": [1, 2], "jump": [0, -18] }]));
-    state.column = 6;
+    state.cursor.column = 6;
     let mut buffer = Buffer::empty(Rect::new(0, 0, 60, 3));
     panes::detail::draw(&state, buffer.area, &mut buffer);
     let text: String = buffer.content().iter().map(|cell| cell.symbol()).collect();
@@ -130,9 +130,9 @@ fn all_rows_are_selected_where_the_cursor_stays() {
         { "tool": "point", "at": [20, 2] },
         { "tool": "still-border", "spacing": 20 }
     ]));
-    (state.row, state.column) = (1, 1);
+    (state.cursor.row, state.cursor.column) = (1, 1);
     press(&mut state, "V");
-    assert_eq!((state.row, state.column), (1, 1));
+    assert_eq!((state.cursor.row, state.cursor.column), (1, 1));
     press(&mut state, "i \"100-v\"");
     assert!(table(&state, 70).join("\n").contains("= 90, 80 (2 of 3 rows)"), "{:?}", table(&state, 70));
     press(&mut state, "Enter");

@@ -146,7 +146,7 @@ fn entries_take_the_decimal_comma() {
 fn the_help_of_entries_opens_over_one_and_leaves_it_as_typed() {
     let mut state = state();
     press(&mut state, &motion("l i \"12\" ?"));
-    let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+    let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages") };
     let text = pages.lines.join("\n");
     assert!(crate::base::expression::functions().all(|name| text.contains(name)), "{text}");
     assert!(pages.lines.iter().all(|line| line.chars().count() <= 74), "{text}");
@@ -154,7 +154,7 @@ fn the_help_of_entries_opens_over_one_and_leaves_it_as_typed() {
     assert_eq!(at(&state, &zone("/motion/0/at/0")), json!(125));
     for (line, part) in [("help put", "decimal point"), ("help render", "--frames")] {
         press(&mut state, &format!(": \"{line}\" Enter"));
-        let Mode::Pages(pages) = &state.mode else { panic!("no pages for {line}") };
+        let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages for {line}") };
         assert!(pages.lines.join("\n").contains(part), "{line}");
         press(&mut state, "q");
     }
@@ -189,20 +189,20 @@ pub const TWO_PROBLEMS: &str = r#"{ "plica": 1, "images": { "cat": { "path": "ca
 pub fn what_was_said_and_what_is_wrong_can_be_read_again() {
     let mut state = state_of(TWO_PROBLEMS);
     press(&mut state, ": \"nosuch\" Enter : \"messages\" Enter");
-    let Mode::Pages(pages) = &state.mode else { panic!("no pages") };
+    let Mode::Pages(pages) = &state.typing.mode else { panic!("no pages") };
     assert_eq!(pages.lines, ["there is no command \"nosuch\" (? lists them)"]);
     press(&mut state, "q Space c");
-    let Mode::Choice(choice) = &state.mode else { panic!("no list") };
+    let Mode::Choice(choice) = &state.typing.mode else { panic!("no list") };
     let places: Vec<&str> = choice.options.iter().map(|(place, _)| place.as_str()).collect();
     assert_eq!(places, ["layers.face.zones.a.motion", "layers.face.zones.b.outline", "layers.face.zones.b.motion"]);
     press(&mut state, "j Enter");
-    assert_eq!(state.node, "/layers/0/zones/1/outline");
+    assert_eq!(state.cursor.node, "/layers/0/zones/1/outline");
     press(&mut state, "g d");
-    assert_eq!((state.node.as_str(), &said(&state)[..15]), ("/layers/0/zones/1/motion", "problem 3 of 3:"));
+    assert_eq!((state.cursor.node.as_str(), &said(&state)[..15]), ("/layers/0/zones/1/motion", "problem 3 of 3:"));
     press(&mut state, "g d");
-    assert_eq!(state.node, "/layers/0/zones/0/motion");
+    assert_eq!(state.cursor.node, "/layers/0/zones/0/motion");
     press(&mut state, "g D");
-    assert_eq!(state.node, "/layers/0/zones/1/motion");
+    assert_eq!(state.cursor.node, "/layers/0/zones/1/motion");
     let mut state = self::state();
     press(&mut state, ": \"set layers.0.zones.0.fether=3\" Enter");
     assert!(said(&state).ends_with("(did you mean \"feather\"?)"), "{}", said(&state));
@@ -250,7 +250,7 @@ fn names_with_spaces_are_completed_in_quotes() {
         press(&mut state, ":");
         update(&mut state, Event::Paste(typed.into()));
         press(&mut state, "Tab");
-        let Mode::Line(line) = &state.mode else { panic!("no line") };
+        let Mode::Line(line) = &state.typing.mode else { panic!("no line") };
         assert_eq!(line.text.value(), completed, "{typed}");
     }
 }
@@ -259,7 +259,7 @@ fn names_with_spaces_are_completed_in_quotes() {
 fn a_new_kind_keeps_the_shape_in_one_step() {
     let mut state = state();
     press(&mut state, "/ \"outline\" Enter Enter i");
-    let Mode::Choice(choice) = &mut state.mode else { panic!("no list") };
+    let Mode::Choice(choice) = &mut state.typing.mode else { panic!("no list") };
     choice.at = choice.options.iter().position(|(word, _)| word == "path").unwrap();
     press(&mut state, "Enter");
     let nodes = json!([{ "at": [10, 10] }, { "at": [50, 10] }, { "at": [50, 40] }, { "at": [10, 40] }]);

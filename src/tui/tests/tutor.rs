@@ -21,7 +21,7 @@ fn begun() -> (tempfile::TempDir, State) {
     let scene = TUTOR.unpack(folder.path()).unwrap();
     let door = Door::open(&scene, Open::Edit, &Options::default()).unwrap();
     let mut state = State::new(door, (80, 24), Depth::None);
-    state.picture_size = Some((480, 360));
+    state.picture.size = Some((480, 360));
     state.tutor = Some(Tutor::begin());
     (folder, state)
 }
@@ -35,7 +35,7 @@ fn perform(state: &mut State, effects: Vec<Effect>) {
                 update(state, Event::Saved(result));
             }
             Effect::Run(words) => {
-                state.seen.work = Some(words[0].clone());
+                state.outside.work = Some(words[0].clone());
                 update(state, Event::Done(Ok("line\nline".into())));
             }
             _ => {}

@@ -19,15 +19,15 @@ fn a_window_leads_and_is_not_told_what_it_said() {
     let mut state = state();
     let told = update(&mut state, said(ToEditor::Transport(Transport { playing: true, time: 0.5, speed: 0.5 })));
     assert!(matches!(told[..], [Effect::Pass]), "{told:?}");
-    assert_eq!((state.playing, state.time, state.speed), (true, 0.25, 0.5));
+    assert_eq!((state.play.playing, state.play.time, state.play.speed), (true, 0.25, 0.5));
     let told = pass(&mut state, 1.0);
     assert!(matches!(told[..], [Effect::Pass]), "windows run by themselves: {told:?}");
-    assert_eq!(state.time, 0.5);
+    assert_eq!(state.play.time, 0.5);
     let told = press(&mut state, "P");
     assert!(matches!(told[..], [Effect::Show]), "{told:?}");
     assert_eq!(state.transport(), Transport { playing: false, time: 1.0, speed: 0.5 });
     update(&mut state, said(ToEditor::Transport(Transport { playing: false, time: f64::NAN, speed: 1.0 })));
-    assert_eq!(state.time, 0.5);
+    assert_eq!(state.play.time, 0.5);
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn what_plays_once_ends() {
     pass(&mut state, 1.5);
     let told = pass(&mut state, 1.5);
     assert!(matches!(told[..], [Effect::Show]), "{told:?}");
-    assert_eq!((state.playing, state.time), (false, 1.0));
+    assert_eq!((state.play.playing, state.play.time), (false, 1.0));
 }
 
 #[test]
@@ -52,7 +52,7 @@ pub fn speed_is_shared() {
     ] {
         let mut state = state();
         press(&mut state, keys);
-        assert_eq!(state.speed, speed, "{keys}");
+        assert_eq!(state.play.speed, speed, "{keys}");
     }
 }
 
@@ -63,7 +63,7 @@ fn a_point_marked_in_a_window_moves_the_cursor_only() {
     let before = state.document().json().clone();
     update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
     update(&mut state, said(ToEditor::Command("mark-point".into())));
-    assert_eq!(state.placing.cursor, (12.5, 13.25).into());
+    assert_eq!(state.picture.placing.cursor, (12.5, 13.25).into());
     assert_eq!(state.document().json(), &before);
     assert!(state.message.as_ref().is_some_and(|said| said.text.starts_with("marked 12.5, 13.25")));
 }
@@ -81,7 +81,7 @@ fn what_is_selected_in_a_window_is_shown() {
         press(&mut state, &keys);
         update(&mut state, said(ToEditor::Pointer { x: at.0, y: at.1 }));
         update(&mut state, said(ToEditor::Command("select-point".into())));
-        assert_eq!((&state.node, state.row), (&node, row), "{at:?} {keys}");
+        assert_eq!((&state.cursor.node, state.cursor.row), (&node, row), "{at:?} {keys}");
     }
 }
 

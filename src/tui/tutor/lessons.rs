@@ -60,7 +60,7 @@ pub const LESSONS: &[Lesson] = &[
             Key(LINE, "run"),
             Key(TREE, "pane table"),
         ],
-        done: |state| state.focus == Pane::Table && state.node.ends_with("/motion/0/jumps"),
+        done: |state| state.cursor.focus == Pane::Table && state.cursor.node.ends_with("/motion/0/jumps"),
     },
     Lesson {
         title: "a jump",
@@ -117,7 +117,7 @@ pub const LESSONS: &[Lesson] = &[
             Key(ENTRY, "commit"),
             Key(EVERYWHERE, "back"),
         ],
-        done: |state| rise(state) == [-8.0, -56.0, -76.0, -64.0, -24.0] && state.selected_from.is_none(),
+        done: |state| rise(state) == [-8.0, -56.0, -76.0, -64.0, -24.0] && state.cursor.selected_from.is_none(),
     },
     Lesson {
         title: "the probe",
@@ -126,7 +126,7 @@ pub const LESSONS: &[Lesson] = &[
             "of the picture into the eye: ask about the pixel under it.",
         ],
         keys: &[Key(EVERYWHERE, "line"), Text("cursor at 170.5 205.5"), Key(LINE, "run"), Key(EVERYWHERE, "probe")],
-        done: |state| state.seeing.probing,
+        done: |state| state.picture.probing,
     },
     Lesson {
         title: "in time",
@@ -163,7 +163,7 @@ pub const LESSONS: &[Lesson] = &[
             Key(EVERYWHERE, "play"),
             Key(EVERYWHERE, "frame next"),
         ],
-        done: |state| !state.playing && state.time > 0.0,
+        done: |state| !state.play.playing && state.play.time > 0.0,
     },
     Lesson {
         title: "one line, three uses",
@@ -179,7 +179,7 @@ pub const LESSONS: &[Lesson] = &[
             Key(TREE, "move down"),
             Key(TREE, "yank"),
         ],
-        done: |state| state.kept.yanked.as_ref().is_some_and(|yanked| yanked.value["kind"] == "path"),
+        done: |state| state.memory.yanked.as_ref().is_some_and(|yanked| yanked.value["kind"] == "path"),
     },
     Lesson {
         title: "a fold",
@@ -243,7 +243,7 @@ pub const LESSONS: &[Lesson] = &[
             "leave it. All keys of the pane you are in are one key away.",
         ],
         keys: &[Key(EVERYWHERE, "palette"), Key(TYPING, "cancel"), Key(EVERYWHERE, "help")],
-        done: |state| matches!(state.mode, Mode::Pages(_)),
+        done: |state| matches!(state.typing.mode, Mode::Pages(_)),
     },
     Lesson {
         title: "saving",

@@ -1,4 +1,5 @@
-//! What is asked about a scene's life outside the editor: unsaved edits that were left behind, somebody else who edits it.
+//! What the editor knows of its surroundings, and what it asks about them: unsaved edits that were left behind, somebody
+//! else who edits the scene.
 
 use crate::tui::document::choice::{About, Choice, Question, Then};
 use crate::tui::document::door::Door;
@@ -7,18 +8,26 @@ use crate::tui::text::plain;
 /// So many changes are shown in a question; the rest can be looked at.
 const FEW: usize = 5;
 
-/// What the editor knows about the outside.
+/// What the editor knows of its surroundings.
 #[derive(Clone, Debug, Default)]
-pub struct Life {
+pub struct Outside {
     /// A question that waits until nothing else is going on.
     pub waiting: Option<Choice>,
     /// How the file differs from what it should be, in a word for the status line.
     pub file: Option<&'static str>,
+    /// What keeps the scene from being shown.
+    pub problem: Option<String>,
+    /// Long work that runs: what, and how far it is.
+    pub work: Option<String>,
+    /// How the window is doing.
+    pub window: String,
+    /// Where the pointer is in the window, in pixels of the picture.
+    pub pointer: Option<(f64, f64)>,
 }
 
-impl Life {
-    /// What is to be asked when a scene has been opened.
-    pub fn begin(door: &Door) -> Life {
+impl Outside {
+    /// With what is to be asked when a scene has been opened.
+    pub fn new(door: &Door) -> Outside {
         let held = door.held_by().map(|holder| {
             let text = vec![format!("The scene {}.", plain(&holder.in_words()))];
             let mut options = vec![("look", "Open it to read only; it follows what is saved there")];
@@ -28,7 +37,7 @@ impl Life {
             options.push(("quit", "Leave"));
             question(About::Holder, "the scene is open elsewhere".into(), text, &options)
         });
-        Life { waiting: held.or_else(|| about_recovery(door)), file: None }
+        Outside { waiting: held.or_else(|| about_recovery(door)), ..Outside::default() }
     }
 }
 
