@@ -47,6 +47,18 @@ pub fn ago(milliseconds: u64) -> String {
     }
 }
 
+/// Bytes in hexadecimal: two small digits each.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The byte that two hexadecimal digits stand for.
+pub fn byte_of_hex(digits: &[u8]) -> Option<u8> {
+    let &[high, low] = digits else { return None };
+    let value = |digit: u8| char::from(digit).to_digit(16);
+    u8::try_from(value(high)? << 4 | value(low)?).ok()
+}
+
 /// Characters that turn the order of what is shown.
 const BIDI: [char; 9] =
     ['\u{202a}', '\u{202b}', '\u{202c}', '\u{202d}', '\u{202e}', '\u{2066}', '\u{2067}', '\u{2068}', '\u{2069}'];
@@ -81,6 +93,18 @@ mod tests {
             [(0, "0.0 s"), (340, "0.3 s"), (59_900, "59.9 s"), (60_000, "1 min 0 s"), (754_000, "12 min 34 s")]
         {
             assert_eq!(took(ms), text);
+        }
+    }
+
+    #[test]
+    fn bytes_are_written_and_read_in_hexadecimal() {
+        assert_eq!(hex(&[0, 0x0f, 0xa0, 0xff]), "000fa0ff");
+        for byte in 0..=255 {
+            assert_eq!(byte_of_hex(hex(&[byte]).as_bytes()), Some(byte));
+            assert_eq!(byte_of_hex(hex(&[byte]).to_uppercase().as_bytes()), Some(byte));
+        }
+        for text in ["", "1", "123", "+1", "0x", "1g", " 1"] {
+            assert_eq!(byte_of_hex(text.as_bytes()), None, "{text}");
         }
     }
 

@@ -10,11 +10,12 @@ use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
 
-use super::originals::{Contents, contents, hex};
+use super::originals::{Contents, contents};
 use super::write::Atomic;
 use super::{Limits, paths, temporary};
 use crate::base::error::{Error, Result};
 use crate::base::system::folders;
+use crate::base::text::hex;
 
 /// The most files in the cache, and the most that one scene may name.
 pub const MOST_FILES: usize = 4096;

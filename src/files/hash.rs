@@ -2,7 +2,9 @@
 
 use sha2::{Digest, Sha256};
 
+use crate::base::text::hex;
+
 /// SHA-256 of `bytes`.
 pub fn of(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(&Sha256::digest(bytes))
 }

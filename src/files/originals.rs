@@ -16,6 +16,7 @@ use super::materials::{self, Stamp};
 use super::{Options, paths};
 use crate::base::budget::size;
 use crate::base::error::{Error, Result};
+use crate::base::text::hex;
 use crate::scene::Scene;
 
 /// The most bytes of a piece: other messages can go between two pieces.
@@ -132,10 +133,6 @@ pub(super) fn contents(file: &mut File) -> std::io::Result<Contents> {
             }
         }
     }
-}
-
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

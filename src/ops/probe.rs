@@ -7,6 +7,7 @@ use serde_json::{Value as Json, json};
 use super::{Context, opened::Opened, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::maths;
+use crate::base::text::hex;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
 use crate::layers::technique::Technique;
 use crate::render;
@@ -122,7 +123,7 @@ fn prose(read: Option<&ReadOut>, [r, g, b, a]: [u8; 4], (x, y): (usize, usize), 
         text += &said(label, value);
         shares = short;
     }
-    text + &format!("\n  shows #{r:02x}{g:02x}{b:02x}, alpha {a}")
+    text + &format!("\n  shows #{}, alpha {a}", hex(&[r, g, b]))
 }
 
 /// An entry in words.

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::{FAINT, Mark, Plot};
 use crate::base::error::{Error, Result};
+use crate::base::text::hex;
 use crate::export::still;
 
 /// The plot as an SVG document.
@@ -40,7 +41,7 @@ fn draw(mark: &Mark, text: &mut String) {
         let _ = write!(text, "{command}{} {}", short(point.x), short(point.y)); // a String takes all
     }
     *text += if mark.closed { "Z\"" } else { "\"" };
-    let color = format!("#{r:02x}{g:02x}{b:02x}");
+    let color = format!("#{}", hex(&[r, g, b]));
     let opacity = if a == 255 { String::new() } else { format!(" opacity=\"{}\"", short(f64::from(a) / 255.0)) };
     *text += &match mark.stroke {
         Some(width) => format!(" fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\"{opacity}", short(width)),

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::geometry::Xy;
 use crate::base::pixels::{Rgba, decode};
 use crate::base::problem::{Problem, quoted};
+use crate::base::text::byte_of_hex;
 use crate::layers::check;
 
 /// The most stops of a gradient: the shader searches them one by one.
@@ -102,8 +103,8 @@ fn color_problem(text: &str, path: &str) -> Option<Problem> {
 
 /// Red, green, blue and straight alpha of `#rrggbb` or `#rrggbbaa`.
 fn parse(text: &str) -> Option<[u8; 4]> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit()))?;
-    let code = |i: usize| u8::from_str_radix(digits.get(2 * i..2 * i + 2)?, 16).ok();
+    let digits = text.strip_prefix('#')?.as_bytes();
+    let code = |i: usize| byte_of_hex(digits.get(2 * i..2 * i + 2)?);
     match digits.len() {
         6 => Some([code(0)?, code(1)?, code(2)?, 255]),
         8 => Some([code(0)?, code(1)?, code(2)?, code(3)?]),

@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::Path;
 
 use crate::base::error::{Error, Result};
+use crate::base::text::byte_of_hex;
 
 /// How an address begins.
 pub const SCHEME: &str = "ssh://";
@@ -114,9 +115,7 @@ fn split_port(machine: &str) -> Option<(&str, Option<u16>)> {
 fn decoded(text: &str) -> Option<String> {
     let (mut bytes, mut rest) = (Vec::new(), text.as_bytes());
     while let [first, after @ ..] = rest {
-        let code = after.get(..2).filter(|_| *first == b'%').and_then(|two| std::str::from_utf8(two).ok());
-        let code = code.filter(|two| two.bytes().all(|b| b.is_ascii_hexdigit()));
-        match code.and_then(|two| u8::from_str_radix(two, 16).ok()) {
+        match after.get(..2).filter(|_| *first == b'%').and_then(byte_of_hex) {
             Some(byte) => (bytes, rest) = ([bytes, vec![byte]].concat(), &after[2..]),
             None => {
                 bytes.push(*first);

@@ -8,10 +8,9 @@ use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
 use crate::base::error::{Error, Result};
 use crate::base::system;
+use crate::files::hash;
 
 /// The path of a scene's socket.
 pub fn socket_path(scene: &Path) -> Result<PathBuf> {
@@ -28,8 +27,7 @@ fn canonical(scene: &Path) -> Result<PathBuf> {
 }
 
 fn socket_name(canonical: &Path) -> String {
-    let hash = Sha256::digest(canonical.as_os_str().as_bytes());
-    hash[..8].iter().map(|byte| format!("{byte:02x}")).chain([".sock".into()]).collect()
+    format!("{}.sock", &hash::of(canonical.as_os_str().as_bytes())[..16])
 }
 
 /// The editor's end: takes connections.

@@ -6,6 +6,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::write;
+use crate::base::text::hex;
 use crate::layers::parts::readout::{Axis, Entry, Value};
 use crate::tui::graphics::probed::Probed;
 use crate::tui::layout::seeing;
@@ -104,7 +105,7 @@ fn numbers<'a>(entries: impl Iterator<Item = &'a Entry>, axis: Option<&Axis>, ti
 
 fn shows(probed: &Probed) -> String {
     let [r, g, b, a] = probed.colour;
-    format!("shows #{r:02x}{g:02x}{b:02x} alpha {a}")
+    format!("shows #{} alpha {a}", hex(&[r, g, b]))
 }
 
 /// The path from 0 to 1: a thick line in its open stretches, a broken one in the others, a bar at every tick; below it the
