@@ -96,8 +96,8 @@ fn far() -> Option<Far> {
 }
 
 impl Far {
-    fn paint(&self, name: &str, colour: [u8; 3]) {
-        image::RgbImage::from_pixel(64, 64, image::Rgb(colour)).save(self.folder.path().join(name)).unwrap();
+    fn paint(&self, name: &str, color: [u8; 3]) {
+        image::RgbImage::from_pixel(64, 64, image::Rgb(color)).save(self.folder.path().join(name)).unwrap();
     }
 }
 

@@ -179,7 +179,7 @@ fn without_a_display_one_line_says_so() {
     }
 }
 
-/// The share of the dots of these looks, drawn over a picture at 1:1, whose colour is found `right` of their middle.
+/// The share of the dots of these looks, drawn over a picture at 1:1, whose color is found `right` of their middle.
 fn found(shot: &Frame, frame: &Frame, marks: &[Mark], looks: &[&str], right: f64) -> f64 {
     let (left, top) = corner(shot, frame);
     let dots = marks.iter().filter(|mark| looks.contains(&mark.look.name)).filter_map(|mark| match mark.shape {

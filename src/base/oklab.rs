@@ -19,7 +19,7 @@ pub fn lab(codes: [f64; 3]) -> Lab {
     ]
 }
 
-/// The nearest sRGB code values of an Oklab colour.
+/// The nearest sRGB code values of an Oklab color.
 pub fn srgb([l, a, b]: Lab) -> [u8; 3] {
     let cube = |x: f64| x * x * x;
     let (l, m, s) = (
@@ -36,7 +36,7 @@ pub fn srgb([l, a, b]: Lab) -> [u8; 3] {
     [r, g, b]
 }
 
-/// A colour of the wheel: `turns` of a whole turn from red on, at a lightness and colourfulness that every hue has.
+/// A color of the wheel: `turns` of a whole turn from red on, at a lightness and colorfulness that every hue has.
 pub fn hue(turns: f64) -> [u8; 3] {
     let angle = turns * super::maths::TAU + 0.5;
     srgb([0.62, 0.14 * cos(angle), 0.14 * sin(angle)])

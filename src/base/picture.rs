@@ -203,7 +203,7 @@ impl Picture {
         Picture::new(width, height, Channels::Rgba, Samples::Floats(cells.into_flattened()))
     }
 
-    /// A picture of one colour.
+    /// A picture of one color.
     pub fn filled(width: usize, height: usize, color: Rgba) -> Self {
         Picture::from_cells(width, height, vec![color; width * height])
     }

@@ -1,4 +1,4 @@
-//! 2-D arrays, colour spaces and bilinear reads. What is filtered and composed is linear, premultiplied RGBA in `f32`;
+//! 2-D arrays, color spaces and bilinear reads. What is filtered and composed is linear, premultiplied RGBA in `f32`;
 //! pictures from files stay as they were read (`picture.rs`).
 
 use std::sync::LazyLock;
@@ -61,7 +61,7 @@ impl<T: Clone> Grid<T> {
     }
 }
 
-/// One colour: linear light, premultiplied by its alpha.
+/// One color: linear light, premultiplied by its alpha.
 pub type Rgba = [f32; 4];
 
 /// What was computed, in linear, premultiplied RGBA.

@@ -1,4 +1,4 @@
-//! One picture as a PNG file: finished frames, and data that no colour management may touch.
+//! One picture as a PNG file: finished frames, and data that no color management may touch.
 
 use std::io::Write;
 

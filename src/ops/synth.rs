@@ -14,7 +14,7 @@ use crate::files::outputs;
 pub struct Args {
     /// The scene; - is standard input
     scene: PathBuf,
-    /// The folder for colour, init, jump, function and thresholds textures and manifest.json; created if missing
+    /// The folder for color, init, jump, function and thresholds textures and manifest.json; created if missing
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Bits per number: 32 is exact (EXR); 16 and 8 are PNG, their error in the manifest

@@ -81,7 +81,7 @@ pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Linear>) -> Linear {
         sum.cells_mut().par_iter_mut().zip(frame.cells().par_iter()).for_each(|(sum, more)| add(sum, more));
     }
     if share < 1.0 {
-        sum.cells_mut().par_iter_mut().for_each(|colour| *colour = colour.map(|c| c * share));
+        sum.cells_mut().par_iter_mut().for_each(|color| *color = color.map(|c| c * share));
     }
     sum
 }
@@ -93,7 +93,7 @@ pub fn frame(synth: &Synth, scene_time: f64) -> Frame {
 
 /// Encodes a linear frame.
 pub fn finish(picture: &Linear) -> Frame {
-    let cells = picture.cells().par_iter().map(|&colour| encode(colour)).collect();
+    let cells = picture.cells().par_iter().map(|&color| encode(color)).collect();
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 

@@ -68,8 +68,8 @@ fn mean(pixels: &Linear, columns: &[Option<usize>], rows: &[Option<usize>]) -> [
     let (mut sum, mut count): (Rgba, f32) = ([0.0; 4], 0.0);
     for &y in rows.iter().flatten() {
         for &x in columns.iter().flatten() {
-            let colour = pixels.get(x, y);
-            sum = std::array::from_fn(|i| sum[i] + colour[i]);
+            let color = pixels.get(x, y);
+            sum = std::array::from_fn(|i| sum[i] + color[i]);
             count += 1.0;
         }
     }

@@ -1,4 +1,4 @@
-//! Animated PNG, by the png crate: exact colours and alpha, exact times, only the moving rectangle of each frame.
+//! Animated PNG, by the png crate: exact colors and alpha, exact times, only the moving rectangle of each frame.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! GIF, by the gif crate: 256 colours, no partial alpha, times in hundredths of a second. The last resort.
+//! GIF, by the gif crate: 256 colors, no partial alpha, times in hundredths of a second. The last resort.
 //!
 //! The first frames wait, up to a bound, so that one palette can serve them all; later frames use it too unless it fails
 //! them. Each frame is written one late: what it leaves behind depends on the next.
@@ -109,7 +109,7 @@ struct Writer {
     pending: Option<Pending>,
 }
 
-/// A frame in the colours it will have.
+/// A frame in the colors it will have.
 struct Pending {
     shown: Frame,
     /// What of it must be written.
@@ -117,7 +117,7 @@ struct Pending {
     indices: Vec<u8>,
     /// Whether pixels that have not changed may be left transparent: nothing is cleared between the two frames.
     same: Option<Vec<bool>>,
-    /// Its own colours, where it has some.
+    /// Its own colors, where it has some.
     own: Option<Vec<[u8; 3]>>,
     transparent: u8,
 }
@@ -224,7 +224,7 @@ impl Writer {
     }
 }
 
-/// The colours and a place for the transparent one, as bytes.
+/// The colors and a place for the transparent one, as bytes.
 fn table(colors: &[[u8; 3]]) -> Vec<u8> {
     colors.as_flattened().iter().copied().chain([0; 3]).collect()
 }

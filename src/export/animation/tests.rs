@@ -119,7 +119,7 @@ fn webp_is_exact() {
 }
 
 #[test]
-fn a_gif_of_few_colours_is_exact() {
+fn a_gif_of_few_colors_is_exact() {
     for (width, height) in [(13, 17), (2, 2), (1, 9)] {
         let wanted = frames(width, height, 7);
         let (bytes, notes) = written("a.gif", &wanted, 30.0, false);
@@ -131,7 +131,7 @@ fn a_gif_of_few_colours_is_exact() {
 }
 
 #[test]
-fn a_gif_of_many_colours_is_near() {
+fn a_gif_of_many_colors_is_near() {
     let photo = |k: usize| {
         let cell = |i: usize| {
             let (x, y) = (i % 160, i / 160);

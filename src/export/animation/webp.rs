@@ -123,7 +123,7 @@ impl Sink for WebP {
 fn compress(rect: Rect, pixels: &[u8]) -> std::result::Result<Vec<u8>, String> {
     let mut config = webp::WebPConfig::new().map_err(|()| "libwebp has another version")?;
     config.lossless = 1;
-    config.exact = 1; // colours under alpha 0 too
+    config.exact = 1; // colors under alpha 0 too
     config.quality = 75.0; // effort
     let encoder = webp::Encoder::from_rgba(pixels, rect.width() as u32, rect.height() as u32);
     let file = encoder.encode_advanced(&config).map_err(|e| format!("{e:?}"))?;

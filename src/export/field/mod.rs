@@ -219,7 +219,7 @@ fn line(points: Vec<Point>, width: f64, color: [u8; 4]) -> Mark {
     Mark { points, closed: false, stroke: Some(width), color, dash: None }
 }
 
-/// An arrow with its tail at `at`, coloured by its direction; a dot where there is no jump. `room` is the distance of
+/// An arrow with its tail at `at`, colored by its direction; a dot where there is no jump. `room` is the distance of
 /// arrows, which bounds how heavy they look.
 fn draw_arrow(at: Point, vector: Vec2, room: f64, marks: &mut Vec<Mark>) {
     let length = vector.hypot2().sqrt();

@@ -58,7 +58,7 @@ fn the_png_shows_arrows_and_picture() {
     let image = image::load_from_memory(&png(&plot).unwrap()).unwrap().to_rgba8();
     assert_eq!((f64::from(image.width()), f64::from(image.height())), (plot.width.ceil(), plot.height.ceil()));
     let colors: std::collections::HashSet<_> = image.pixels().map(|p| p.0).collect();
-    assert!(colors.len() > 50, "{} colours", colors.len());
+    assert!(colors.len() > 50, "{} colors", colors.len());
     assert!(plot.marks.iter().all(|m| m.points.iter().all(|p| p.is_finite())));
 }
 

@@ -27,7 +27,7 @@ pub static OVERLAYS: &[Overlay] = &[
     overlay(CURVES, "c", "Curves, lassos and handles", When::Document),
     overlay(LABELS, "n", "Names and numbers", When::Document),
     overlay(FIELD, "v", "The vector field as arrows", When::Synthesis),
-    overlay(WHEEL, "d", "The vector field as colours of directions", When::Synthesis),
+    overlay(WHEEL, "d", "The vector field as colors of directions", When::Synthesis),
     overlay(PATHS, "p", "Jump paths", When::Synthesis),
     overlay(THRESHOLDS, "x", "Where jump paths meet fold regions", When::Synthesis),
     overlay(SAMPLERS, "e", "Samplers, at their effective places", When::EveryFrame),

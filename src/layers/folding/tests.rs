@@ -76,7 +76,7 @@ fn pixels_show_what_their_samplers_read() {
         (zone("[8,0]", fly), 1.0, (10, 10), 0.10),
         (zone("[8,0]", fly), 1.0, (16, 10), 0.24),
         (zone("[8,0]", mask), 1.0, (10, 10), 0.18),
-        (zone("[8,0]", mask), 1.0, (16, 10), 0.16), // over alpha 0: its own colour
+        (zone("[8,0]", mask), 1.0, (16, 10), 0.16), // over alpha 0: its own color
         (zone("[0,0]", dot), 1.0, (10, 10), 0.5 + 0.05),
         (zone("[0,0]", dot), 1.0, (12, 10), 0.12), // beyond the sampler image
     ] {

@@ -1,4 +1,4 @@
-//! Legends of the vector field: what the length of an arrow and a colour mean. They stand in the lower corners, and above one
+//! Legends of the vector field: what the length of an arrow and a color mean. They stand in the lower corners, and above one
 //! another where the window is narrow.
 
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use super::text::{Letters, Text};
 use crate::base::maths::{TAU, cos, pow, sin};
 use crate::layers::parts::marks::{VECTORS, vector_color};
 
-/// Radius of the wheel of colours and of its dots, in logical pixels, and how many rings it has.
+/// Radius of the wheel of colors and of its dots, in logical pixels, and how many rings it has.
 const WHEEL_PX: f64 = 34.0;
 const DOT_PX: f64 = 2.6;
 const RINGS: u32 = 6;
@@ -46,7 +46,7 @@ fn places([right, left]: [Option<Size>; 2], free: Rect, margin: f64) -> [Option<
     [right, left.filter(|place| fits(place) && place.x1 <= room.x1)]
 }
 
-/// Colours by direction and length, the longest jump vector at the rim and its length below.
+/// Colors by direction and length, the longest jump vector at the rim and its length below.
 struct Wheel {
     text: Rc<Text>,
     size: Size,

@@ -10,7 +10,7 @@ struct Screen {
     frame: vec2f, // the frame's size on the screen
     zoom: f32, // pixels of the screen a pixel of the frame
     check: f32, // side of a check
-    ground: vec4f, // around the frame; colours here are linear
+    ground: vec4f, // around the frame; colors here are linear
     light: vec4f, // checks under transparency
     dark: vec4f,
 }

@@ -15,7 +15,7 @@ pub struct Stroke {
     pub radius: f32,
     /// One of the forms below.
     pub form: u32,
-    /// Its colour.
+    /// Its color.
     pub color: Color,
     /// Where a glyph stands in the atlas.
     pub texel: [u16; 2],

@@ -40,14 +40,14 @@ pub fn encode(frame: &Frame, by: usize, wanted: &Wanted) -> (Option<Buffer>, usi
     (Some(cells), bytes)
 }
 
-/// Bytes of half-blocks, at most: two colours and a character where a cell differs from the one before.
+/// Bytes of half-blocks, at most: two colors and a character where a cell differs from the one before.
 fn blocks(frame: &Frame, by: usize) -> usize {
-    const COLOURS: usize = 2 * "\x1b[38;2;255;255;255m".len();
+    const COLORS: usize = 2 * "\x1b[38;2;255;255;255m".len();
     const CHARACTER: usize = "▀".len();
     let rows = frame.cells().chunks(frame.width().max(1));
     let changes = rows.map(|row| 1 + row.windows(2).filter(|pair| pair[0] != pair[1]).count()).sum::<usize>();
     // Two rows of dots are one of cells.
-    (changes * COLOURS / 2).max(1) * by.div_ceil(2).max(1) + frame.cells().len() * by * by / 2 * CHARACTER
+    (changes * COLORS / 2).max(1) * by.div_ceil(2).max(1) + frame.cells().len() * by * by / 2 * CHARACTER
 }
 
 /// A finished frame has a size and fits into memory: encoding it cannot fail.

@@ -42,8 +42,8 @@ impl Ink<'_> {
     fn mark(&mut self, mark: &Mark) {
         let look = mark.look;
         let dash = look.dash_px.map(|(on, off)| (self.less(on.into()).max(1.0), self.less(off.into()).max(1.0)));
-        let colour = if mark.selected { SELECTED } else { look.color };
-        let pen = Pen { colour, wide: mark.selected && self.by == 1, dash };
+        let color = if mark.selected { SELECTED } else { look.color };
+        let pen = Pen { color, wide: mark.selected && self.by == 1, dash };
         match &mark.shape {
             Shape::Line { points, closed } => {
                 let from = points.iter().chain(points.first().filter(|_| *closed));
@@ -58,7 +58,7 @@ impl Ink<'_> {
 
     /// The jump vector that is being set.
     pub fn aim(&mut self, from: Point, to: Point) {
-        let pen = Pen { colour: LIGHT, wide: self.by == 1, dash: None };
+        let pen = Pen { color: LIGHT, wide: self.by == 1, dash: None };
         self.arrow(&pen, self.at(from), self.at(to));
     }
 
@@ -66,8 +66,8 @@ impl Ink<'_> {
     pub fn cross(&mut self, at: Point) {
         let at = self.at(at);
         let (near, far) = (self.less(ARM.0).max(1.0), self.less(ARM.1).max(3.0));
-        for (colour, wide) in [(DARK, true), (LIGHT, false)] {
-            let pen = Pen { colour, wide, dash: None };
+        for (color, wide) in [(DARK, true), (LIGHT, false)] {
+            let pen = Pen { color, wide, dash: None };
             for way in [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)] {
                 self.line(&pen, at + way * near, at + way * far);
             }
@@ -90,10 +90,10 @@ impl Ink<'_> {
             let share = i as f64 / steps;
             if pen.dash.is_none_or(|(on, off)| (begun + length * share) % (on + off) < on) {
                 let at = a.lerp(b, share);
-                blend(self.frame, at, pen.colour);
+                blend(self.frame, at, pen.color);
                 if pen.wide {
-                    blend(self.frame, at + Vec2::new(1.0, 0.0), pen.colour);
-                    blend(self.frame, at + Vec2::new(0.0, 1.0), pen.colour);
+                    blend(self.frame, at + Vec2::new(1.0, 0.0), pen.color);
+                    blend(self.frame, at + Vec2::new(0.0, 1.0), pen.color);
                 }
             }
         }
@@ -111,7 +111,7 @@ impl Ink<'_> {
         }
     }
 
-    /// A dot with a dark rim; where it is small its colour alone.
+    /// A dot with a dark rim; where it is small its color alone.
     fn dot(&mut self, pen: &Pen, at: Point, shape: Dot, radius: f64, selected: bool) {
         let growth = if selected { f64::from(SELECTED_GROWTH) } else { 1.0 };
         let radius = self.less(radius * growth * DOTS);
@@ -124,7 +124,7 @@ impl Ink<'_> {
                 Dot::Diamond => x.abs() + y.abs(),
             };
             if far <= radius + rim {
-                blend(self.frame, at + Vec2::new(x, y), if far <= radius { pen.colour } else { DARK });
+                blend(self.frame, at + Vec2::new(x, y), if far <= radius { pen.color } else { DARK });
             }
         }
     }
@@ -141,7 +141,7 @@ impl Ink<'_> {
                 let end = pair[1].min(self.frame.width() as f64);
                 let inside = pair[0].max(0.0).ceil() as usize..end.max(0.0) as usize;
                 inside.filter(|x| (x + y).is_multiple_of(every)).for_each(|x| {
-                    blend(self.frame, Point::new(x as f64, y as f64), pen.colour);
+                    blend(self.frame, Point::new(x as f64, y as f64), pen.color);
                 });
             }
         }
@@ -149,12 +149,12 @@ impl Ink<'_> {
 }
 
 struct Pen {
-    colour: [u8; 4],
+    color: [u8; 4],
     wide: bool,
     dash: Option<(f64, f64)>,
 }
 
-/// Lays a colour over the dot that holds `at`; what lies beyond the picture takes it too.
+/// Lays a color over the dot that holds `at`; what lies beyond the picture takes it too.
 fn blend(frame: &mut Frame, at: Point, [r, g, b, a]: [u8; 4]) {
     let (width, height) = (frame.width(), frame.height());
     if at.x >= 0.0 && at.y >= 0.0 && at.x < width as f64 && at.y < height as f64 {

@@ -28,8 +28,8 @@ pub struct Probed {
     pub asked: Asked,
     /// What it does, if its layer tells.
     pub read: Option<ReadOut>,
-    /// The colour that the frame shows there: sRGB, straight alpha.
-    pub colour: [u8; 4],
+    /// The color that the frame shows there: sRGB, straight alpha.
+    pub color: [u8; 4],
 }
 
 impl Probed {
@@ -39,8 +39,8 @@ impl Probed {
         let (x, y) = asked.pixel;
         let read = layer.probe(scene.timeline.wrap, materials, asked.pixel, asked.time).ok()?;
         let within = x < synth.size.0 && y < synth.size.1;
-        let colour = within.then(|| encode(*cpu::lattice(synth, asked.time, &[x], &[y]).get(0, 0)));
-        Some(Probed { asked, read, colour: colour.unwrap_or_default() })
+        let color = within.then(|| encode(*cpu::lattice(synth, asked.time, &[x], &[y]).get(0, 0)));
+        Some(Probed { asked, read, color: color.unwrap_or_default() })
     }
 }
 

@@ -4,7 +4,7 @@ use kurbo::Point;
 
 use crate::layers::parts::marks::View;
 use crate::render::part::Part;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 
 /// How the picture reaches the terminal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,7 +65,7 @@ impl Default for Graphics {
 }
 
 impl Graphics {
-    /// The protocol in force. A picture of kitty is named by a colour: there is none without colours.
+    /// The protocol in force. A picture of kitty is named by a color: there is none without colors.
     pub fn protocol(&self, depth: Depth) -> Protocol {
         match self.forced.unwrap_or(self.found) {
             Protocol::Kitty if depth == Depth::None => Protocol::Blocks,

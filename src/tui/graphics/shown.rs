@@ -59,8 +59,8 @@ impl Shown {
         Shown { wanted: wanted.clone(), frame, by, cells, bytes }
     }
 
-    /// The colour that a place of the picture has in it; none beyond the picture, or where it was not in sight.
-    pub fn colour_at(&self, place: Point) -> Option<[u8; 3]> {
+    /// The color that a place of the picture has in it; none beyond the picture, or where it was not in sight.
+    pub fn color_at(&self, place: Point) -> Option<[u8; 3]> {
         let dot = self.wanted.part.reduced(self.by).dot_of(place);
         let within =
             dot.x >= 0.0 && dot.y >= 0.0 && dot.x < self.frame.width() as f64 && dot.y < self.frame.height() as f64;

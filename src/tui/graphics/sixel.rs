@@ -1,26 +1,26 @@
-//! Sixels: bands of six rows, colour by colour, runs counted. At most 255 colours, cut at medians, and fewer in a picture
+//! Sixels: bands of six rows, color by color, runs counted. At most 255 colors, cut at medians, and fewer in a picture
 //! that has to be small; nothing is dithered, since grains make runs short and pictures large.
 
 use std::fmt::Write;
 
 use crate::base::pixels::Frame;
 
-/// The most colours, and of a picture that is reduced: pixels are worth more than shades.
-const COLOURS: usize = 255;
-const FEW_COLOURS: usize = 48;
-/// Colours are counted in 5 bits a channel.
+/// The most colors, and of a picture that is reduced: pixels are worth more than shades.
+const COLORS: usize = 255;
+const FEW_COLORS: usize = 48;
+/// Colors are counted in 5 bits a channel.
 const BINS: usize = 1 << 15;
 
 /// The sequence that draws `frame` on `dots`, each of its pixels `by` dots wide and high. Transparent pixels are left out.
 pub fn encode(frame: &Frame, by: usize, (width, height): (usize, usize)) -> String {
-    let palette = Palette::of(frame, if by == 1 { COLOURS } else { FEW_COLOURS });
+    let palette = Palette::of(frame, if by == 1 { COLORS } else { FEW_COLORS });
     let mut text = format!("\x1bP0;1;0q\"1;1;{width};{height}");
-    for (i, colour) in palette.colours.iter().enumerate() {
-        let [r, g, b] = colour.map(|code| (u32::from(code) * 100 + 127) / 255);
+    for (i, color) in palette.colors.iter().enumerate() {
+        let [r, g, b] = color.map(|code| (u32::from(code) * 100 + 127) / 255);
         // Writing to a string cannot fail, here and below.
         let _ = write!(text, "#{i};2;{r};{g};{b}");
     }
-    let mut bits = vec![Vec::new(); palette.colours.len()];
+    let mut bits = vec![Vec::new(); palette.colors.len()];
     for top in (0..height).step_by(6) {
         bits.iter_mut().for_each(Vec::clear);
         for row in top..(top + 6).min(height).min(frame.height() * by) {
@@ -62,13 +62,13 @@ fn bin([r, g, b, _]: [u8; 4]) -> usize {
     usize::from(r >> 3) << 10 | usize::from(g >> 3) << 5 | usize::from(b >> 3)
 }
 
-/// The colours of a frame, and for each bin the one that stands for it.
+/// The colors of a frame, and for each bin the one that stands for it.
 struct Palette {
-    colours: Vec<[u8; 3]>,
+    colors: Vec<[u8; 3]>,
     index: Vec<u8>,
 }
 
-/// One bin that is not empty: its number, its mean colour, its pixels.
+/// One bin that is not empty: its number, its mean color, its pixels.
 #[derive(Clone, Copy)]
 struct Bin {
     number: usize,
@@ -86,12 +86,12 @@ impl Palette {
         let filled = sums.iter().enumerate().filter(|(_, sum)| sum[3] > 0);
         let mean = |sum: &[u64; 4]| std::array::from_fn(|i| (sum[i] / sum[3]) as u8);
         let bins: Vec<Bin> = filled.map(|(number, sum)| Bin { number, mean: mean(sum), count: sum[3] }).collect();
-        let mut palette = Palette { colours: Vec::new(), index: vec![0; BINS] };
+        let mut palette = Palette { colors: Vec::new(), index: vec![0; BINS] };
         for one in cut(bins, most) {
             let count = one.iter().map(|bin| bin.count).sum::<u64>().max(1);
             let mean = |i: usize| (one.iter().map(|bin| u64::from(bin.mean[i]) * bin.count).sum::<u64>() / count) as u8;
-            one.iter().for_each(|bin| palette.index[bin.number] = palette.colours.len() as u8);
-            palette.colours.push(std::array::from_fn(mean));
+            one.iter().for_each(|bin| palette.index[bin.number] = palette.colors.len() as u8);
+            palette.colors.push(std::array::from_fn(mean));
         }
         palette
     }
@@ -144,7 +144,7 @@ mod tests {
         let size = numbers(&body[1..end]);
         let (width, height) = (size[2], size[3]);
         let mut dots = vec![None; width * height];
-        let mut colours = std::collections::BTreeMap::new();
+        let mut colors = std::collections::BTreeMap::new();
         let (mut x, mut top, mut ink, mut count) = (0, 0, 0, 1);
         let mut rest = &body[end..];
         while let Some(c) = rest.chars().next() {
@@ -155,7 +155,7 @@ mod tests {
                     let all = numbers(&rest[..digits]);
                     ink = all[0];
                     if let [_, 2, r, g, b] = all[..] {
-                        colours.insert(ink, [r as u32, g as u32, b as u32]);
+                        colors.insert(ink, [r as u32, g as u32, b as u32]);
                     }
                     rest = &rest[digits..];
                 }
@@ -167,7 +167,7 @@ mod tests {
                 '-' => (x, top) = (0, top + 6),
                 sixel => {
                     for row in (0..6).filter(|row| (sixel as u8 - 63) >> row & 1 == 1) {
-                        (x..x + count).for_each(|x| dots[(top + row) * width + x] = Some(colours[&ink]));
+                        (x..x + count).for_each(|x| dots[(top + row) * width + x] = Some(colors[&ink]));
                     }
                     x += count;
                     count = 1;
@@ -178,9 +178,9 @@ mod tests {
     }
 
     #[test]
-    fn few_colours_come_back_exactly_and_reduced_pixels_are_repeated() {
-        let colour = |i: usize| if i % 7 == 3 { [0; 4] } else { [(i % 5 * 51) as u8, (i / 10 * 17) as u8, 255, 255] };
-        let frame = Frame::from_cells(10, 8, (0..80).map(colour).collect());
+    fn few_colors_come_back_exactly_and_reduced_pixels_are_repeated() {
+        let color = |i: usize| if i % 7 == 3 { [0; 4] } else { [(i % 5 * 51) as u8, (i / 10 * 17) as u8, 255, 255] };
+        let frame = Frame::from_cells(10, 8, (0..80).map(color).collect());
         for (by, dots) in [(1, (10, 8)), (3, (29, 24))] {
             let (width, height, found) = decoded(&encode(&frame, by, dots));
             assert_eq!((width, height), dots);
@@ -193,13 +193,13 @@ mod tests {
     }
 
     #[test]
-    fn many_colours_are_reduced_to_near_ones() {
-        let colour = |i: usize| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, (i * 7 % 256) as u8, 255];
-        let frame = Frame::from_cells(64, 64, (0..64 * 64).map(colour).collect());
-        let palette = Palette::of(&frame, COLOURS);
-        assert!(palette.colours.len() <= COLOURS && palette.colours.len() > 200);
+    fn many_colors_are_reduced_to_near_ones() {
+        let color = |i: usize| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, (i * 7 % 256) as u8, 255];
+        let frame = Frame::from_cells(64, 64, (0..64 * 64).map(color).collect());
+        let palette = Palette::of(&frame, COLORS);
+        assert!(palette.colors.len() <= COLORS && palette.colors.len() > 200);
         let error = |cell: &[u8; 4]| {
-            let near = palette.colours[usize::from(palette.index[bin(*cell)])];
+            let near = palette.colors[usize::from(palette.index[bin(*cell)])];
             (0..3).map(|i| u32::from(near[i].abs_diff(cell[i]))).max().unwrap()
         };
         assert!(frame.cells().iter().all(|cell| error(cell) < 64));

@@ -19,7 +19,7 @@ use crate::tui::events::{Effect, Event};
 use crate::tui::graphics;
 use crate::tui::state::tutor::Tutor;
 use crate::tui::state::{Message, Mode, State, USUAL};
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 use crate::tui::text::plain;
 use std::path::Path;
 use std::sync::mpsc;

@@ -13,7 +13,7 @@ use crate::tui::document::door::Door;
 use crate::tui::events::{Change, Effect, Event};
 use crate::tui::panes::view;
 use crate::tui::state::State;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 
 /// A scene that is open on a screen in memory. Nothing happens outside: no synthesis, no window.
 pub struct Offscreen {

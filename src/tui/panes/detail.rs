@@ -11,7 +11,7 @@ use crate::tui::document::sheet;
 use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::state::{State, entry};
 use crate::tui::text::wrap::wrapped;
-use crate::tui::text::{colour, numbers};
+use crate::tui::text::{color, numbers};
 
 /// Draws it: name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
@@ -27,17 +27,17 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
     let set = if row.set { "" } else { "   (default)" };
     let label = plain(&row.label);
-    let mut x = write(buffer, area, 0, 0, &format!("{label}{name}"), colour::strong());
+    let mut x = write(buffer, area, 0, 0, &format!("{label}{name}"), color::strong());
     x = write(buffer, area, x, 0, &format!("   {value}{unit}"), Style::new());
-    x = write(buffer, area, x, 0, &range, colour::faint());
-    write(buffer, area, x, 0, set, colour::faint());
+    x = write(buffer, area, x, 0, &range, color::faint());
+    write(buffer, area, x, 0, set, color::faint());
     let hint = entry::hint(state);
     let lines = if hint.is_some() { 1 } else { 2 };
     for (y, line) in wrapped(help(cell), area.width).iter().take(lines).enumerate() {
         write(buffer, area, 0, 1 + y as u16, line, Style::new());
     }
     match hint {
-        Some(Ok(values)) => drop(write(buffer, area, 0, 2, &values, colour::strong())),
+        Some(Ok(values)) => drop(write(buffer, area, 0, 2, &values, color::strong())),
         Some(Err(why)) => drop(write(buffer, area, 0, 2, &why, Style::new().add_modifier(Modifier::ITALIC))),
         None => {}
     }

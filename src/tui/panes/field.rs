@@ -1,4 +1,4 @@
-//! The vector field of the zone that is shown, as arrows: direction by glyph and colour, length by the weight of the glyph
+//! The vector field of the zone that is shown, as arrows: direction by glyph and color, length by the weight of the glyph
 //! and brightness, with a legend and the exact value under the picture's cursor. It shows what the worker synthesised last
 //! and evaluates nothing itself.
 
@@ -13,8 +13,8 @@ use crate::layers::parts::readout::{VectorField, vector};
 use crate::scene::words::item_of;
 use crate::tui::document::tree;
 use crate::tui::state::State;
-use crate::tui::text::colour;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color;
+use crate::tui::text::color::Depth;
 use crate::tui::text::numbers::{polar, short};
 
 /// Shorter than this share of the longest, a vector is a dot.
@@ -26,7 +26,7 @@ const LONG: f64 = 0.5;
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some((field, longest)) = field(state) else {
         let why = if item_of(&state.cursor.node).is_none() { "select a zone" } else { "not there yet" };
-        write(buffer, area, 1, 0, why, colour::faint());
+        write(buffer, area, 1, 0, why, color::faint());
         return;
     };
     let (width, height) = (field.inside.width(), field.inside.height());
@@ -56,9 +56,9 @@ fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer:
     let step = short((step * 10.0).round() / 10.0);
     let longest = short(longest);
     let text = format!("longest {longest} px  → to {half}  ⇒ more  · none  every {step} px");
-    let x = write(buffer, area, 0, 0, &text, colour::faint());
+    let x = write(buffer, area, 0, 0, &text, color::faint());
     if let Some((name, _)) = &field.flag {
-        write(buffer, area, x + 2, 0, name, colour::faint().add_modifier(Modifier::UNDERLINED));
+        write(buffer, area, x + 2, 0, name, color::faint().add_modifier(Modifier::UNDERLINED));
     }
 }
 
@@ -82,12 +82,12 @@ fn field(state: &State) -> Option<(VectorField<'_>, f64)> {
     Some((field, longest.map_or(0.0, |(_, longest)| *longest)))
 }
 
-/// One arrow: a dot where there is next to nothing, a double one where it is long; its colour is its direction.
+/// One arrow: a dot where there is next to nothing, a double one where it is long; its color is its direction.
 fn glyph(depth: Depth, jump: Vec2, longest: f64) -> (&'static str, Style) {
     let (length, degrees) = polar(jump);
     let share = if longest > 0.0 { length / longest } else { 0.0 };
     if share < NOTHING {
-        return ("·", colour::faint());
+        return ("·", color::faint());
     }
     let style = hue(depth, degrees.rem_euclid(360.0) / 360.0);
     if share > LONG {
@@ -102,13 +102,13 @@ fn double(arrow: &'static str) -> &'static str {
     PAIRS.iter().find(|(single, _)| *single == arrow).map_or(arrow, |(_, double)| double)
 }
 
-/// The colour of a direction: of a wheel of even lightness, which is read on light and on dark; one of six of the 16.
+/// The color of a direction: of a wheel of even lightness, which is read on light and on dark; one of six of the 16.
 fn hue(depth: Depth, turns: f64) -> Style {
     const SIX: [Color; 6] = [Color::Red, Color::Yellow, Color::Green, Color::Cyan, Color::Blue, Color::Magenta];
     match depth {
         Depth::None => Style::new(),
         Depth::Ansi => Style::new().fg(SIX[(turns * 6.0).round() as usize % 6]),
-        _ => depth.colour(oklab::hue(turns)).map_or(Style::new(), |ink| Style::new().fg(ink)),
+        _ => depth.color(oklab::hue(turns)).map_or(Style::new(), |ink| Style::new().fg(ink)),
     }
 }
 
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arrows_tell_direction_and_length_without_colour() {
+    fn arrows_tell_direction_and_length_without_color() {
         for (jump, glyph_there) in [
             ((0.0, -18.0), "⇑"),
             ((0.0, -5.0), "↑"),

@@ -9,7 +9,7 @@ use ratatui::widgets::{Clear, Widget};
 
 use super::{typed, write};
 use crate::tui::state::{Mode, State};
-use crate::tui::text::colour;
+use crate::tui::text::color;
 use crate::tui::text::wrap::{folded, width};
 
 /// Draws it; the cursor is in the line being typed.
@@ -32,8 +32,8 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         if let Some(problem) = &state.outside.problem {
             let problem = plain(problem);
             let more = if width(&problem) + 2 > area.width { " … (:problems) " } else { "" };
-            write(buffer, area, 1, 0, &problem, colour::faint());
-            write(buffer, area, i32::from(area.width) - i32::from(width(more)), 0, more, colour::faint());
+            write(buffer, area, 1, 0, &problem, color::faint());
+            write(buffer, area, i32::from(area.width) - i32::from(width(more)), 0, more, color::faint());
         }
         return None;
     };
@@ -52,20 +52,20 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     }
     if lines.len() > usize::from(rows) {
         let more = " … (:messages) ";
-        write(buffer, area, i32::from(area.width) - i32::from(width(more)), rows - 1, more, colour::faint());
+        write(buffer, area, i32::from(area.width) - i32::from(width(more)), rows - 1, more, color::faint());
     }
     None
 }
 
 fn draw_offered(offered: &[String], at: usize, area: Rect, mut x: i32, buffer: &mut Buffer) {
     if offered.is_empty() {
-        write(buffer, area, x, 0, "(nothing to complete)", colour::faint());
+        write(buffer, area, x, 0, "(nothing to complete)", color::faint());
     }
     for (i, word) in offered.iter().enumerate().skip(at.saturating_sub(2)) {
         if x + i32::from(width(word)) > i32::from(area.width) {
             break;
         }
-        let style = if i == at { colour::focus() } else { colour::faint() };
+        let style = if i == at { color::focus() } else { color::faint() };
         x = write(buffer, area, x, 0, &plain(word), style) + 2;
     }
 }

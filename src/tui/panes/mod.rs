@@ -7,7 +7,7 @@ use ratatui::layout::{Constraint, Position, Rect};
 use ratatui::style::Style;
 use ratatui::widgets::{Block, Clear, Widget};
 
-use super::text::colour;
+use super::text::color;
 use super::text::input::Text;
 use super::text::numbers::polar;
 
@@ -57,10 +57,10 @@ pub fn typed(buffer: &mut Buffer, area: Rect, text: &Text, style: Style) -> Posi
         });
         buffer.set_stringn(area.x, area.y, within.collect::<String>(), room, style);
         if hidden > 0 && column > hidden {
-            write(buffer, area, 0, 0, "<", colour::faint());
+            write(buffer, area, 0, 0, "<", color::faint());
         }
         if usize::from(width(&shown)).saturating_sub(hidden) > room && column + 1 < hidden + room {
-            write(buffer, area, room as i32 - 1, 0, ">", colour::faint());
+            write(buffer, area, room as i32 - 1, 0, ">", color::faint());
         }
     }
     Position::new(area.x + column.saturating_sub(hidden) as u16, area.y)

@@ -11,7 +11,7 @@ use crate::tui::document::palette::{Palette, Row};
 use crate::tui::document::sheet;
 use crate::tui::layout::first_row;
 use crate::tui::state::State;
-use crate::tui::text::colour;
+use crate::tui::text::color;
 use crate::tui::text::wrap::{clipped, width};
 
 /// Columns of what a row is.
@@ -21,7 +21,7 @@ const SORT: i32 = 9;
 pub fn draw(state: &State, palette: &Palette, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = format!("palette: {} found (Enter takes, Esc closes)", palette.len());
     let area = window(screen, (screen.width - 8).min(110), (screen.height - 4).min(30), &title, buffer);
-    write(buffer, area, 0, 0, ">", colour::strong());
+    write(buffer, area, 0, 0, ">", color::strong());
     let line = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
     let cursor = typed(buffer, line, &palette.text, Style::new());
     let body = Rect { y: area.y + 1, height: area.height.saturating_sub(3), ..area };
@@ -35,20 +35,20 @@ pub fn draw(state: &State, palette: &Palette, screen: Rect, buffer: &mut Buffer)
         let place = field::field(state.document(), &row.pointer).filter(|_| row.sort != "command");
         let help =
             place.map_or_else(|| format!(":{}", row.line.trim_start_matches("line :")), |field| field.help.into());
-        write(buffer, area, 0, area.height.saturating_sub(1), &help, colour::faint());
+        write(buffer, area, 0, area.height.saturating_sub(1), &help, color::faint());
     }
     cursor
 }
 
 fn draw_row(state: &State, palette: &Palette, row: &Row, here: bool, area: Rect, y: u16, buffer: &mut Buffer) {
-    let style = if here { colour::focus() } else { Style::new() };
+    let style = if here { color::focus() } else { Style::new() };
     let end = match row.sort {
         "command" => row.key.clone(),
         _ => value(state, &row.pointer),
     };
     let room = i32::from(area.width) - i32::from(width(&end)) - 1;
     let text = Rect { x: area.x + SORT as u16, width: (room - SORT - 1).max(0) as u16, ..area };
-    write(buffer, area, 0, y, row.sort, colour::faint());
+    write(buffer, area, 0, y, row.sort, color::faint());
     let matched = palette.matched(&row.text);
     let mut x = 0;
     for (i, c) in row.text.chars().enumerate() {
@@ -56,7 +56,7 @@ fn draw_row(state: &State, palette: &Palette, row: &Row, here: bool, area: Rect,
         let style = if hit { style.add_modifier(Modifier::BOLD | Modifier::UNDERLINED) } else { style };
         x = write(buffer, text, x, y, c.encode_utf8(&mut [0; 4]), style);
     }
-    write(buffer, area, room.max(0), y, &end, colour::faint());
+    write(buffer, area, room.max(0), y, &end, color::faint());
 }
 
 /// What a field or a node says, in a word.

@@ -1,5 +1,5 @@
 //! The picture: as pixels where the terminal takes them, else in half-blocks, two dots a cell, with outlines, regions,
-//! anchors and the placing cursor over them. Without colours each cell is a shade.
+//! anchors and the placing cursor over them. Without colors each cell is a shade.
 
 use crate::tui::layout;
 use kurbo::{Point, Vec2};
@@ -14,8 +14,8 @@ use crate::render::part::Part;
 use crate::tui::graphics::{Protocol, Shown, sight};
 use crate::tui::layout::seeing;
 use crate::tui::state::{Mode, Pane, State, place};
-use crate::tui::text::colour;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color;
+use crate::tui::text::color::Depth;
 use crate::tui::text::numbers::short;
 
 /// The cursor's coordinates, how large the picture is shown, and how it comes to the terminal.
@@ -32,7 +32,7 @@ pub fn title(state: &State) -> String {
 /// Draws it; the real cursor is on the placing cursor where the picture has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let Some(part) = seeing::part(state).filter(|_| area.width > 0 && area.height > 0) else {
-        write(buffer, area, 1, 0, "no picture yet", colour::faint());
+        write(buffer, area, 1, 0, "no picture yet", color::faint());
         return (state.cursor.focus == Pane::Picture).then(|| area.as_position());
     };
     match pixels(state, area) {
@@ -98,13 +98,13 @@ fn cell(part: &Part, at: Point) -> (i64, i64) {
 fn draw_pixels(shown: &Shown, part: &Part, depth: Depth, area: Rect, buffer: &mut Buffer) {
     for (x, y) in (0..area.height).flat_map(|y| (0..area.width).map(move |x| (x, y))) {
         let dot = |lower: f64| Point::new(f64::from(x) + 0.5, f64::from(y) * 2.0 + lower + 0.5);
-        let half = |lower: f64| shown.colour_at(part.place_of(dot(lower)));
+        let half = |lower: f64| shown.color_at(part.place_of(dot(lower)));
         let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y)) else { continue };
-        let paint = |rgb: Option<[u8; 3]>| rgb.and_then(|rgb| depth.colour(rgb)).unwrap_or(Color::Reset);
+        let paint = |rgb: Option<[u8; 3]>| rgb.and_then(|rgb| depth.color(rgb)).unwrap_or(Color::Reset);
         match (half(0.0), half(1.0)) {
             (None, None) => {}
             (upper, lower) if depth == Depth::None => {
-                cell.set_char(colour::shade(both(upper, lower)));
+                cell.set_char(color::shade(both(upper, lower)));
             }
             (None, lower) => {
                 cell.set_symbol("▄").set_style(Style::new().fg(paint(lower)));
@@ -142,7 +142,7 @@ fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
 
 fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Buffer) {
     let [r, g, b, _] = if mark.selected { SELECTED } else { mark.look.color };
-    let style = depth.colour([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
+    let style = depth.color([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
     let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
     let glyph = mark.look.stroke;
     match &mark.shape {
@@ -176,7 +176,7 @@ fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Bu
     }
 }
 
-/// Writes a glyph over the picture, on the colour that is there.
+/// Writes a glyph over the picture, on the color that is there.
 fn put(buffer: &mut Buffer, area: Rect, x: i64, half: i64, glyph: &str, style: Style) {
     let y = half.div_euclid(2);
     if (0..i64::from(area.width)).contains(&x) && (0..i64::from(area.height)).contains(&y) {

@@ -12,7 +12,7 @@ use super::write;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, State};
-use crate::tui::text::colour;
+use crate::tui::text::color;
 use crate::tui::text::wrap::{folded, width};
 
 /// Draws what there is; the cursor is in the list.
@@ -59,9 +59,9 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     for (y, (i, (word, help))) in
         choice.options.iter().enumerate().skip(first).take(usize::from(area.height)).enumerate()
     {
-        let style = if i == choice.at { colour::focus() } else { Style::new() };
+        let style = if i == choice.at { color::focus() } else { Style::new() };
         write(buffer, area, 1, y as u16, &plain(word), style);
-        write(buffer, area, i32::from(words) + 3, y as u16, &shortened(help, room), colour::faint());
+        write(buffer, area, i32::from(words) + 3, y as u16, &shortened(help, room), color::faint());
     }
     Position::new(area.x + 1, area.y + (choice.at - first) as u16)
 }
@@ -95,7 +95,7 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     let area = window(screen, wide, tall, &title, buffer);
     let last = pages.lines.len().saturating_sub(usize::from(area.height));
     for (y, line) in pages.lines.iter().skip(pages.scroll.min(last)).take(usize::from(area.height)).enumerate() {
-        let style = if line.starts_with("--") { colour::strong() } else { Style::new() };
+        let style = if line.starts_with("--") { color::strong() } else { Style::new() };
         write(buffer, area, 1, y as u16, line, style);
     }
     area.as_position()
@@ -131,7 +131,7 @@ fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     for (i, row) in rows.iter().enumerate() {
         let column = Rect { x: inner.x + each * (i / tall) as u16, width: each, ..inner };
         let y = (i % tall) as u16;
-        write(buffer, column, 1, y, &rest(&row.key), colour::strong());
+        write(buffer, column, 1, y, &rest(&row.key), color::strong());
         write(buffer, column, i32::from(keys) + 3, y, &row.help, Style::new());
     }
 }

@@ -1,5 +1,5 @@
 //! The position functions of all zones of the layer on one time axis: s over the timeline in braille, each zone with a
-//! letter and an ANSI colour of its own, the selected one bold and on top, the present marked.
+//! letter and an ANSI color of its own, the selected one bold and on top, the present marked.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -12,12 +12,12 @@ use crate::layers::parts::readout;
 use crate::scene::words::item_of;
 use crate::tui::document::tree;
 use crate::tui::state::State;
-use crate::tui::text::colour;
+use crate::tui::text::color;
 use crate::tui::text::numbers::short;
 use crate::tui::text::wrap::width;
 
-/// The colours of zones, over and over; letters tell what colours repeat.
-const COLOURS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];
+/// The colors of zones, over and over; letters tell what colors repeat.
+const COLORS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];
 
 /// A curve of one thing in the layer.
 struct Curve<'a> {
@@ -32,7 +32,7 @@ struct Curve<'a> {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let curves = curves(state);
     if curves.is_empty() {
-        write(buffer, area, 1, 0, "the layer has no zones", colour::faint());
+        write(buffer, area, 1, 0, "the layer has no zones", color::faint());
         return;
     }
     if area.width < 12 || area.height < 3 {
@@ -57,13 +57,13 @@ fn curves<'a>(state: &'a State) -> Vec<Curve<'a>> {
     let selected = item_of(&state.cursor.node).and_then(|item| item.strip_prefix(&format!("/layers/{index}")));
     let curve = |(i, of): (usize, readout::Curve<'a>)| {
         let selected = selected == Some(&of.path);
-        let style = state.depth.ink(Style::new(), COLOURS[i % COLOURS.len()]);
+        let style = state.depth.ink(Style::new(), COLORS[i % COLORS.len()]);
         Curve {
             name: plain(of.name),
             letter: char::from(b'a' + (i % 26) as u8),
             of,
             selected,
-            style: if selected { style.patch(colour::strong()) } else { style },
+            style: if selected { style.patch(color::strong()) } else { style },
         }
     };
     let mut curves: Vec<Curve> =
@@ -87,7 +87,7 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     let dots = usize::from(area.height) * 4;
     let row = |s: f64| ((high - s) / (high - low) * (dots - 1) as f64).round().clamp(0.0, (dots - 1) as f64) as usize;
     let mut braille = Braille::new(area.width.into(), area.height.into());
-    (0..columns).step_by(4).for_each(|x| braille.set(x, row(0.0), colour::faint()));
+    (0..columns).step_by(4).for_each(|x| braille.set(x, row(0.0), color::faint()));
     for (curve, values) in curves.iter().zip(&all) {
         for (x, pair) in values.windows(2).enumerate() {
             let (from, to) = (row(pair[0]), row(pair[1]));
@@ -101,7 +101,7 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     braille.draw(area, buffer);
     let now = now(time, area);
     (0..area.height).for_each(|y| {
-        write(buffer, area, now, y, "┊", colour::faint());
+        write(buffer, area, now, y, "┊", color::faint());
     });
     for (i, (curve, values)) in curves.iter().zip(&all).enumerate() {
         // Letters on the curve, each zone's elsewhere.
@@ -111,7 +111,7 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         write(buffer, area, now, (row((curve.of.value)(time)) / 4) as u16, glyph, curve.style);
     }
     // Last, so that nothing lies over a digit.
-    let label = Style::reset().patch(colour::faint());
+    let label = Style::reset().patch(color::faint());
     write(buffer, area, 0, 0, &short(high), label);
     write(buffer, area, 0, area.height - 1, &short(low), label);
 }
@@ -141,9 +141,9 @@ fn draw_axis(time: f64, area: Rect, buffer: &mut Buffer) {
     let text = format!("t {}", short(time));
     let most = i32::from(area.width) - i32::from(width(&text)) - 2;
     let at = (now(time, area) - 1).clamp(2, most.max(2));
-    write(buffer, area, 0, 0, "0", colour::faint());
-    write(buffer, area, i32::from(area.width) - 1, 0, "1", colour::faint());
-    write(buffer, area, at, 0, &text, colour::faint());
+    write(buffer, area, 0, 0, "0", color::faint());
+    write(buffer, area, i32::from(area.width) - 1, 0, "1", color::faint());
+    write(buffer, area, at, 0, &text, color::faint());
 }
 
 /// Letters and names, the selected zone first with its s; where there is no room for curves, the s of each.

@@ -11,16 +11,16 @@ use crate::layers::parts::readout::{Axis, Entry, Value};
 use crate::tui::graphics::probed::Probed;
 use crate::tui::layout::seeing;
 use crate::tui::state::State;
-use crate::tui::text::colour;
+use crate::tui::text::color;
 use crate::tui::text::numbers::{polar, short};
 
 /// Draws it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some(probed) = &state.picture.probed else {
-        write(buffer, area, 0, 0, "looking ...", colour::faint());
+        write(buffer, area, 0, 0, "looking ...", color::faint());
         return;
     };
-    let style = if seeing::asked(state) == Some(probed.asked) { Style::new() } else { colour::faint() };
+    let style = if seeing::asked(state) == Some(probed.asked) { Style::new() } else { color::faint() };
     let (x, y) = probed.asked.pixel;
     let place = write(buffer, area, 0, 0, &format!("pixel {x},{y}   "), style);
     let entries = probed.read.iter().flat_map(|read| &read.entries);
@@ -30,7 +30,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         write(buffer, area, 0, 1, &shows(probed), style);
         return;
     };
-    let after = write(buffer, area, place, 0, &plain(of), style.patch(colour::strong()));
+    let after = write(buffer, area, place, 0, &plain(of), style.patch(color::strong()));
     write(buffer, area, after, 0, &flags(entries.clone()), style);
     let axis = probed.read.as_ref().and_then(|read| read.axis.as_ref());
     if let Some(axis) = axis {
@@ -104,7 +104,7 @@ fn numbers<'a>(entries: impl Iterator<Item = &'a Entry>, axis: Option<&Axis>, ti
 }
 
 fn shows(probed: &Probed) -> String {
-    let [r, g, b, a] = probed.colour;
+    let [r, g, b, a] = probed.color;
     format!("shows #{} alpha {a}", hex(&[r, g, b]))
 }
 
@@ -125,17 +125,17 @@ fn draw_path(axis: &Axis, area: Rect, style: Style, buffer: &mut Buffer) {
         write(buffer, area, x + 2, 0, if open { "━" } else { "┄" }, style);
     }
     axis.ticks.iter().for_each(|&s| {
-        write(buffer, area, cell(s), 0, "┃", style.patch(colour::strong()));
+        write(buffer, area, cell(s), 0, "┃", style.patch(color::strong()));
     });
     let Some(&(_, first)) = axis.points.first() else { return };
     if axis.points.len() > 1 && axis.points.iter().all(|&(_, at)| cell(at) == cell(first)) {
         let names: Vec<&str> = axis.points.iter().map(|&(name, _)| name).collect();
         write(buffer, area, cell(first).min(cells - 1), 1, &names.join("="), style);
-        write(buffer, area, cell(first), 0, POINTS[0], style.patch(colour::strong()));
+        write(buffer, area, cell(first), 0, POINTS[0], style.patch(color::strong()));
     } else {
         // The first last: it lies over the others.
         for (i, &(name, at)) in axis.points.iter().enumerate().rev() {
-            write(buffer, area, cell(at), 0, POINTS[i % POINTS.len()], style.patch(colour::strong()));
+            write(buffer, area, cell(at), 0, POINTS[i % POINTS.len()], style.patch(color::strong()));
             write(buffer, area, cell(at), 1, name, style);
         }
     }

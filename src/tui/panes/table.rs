@@ -15,7 +15,7 @@ use crate::tui::document::sheet::Row;
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pane, State, entry};
 use crate::tui::text::wrap::{clipped, width};
-use crate::tui::text::{colour, numbers};
+use crate::tui::text::{color, numbers};
 
 /// The node's address.
 pub fn title(state: &State) -> String {
@@ -27,7 +27,7 @@ pub fn title(state: &State) -> String {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let sheet = state.sheet();
     if sheet.is_empty() {
-        write(buffer, area, 1, 0, if sheet.table { "empty: o adds an item" } else { "nothing here" }, colour::faint());
+        write(buffer, area, 1, 0, if sheet.table { "empty: o adds an item" } else { "nothing here" }, color::faint());
         return (state.cursor.focus == Pane::Table).then(|| area.as_position());
     }
     let height = area.height - u16::from(sheet.table);
@@ -60,7 +60,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
             let here = i == state.cursor.row && c == state.cursor.column && state.cursor.focus == Pane::Table;
             let style = style(row, here, selected && c == state.cursor.column);
             if let Some(head) = placed.head {
-                write(buffer, cells, head - shift, y as u16, &placed.cell.head, colour::faint());
+                write(buffer, cells, head - shift, y as u16, &placed.cell.head, color::faint());
             }
             let at = placed.at - shift;
             write(buffer, cells, at, y as u16, &text(placed, limit - at), style);
@@ -106,10 +106,10 @@ fn text(placed: &Placed, room: i32) -> String {
 /// Marks where cells are left out; gives where the last one in sight ends.
 fn draw_marks(row: &[Placed], sight: Sight, cells: Rect, y: u16, buffer: &mut Buffer) -> i32 {
     if let Some(x) = sight.before(row) {
-        write(buffer, cells, x, y, "<", colour::faint());
+        write(buffer, cells, x, y, "<", color::faint());
     }
     if sight.goes_on(row) {
-        write(buffer, cells, i32::from(cells.width) - 1, y, ">", colour::faint());
+        write(buffer, cells, i32::from(cells.width) - 1, y, ">", color::faint());
         return i32::from(cells.width);
     }
     sight.cells(row).last().map_or(0, |(_, placed, shift)| placed.end - shift)
@@ -117,10 +117,10 @@ fn draw_marks(row: &[Placed], sight: Sight, cells: Rect, y: u16, buffer: &mut Bu
 
 fn style(row: &Row, here: bool, selected: bool) -> Style {
     match (here, selected) {
-        (true, _) => colour::focus(),
+        (true, _) => color::focus(),
         (_, true) => Style::new().add_modifier(Modifier::REVERSED | Modifier::DIM),
         _ if row.set => Style::new(),
-        _ => colour::faint(),
+        _ => color::faint(),
     }
 }
 
@@ -131,10 +131,10 @@ fn label(row: &Row) -> (String, i32) {
 
 fn draw_label(row: &Row, selected: bool, area: Rect, y: u16, buffer: &mut Buffer) {
     let (text, indent) = label(row);
-    let style = if row.item { colour::faint() } else { Style::new() };
+    let style = if row.item { color::faint() } else { Style::new() };
     write(buffer, area, indent, y, &text, style);
     if selected {
-        write(buffer, area, 0, y, "*", colour::strong());
+        write(buffer, area, 0, y, "*", color::strong());
     }
 }
 
@@ -146,7 +146,7 @@ fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], sights: &[Sight], cells: Rec
         // Names stand over the ends of numbers and over the beginnings of words.
         let number = placed.cell.is_number();
         let edge = if number { placed.end - i32::from(width(heads[c])) } else { placed.at };
-        write(buffer, cells, edge - shift, 0, heads[c], colour::strong());
+        write(buffer, cells, edge - shift, 0, heads[c], color::strong());
     }
 }
 
@@ -160,8 +160,8 @@ fn neighbours(first: usize, height: u16) -> Range<usize> {
 /// What the entry comes to stands beside it, where the row leaves room; under the table it stands in full.
 fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
     let (text, style) = match entry::hint(state) {
-        Some(Ok(values)) => (values, colour::faint()),
-        Some(Err(why)) => (format!("? {why}"), colour::faint().add_modifier(Modifier::ITALIC)),
+        Some(Ok(values)) => (values, color::faint()),
+        Some(Err(why)) => (format!("? {why}"), color::faint().add_modifier(Modifier::ITALIC)),
         None => return,
     };
     if x + i32::from(width(&text)) <= i32::from(cells.width) {
@@ -173,7 +173,7 @@ fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
 fn draw_entry(text: &crate::tui::text::input::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
     let wide = width(&plain(text.value())).max(8) + 1;
     let x = at.x.min((cells.x + cells.width).saturating_sub(wide)).max(cells.x);
-    let style = if text.is_fresh() { colour::focus() } else { Style::new().add_modifier(Modifier::UNDERLINED) };
+    let style = if text.is_fresh() { color::focus() } else { Style::new().add_modifier(Modifier::UNDERLINED) };
     let line = Rect { x, y: at.y, width: cells.right().saturating_sub(x).min(wide), height: 1 };
     write(buffer, line, 0, 0, &" ".repeat(usize::from(line.width)), Style::new().add_modifier(Modifier::UNDERLINED));
     let cursor = typed(buffer, line, text, style);

@@ -8,7 +8,7 @@ use super::write;
 use crate::tui::document::tree;
 use crate::tui::layout::first_row;
 use crate::tui::state::{Pane, State};
-use crate::tui::text::colour;
+use crate::tui::text::color;
 use crate::tui::text::wrap::{clipped, width};
 
 /// Draws it; the cursor is on the node that is shown, where the tree has the focus.
@@ -21,7 +21,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         let y = y as u16;
         let mark = row.folded.map_or("  ", |folded| if folded { "▸ " } else { "▾ " });
         let style = match i == at {
-            true if state.cursor.focus == Pane::Tree => colour::focus(),
+            true if state.cursor.focus == Pane::Tree => color::focus(),
             true => Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED),
             false => Style::new(),
         };
@@ -32,7 +32,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         let label = clipped(&row.label, (i32::from(area.width) - x - count).max(0) as usize);
         let end = write(buffer, area, x, y, &label, style);
         let room = i32::from(area.width) - i32::from(width(&row.note));
-        write(buffer, area, (end + 1).max(room.min(end + 2)), y, &row.note, colour::faint());
+        write(buffer, area, (end + 1).max(room.min(end + 2)), y, &row.note, color::faint());
         if i == at && state.cursor.focus == Pane::Tree {
             cursor = Some(Position::new(area.x + (x as u16).min(area.width.saturating_sub(1)), area.y + y));
         }

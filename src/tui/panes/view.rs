@@ -11,7 +11,7 @@ use ratatui::widgets::{Block, Paragraph, Widget};
 
 use crate::tui::panes;
 use crate::tui::state::{Mode, Pane, State};
-use crate::tui::text::colour;
+use crate::tui::text::color;
 
 /// Draws the screen.
 pub fn draw(frame: &mut Frame, state: &State) {
@@ -61,7 +61,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
 fn pane(frame: &mut Frame, state: &State, area: Rect, which: Pane, title: &str) -> Rect {
     let focused = state.cursor.focus == which;
     let title = Line::from(format!("{}{title} ", if focused { ">" } else { " " }));
-    let title = if focused { title.style(colour::strong()) } else { title };
+    let title = if focused { title.style(color::strong()) } else { title };
     bordered(frame, area, title)
 }
 

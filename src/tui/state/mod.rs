@@ -32,7 +32,7 @@ use super::document::tree;
 use super::events::{Change, Effect};
 use super::graphics::sight::Placing;
 use super::keys::Keymap;
-use super::text::colour::Depth;
+use super::text::color::Depth;
 use crate::base::problem::Problem;
 use crate::layers::timeline::Timeline;
 use crate::preview::Transport;
@@ -55,7 +55,7 @@ pub struct State {
     pub door: Door,
     /// Width and height of the terminal.
     pub size: (u16, u16),
-    /// What the terminal shows of colours.
+    /// What the terminal shows of colors.
     pub depth: Depth,
     /// The keys in force.
     pub keymap: Keymap,

@@ -14,7 +14,7 @@ use crate::tui::commands::{self, obey};
 use crate::tui::document::door::Door;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 
 fn at(state: &State, pointer: &str) -> Value {
     state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null)

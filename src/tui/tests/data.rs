@@ -187,7 +187,7 @@ fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
         ("1,2,3,4\r\r5,six,7,8", "line 3, column 2: \"six\""),
         ("1,2\n3\n", "line 2 has 1 value, the lines before have 2"),
         ("1 2 3 4 5", "line 1 has 5 values, but a row takes x y dx dy"),
-        ("x,y,colour\n1,2,3", "line 1, column 3: there is no column \"colour\""),
+        ("x,y,color\n1,2,3", "line 1, column 3: there is no column \"color\""),
         ("x,dx\n1,2", "line 2: y is missing"),
         ("x,y,°\n1,2,90", "line 2: ° needs |J|"),
         ("tool,x,y\npont,1,2", "line 2, column 1: there is no tool \"pont\": did you mean \"point\"?"),
@@ -350,7 +350,7 @@ fn the_history_marks_the_state_that_is_saved() {
     let path = folder.path().join("cat.plica.json");
     std::fs::write(&path, super::support::SCENE).unwrap();
     let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
-    let mut state = State::new(door, (80, 24), crate::tui::text::colour::Depth::None);
+    let mut state = State::new(door, (80, 24), crate::tui::text::color::Depth::None);
     press(&mut state, "/ \"radius\" Enter + k j +");
     state.door.save(None, false).unwrap();
     press(&mut state, "k j +");
@@ -372,7 +372,7 @@ fn undo_goes_on_over_save_and_reopening_and_the_mark_follows() {
     std::fs::write(&path, super::support::SCENE).unwrap();
     let open = || {
         let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
-        State::new(door, (80, 24), crate::tui::text::colour::Depth::None)
+        State::new(door, (80, 24), crate::tui::text::color::Depth::None)
     };
     let marks = |state: &mut State, keys: &[(&str, bool, i64)]| {
         for (key, saved, radius) in keys {

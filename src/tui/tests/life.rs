@@ -10,7 +10,7 @@ use crate::tui::document::choice::Then;
 use crate::tui::document::door::Door;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, State};
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 
 /// A scene on the disk, with its journal.
 struct Place {

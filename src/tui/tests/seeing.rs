@@ -19,7 +19,7 @@ use crate::tui::graphics::Protocol;
 use crate::tui::layout::seeing;
 use crate::tui::panes::view;
 use crate::tui::state::State;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 
 /// The screen as cells.
 fn cells(state: &State) -> Buffer {
@@ -180,7 +180,7 @@ pub fn graphics_are_told_and_set() {
 }
 
 #[test]
-fn without_colours_kitty_is_not_used() {
+fn without_colors_kitty_is_not_used() {
     let mut state = opened((160, 48));
     press(&mut state, ": \"graphics kitty\" Enter");
     assert_eq!(seeing::protocol(&state), Protocol::Blocks);
@@ -278,9 +278,9 @@ fn every_zone_has_its_curve_and_few_rows_its_place() {
     assert!(text.contains("a left eye s 0.707"), "{text}");
 }
 
-/// Outside pictures and fields a screen has the same letters with and without colours, and only the terminal's own 16.
+/// Outside pictures and fields a screen has the same letters with and without colors, and only the terminal's own 16.
 #[test]
-fn colours_say_nothing_by_themselves() {
+fn colors_say_nothing_by_themselves() {
     let chrome = |state: &State| {
         let areas = layout::areas(Rect::new(0, 0, 160, 48), state.picture.probing);
         let [field, _, picture] = areas.right.unwrap();
@@ -299,18 +299,18 @@ fn colours_say_nothing_by_themselves() {
             let text: String = found.iter().map(|cell| cell.symbol()).collect();
             let covered = !state.typing.pressed.is_empty() || name == &"help";
             assert!(covered || *plain.get_or_insert_with(|| text.clone()) == text, "{name} {depth:?}");
-            for colour in found.iter().flat_map(|cell| [cell.fg, cell.bg]) {
-                let own = !matches!(colour, Color::Rgb(..) | Color::Indexed(_));
-                assert!(own && (depth != Depth::None || colour == Color::Reset), "{name} {depth:?}: {colour:?}");
+            for color in found.iter().flat_map(|cell| [cell.fg, cell.bg]) {
+                let own = !matches!(color, Color::Rgb(..) | Color::Indexed(_));
+                assert!(own && (depth != Depth::None || color == Color::Reset), "{name} {depth:?}: {color:?}");
             }
-            for colour in cells(&state).content().iter().flat_map(|cell| [cell.fg, cell.bg]) {
-                let allowed = match colour {
+            for color in cells(&state).content().iter().flat_map(|cell| [cell.fg, cell.bg]) {
+                let allowed = match color {
                     Color::Rgb(..) => depth == Depth::True,
                     Color::Indexed(_) => depth == Depth::Indexed,
                     Color::Reset => true,
                     _ => depth != Depth::None,
                 };
-                assert!(allowed, "{name} {depth:?}: {colour:?}");
+                assert!(allowed, "{name} {depth:?}: {color:?}");
             }
         }
     }

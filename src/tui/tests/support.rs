@@ -9,7 +9,7 @@ use crate::tui::commands::update::update;
 use crate::tui::document::door::Door;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 
 /// A scene with one of everything that the keys meet.
 pub const SCENE: &str = r#"{

@@ -45,7 +45,7 @@ pub fn tables_are_pasted_over_a_selection() {
         ("3 l v j", "7,5;1\n8", json!([[0, -18], [3, 4], null])),
         ("3 l v j", "1;2\n3;4\n5;6", json!([[0, -18], [3, 4], null])),
         ("v j", "dx,dy\n\u{2212}1,2\n3,x", json!([[0, -18], [3, 4], null])),
-        ("v j", "colour\n1\n2", json!([[0, -18], [3, 4], null])),
+        ("v j", "color\n1\n2", json!([[0, -18], [3, 4], null])),
     ] {
         let mut state = state();
         press(&mut state, &motion(keys));

@@ -12,7 +12,7 @@ use crate::tui::events::{Effect, Event};
 use crate::tui::keys::Keymap;
 use crate::tui::state::State;
 use crate::tui::state::tutor::Tutor;
-use crate::tui::text::colour::Depth;
+use crate::tui::text::color::Depth;
 use crate::tui::tutor::lessons::LESSONS;
 
 /// The tutor's scene with its first lesson.

@@ -1,7 +1,7 @@
 //! Text: numbers, colors, lines being typed; nothing of a scene.
 
 pub mod clipboard;
-pub mod colour;
+pub mod color;
 pub mod input;
 mod plain;
 pub mod said;

@@ -184,7 +184,7 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "a fold",
         text: &[
-            "Under a fold a pixel keeps its own colour until its path meets the edge of a",
+            "Under a fold a pixel keeps its own color until its path meets the edge of a",
             "region: so the lid slides over the eyeball. Go to the lid's fold, add it,",
             "and take the first rule.",
         ],

@@ -12,7 +12,7 @@ use crate::layers::timeline::Wrap;
 pub struct Manifest {
     /// How all of it is read, in words.
     pub conventions: Conventions,
-    /// The colour atlas.
+    /// The color atlas.
     pub colour: Colour,
     /// The position functions.
     pub function: Function,
@@ -53,7 +53,7 @@ pub const CONVENTIONS: Conventions = Conventions {
     compose: "a layer begins as its piece at (0, 0); its zones follow in order, each reading only its own source: lay replace puts the read in place of what lies beneath, lay over puts it over that (Porter and Duff), in linear light",
 };
 
-/// The colour atlas in the manifest.
+/// The color atlas in the manifest.
 #[derive(Debug, Serialize)]
 pub struct Colour {
     /// The files.

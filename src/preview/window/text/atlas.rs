@@ -1,5 +1,5 @@
-//! The picture that holds every glyph once, as large as it is drawn: premultiplied, white where the text's colour counts, so
-//! that glyphs with colours of their own are drawn in the same way.
+//! The picture that holds every glyph once, as large as it is drawn: premultiplied, white where the text's color counts, so
+//! that glyphs with colors of their own are drawn in the same way.
 
 use cosmic_text::{SwashContent, SwashImage};
 
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_premultiplied() {
+    fn colors_are_premultiplied() {
         assert_eq!(premultiplied(&[200, 100, 0, 51]), [40, 20, 0, 51]);
         assert_eq!(premultiplied(&[77]), [77; 4]);
     }

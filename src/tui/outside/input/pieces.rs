@@ -29,7 +29,7 @@ pub enum Piece {
     Key(Vec<u8>),
     /// The same after an Esc: Alt and that key, or both keys one after the other.
     Alt(Vec<u8>),
-    /// An answer with a text, as kitty's protocol and colours have it.
+    /// An answer with a text, as kitty's protocol and colors have it.
     Answer(Vec<u8>),
     /// What was pasted.
     Paste(String),

@@ -1,14 +1,14 @@
-//! What the terminal can show: true colour, 256, 16 colours or none at all, and pictures reduced to each of them. Roles
+//! What the terminal can show: true color, 256, 16 colors or none at all, and pictures reduced to each of them. Roles
 //! have names, so that a light background and NO_COLOR are matters of this file alone.
 
 use ratatui::style::{Color, Modifier, Style};
 
-/// How many colours the terminal shows.
+/// How many colors the terminal shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depth {
     /// None: pictures become shades of characters.
     None,
-    /// The 16 ANSI colours.
+    /// The 16 ANSI colors.
     #[default]
     Ansi,
     /// The 256 of xterm.
@@ -32,8 +32,8 @@ impl Depth {
         }
     }
 
-    /// The nearest colour that the terminal has; `None` where it has none.
-    pub fn colour(self, [r, g, b]: [u8; 3]) -> Option<Color> {
+    /// The nearest color that the terminal has; `None` where it has none.
+    pub fn color(self, [r, g, b]: [u8; 3]) -> Option<Color> {
         match self {
             Depth::None => None,
             Depth::Ansi => Some(ansi([r, g, b])),
@@ -42,13 +42,13 @@ impl Depth {
         }
     }
 
-    /// `style` with a foreground, where there are colours.
-    pub fn ink(self, style: Style, colour: Color) -> Style {
-        if self == Depth::None { style } else { style.fg(colour) }
+    /// `style` with a foreground, where there are colors.
+    pub fn ink(self, style: Style, color: Color) -> Style {
+        if self == Depth::None { style } else { style.fg(color) }
     }
 }
 
-/// The style of what has the focus: never told by colour alone.
+/// The style of what has the focus: never told by color alone.
 pub fn focus() -> Style {
     Style::new().add_modifier(Modifier::REVERSED)
 }
@@ -63,12 +63,12 @@ pub fn strong() -> Style {
     Style::new().add_modifier(Modifier::BOLD)
 }
 
-/// Shades from dark to light, for terminals without colours.
+/// Shades from dark to light, for terminals without colors.
 const SHADES: [char; 10] = [' ', '.', ':', '-', '=', '+', '*', '#', '%', '@'];
 
-/// The shade of a colour.
-pub fn shade(colour: [u8; 3]) -> char {
-    SHADES[luminance(colour) as usize * (SHADES.len() - 1) / 255]
+/// The shade of a color.
+pub fn shade(color: [u8; 3]) -> char {
+    SHADES[luminance(color) as usize * (SHADES.len() - 1) / 255]
 }
 
 /// Perceived brightness, 0 to 255 (Rec. 601 weights on the code values).
@@ -92,7 +92,7 @@ fn indexed([r, g, b]: [u8; 3]) -> u8 {
 }
 
 fn ansi(rgb: [u8; 3]) -> Color {
-    const COLOURS: [(Color, [u8; 3]); 16] = [
+    const COLORS: [(Color, [u8; 3]); 16] = [
         (Color::Black, [0, 0, 0]),
         (Color::Red, [170, 0, 0]),
         (Color::Green, [0, 170, 0]),
@@ -110,7 +110,7 @@ fn ansi(rgb: [u8; 3]) -> Color {
         (Color::LightCyan, [85, 255, 255]),
         (Color::White, [255, 255, 255]),
     ];
-    COLOURS.iter().min_by_key(|(_, known)| distance(*known, rgb)).map_or(Color::Reset, |&(colour, _)| colour)
+    COLORS.iter().min_by_key(|(_, known)| distance(*known, rgb)).map_or(Color::Reset, |&(color, _)| color)
 }
 
 fn distance(a: [u8; 3], b: [u8; 3]) -> u32 {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn reduced_colours_are_the_nearest() {
+    fn reduced_colors_are_the_nearest() {
         assert_eq!(indexed([255, 0, 0]), 196);
         assert_eq!(indexed([128, 128, 128]), 244);
         assert_eq!(ansi([250, 250, 250]), Color::White);
