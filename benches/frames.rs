@@ -26,11 +26,9 @@ fn frame(bencher: Bencher, size: (usize, usize)) {
         zones: vec![scenes::zone(size, 94, r#"{"method":"modified-shepard","radius":400}"#)],
     };
     let scene = Scene {
-        plica: 1,
-        title: String::new(),
         timeline: plica::layers::timeline::Timeline { wrap: Wrap::Repeat, ..Default::default() },
-        images: Default::default(),
         layers: vec![Layer::Picture(layer)],
+        ..Scene::default()
     };
     let mut materials = Materials::default();
     materials.pictures.insert("noise".into(), Arc::new(picture(size)));

@@ -45,7 +45,7 @@ fn opened(folder: &std::path::Path, anchors: usize) -> Offscreen {
     let layer = PictureLayer { name: "face".into(), image: "cat".into(), zones: vec![zone] };
     let timeline = Timeline::default();
     let images = [("cat".to_owned(), plica::scene::Image { path: "cat.png".into() })].into();
-    let scene = Scene { plica: 1, title: String::new(), timeline, images, layers: vec![Layer::Picture(layer)] };
+    let scene = Scene { timeline, images, layers: vec![Layer::Picture(layer)], ..Scene::default() };
     let path = folder.join("cat.plica.json");
     let text = serde_json::to_string(&scene).expect("a scene is written");
     std::fs::write(&path, text).expect("the folder takes files");

@@ -18,7 +18,8 @@ use plica::base::pixels::{Frame, Grid, decode, encode};
 use plica::base::progress::Progress;
 use plica::files;
 use plica::layers::KINDS;
-use plica::layers::parts::materials::{Materials, Of, Use, What};
+use plica::layers::parts::materials::{List, Materials, Of, Use, What};
+use plica::layers::ready::Making;
 use plica::layers::technique::Kind;
 use plica::render::{self, Synth, bands::Bands, cpu, gpu::Gpu, reduce::reduced};
 use plica::scene::Scene;
@@ -160,7 +161,9 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
         let uses = scene.layers.iter().flat_map(|layer| layer.technique().uses());
         for (seed, Use { of, what, .. }) in uses.enumerate() {
             match of {
-                Of::Image(name) => {
+                Of::Name(List::Layers, _) => {}
+                Of::Name(List::Meshes, _) => unreachable!("no example has a mesh yet"),
+                Of::Name(List::Images, name) => {
                     let picture = waves(96, 64, seed + 1, what != What::Picture || seed > 0);
                     drop(materials.pictures.insert(name.to_owned(), picture));
                 }
@@ -184,10 +187,11 @@ fn every_technique_answers_everything() {
         let problems: Vec<_> = scene.layers.iter().map(|layer| layer.technique()).collect();
         let problems = problems.iter().flat_map(|layer| layer.problems(&layer.check(None)));
         assert_eq!(problems.collect::<Vec<_>>(), [], "{kind}");
-        for layer in &scene.layers {
-            layer.technique().probe(scene.timeline.wrap, &materials, (40, 28), 0.5).unwrap();
-        }
         let synth = render::synth(&scene, &materials, None).unwrap();
+        let making = Making::plain(scene.timeline.wrap, &materials);
+        for layer in &scene.layers {
+            layer.technique().probe(&making, (40, 28), &synth.moment(0.5)).unwrap();
+        }
         let again = render::synth(&scene, &materials, Some(&synth)).unwrap();
         let samples = render::samples(&scene, &materials, 2).unwrap();
         let small = reduced(&synth, 4);

@@ -17,6 +17,9 @@ pub const FLATNESS_PX: f64 = 2e-5;
 /// A position or vector in image pixels, [x, y], as documents hold it.
 pub type Xy = [f64; 2];
 
+/// A position or vector in space, [x, y, z], y up, as documents hold it.
+pub type Xyz = [f64; 3];
+
 /// A closed polygon, even-odd; the closing side is implied. At least three vertices, all finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {

@@ -170,7 +170,7 @@ fn named_pictures(scene: &Scene) -> Vec<Named<'_>> {
 fn named_fields(scene: &Scene) -> Vec<Named<'_>> {
     let fields = scene.uses().filter_map(|Use { at, of, what }| match (of, what) {
         (Of::Path(path), What::Vectors) => Some(Named { key: path, path, at }),
-        (Of::Image(_), _) | (Of::Path(_), What::Picture | What::Mask { .. }) => None,
+        (Of::Name(..), _) | (Of::Path(_), What::Picture | What::Mask { .. } | What::Mesh | What::Layer) => None,
     });
     fields.collect()
 }
@@ -313,7 +313,7 @@ fn decode_field(file: File, place: &str, allowed: Allowed) -> Result<(VectorFiel
 fn lay_masks(scene: &Scene, materials: &mut Materials, known: &mut Vec<Masked>, problems: &mut Vec<Problem>) {
     let mut kept: Vec<Masked> = Vec::new();
     for Use { at, of, what } in scene.uses() {
-        let (Of::Image(name), What::Mask { on }) = (of, what) else { continue };
+        let (Of::Name(_, name), What::Mask { on }) = (of, what) else { continue };
         let (Some(mask), Some(own)) = (materials.pictures.get(name), materials.pictures.get(on)) else { continue };
         if mask.channels().have_alpha() || !mask::fits(own, mask) {
             continue;

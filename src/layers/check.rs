@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::base::color;
 use crate::base::problem::{Problem, quoted};
 
 /// Problems with the names of siblings, each with its pointer: they must be non-empty, without control characters, and
@@ -29,6 +30,12 @@ pub fn plain_text(text: &str, path: &str) -> Option<Problem> {
     } else {
         None
     }
+}
+
+/// A problem if a text is not a color.
+pub fn color(text: &str, path: &str) -> Option<Problem> {
+    let problem = || Problem::error(path, format!("{} is no color", quoted(text))).hint("as #20304a, or #20304a80");
+    color::parse(text).is_none().then(problem)
 }
 
 /// A problem with the path of a file, judged by the text alone: it must have no control characters and, unless

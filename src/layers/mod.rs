@@ -9,8 +9,10 @@ use crate::base::change::Change;
 pub mod check;
 pub mod fill;
 pub mod folding;
+pub mod keyframes;
 pub mod parts;
 pub mod ready;
+pub mod space;
 pub mod technique;
 pub mod timeline;
 

@@ -1,18 +1,56 @@
 //! A layer that is ready for rendering at any time: what every technique makes from its part of the document.
 
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
+use kurbo::Vec2;
+
 use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
-use super::parts::moment::{Columns, Moment};
-use super::parts::passes::Plan;
+use super::parts::moment::{CENTRE, Columns, Moment};
+use super::parts::pass::Pass;
+use super::parts::plan::Plan;
 use super::parts::readout::VectorField;
+use super::timeline::Wrap;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
+
+/// What a layer is made with.
+#[derive(Clone, Copy)]
+pub struct Making<'a> {
+    /// What follows the end of the timeline.
+    pub wrap: Wrap,
+    /// The files that layers name.
+    pub materials: &'a Materials,
+    /// The place in each pixel that is evaluated: its centre, or another for supersampling.
+    pub place: Vec2,
+    /// The layers that others show as textures, by name.
+    pub textures: &'a Textures,
+}
+
+impl<'a> Making<'a> {
+    /// At the centre of each pixel, without layers as textures.
+    pub fn plain(wrap: Wrap, materials: &'a Materials) -> Self {
+        static NONE: Textures = Textures::new();
+        Making { wrap, materials, place: CENTRE, textures: &NONE }
+    }
+}
+
+/// The layers that others show as textures, by name.
+pub type Textures = BTreeMap<String, Texture>;
+
+/// A layer that others show as a texture.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// The layer, at the centres of its pixels.
+    pub layer: Arc<dyn Ready>,
+    /// Width and height of its picture, in pixels.
+    pub size_px: (usize, usize),
+}
 
 /// A layer ready for rendering at any time: pure, shared, no handles.
 pub trait Ready: Any + Debug + Send + Sync {
@@ -58,6 +96,13 @@ pub trait Still: Sync {
     /// Writes row `y` of the frame to `out`, one cell per column, all transparent before: linear light, premultiplied
     /// by alpha. Rows are computed on all cores; a cell does not depend on which columns are wanted.
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]);
+
+    /// The same for a layer in space, as one of a group: writes only what is nearer than `depth`, one cell per column,
+    /// in meters, and its depth.
+    fn surface(&self, _y: usize, _columns: Columns, _depth: &mut [f64], _out: &mut [Rgba]) {}
+
+    /// What a pass other than color has in row `y`, as [`Still::surface`]; nothing for layers in the frame.
+    fn pass(&self, _pass: &Pass, _y: usize, _columns: Columns, _depth: &mut [f64], _out: &mut [Rgba]) {}
 }
 
 /// A layer whose parts can be prepared without the rest, for a single pixel or a band of a large picture.

@@ -4,16 +4,18 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use kurbo::{Point, Rect, Vec2};
+use kurbo::{Point, Rect};
 use serde_json::{Map, Value};
 
 use super::parts::bundle::{Names, Sink};
 use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{Materials, Use};
-use super::parts::passes::Program;
+use super::parts::moment::{Moment, Space};
+use super::parts::pass::Pass;
+use super::parts::plan::Program;
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
-use super::ready::{Prepared, Ready, Whole};
+use super::ready::{Making, Prepared, Ready, Whole};
 use super::timeline::Wrap;
 use crate::base::error::Error;
 use crate::base::problem::Problem;
@@ -77,18 +79,12 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
-    /// What the pixel (column, row) of the layer does at scene time `t`; `None` if there is nothing to say about
+    /// What the pixel (column, row) of the layer does at one time; `None` if there is nothing to say about
     /// pixels.
     ///
     /// # Errors
     /// As [`Technique::synth`].
-    fn probe(
-        &self,
-        _wrap: Wrap,
-        _materials: &Materials,
-        _pixel: (usize, usize),
-        _t: f64,
-    ) -> Result<Option<ReadOut>, Problem> {
+    fn probe(&self, _making: &Making, _pixel: (usize, usize), _moment: &Moment) -> Result<Option<ReadOut>, Problem> {
         Ok(None)
     }
 
@@ -108,25 +104,18 @@ pub trait Technique: Any + Send + Sync {
         Repeat::default()
     }
 
-    /// Prepares the layer for rendering at any time. What it has in common with `previous` is reused. `place` is the
-    /// place in each pixel that is evaluated: its centre, or another for supersampling.
+    /// Prepares the layer for rendering at any time. What it has in common with `previous` is reused.
     ///
     /// # Errors
     /// If something that the layer names is not among the materials, or the synthesis is cancelled.
-    fn synth(
-        &self,
-        wrap: Wrap,
-        materials: &Materials,
-        place: Vec2,
-        previous: Option<&dyn Ready>,
-    ) -> Result<Arc<dyn Ready>, Problem>;
+    fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem>;
 
     /// Makes what all parts of the layer share; without a shortcut, all of it.
     ///
     /// # Errors
     /// As [`Technique::synth`].
-    fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem> {
-        Ok(Box::new(Whole(self.synth(wrap, materials, place, None)?)))
+    fn prepare(&self, making: &Making) -> Result<Box<dyn Prepared>, Problem> {
+        Ok(Box::new(Whole(self.synth(making, None)?)))
     }
 }
 
@@ -135,6 +124,8 @@ pub trait Technique: Any + Send + Sync {
 pub struct Kind {
     /// Its name in the document's `kind`.
     pub name: &'static str,
+    /// Where its layers are.
+    pub space: Space,
     /// All programs that its layers are drawn with.
     pub programs: &'static [&'static Program],
     /// What becomes of its layers for other engines; `None` if it has no textures for them.
@@ -143,6 +134,8 @@ pub struct Kind {
     pub counted: &'static [Counted],
     /// What can be drawn over the picture to explain it.
     pub overlays: &'static [Overlay],
+    /// What its frames are made from, besides what all layers in space have.
+    pub passes: &'static [Pass],
     /// How that looks, in ascending order.
     pub looks: &'static [&'static Look],
     /// A layer that shows the image of this name, of this width and height; `None` if the technique does not start from

@@ -9,8 +9,9 @@ use crate::base::error::{Error, Result};
 use crate::base::maths;
 use crate::base::text::hex;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
+use crate::layers::ready::Making;
 use crate::layers::technique::Technique;
-use crate::render;
+use crate::render::{self, stage::Stage};
 use crate::scene::Scene;
 
 /// Show what a pixel does at a time, and why
@@ -44,9 +45,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let own = layer.frame_of().and_then(|image| opened.materials.pictures.get(image));
     let own = own.map(|picture| (picture.width(), picture.height()));
     let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
+    let moment = Stage::of(scene).moment(args.time, size);
     let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
     for pixel in pixels {
-        let read = layer.probe(scene.timeline.wrap, &opened.materials, pixel, args.time);
+        let making = Making::plain(scene.timeline.wrap, &opened.materials);
+        let read = layer.probe(&making, pixel, &moment);
         let read = read.map_err(|problem| Error::at(args.scene.display(), problem))?;
         // A layer larger than the first reaches beyond the frame, which shows nothing there.
         let color = shown.pixel(args.time, pixel).map_err(|problem| opened.failed(problem))?;

@@ -3,22 +3,25 @@
 //! from [`super::synth`] and [`super::cpu`].
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use kurbo::Vec2;
 
+use super::stage::Stage;
 use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, encode};
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
-use crate::layers::ready::Prepared;
+use crate::layers::ready::{Making, Prepared, Whole};
 use crate::scene::Scene;
 
 /// A scene whose parts can be rendered without the rest.
 pub struct Bands<'a> {
     materials: &'a Materials,
     size: (usize, usize),
+    stage: Arc<Stage>,
     /// The layers, for every sample of a pixel.
     samples: Vec<Vec<Box<dyn Prepared>>>,
 }
@@ -33,18 +36,20 @@ impl<'a> Bands<'a> {
     /// As [`super::synth`].
     pub fn new(scene: &Scene, materials: &'a Materials, n: u32) -> Result<Self, Problem> {
         let places = if n == 1 { vec![CENTRE] } else { super::places(n).collect() };
+        let textures = super::textures(scene, materials, None)?;
         let layers = |place: Vec2| {
             let prepare = |(i, layer): (usize, &Layer)| {
-                let prepared = layer.technique().prepare(scene.timeline.wrap, materials, place);
-                prepared.map_err(|problem| problem.under(&format!("/layers/{i}")))
+                if let Some(texture) = textures.get(layer.technique().name()) {
+                    return Ok(Box::new(Whole(texture.layer.clone())) as Box<dyn Prepared>);
+                }
+                let making = Making { wrap: scene.timeline.wrap, materials, place, textures: &textures };
+                layer.technique().prepare(&making).map_err(|problem| problem.under(&format!("/layers/{i}")))
             };
             scene.layers.iter().enumerate().map(prepare).collect::<Result<Vec<_>, _>>()
         };
-        if scene.layers.is_empty() {
-            return Err(super::no_layers());
-        }
         let samples = places.into_iter().map(layers).collect::<Result<Vec<_>, _>>()?;
-        Ok(Bands { materials, size: super::frame_size(scene, materials), samples })
+        let stage = Arc::new(Stage::of(scene));
+        Ok(Bands { materials, size: super::frame_size(scene, materials), stage, samples })
     }
 
     /// Width and height of a frame.
@@ -59,7 +64,7 @@ impl<'a> Bands<'a> {
                 part.map_err(|problem| problem.under(&format!("/layers/{i}")))
             });
             let layers = layers.collect::<Result<_, _>>()?;
-            Ok(Synth { size: self.size, layers })
+            Ok(Synth { size: self.size, layers, stage: self.stage.clone() })
         };
         let made = self.samples.iter().map(synth).collect();
         if self.materials.stopped() { Err(Problem::error("", "stopped")) } else { made }
@@ -85,7 +90,7 @@ impl<'a> Bands<'a> {
         let layers = self.samples.first().into_iter().flatten();
         // A part without pixels needs nothing.
         let layers = layers.filter_map(|prepared| prepared.part(0..0, 0..0, self.materials).ok());
-        Synth { size: self.size, layers: layers.collect() }
+        Synth { size: self.size, layers: layers.collect(), stage: self.stage.clone() }
     }
 
     /// The color of the pixel in column `x`, row `y` at `time`; transparent beyond the frame.
@@ -104,8 +109,6 @@ impl<'a> Bands<'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
     use crate::base::picture::Picture;
 

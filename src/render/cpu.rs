@@ -6,6 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Synth;
+use super::stage::Group;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
 use crate::layers::parts::moment::Columns;
 use crate::layers::ready::Still;
@@ -28,13 +29,21 @@ fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Li
     };
     let moment = synth.moment(scene_time);
     let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
-    let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
+    let mut picture = Linear::filled(width, rows.len(), synth.stage.background);
     let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
     lines.for_each(|(out, &y)| {
         let mut own = vec![[0.0; 4]; width];
-        for layer in &layers {
+        let mut depth = Vec::new();
+        for group in &synth.stage.groups {
             own.fill([0.0; 4]);
-            layer.row(y, columns, &mut own);
+            match group {
+                Group::Plane(layer) => layers[*layer].row(y, columns, &mut own),
+                Group::World(group) => {
+                    depth.clear();
+                    depth.resize(width, f64::INFINITY);
+                    group.iter().for_each(|layer| layers[*layer].surface(y, columns, &mut depth, &mut own));
+                }
+            }
             out.iter_mut().zip(&own).for_each(|(beneath, &color)| *beneath = over(color, *beneath));
         }
     });

@@ -8,7 +8,7 @@ use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::{CENTRE, Moment};
-use crate::layers::ready::Ready;
+use crate::layers::ready::{Making, Ready, Texture, Textures};
 use crate::scene::Scene;
 
 pub mod bands;
@@ -20,20 +20,25 @@ pub mod part;
 #[cfg(feature = "window")]
 pub mod reduce;
 pub mod seams;
+pub mod stage;
+
+use stage::Stage;
 
 /// Everything that a frame of a scene needs except the time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Synth {
     /// Width and height of a frame, in pixels.
     pub size: (usize, usize),
     /// The layers, in the scene's order.
     pub layers: Vec<Arc<dyn Ready>>,
+    /// What they are shown in.
+    pub stage: Arc<Stage>,
 }
 
 impl Synth {
     /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64) -> Moment {
-        Moment { t, size_px: self.size }
+        self.stage.moment(t, self.size)
     }
 }
 
@@ -42,7 +47,8 @@ impl Synth {
 /// # Errors
 /// If there is no layer, or a picture that a layer names is not among the materials.
 pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> Result<Synth, Problem> {
-    synth_at(scene, materials, CENTRE, previous)
+    let textures = textures(scene, materials, previous)?;
+    synth_at(scene, (materials, &textures, CENTRE), previous)
 }
 
 /// As [`synth`], for n x n places spread evenly over each pixel; [`cpu::frames`] averages their frames.
@@ -50,7 +56,8 @@ pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> 
 /// # Errors
 /// As [`synth`].
 pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth>, Problem> {
-    places(n).map(|place| synth_at(scene, materials, place, None)).collect()
+    let textures = textures(scene, materials, None)?;
+    places(n).map(|place| synth_at(scene, (materials, &textures, place), None)).collect()
 }
 
 /// The places of the n x n samples in a pixel.
@@ -63,21 +70,50 @@ fn no_layers() -> Problem {
     Problem::error("/layers", "a scene without layers has nothing to show").hint("add a picture layer")
 }
 
-fn synth_at(scene: &Scene, materials: &Materials, place: Vec2, previous: Option<&Synth>) -> Result<Synth, Problem> {
+fn synth_at(scene: &Scene, making: (&Materials, &Textures, Vec2), previous: Option<&Synth>) -> Result<Synth, Problem> {
+    let (materials, textures, place) = making;
+    let making = Making { wrap: scene.timeline.wrap, materials, place, textures };
     let ready = |(i, layer): (usize, &Layer)| {
+        if let Some(texture) = textures.get(layer.technique().name()) {
+            return Ok(texture.layer.clone());
+        }
         let before = previous.and_then(|synth| synth.layers.get(i)).map(|before| &**before);
-        let ready = layer.technique().synth(scene.timeline.wrap, materials, place, before);
-        ready.map_err(|problem| problem.under(&format!("/layers/{i}")))
+        layer.technique().synth(&making, before).map_err(|problem| problem.under(&format!("/layers/{i}")))
     };
     let layers = scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()?;
-    if layers.is_empty() {
-        return Err(no_layers());
-    }
-    Ok(Synth { size: frame_size(scene, materials), layers })
+    Ok(Synth { size: frame_size(scene, materials), layers, stage: Arc::new(Stage::of(scene)) })
 }
 
-/// Width and height of a frame: those of the first picture that a layer gives it, otherwise 1280 x 720.
+/// The layers that others show as textures. What they have in common with `previous` is reused.
+///
+/// # Errors
+/// As [`synth`]; if there is no layer at all.
+fn textures(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> Result<Textures, Problem> {
+    if scene.layers.is_empty() {
+        return Err(no_layers());
+    }
+    let mut made = Textures::new();
+    let mut left: Vec<usize> = scene.textures().into_iter().collect();
+    // Those that show others come after them; a scene has no circles.
+    while let Some(next) = left.iter().position(|&i| scene.shown_by(i).iter().all(|(shown, _)| !left.contains(shown))) {
+        let i = left.swap_remove(next);
+        let layer = scene.layers[i].technique();
+        let making = Making { wrap: scene.timeline.wrap, materials, place: CENTRE, textures: &made };
+        let before = previous.and_then(|synth| synth.layers.get(i)).map(|before| &**before);
+        let ready = layer.synth(&making, before).map_err(|problem| problem.under(&format!("/layers/{i}")))?;
+        let picture = layer.frame_of().and_then(|name| materials.pictures.get(name));
+        let size_px = picture.map_or_else(|| frame_size(scene, materials), |own| (own.width(), own.height()));
+        made.insert(layer.name().to_owned(), Texture { layer: ready, size_px });
+    }
+    Ok(made)
+}
+
+/// Width and height of a frame: those of the scene, else those of the first picture that a layer gives it, else
+/// 1280 x 720.
 pub fn frame_size(scene: &Scene, materials: &Materials) -> (usize, usize) {
+    if let Some([width, height]) = scene.size {
+        return (width as usize, height as usize);
+    }
     let named = scene.layers.iter().find_map(|layer| layer.technique().frame_of());
     let picture = named.and_then(|name| materials.pictures.get(name));
     picture.map_or((1280, 720), |picture| (picture.width(), picture.height()))

@@ -7,7 +7,8 @@ use crate::base::reduce::Reduced;
 pub fn reduced(synth: &Synth, factor: usize) -> Synth {
     let mut pictures = Reduced::new(factor);
     let layers = synth.layers.iter().map(|layer| layer.reduced(&mut pictures)).collect();
-    Synth { size: (synth.size.0.div_ceil(factor), synth.size.1.div_ceil(factor)), layers }
+    let size = (synth.size.0.div_ceil(factor), synth.size.1.div_ceil(factor));
+    Synth { size, layers, stage: synth.stage.clone() }
 }
 
 #[cfg(test)]

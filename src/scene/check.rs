@@ -7,16 +7,17 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Scene, pointer, shape};
+use super::{Scene, pointer, references, shape};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
-use crate::base::problem::{Problem, Severity, nearest, quoted};
+use crate::base::problem::{Problem, Severity};
 use crate::layers::parts::materials::{Materials, Of};
+use crate::layers::parts::moment::Space;
 use crate::layers::technique::{Checked, Technique};
 use crate::layers::{KINDS, check as rules};
 
-/// At most this many unknown references of a layer are listed.
-const MAX_REFERENCES: usize = 100;
+/// Bytes that a pixel of a frame takes: light, and what is written.
+const FRAME_BYTES: u64 = 20;
 
 /// What a scene is allowed to ask for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -121,14 +122,18 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
             layer.technique().problems(checked).into_iter().map(|problem| problem.under(&format!("/layers/{i}"))),
         );
     }
-    problems.extend(scene.images.keys().filter_map(|name| rules::plain_text(name, &pointer::join("/images", name))));
+    let named = [("/images", scene.images.keys().collect::<Vec<_>>()), ("/meshes", scene.meshes.keys().collect())];
+    for (list, names) in named {
+        problems.extend(names.into_iter().filter_map(|name| rules::plain_text(name, &pointer::join(list, name))));
+    }
+    problems.extend(view(scene));
     if scene.layers.is_empty() {
         let problem = Problem::warning("/layers", "a scene without layers has nothing to show");
         problems.push(problem.hint("add a picture layer"));
     }
     problems.extend(names(scene));
     problems.extend(paths(scene, rules));
-    problems.extend(references(scene));
+    problems.extend(references::problems(scene));
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems
 }
@@ -167,6 +172,10 @@ fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
         let short = memory.filter_map(|(path, bytes)| Some((path, budget.try_take(bytes).err()?)));
         problems.extend(short.map(|(path, short)| short.problem(format!("/layers/{i}{path}"))));
     }
+    if let Some([width, height]) = scene.size {
+        let frame = u64::from(width) * u64::from(height) * FRAME_BYTES;
+        problems.extend(budget.try_take(frame).err().map(|short| short.problem("/size".to_owned())));
+    }
     if scene.timeline.frames() > rules.frames {
         problems.push(too_many("/timeline".into(), "frames", rules.frames));
     }
@@ -178,6 +187,19 @@ fn too_many(path: String, what: &str, most: u64) -> Problem {
     Problem::error(path, message).hint(format!("make fewer, or give --limit {what}=N"))
 }
 
+/// Problems with what all layers are seen in: the background, the camera.
+fn view(scene: &Scene) -> Vec<Problem> {
+    let mut problems: Vec<Problem> = rules::color(&scene.background, "/background").into_iter().collect();
+    let camera = scene.camera.iter().flat_map(|camera| camera.check());
+    problems.extend(camera.map(|problem| problem.under("/camera")));
+    let lost = scene.layers.iter().position(|layer| layer.technique().kind().space == Space::World);
+    if let (Some(i), None) = (lost, &scene.camera) {
+        let problem = Problem::error(format!("/layers/{i}"), "the layer is in space, and the scene has no camera");
+        problems.push(problem.hint(":camera fit makes one that sees everything"));
+    }
+    problems
+}
+
 fn names(scene: &Scene) -> Vec<Problem> {
     let layers = scene.layers.iter().enumerate();
     rules::names(layers.map(|(i, layer)| (format!("/layers/{i}/name"), layer.technique().name())))
@@ -185,27 +207,16 @@ fn names(scene: &Scene) -> Vec<Problem> {
 
 /// Problems with paths of files, judged by the text alone.
 fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
-    let images = scene.images.iter().map(|(name, image)| (pointer::join("/images", name) + "/path", &*image.path));
+    let path = |list: &str, name: &str| pointer::join(&format!("/{list}"), name) + "/path";
+    let images = scene.images.iter().map(|(name, image)| (path("images", name), &*image.path));
+    let meshes = scene.meshes.iter().map(|(name, mesh)| (path("meshes", name), &*mesh.path));
     let files = scene.uses().filter_map(|used| match used.of {
         Of::Path(file) => Some((used.at, file)),
-        Of::Image(_) => None,
+        Of::Name(..) => None,
     });
-    images.chain(files).filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside)).collect()
-}
-
-/// Problems with images that a layer names and the scene does not have.
-fn references(scene: &Scene) -> Vec<Problem> {
-    below_layers(scene, |layer| {
-        let uses = layer.uses();
-        let unknown = uses.iter().filter_map(|used| match used.of {
-            Of::Image(image) if !scene.images.contains_key(image) => Some((used.at.as_str(), image)),
-            Of::Image(_) | Of::Path(_) => None,
-        });
-        let problem = |(path, image): (&str, &str)| {
-            let hint = nearest(image, scene.images.keys().map(String::as_str));
-            let hint = hint.unwrap_or_else(|| "add it to the scene's images".into());
-            Problem::error(path, format!("there is no image {}", quoted(image))).hint(hint)
-        };
-        unknown.take(MAX_REFERENCES).map(problem).collect()
-    })
+    images
+        .chain(meshes)
+        .chain(files)
+        .filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside))
+        .collect()
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::layers::parts::materials::{Of, Use};
+use crate::layers::parts::materials::{List, Of, Use};
+use crate::layers::space::camera::Camera;
 use crate::layers::{Layer, timeline::Timeline};
 
 pub mod address;
@@ -22,6 +23,7 @@ pub mod layout;
 pub mod merge;
 pub mod migrate;
 pub mod pointer;
+mod references;
 pub mod schema;
 mod shape;
 pub mod words;
@@ -47,9 +49,24 @@ pub struct Scene {
     /// Length, frame rate and what follows the end.
     #[serde(default)]
     pub timeline: Timeline,
+    /// Width and height of a frame; without them, those of the first picture that a layer shows, else 1280 x 720.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("unit" = "px"), inner(range(min = 1, max = 65535)))]
+    pub size: Option<[u32; 2]>,
+    /// The color behind all layers: sRGB with straight alpha, #rrggbb or #rrggbbaa.
+    #[serde(default = "clear", skip_serializing_if = "is_clear")]
+    #[schemars(extend("default" = "#00000000"))]
+    pub background: String,
+    /// Where layers in space are seen from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<Camera>,
     /// The pictures, by name.
     #[serde(default)]
     pub images: BTreeMap<String, Image>,
+    /// The meshes, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("default" = {}))]
+    pub meshes: BTreeMap<String, Mesh>,
     /// The layers, composed in this order: later over earlier.
     #[serde(default)]
     pub layers: Vec<Layer>,
@@ -66,8 +83,32 @@ impl Scene {
 
     /// Pointers to where layers name the image `name`.
     pub fn users_of_image<'a>(&'a self, name: &'a str) -> impl Iterator<Item = String> + 'a {
-        self.uses().filter(move |used| used.of == Of::Image(name)).map(|used| used.at)
+        self.uses().filter(move |used| used.of == Of::Name(List::Images, name)).map(|used| used.at)
     }
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Scene {
+            plica: VERSION,
+            title: String::new(),
+            timeline: Timeline::default(),
+            size: None,
+            background: clear(),
+            camera: None,
+            images: BTreeMap::new(),
+            meshes: BTreeMap::new(),
+            layers: Vec::new(),
+        }
+    }
+}
+
+fn clear() -> String {
+    "#00000000".into()
+}
+
+fn is_clear(color: &String) -> bool {
+    *color == clear()
 }
 
 /// A picture of a scene.
@@ -75,6 +116,15 @@ impl Scene {
 #[serde(deny_unknown_fields)]
 pub struct Image {
     /// The file, relative to the scene.
+    #[schemars(length(min = 1))]
+    pub path: String,
+}
+
+/// A mesh of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// The file, relative to the scene: Wavefront OBJ or glTF 2.0.
     #[schemars(length(min = 1))]
     pub path: String,
 }

@@ -13,9 +13,10 @@ const LARGEST: f64 = 1e9;
 
 /// The units of numbers, each with the range of numbers that have no range of their own; `None` if they may be any
 /// finite number. The schema has the unit of every number.
-const UNITS: [(&str, Option<(f64, f64)>); 8] = [
+const UNITS: [(&str, Option<(f64, f64)>); 9] = [
     (PLAIN, Some((-LARGEST, LARGEST))),
     ("px", Some((-LARGEST, LARGEST))),
+    ("m", Some((-LARGEST, LARGEST))),
     ("degrees", Some((-LARGEST, LARGEST))),
     ("cycles", Some((-LARGEST, LARGEST))),
     ("s", Some((-LARGEST, LARGEST))),

@@ -6,23 +6,24 @@ pub mod synth;
 
 use std::sync::Arc;
 
-use kurbo::{Rect, Vec2};
+use kurbo::Rect;
 use serde_json::{Value, json};
 
 use self::model::FillLayer;
-use super::parts::materials::Materials;
-use super::ready::Ready;
+use super::parts::moment::Space;
+use super::ready::{Making, Ready};
 use super::technique::{Checked, Kind, Technique};
-use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
 /// The technique.
 pub static KIND: Kind = Kind {
     name: "fill",
+    space: Space::Plane,
     programs: &[&synth::PROGRAM],
     bundle: None,
     counted: &[],
     overlays: &[],
+    passes: &[],
     looks: &[],
     template: None,
     start,
@@ -53,14 +54,8 @@ impl Technique for FillLayer {
         line.unwrap_or(Rect::new(0.0, 0.0, 100.0, 100.0))
     }
 
-    fn synth(
-        &self,
-        _wrap: Wrap,
-        _materials: &Materials,
-        place: Vec2,
-        _previous: Option<&dyn Ready>,
-    ) -> Result<Arc<dyn Ready>, Problem> {
-        Ok(Arc::new(synth::Synth::new(self, place)))
+    fn synth(&self, making: &Making, _previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {
+        Ok(Arc::new(synth::Synth::new(self, making.place)))
     }
 }
 

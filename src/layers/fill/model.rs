@@ -4,10 +4,10 @@ use kurbo::Vec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::base::color;
 use crate::base::geometry::Xy;
 use crate::base::pixels::{Rgba, decode};
-use crate::base::problem::{Problem, quoted};
-use crate::base::text::byte_of_hex;
+use crate::base::problem::Problem;
 use crate::layers::check;
 
 /// The most stops of a gradient: the shader searches them one by one.
@@ -61,7 +61,7 @@ fn white() -> String {
 impl FillLayer {
     /// The checks beyond shape.
     pub fn check(&self) -> Vec<Problem> {
-        let mut problems: Vec<Problem> = color_problem(&self.color, "/color").into_iter().collect();
+        let mut problems: Vec<Problem> = check::color(&self.color, "/color").into_iter().collect();
         let Some(Gradient { from, to, stops }) = &self.gradient else { return problems };
         if from == to {
             let hint = "give its line a direction, or take a color alone";
@@ -74,13 +74,13 @@ impl FillLayer {
         let at = |i: usize| format!("/gradient/stops/{i}");
         let ascending = check::ascending("places of colors", stops.iter().map(|stop| stop.0), |i| at(i) + "/0");
         let colors = stops.iter().enumerate();
-        let colors = colors.filter_map(|(i, stop)| color_problem(&stop.1, &(at(i) + "/1")));
+        let colors = colors.filter_map(|(i, stop)| check::color(&stop.1, &(at(i) + "/1")));
         problems.into_iter().chain(ascending).chain(colors).collect()
     }
 
     /// Colors along a line; only one if there is no gradient. An invalid color counts as transparent.
     pub fn stops(&self) -> Vec<(f64, Rgba)> {
-        let light = |text: &str| parse(text).map_or([0.0; 4], decode);
+        let light = |text: &str| color::parse(text).map_or([0.0; 4], decode);
         match &self.gradient {
             None => vec![(0.0, light(&self.color))],
             Some(gradient) => gradient.stops.iter().map(|stop| (stop.0, light(&stop.1))).collect(),
@@ -96,40 +96,9 @@ impl FillLayer {
     }
 }
 
-fn color_problem(text: &str, path: &str) -> Option<Problem> {
-    let problem = || Problem::error(path, format!("{} is no color", quoted(text))).hint("as #20304a, or #20304a80");
-    parse(text).is_none().then(problem)
-}
-
-/// Red, green, blue and straight alpha of `#rrggbb` or `#rrggbbaa`.
-fn parse(text: &str) -> Option<[u8; 4]> {
-    let digits = text.strip_prefix('#')?.as_bytes();
-    let code = |i: usize| byte_of_hex(digits.get(2 * i..2 * i + 2)?);
-    match digits.len() {
-        6 => Some([code(0)?, code(1)?, code(2)?, 255]),
-        8 => Some([code(0)?, code(1)?, code(2)?, code(3)?]),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn colors_are_six_or_eight_digits() {
-        for (text, color) in [
-            ("#20304a", Some([0x20, 0x30, 0x4a, 255])),
-            ("#20304A80", Some([0x20, 0x30, 0x4a, 0x80])),
-            ("20304a", None),
-            ("#20304", None),
-            ("#20304ag0", None),
-            ("#+1+1+1", None),
-            ("#äöü", None),
-        ] {
-            assert_eq!(parse(text), color, "{text}");
-        }
-    }
 
     #[test]
     fn what_is_wrong_is_told_with_its_place() {

@@ -8,7 +8,7 @@ use super::model::{FillLayer, MOST_STOPS};
 use crate::base::pixels::Rgba;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::passes::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
 use crate::layers::ready::{Ready, Still};
 
 /// The shader.

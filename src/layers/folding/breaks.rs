@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::position::{Between, Pieces, Position, Segment};
+use super::position::{Pieces, Position, Segment};
+use crate::layers::keyframes::Between;
 
 /// A jump in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

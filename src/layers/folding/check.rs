@@ -15,7 +15,7 @@ use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Problem, quoted};
 use crate::layers::check as rules;
-use crate::layers::parts::materials::{Materials, Of, Use, What};
+use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::technique::{Checked, Count};
 
 /// In zones with more anchors than this, coincident anchors are not looked for.
@@ -62,12 +62,12 @@ pub fn problems(checked: &Checked) -> Vec<Problem> {
 
 /// The pictures and files that the layer names: its own, then zone by zone.
 pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
-    let picture = |at, image| Use { at, of: Of::Image(image), what: What::Picture };
+    let picture = |at, image| Use { at, of: Of::Name(List::Images, image), what: What::Picture };
     let mut uses = vec![picture("/image".to_owned(), &layer.image)];
     for (i, zone) in layer.zones.iter().enumerate() {
         if let Some(image) = zone.fold.as_ref().and_then(|fold| fold.mask()) {
             let at = format!("/zones/{i}/fold/image");
-            uses.push(Use { at, of: Of::Image(image), what: What::Mask { on: &layer.image } });
+            uses.push(Use { at, of: Of::Name(List::Images, image), what: What::Mask { on: &layer.image } });
         }
         uses.extend(zone.sampler.iter().map(|sampler| picture(format!("/zones/{i}/sampler/image"), &sampler.image)));
         for (j, tool) in zone.motion.iter().enumerate() {
@@ -128,7 +128,7 @@ pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Probl
         }
     }
     for Use { at: path, of, what } in uses(layer) {
-        let (What::Mask { .. }, Of::Image(name)) = (what, of) else { continue };
+        let (What::Mask { .. }, Of::Name(_, name)) = (what, of) else { continue };
         let Some(mask) = materials.pictures.get(name) else { continue };
         let (w, h) = (mask.width(), mask.height());
         if (w, h) != (width, height) {

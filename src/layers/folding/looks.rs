@@ -90,7 +90,7 @@ mod tests {
     use crate::layers::folding::{marks, pixel_marks};
     use crate::layers::parts::marks::{Mark, View};
     use crate::layers::parts::materials::Materials;
-    use crate::layers::parts::moment::CENTRE;
+    use crate::layers::ready::Making;
     use crate::layers::timeline::Wrap;
     use crate::scene::Scene;
 
@@ -100,7 +100,7 @@ mod tests {
         let Some(Layer::Picture(layer)) = scene.layers.first() else { panic!("a picture layer") };
         let picture = Arc::new(Picture::filled(64, 64, [1.0; 4]));
         let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
-        let synth = synth(layer, Wrap::default(), &materials, CENTRE, None).unwrap();
+        let synth = synth(layer, &Making::plain(Wrap::default(), &materials), None).unwrap();
         let drawn = |names: &[&'static str]| -> Vec<Mark> {
             let view =
                 View { spacing_px: 4.0, cell_px: 4.0, times: vec![0.3, 0.2], longest_px: 20.0, ..View::of(names) };

@@ -17,9 +17,9 @@ pub mod looks;
 pub mod marks;
 pub mod model;
 pub mod outline;
-pub mod passes;
 pub mod pick;
 pub mod pixel_marks;
+pub mod plan;
 pub mod position;
 pub mod probe;
 mod ready;
@@ -38,15 +38,16 @@ mod tests;
 use std::any::Any;
 use std::sync::Arc;
 
-use kurbo::{Point, Rect, Vec2};
+use kurbo::{Point, Rect};
 use serde_json::Value;
 
 use self::model::PictureLayer;
 use super::parts::marks::{Hit, Mark, View};
 use super::parts::materials::{Materials, Use};
+use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
-use super::ready::{Prepared, Ready};
+use super::ready::{Making, Prepared, Ready};
 use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
@@ -54,13 +55,15 @@ use crate::base::problem::Problem;
 /// The technique.
 pub static KIND: Kind = Kind {
     name: "picture",
-    programs: passes::PROGRAMS,
+    space: Space::Plane,
+    programs: plan::PROGRAMS,
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },
         Counted { name: "points", help: "points of a scene's outlines", most: 1_000_000 },
     ],
     overlays: looks::OVERLAYS,
+    passes: &[],
     looks: looks::LOOKS,
     template: Some(starts::template),
     start: starts::start,
@@ -130,14 +133,8 @@ impl Technique for PictureLayer {
         curve.collect()
     }
 
-    fn probe(
-        &self,
-        wrap: Wrap,
-        materials: &Materials,
-        pixel: (usize, usize),
-        t: f64,
-    ) -> Result<Option<ReadOut>, Problem> {
-        Ok(Some(probe::read_out(probe::probe(self, wrap, materials, pixel, t)?)))
+    fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {
+        Ok(Some(probe::read_out(probe::probe(self, making, pixel, moment.t)?)))
     }
 
     fn marks(&self, view: &View) -> Vec<Mark> {
@@ -152,18 +149,12 @@ impl Technique for PictureLayer {
         seam::repeat(self, wrap)
     }
 
-    fn synth(
-        &self,
-        wrap: Wrap,
-        materials: &Materials,
-        place: Vec2,
-        previous: Option<&dyn Ready>,
-    ) -> Result<Arc<dyn Ready>, Problem> {
+    fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {
         let previous = previous.and_then(|previous| previous.downcast());
-        Ok(Arc::new(synth::synth(self, wrap, materials, place, previous)?))
+        Ok(Arc::new(synth::synth(self, making, previous)?))
     }
 
-    fn prepare(&self, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Box<dyn Prepared>, Problem> {
-        Ok(Box::new(synth::PreparedLayer::new(self, wrap, materials, place)?))
+    fn prepare(&self, making: &Making) -> Result<Box<dyn Prepared>, Problem> {
+        Ok(Box::new(synth::PreparedLayer::new(self, making)?))
     }
 }

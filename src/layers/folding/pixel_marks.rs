@@ -138,7 +138,7 @@ mod tests {
     use crate::layers::folding::model::PictureLayer;
     use crate::layers::folding::synth::synth;
     use crate::layers::parts::materials::Materials;
-    use crate::layers::parts::moment::CENTRE;
+    use crate::layers::ready::Making;
     use crate::layers::timeline::Wrap;
 
     #[test]
@@ -165,7 +165,7 @@ mod tests {
         .unwrap();
         let picture = Arc::new(Picture::filled(16, 16, [1.0; 4]));
         let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
-        let synth = synth(&layer, Wrap::default(), &materials, CENTRE, None).unwrap();
+        let synth = synth(&layer, &Making::plain(Wrap::default(), &materials), None).unwrap();
         let (spacing_px, longest_px) = (4.0, 8.0);
         let view = View { spacing_px, cell_px: 4.0, longest_px, times: times.into(), ..View::of(&[shown]) };
         marks(&synth, &view).into_iter().map(|mark| (mark.look.name, mark.shape, mark.strength)).collect()

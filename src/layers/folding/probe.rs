@@ -7,10 +7,9 @@ use super::model::{PictureLayer, Zone};
 use super::position::Clock;
 use super::synth::source;
 use crate::base::problem::Problem;
-use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
 use crate::layers::parts::readout::{Axis, Entry, ReadOut, Value};
-use crate::layers::timeline::Wrap;
+use crate::layers::ready::Making;
 
 /// What one pixel of a zone does at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,11 +40,11 @@ pub struct Probe {
 /// As [`super::synth::synth`].
 pub fn probe(
     layer: &PictureLayer,
-    wrap: Wrap,
-    materials: &Materials,
+    making: &Making,
     (x, y): (usize, usize),
     time: f64,
 ) -> Result<Option<Probe>, Problem> {
+    let &Making { wrap, materials, .. } = making;
     let own = materials.picture(&layer.image, "/image")?;
     let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
     for (index, zone) in layer.zones.iter().enumerate().rev() {

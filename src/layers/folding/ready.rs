@@ -4,14 +4,14 @@
 use std::sync::Arc;
 
 use super::frame::Frame;
-use super::passes;
 use super::pixel_marks;
+use super::plan;
 use super::reduce;
 use super::synth::Synth;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::passes::Plan;
+use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::{Flag, VectorField};
 use crate::layers::ready::{Ready, Still};
 
@@ -33,7 +33,7 @@ impl Ready for Synth {
     }
 
     fn plan(&self, moment: &Moment) -> Plan {
-        passes::plan(self, moment.t)
+        plan::plan(self, moment.t)
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {

@@ -14,8 +14,7 @@ use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
-use crate::layers::ready::{self, Ready};
-use crate::layers::timeline::Wrap;
+use crate::layers::ready::{self, Making, Ready};
 
 /// Everything that a frame of a picture layer needs except the time.
 #[derive(Clone, Debug)]
@@ -58,19 +57,13 @@ pub struct Source {
     pub over: bool,
 }
 
-/// Prepares a layer for rendering at any time. Fields of `previous` with equal inputs are reused. `place` is the place
-/// in each pixel that is evaluated: its centre, or another for supersampling.
+/// Prepares a layer for rendering at any time. Fields of `previous` with equal inputs are reused.
 ///
 /// # Errors
 /// If a picture that the layer names is not among the materials, or the synthesis is cancelled; the problem's path is
 /// relative to the layer.
-pub fn synth(
-    layer: &PictureLayer,
-    wrap: Wrap,
-    materials: &Materials,
-    place: Vec2,
-    previous: Option<&Synth>,
-) -> Result<Synth, Problem> {
+pub fn synth(layer: &PictureLayer, making: &Making, previous: Option<&Synth>) -> Result<Synth, Problem> {
+    let &Making { wrap, materials, place, .. } = making;
     let picture = materials.picture(&layer.image, "/image")?;
     let size = (picture.width(), picture.height());
     let known = |zone: &Zone, inputs: &Inputs| {
@@ -125,7 +118,8 @@ impl PreparedLayer {
     ///
     /// # Errors
     /// As [`synth`].
-    pub fn new(layer: &PictureLayer, wrap: Wrap, materials: &Materials, place: Vec2) -> Result<Self, Problem> {
+    pub fn new(layer: &PictureLayer, making: &Making) -> Result<Self, Problem> {
+        let &Making { wrap, materials, place, .. } = making;
         let picture = materials.picture(&layer.image, "/image")?;
         let size = (picture.width(), picture.height());
         let ready = |(index, zone): (usize, &Zone)| {

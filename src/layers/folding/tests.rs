@@ -10,7 +10,8 @@ use crate::base::picture::Picture;
 use crate::base::pixels::{Grid, Rgba};
 use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::moment::{CENTRE, Columns};
+use crate::layers::parts::moment::Columns;
+use crate::layers::ready::Making;
 use crate::layers::ready::Still;
 use crate::layers::timeline::Wrap;
 
@@ -50,7 +51,7 @@ fn zone(jump: &str, more: &str) -> String {
 }
 
 fn shown(layer: &PictureLayer, time: f64, (x, y): (usize, usize)) -> Rgba {
-    let synth = synth::synth(layer, Wrap::Once, &materials(), CENTRE, None).unwrap();
+    let synth = synth::synth(layer, &Making::plain(Wrap::Once, &materials()), None).unwrap();
     let mut row = vec![[0.0; 4]; 40];
     Frame::new(&synth, time).row(y, Columns::All, &mut row);
     row[x]
@@ -95,18 +96,18 @@ fn later_zones_lie_over_earlier_ones_and_read_the_picture_itself() {
 fn a_probe_tells_what_the_frame_shows() {
     let cover = r#","fold":{"rule":"cover","regions":[{"kind":"rectangle","x":20,"y":0,"width":10,"height":30}]}"#;
     let layer = layer(&zone("[8,0]", cover));
-    let probe = probe::probe(&layer, Wrap::Once, &materials(), (16, 10), 0.75).unwrap().unwrap();
+    let probe = probe::probe(&layer, &Making::plain(Wrap::Once, &materials()), (16, 10), 0.75).unwrap().unwrap();
     assert_eq!((probe.zone.as_str(), probe.jump, probe.active), ("z", Vec2::new(8.0, 0.0), true));
     assert_eq!((probe.tau, probe.s, probe.e), (0.75, 0.75, 0.4375));
     assert_eq!((probe.thresholds, probe.read), (vec![0.4375], (20.0, 10.5).into()));
-    assert_eq!(probe::probe(&layer, Wrap::Once, &materials(), (30, 10), 0.75).unwrap(), None);
+    assert_eq!(probe::probe(&layer, &Making::plain(Wrap::Once, &materials()), (30, 10), 0.75).unwrap(), None);
 }
 
 #[test]
 fn unchanged_zones_are_taken_over() {
     let make = |more: &str, before: Option<&synth::Synth>| {
         let both = format!("{},{}", zone("[8,0]", ""), zone("[4,0]", more));
-        synth::synth(&layer(&both), Wrap::Repeat, &materials(), CENTRE, before).unwrap()
+        synth::synth(&layer(&both), &Making::plain(Wrap::Repeat, &materials()), before).unwrap()
     };
     let before = make("", None);
     let after = make(r#","feather":3"#, Some(&before));
@@ -122,7 +123,7 @@ fn the_same_bytes_for_any_number_of_threads() {
         "fold":{"rule":"return","regions":[{"kind":"ellipse","center":[22,15],"radii":[6,5]}]}}"#;
     let field = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let synth = || synth::synth(&layer(zone), Wrap::Repeat, &materials(), CENTRE, None).unwrap();
+        let synth = || synth::synth(&layer(zone), &Making::plain(Wrap::Repeat, &materials()), None).unwrap();
         pool.install(synth).zones[0].field.clone()
     };
     assert_eq!(field(1), field(5));
@@ -131,7 +132,7 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn a_missing_picture_is_a_problem_with_its_place() {
     let zone = zone("[1,1]", r#","sampler":{"image":"gone"}"#);
-    let problem = synth::synth(&layer(&zone), Wrap::Repeat, &materials(), CENTRE, None).unwrap_err();
+    let problem = synth::synth(&layer(&zone), &Making::plain(Wrap::Repeat, &materials()), None).unwrap_err();
     assert_eq!(problem.path, "/zones/0/sampler/image");
 }
 
@@ -141,7 +142,7 @@ fn a_synthesis_that_nobody_wants_ends() {
     for stopped in [false, true] {
         let stop = Some(Arc::new(std::sync::atomic::AtomicBool::new(stopped)));
         let materials = Materials { stop, ..materials() };
-        let made = synth::synth(&layer, Wrap::Once, &materials, CENTRE, None);
+        let made = synth::synth(&layer, &Making::plain(Wrap::Once, &materials), None);
         assert_eq!(made.is_err(), stopped);
     }
 }
@@ -149,7 +150,7 @@ fn a_synthesis_that_nobody_wants_ends() {
 #[test]
 fn a_frame_may_be_smaller_or_larger_than_the_picture() {
     let layer = layer(&zone("[8,0]", ""));
-    let synth = synth::synth(&layer, Wrap::Once, &materials(), CENTRE, None).unwrap();
+    let synth = synth::synth(&layer, &Making::plain(Wrap::Once, &materials()), None).unwrap();
     let frame = Frame::new(&synth, 0.5);
     let row = |y: usize, columns: Columns, width: usize| {
         let mut row = vec![[0.0; 4]; width];
@@ -174,10 +175,10 @@ fn a_synthesis_counts_the_pixels_that_are_not_taken_over() {
     };
     let layer = layer(&zone("[4, 0]", ""));
     let counting = Materials { progress: progress(&told), ..materials() };
-    let first = synth::synth(&layer, Wrap::Once, &counting, CENTRE, None).unwrap();
+    let first = synth::synth(&layer, &Making::plain(Wrap::Once, &counting), None).unwrap();
     assert_eq!(told.lock().unwrap().last(), Some(&100));
     told.lock().unwrap().clear();
     let again = Materials { progress: progress(&told), ..counting };
-    synth::synth(&layer, Wrap::Once, &again, CENTRE, Some(&first)).unwrap();
+    synth::synth(&layer, &Making::plain(Wrap::Once, &again), Some(&first)).unwrap();
     assert!(told.lock().unwrap().is_empty(), "nothing was left to do");
 }

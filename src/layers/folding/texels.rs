@@ -4,7 +4,7 @@
 
 use super::field::{Field, Ragged};
 use crate::base::pixels::Grid;
-use crate::layers::parts::passes::{Format, Packed, Upload};
+use crate::layers::parts::plan::{Format, Packed, Upload};
 
 /// Columns of [`Texels::crossings`].
 pub const COLUMNS: usize = 4096;

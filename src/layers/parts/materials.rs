@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::base::budget::Budget;
+use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
 use crate::base::problem::Problem;
@@ -24,10 +25,32 @@ pub struct Use<'a> {
 /// How a layer names something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of<'a> {
-    /// By its name in the scene's images.
-    Image(&'a str),
+    /// By its name in a list of the scene.
+    Name(List, &'a str),
     /// A file by its path.
     Path(&'a str),
+}
+
+/// The lists of a scene whose items have names that layers use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum List {
+    /// Pictures.
+    Images,
+    /// Meshes.
+    Meshes,
+    /// The layers themselves.
+    Layers,
+}
+
+impl List {
+    /// Its name in the document, and what an item of it is.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            List::Images => ("images", "image"),
+            List::Meshes => ("meshes", "mesh"),
+            List::Layers => ("layers", "layer"),
+        }
+    }
 }
 
 /// What a layer uses something as.
@@ -42,6 +65,10 @@ pub enum What<'a> {
     },
     /// A field of vectors.
     Vectors,
+    /// A mesh.
+    Mesh,
+    /// A layer as a picture, at its own time.
+    Layer,
 }
 
 /// Everything that a scene names and synthesis needs: decoded pictures and vector fields. Values, no handles.
@@ -53,6 +80,8 @@ pub struct Materials {
     pub masks: BTreeMap<(String, String), Arc<Picture>>,
     /// Sampled vector fields by their path in the scene, in pixels.
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
+    /// Meshes by their name in the scene's meshes.
+    pub meshes: BTreeMap<String, Arc<Mesh>>,
     /// Cancellation flag: once set, a running synthesis ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
     /// Where a synthesis counts how far it is, in pixels.

@@ -5,6 +5,7 @@ pub mod bundle;
 pub mod marks;
 pub mod materials;
 pub mod moment;
-pub mod passes;
+pub mod pass;
+pub mod plan;
 pub mod readout;
 pub mod repeat;

@@ -2,6 +2,8 @@
 
 use kurbo::Vec2;
 
+use crate::layers::space::eye::Eye;
+
 /// The centre of a pixel, from its top-left corner.
 pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
 
@@ -12,6 +14,17 @@ pub struct Moment {
     pub t: f64,
     /// Width and height of the frame, in pixels.
     pub size_px: (usize, usize),
+    /// Where the scene is seen from, if it has a camera.
+    pub eye: Option<Eye>,
+}
+
+/// Where the layers of a technique are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Space {
+    /// In the frame, pixel for pixel.
+    Plane,
+    /// In the world, seen by the camera: neighbors in the list hide each other by their depth.
+    World,
 }
 
 /// Which columns of a row are wanted.

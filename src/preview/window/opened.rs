@@ -129,7 +129,7 @@ impl Opened {
                 self.pictures(state, show)?
             }
             None => {
-                let frame = self.gpu.texture(&Synth { size: (1, 1), layers: Vec::new() }, 0.0)?;
+                let frame = self.gpu.texture(&Synth { size: (1, 1), ..Synth::default() }, 0.0)?;
                 Pictures { frame, other: None, scale: 1.0 }
             }
         };

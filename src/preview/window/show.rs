@@ -128,7 +128,7 @@ impl Cached {
 
 /// The same picture, nothing moving.
 fn still(synth: &Synth) -> Synth {
-    Synth { size: synth.size, layers: synth.layers.iter().map(|layer| layer.clone().unmoved()).collect() }
+    Synth { layers: synth.layers.iter().map(|layer| layer.clone().unmoved()).collect(), ..synth.clone() }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::device::Device;
 use super::kept::{Kept, check_size, texture};
 use super::run::Runner;
 use crate::base::error::Result;
-use crate::layers::parts::passes::{Blend, COMMON, Program};
+use crate::layers::parts::plan::{Blend, COMMON, Plan, Program};
 use crate::render::Synth;
 
 /// The format of frames on the device.
@@ -40,13 +40,21 @@ impl Painter {
         let frame = self.frames[number].get(device, synth.size)?;
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         let moment = synth.moment(scene_time);
-        for (i, layer) in synth.layers.iter().enumerate() {
-            // Beneath the first layer there is nothing.
-            let into = if i == 0 { frame.clone() } else { self.layer.get(device, synth.size)? };
-            self.runner.run(device, &mut encoder, &into, &layer.plan(&moment))?;
-            if i > 0 {
-                self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, &frame))?;
+        let stage = &synth.stage;
+        self.runner.clear(&mut encoder, &frame, stage.background);
+        let plans = stage.groups.iter().map(|group| {
+            let draws = group.layers().iter().flat_map(|&layer| synth.layers[layer].plan(&moment).draws);
+            Plan { draws: draws.collect() }
+        });
+        for (i, plan) in plans.enumerate() {
+            // Beneath the first layer there is often nothing.
+            if i == 0 && stage.background == [0.0; 4] {
+                self.runner.run(device, &mut encoder, &frame, &plan)?;
+                continue;
             }
+            let into = self.layer.get(device, synth.size)?;
+            self.runner.run(device, &mut encoder, &into, &plan)?;
+            self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, &frame))?;
         }
         device.checked(|| device.queue.submit([encoder.finish()]))?;
         Ok(frame)

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::device::{Device, failed};
 use crate::base::error::Result;
 use crate::base::progress::Progress;
-use crate::layers::parts::passes::{Format, Packed, Upload};
+use crate::layers::parts::plan::{Format, Packed, Upload};
 
 /// At most this many bytes are uploaded at a time.
 const BAND_BYTES: usize = 32 << 20;

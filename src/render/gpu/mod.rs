@@ -7,7 +7,7 @@ use std::sync::{Arc, mpsc};
 use crate::base::error::Result;
 use crate::base::pixels::{Frame, Grid};
 use crate::base::progress::Progress;
-use crate::layers::parts::passes::{Bind, Upload};
+use crate::layers::parts::plan::{Bind, Upload};
 use crate::render::Synth;
 
 pub mod device;

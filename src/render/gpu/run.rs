@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use super::device::{Device, failed};
 use super::kept::{Kept, Texture};
 use crate::base::error::Result;
-use crate::layers::parts::passes::{Bind, Blend, Draw, Format, Plan, Program};
+use crate::base::pixels::Rgba;
+use crate::layers::parts::plan::{Bind, Blend, Draw, Format, Plan, Program};
 
 /// Executes plans, with everything that is kept from frame to frame.
 #[derive(Default)]
@@ -73,6 +74,12 @@ impl Runner {
         }
         pass(encoder, into, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), &draws);
         Ok(())
+    }
+
+    /// Fills a texture with one color.
+    pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, into: &wgpu::Texture, color: Rgba) {
+        let [r, g, b, a] = color.map(f64::from);
+        pass(encoder, into, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }), &[]);
     }
 
     /// Runs a program that reads one float texture, over all of another texture.

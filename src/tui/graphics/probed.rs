@@ -7,6 +7,7 @@ use super::protocol::Wanted;
 use crate::base::pixels::encode;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::ReadOut;
+use crate::layers::ready::Making;
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
@@ -37,7 +38,8 @@ impl Probed {
     pub fn new(asked: Asked, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
         let layer = scene.layers.get(asked.layer)?.technique();
         let (x, y) = asked.pixel;
-        let read = layer.probe(scene.timeline.wrap, materials, asked.pixel, asked.time).ok()?;
+        let moment = synth.moment(asked.time);
+        let read = layer.probe(&Making::plain(scene.timeline.wrap, materials), asked.pixel, &moment).ok()?;
         let within = x < synth.size.0 && y < synth.size.1;
         let color = within.then(|| encode(*cpu::lattice(synth, asked.time, &[x], &[y]).get(0, 0)));
         Some(Probed { asked, read, color: color.unwrap_or_default() })

@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use super::{Turned, ratio};
-use crate::layers::folding::position::{Between, Position, Segment};
+use crate::layers::folding::position::{Position, Segment};
+use crate::layers::keyframes::Between;
 
 /// Keyframes per cycle of a function.
 const A_CYCLE: f64 = 8.0;

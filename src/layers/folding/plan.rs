@@ -2,7 +2,7 @@
 
 use super::synth::{Synth, ZoneSynth};
 use crate::base::pixels::Beyond;
-use crate::layers::parts::passes::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
 
 /// Draws the layer's own picture.
 static STILL: Program = Program {

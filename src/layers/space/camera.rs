@@ -1,0 +1,199 @@
+//! The camera of a scene, as in the document. The doc comments become the help texts of forms and schema.
+
+use glam::{DMat3, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::eye::Eye;
+use crate::base::geometry::Xyz;
+use crate::base::problem::Problem;
+use crate::layers::check;
+use crate::layers::keyframes;
+
+/// Where the scene is seen from. It looks from its position to its target.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Camera {
+    /// Where it is: right, up, to the front.
+    #[schemars(extend("unit" = "m"))]
+    pub position: Xyz,
+    /// What it looks at.
+    #[schemars(extend("unit" = "m"))]
+    pub target: Xyz,
+    /// The direction that is up in the picture.
+    #[schemars(extend("unit" = "1"))]
+    pub up: Xyz,
+    /// Its vertical field of view.
+    #[schemars(range(min = 0.01, max = 179.0), extend("unit" = "degrees"))]
+    pub fov: f64,
+    /// Where it is at other times, ascending: each names what it replaces.
+    pub keys: Vec<Key>,
+    /// What happens between two keys.
+    pub between: Between,
+    /// How far it is carried round its target in one timeline, counter-clockwise as seen from above.
+    #[schemars(extend("unit" = "degrees"))]
+    pub turn: f64,
+}
+
+/// What a camera is at one time; what is not given is as the other keys have it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Key {
+    /// The scene time.
+    #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
+    pub at: f64,
+    /// Where it is then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("unit" = "m"))]
+    pub position: Option<Xyz>,
+    /// What it looks at then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("unit" = "m"))]
+    pub target: Option<Xyz>,
+    /// Its vertical field of view then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.01, max = 179.0), extend("unit" = "degrees"))]
+    pub fov: Option<f64>,
+}
+
+/// What happens between two keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Between {
+    /// A straight line.
+    Linear,
+    /// A smooth monotone curve (Fritsch and Carlson), each number for itself.
+    #[default]
+    Smooth,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Camera {
+            position: [0.0, 1.2, 4.0],
+            target: [0.0, 0.8, 0.0],
+            up: [0.0, 1.0, 0.0],
+            fov: 40.0,
+            keys: Vec::new(),
+            between: Between::Smooth,
+            turn: 0.0,
+        }
+    }
+}
+
+impl Camera {
+    /// The camera at scene time `t`, for frames of this width and height.
+    pub fn at(&self, t: f64, size: (usize, usize)) -> Eye {
+        let (from_to_up, fov) = self.view(t);
+        Eye::new(from_to_up, fov, size)
+    }
+
+    /// Position, target and up at scene time `t`, and the field of view in degrees.
+    pub fn view(&self, t: f64) -> ([DVec3; 3], f64) {
+        let target = DVec3::from(self.components(t, self.target, |key| key.target));
+        let position = DVec3::from(self.components(t, self.position, |key| key.position));
+        let [fov] = self.components(t, [self.fov], |key| key.fov.map(|fov| [fov]));
+        let up = DVec3::from(self.up);
+        let turn = up
+            .try_normalize()
+            .map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(axis, (self.turn * t).to_radians()));
+        let position = if self.turn == 0.0 { position } else { target + turn * (position - target) };
+        ([position, target, up], fov)
+    }
+
+    /// What the keys say about one field at `t`, each number for itself; `own` if none names it.
+    fn components<const N: usize>(&self, t: f64, own: [f64; N], of: impl Fn(&Key) -> Option<[f64; N]>) -> [f64; N] {
+        let between = match self.between {
+            Between::Linear => keyframes::Between::Linear,
+            Between::Smooth => keyframes::Between::Smooth,
+        };
+        let keys: Vec<(f64, [f64; N])> = self.keys.iter().filter_map(|key| Some((key.at, of(key)?))).collect();
+        if keys.is_empty() {
+            return own;
+        }
+        std::array::from_fn(|i| {
+            let points: Vec<[f64; 2]> = keys.iter().map(|(at, value)| [*at, value[i]]).collect();
+            keyframes::value(&points, between, t)
+        })
+    }
+
+    /// The checks beyond shape.
+    pub fn check(&self) -> Vec<Problem> {
+        let at = |i: usize| format!("/keys/{i}/at");
+        let mut problems = check::ascending("times of keys", self.keys.iter().map(|key| key.at), at);
+        if !problems.is_empty() {
+            return problems;
+        }
+        let own = [(0.0, "/position".to_owned())];
+        let keys = self.keys.iter().enumerate().map(|(i, key)| (key.at, format!("/keys/{i}")));
+        let places = if self.keys.is_empty() { own.into_iter().collect::<Vec<_>>() } else { keys.collect() };
+        let view = |(t, path): &(f64, String)| Some((view_problem(self.view(*t).0)?, path.clone()));
+        problems.extend(places.iter().find_map(view).map(|((what, cure), path)| Problem::error(path, what).hint(cure)));
+        problems
+    }
+}
+
+/// What is wrong with a view, and its cure.
+fn view_problem([position, target, up]: [DVec3; 3]) -> Option<(&'static str, &'static str)> {
+    if up.length() == 0.0 {
+        return Some(("the camera has no direction that is up", "make up [0, 1, 0]"));
+    }
+    let Some(along) = (target - position).try_normalize() else {
+        return Some(("the camera stands where it looks", "move its position or its target"));
+    };
+    let level = along.cross(up.normalize()).length() < 1e-9;
+    level.then_some(("the camera looks along its up", "move its position or its target, or turn up"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(json: &str) -> Camera {
+        serde_json::from_str(json).unwrap()
+    }
+
+    #[test]
+    fn each_field_follows_its_own_keys() {
+        let camera = camera(
+            r#"{"fov": 30, "between": "linear", "keys": [{"at": 0.2, "position": [0, 1, 4]}, {"at": 0.4, "fov": 50},
+                {"at": 0.6, "position": [2, 3, 4]}]}"#,
+        );
+        for (t, position, fov) in
+            [(0.0, [0.0, 1.0, 4.0], 50.0), (0.4, [1.0, 2.0, 4.0], 50.0), (1.0, [2.0, 3.0, 4.0], 50.0)]
+        {
+            let ([found, target, _], found_fov) = camera.view(t);
+            assert!((found - DVec3::from(position)).length() < 1e-12, "{t}: {found}");
+            assert_eq!((target, found_fov), (DVec3::new(0.0, 0.8, 0.0), fov), "{t}");
+        }
+    }
+
+    #[test]
+    fn a_turn_goes_counter_clockwise_seen_from_above() {
+        let camera = camera(r#"{"position": [0, 2, 4], "target": [0, 0, 0], "turn": 180}"#);
+        let ([position, ..], _) = camera.view(0.5);
+        assert!((position - DVec3::new(4.0, 2.0, 0.0)).length() < 1e-12, "{position}");
+        assert_eq!(camera.view(0.0).0[0], DVec3::new(0.0, 2.0, 4.0));
+    }
+
+    #[test]
+    fn a_view_that_is_none_is_told_with_its_place() {
+        for (json, path, what) in [
+            (r#"{"position": [1, 2, 3], "target": [1, 2, 3]}"#, "/position", "the camera stands where it looks"),
+            (r#"{"position": [0, 2, 0], "target": [0, 0, 0]}"#, "/position", "the camera looks along its up"),
+            (r#"{"up": [0, 0, 0]}"#, "/position", "the camera has no direction that is up"),
+            (
+                r#"{"keys": [{"at": 0, "position": [1, 0, 0]}, {"at": 1, "position": [0, 0.8, 0]}]}"#,
+                "/keys/1",
+                "the camera stands where it looks",
+            ),
+            (r#"{"keys": [{"at": 0.5}, {"at": 0.5}]}"#, "/keys/1/at", ""),
+        ] {
+            let problems = camera(json).check();
+            assert_eq!(problems.len(), 1, "{json}: {problems:?}");
+            assert_eq!(problems[0].path, path, "{json}");
+            assert!(problems[0].message.starts_with(what), "{:?}", problems[0]);
+        }
+        assert_eq!(Camera::default().check(), []);
+    }
+}

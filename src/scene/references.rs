@@ -1,0 +1,79 @@
+//! What layers name by its name in the scene: images, meshes, other layers. A layer that another shows as a texture is
+//! not composed by itself.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Scene;
+use crate::base::problem::{Problem, nearest, quoted};
+use crate::layers::parts::materials::{List, Of};
+
+/// At most this many unknown references of a layer are listed.
+const MAX_REFERENCES: usize = 100;
+
+impl Scene {
+    /// The names in one of its lists.
+    pub fn names(&self, list: List) -> BTreeSet<&str> {
+        match list {
+            List::Images => self.images.keys().map(String::as_str).collect(),
+            List::Meshes => self.meshes.keys().map(String::as_str).collect(),
+            List::Layers => self.layers.iter().map(|layer| layer.technique().name()).collect(),
+        }
+    }
+
+    /// For each layer, the indices of the layers that it shows as textures, each with the pointer, relative to the
+    /// layer, to where it is named.
+    pub fn shown_by(&self, layer: usize) -> Vec<(usize, String)> {
+        let index = |name: &str| self.layers.iter().position(|layer| layer.technique().name() == name);
+        let uses = self.layers.get(layer).map(|layer| layer.technique().uses()).unwrap_or_default();
+        let shown = uses.into_iter().filter_map(|used| match used.of {
+            Of::Name(List::Layers, name) => Some((index(name)?, used.at)),
+            Of::Name(List::Images | List::Meshes, _) | Of::Path(_) => None,
+        });
+        shown.collect()
+    }
+
+    /// The layers that others show as textures.
+    pub fn textures(&self) -> BTreeSet<usize> {
+        (0..self.layers.len()).flat_map(|i| self.shown_by(i)).map(|(shown, _)| shown).collect()
+    }
+}
+
+/// Problems with what layers name and the scene does not have, and with layers that show themselves.
+pub fn problems(scene: &Scene) -> Vec<Problem> {
+    let mut names = BTreeMap::new();
+    let mut problems = Vec::new();
+    for (i, layer) in scene.layers.iter().enumerate() {
+        let mut unknown = Vec::new();
+        for used in layer.technique().uses() {
+            let Of::Name(list, name) = used.of else { continue };
+            let (key, item) = list.words();
+            let known = names.entry(key).or_insert_with(|| scene.names(list));
+            if known.contains(name) || unknown.len() == MAX_REFERENCES {
+                continue;
+            }
+            let hint = nearest(name, known.iter().copied());
+            let hint = hint.unwrap_or_else(|| format!("add it to the scene's {key}"));
+            let message = format!("there is no {item} {}", quoted(name));
+            unknown.push(Problem::error(format!("/layers/{i}{}", used.at), message).hint(hint));
+        }
+        problems.extend(unknown);
+        problems.extend(circle(scene, i));
+    }
+    problems
+}
+
+/// The place where a layer names what, in the end, shows the layer itself.
+fn circle(scene: &Scene, layer: usize) -> Option<Problem> {
+    let reaches = |first: usize| {
+        let (mut seen, mut next) = (BTreeSet::new(), vec![first]);
+        while let Some(at) = next.pop() {
+            if seen.insert(at) {
+                next.extend(scene.shown_by(at).into_iter().map(|(shown, _)| shown));
+            }
+        }
+        seen.contains(&layer)
+    };
+    let (_, at) = scene.shown_by(layer).into_iter().find(|(shown, _)| reaches(*shown))?;
+    let problem = Problem::error(format!("/layers/{layer}{at}"), "the layer shows itself");
+    Some(problem.hint("name a layer that does not show this one"))
+}
