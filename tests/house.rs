@@ -16,7 +16,8 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["winit", "raw_window_handle", "x11rb", "x11_dl", "xkbcommon_dl"], &["preview/window"]),
     (&["cosmic_text", "dejavu"], &["preview/window/text"]),
     (&["ratatui", "crossterm", "terminput", "tui_input", "nucleo_matcher"], &["tui/"]),
-    (&["toml", "base64", "csv"], &["tui/"]),
+    (&["toml", "csv"], &["tui/"]),
+    (&["base64"], &["export/field/svg", "tui/"]),
     (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),
     // The link handles the file of its socket; `base/system` creates the user's folders.
     (&["std::fs"], &["files/", "base/system", "preview/wire/socket"]),

@@ -1,5 +1,8 @@
 //! Plots and tables of a field that is known in every pixel.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
 use super::*;
 use crate::layers::parts::materials::Materials;
 use crate::render;
@@ -36,6 +39,10 @@ fn the_svg_is_well_formed() {
     for picture in [true, false] {
         let text = svg(&plot(&scene, &synth, None, picture)).unwrap();
         assert_eq!(text.matches("<image").count(), usize::from(picture));
+        let encoded = text.split_once("image/png;base64,").map(|(_, rest)| rest.split('"').next().unwrap());
+        let within = encoded.map(|text| image::load_from_memory(&STANDARD.decode(text).unwrap()).unwrap());
+        // The zone with two pixels around it.
+        assert_eq!(within.map(|image| [image.width(), image.height()]), picture.then_some([24, 12]));
         let mut open = Vec::new();
         for tag in text.split('<').skip(1) {
             let (tag, rest) = tag.split_once('>').unwrap();
