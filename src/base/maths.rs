@@ -25,6 +25,20 @@ pub fn powi(base: f64, exponent: u32) -> f64 {
     (0..exponent).fold(1.0, |product, _| product * base)
 }
 
+/// A whole power of ten.
+pub fn ten_to(power: i32) -> f64 {
+    let size = powi(10.0, power.unsigned_abs());
+    if power < 0 { 1.0 / size } else { size }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above `most`, for scales and legends: from a millionth to 50
+/// million. `None` if `most` is smaller, or no number.
+pub fn nice(most: f64) -> Option<f64> {
+    // What was computed to be as large as a round number may be smaller by an error of floating point.
+    let reach = most * 1.000_001;
+    (-6..8).flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * ten_to(power))).rfind(|&n| n <= reach)
+}
+
 /// The natural logarithm of a positive, normal number to within 1e-13 (0 gives some finite number): arithmetic alone, so
 /// that the compiler vectorises loops over it, with the same bits everywhere. Outside such loops use [`ln`].
 #[inline(always)]
@@ -50,6 +64,23 @@ pub fn ln_in_loops(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nice_numbers_are_not_above() {
+        for (most, nice_one) in [
+            (1.0, Some(1.0)),
+            (4.999_99, Some(2.0)),
+            (4.999_999, Some(5.0)),
+            (0.03, Some(0.02)),
+            (2903.0, Some(2000.0)),
+            (1e-6, Some(1e-6)),
+            (9e-7, None),
+            (f64::INFINITY, Some(5e7)),
+            (f64::NAN, None),
+        ] {
+            assert_eq!(nice(most), nice_one, "{most}");
+        }
+    }
 
     #[test]
     fn the_logarithm_of_loops_is_the_logarithm() {

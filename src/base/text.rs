@@ -11,6 +11,13 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     text.chars().map(|c| if steers(c) { c.escape_unicode().to_string() } else { c.to_string() }).collect()
 }
 
+/// `value` with so many decimals (at least one) at most, and no needless zeros.
+pub fn short(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
 /// A number of bytes, in a unit that fits: `1.2 MB`.
 pub fn bytes(count: u64) -> String {
     let units = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
@@ -73,6 +80,22 @@ mod tests {
             [(0, "just now"), (59, "59 s ago"), (60, "1 min ago"), (7200, "2 h ago"), (172_800, "2 days ago")]
         {
             assert_eq!(ago(seconds * 1000), text);
+        }
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, decimals, text) in [
+            (150.0, 1, "150"),
+            (2.5, 3, "2.5"),
+            (0.12345, 3, "0.123"),
+            (1e-6, 6, "0.000001"),
+            (-0.004, 2, "0"),
+            (-0.0, 1, "0"),
+            (-0.006, 2, "-0.01"),
+            (f64::INFINITY, 2, "inf"),
+        ] {
+            assert_eq!(short(value, decimals), text);
         }
     }
 

@@ -3,9 +3,10 @@
 
 use kurbo::{Point, Rect, Vec2};
 
-use crate::base::maths::atan2;
+use crate::base::maths::{atan2, nice};
 use crate::base::oklab::hue;
 use crate::base::pixels::Frame;
+use crate::base::text::short;
 use crate::layers::parts::marks::{self, Dot, Shape, View};
 use crate::layers::parts::readout::{VectorField, vector};
 use crate::render::overlay::overlay;
@@ -64,6 +65,8 @@ const ARROWS: f64 = 42.0;
 const MARGIN: f64 = 14.0;
 /// Below the picture, for the legend.
 const LEGEND: f64 = 62.0;
+/// A length of the legend where no round one fits.
+const SHORTEST: f64 = 1e-6;
 const INK: [u8; 4] = [60, 64, 72, 255];
 
 /// A jump vector at the centre of a pixel.
@@ -248,30 +251,18 @@ fn legend(at: Point, stretch: f64, longest: f64, scale: f64, marks: &mut Vec<Mar
         marks.push(fill(ring.map(|v| wheel + v).to_vec(), [r, g, b, 255]));
     }
     if longest > 0.0 {
-        let jump = round_below(longest.min(90.0 / stretch));
+        let jump = nice(longest.min(90.0 / stretch)).unwrap_or(SHORTEST);
         let from = at + Vec2::new(66.0, 6.0);
         let vector = Vec2::new(jump * stretch, 0.0);
         draw_arrow(from, vector, 20.0, marks);
-        letters::write(&format!("jump {} px", number(jump)), from + Vec2::new(0.0, -12.0), INK, marks);
+        letters::write(&format!("jump {} px", short(jump, 6)), from + Vec2::new(0.0, -12.0), INK, marks);
     }
-    let distance = round_below(90.0 / scale);
+    let distance = nice(90.0 / scale).unwrap_or(SHORTEST);
     let from = at + Vec2::new(200.0, 6.0);
     let to = from + Vec2::new(distance * scale, 0.0);
     let tick = Vec2::new(0.0, 4.0);
     marks.push(line(vec![from - tick, from + tick], 1.4, INK));
     marks.push(line(vec![to - tick, to + tick], 1.4, INK));
     marks.push(line(vec![from, to], 1.4, INK));
-    letters::write(&format!("picture {} px", number(distance)), from + Vec2::new(0.0, -12.0), INK, marks);
-}
-
-/// The largest 1, 2 or 5 times a power of ten that is not above `most`.
-fn round_below(most: f64) -> f64 {
-    let powers = std::iter::successors(Some(1e-6), |p| Some(p * 10.0)).take(14);
-    let all = powers.flat_map(|p| [p, 2.0 * p, 5.0 * p]);
-    all.filter(|&r| r <= most * 1.000_001).fold(1e-6, f64::max)
-}
-
-fn number(value: f64) -> String {
-    let text = format!("{value:.6}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    letters::write(&format!("picture {} px", short(distance, 6)), from + Vec2::new(0.0, -12.0), INK, marks);
 }

@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 
 use super::{FAINT, Mark, Plot};
 use crate::base::error::{Error, Result};
-use crate::base::text::hex;
+use crate::base::text::{self, hex};
 use crate::export::still;
 
 /// The plot as an SVG document.
@@ -56,8 +56,7 @@ fn draw(mark: &Mark, text: &mut String) {
     *text += "/>\n";
 }
 
-/// Two decimals at most.
+/// Coordinates to a hundredth of a pixel.
 fn short(value: f64) -> String {
-    let text = format!("{value:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    text::short(value, 2)
 }

@@ -79,10 +79,3 @@ fn nothing_reaches_out_of_the_picture() {
     assert!((0..image.width()).all(|x| image.get_pixel(x, 5).0 == [255; 4]));
     assert!((0..image.height()).all(|y| image.get_pixel(5, y).0 == [255; 4]));
 }
-
-#[test]
-fn round_lengths() {
-    for (most, round) in [(7.3, 5.0), (1.0, 1.0), (0.034, 0.02), (250.0, 200.0)] {
-        assert!((round_below(most) / round - 1.0).abs() < 1e-9, "{most}: {}", round_below(most));
-    }
-}

@@ -8,6 +8,7 @@ use super::looks::{STILL, ZONE_OUTLINE};
 use super::model::{PictureLayer, Zone};
 use super::outline::{Node, bezier, point, vector};
 use super::tools::Tool;
+use crate::base::text::short;
 use crate::layers::parts::marks::{Look, Mark, Shape, View};
 
 /// The marks of a layer that need no synthesis.
@@ -79,7 +80,7 @@ impl Drawing<'_> {
             self.add(&JUMP, &at, Shape::Arrow(anchor.at, anchor.at + anchor.jump));
             self.add(&ANCHOR, &at, Shape::Dot(anchor.at));
             if labels {
-                let text = format!("{number}{}, {}", short(anchor.jump.x), short(anchor.jump.y));
+                let text = format!("{number}{}, {}", short(anchor.jump.x, 2), short(anchor.jump.y, 2));
                 self.add(&ANCHOR, &at, Shape::Label(anchor.at, text));
             }
         }
@@ -112,12 +113,6 @@ impl Drawing<'_> {
             }
         }
     }
-}
-
-/// A number with at most two decimals.
-fn short(number: f64) -> String {
-    let text = format!("{number:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// The open curve through nodes as a line, to within a twentieth of a pixel.

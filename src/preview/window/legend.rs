@@ -9,13 +9,16 @@ use super::canvas::Canvas;
 use super::state::State;
 use super::style::{MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::text::{Letters, Text};
-use crate::base::maths::{TAU, cos, pow, sin};
+use crate::base::maths::{TAU, cos, nice, sin};
+use crate::base::text::short;
 use crate::layers::parts::marks::{VECTORS, vector_color};
 
 /// Radius of the wheel of colors and of its dots, in logical pixels, and how many rings it has.
 const WHEEL_PX: f64 = 34.0;
 const DOT_PX: f64 = 2.6;
 const RINGS: u32 = 6;
+/// The longest arrow.
+const LONGEST_PX: f64 = 90.0;
 /// Between an arrow and its text.
 const GAP_PX: f64 = 12.0;
 
@@ -55,7 +58,7 @@ struct Wheel {
 impl Wheel {
     fn new(state: &State, letters: &Letters) -> Wheel {
         let scale = state.scale;
-        let text = letters.line(&format!("{} px", rounded(state.longest)), TEXT_PX * scale);
+        let text = letters.line(&format!("{} px", short(state.longest, 1)), TEXT_PX * scale);
         let width = (2.0 * WHEEL_PX * scale).max(text.width) + 2.0 * MARGIN_PX * scale;
         let size = Size::new(width, (2.0 * WHEEL_PX + TEXT_PX + 3.0 * MARGIN_PX) * scale);
         Wheel { text, size }
@@ -91,9 +94,9 @@ impl ScaleBar {
     fn new(state: &State, letters: &Letters) -> Option<ScaleBar> {
         let scale = state.scale;
         let screen_from_jump = state.arrow_scale * state.camera.zoom / scale;
-        let jump = round_length(screen_from_jump)?;
+        let jump = nice(LONGEST_PX / screen_from_jump)?;
         let length = jump * screen_from_jump * scale;
-        let text = format!("{jump} px   one every {} px", rounded(state.field_spacing()));
+        let text = format!("{jump} px   one every {} px", short(state.field_spacing(), 1));
         let text = letters.line(&text, TEXT_PX * scale);
         let size = Size::new(length + text.width + (GAP_PX + 2.0 * MARGIN_PX) * scale, 20.0 * scale);
         Some(ScaleBar { length, text, size })
@@ -109,28 +112,9 @@ impl ScaleBar {
     }
 }
 
-/// A length with at most one decimal.
-fn rounded(length: f64) -> f64 {
-    (length * 10.0).round() / 10.0
-}
-
-/// The largest of 1, 2, 5, 10, 20 ... pixels that is at most 90 logical pixels long on the screen.
-fn round_length(screen_from_jump: f64) -> Option<f64> {
-    let steps = (-2..7).flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * pow(10.0, f64::from(power))));
-    steps.filter(|length| length * screen_from_jump <= 90.0).reduce(f64::max)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_scale_bar_has_a_round_length_that_fits() {
-        for (screen_from_jump, length) in [(1.0, 50.0), (0.9, 100.0), (8.0, 10.0), (0.031, 2000.0)] {
-            assert_eq!(round_length(screen_from_jump), Some(length), "{screen_from_jump}");
-        }
-        assert_eq!(round_length(f64::NAN), None);
-    }
 
     #[test]
     fn legends_stand_beside_or_above_one_another_within_the_window_or_not_at_all() {

@@ -1,11 +1,11 @@
 //! The cell under the cursor and the selected rows: entries, choices, steps.
 
-use crate::tui::text::numbers::step_of;
 use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::add_here;
 use super::{life, messages};
+use crate::base::maths::ten_to;
 use crate::base::problem;
 use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
@@ -210,7 +210,7 @@ fn step(state: &mut State, call: &Call) -> Done {
     if !cell.is_number() {
         return Err(format!("{} is no number: only numbers step (Enter opens it)", cell.field.name));
     }
-    let unit = step_of(state.typing.step);
+    let unit = ten_to(state.typing.step);
     let edit = entry::each(state, |_, cell, _| {
         Ok(numbers::tidy(cell.number(state.document()).unwrap_or(0.0) + by as f64 * unit))
     })?;
@@ -227,6 +227,6 @@ fn step_size(state: &mut State, call: &Call) -> Done {
         _ => call.text.parse().map_err(|_| unknown(call, "step-size takes smaller, larger or a power of ten"))?,
     };
     state.typing.step = power.clamp(-3, 3);
-    state.say(format!("step {}", step_of(state.typing.step)));
+    state.say(format!("step {}", ten_to(state.typing.step)));
     Ok(())
 }

@@ -6,11 +6,12 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::write;
+use crate::base::maths::ten_to;
 use crate::layers::technique::Technique;
 use crate::scene::words::item_of;
 use crate::tui::document::tree;
 use crate::tui::state::{Mode, Pane, State};
-use crate::tui::text::numbers::{short, step_of};
+use crate::tui::text::numbers::short;
 use crate::tui::text::wrap::{clipped, width};
 
 /// Draws it.
@@ -91,7 +92,7 @@ fn right(state: &State) -> String {
     } else if let Some(ms) = state.picture.synth_ms {
         parts.push(format!("field {ms:.0} ms"));
     }
-    parts.push(format!("step {}", short(step_of(state.typing.step))));
+    parts.push(format!("step {}", short(ten_to(state.typing.step))));
     if let Some((x, y)) = state.outside.pointer {
         parts.push(format!("at {}, {}", short(x), short(y)));
     }

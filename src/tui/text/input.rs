@@ -83,8 +83,7 @@ impl Text {
         let (comma, minus) = (self.value().contains(','), self.value().contains('−'));
         let text = self.value().replace(',', ".").replace('−', "-");
         let Some((decimals, place)) = digit_at(&text, self.cursor()) else { return false };
-        let power = maths::powi(10.0, place.unsigned_abs());
-        let unit = if place >= 0 { power } else { 1.0 / power };
+        let unit = maths::ten_to(place);
         let Ok(value) = text.trim().parse::<f64>() else { return false };
         let stepped = format!("{:.decimals$}", value + steps as f64 * unit);
         let nothing = stepped.strip_prefix('-').filter(|rest| rest.bytes().all(|b| b"0.".contains(&b)));

@@ -3,20 +3,18 @@
 
 use kurbo::Vec2;
 
-use crate::base::maths;
+use crate::base::{maths, text};
 
 /// The most decimals that a table shows; an entry shows all of them.
 const DECIMALS: usize = 3;
 
 /// `value` with at most three decimals and no needless zeros.
 pub fn short(value: f64) -> String {
-    let text = format!("{value:.DECIMALS$}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".into() } else { text.into() }
+    text::short(value, DECIMALS)
 }
 
 /// `value` as a table shows what stands in the file: whole where three decimals say all of it, else rounded, with a mark
-/// that says so.
+/// that says so: a cell is edited, and whoever reads `0.123` would take that for what is in the file.
 pub fn shown(value: f64) -> String {
     const LONGEST: usize = 12;
     let text = short(value);
@@ -83,12 +81,6 @@ pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
 pub fn tidy(value: f64) -> f64 {
     let rounded = (value * 1e9).round() / 1e9;
     if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
-}
-
-/// The step of a power of ten.
-pub fn step_of(power: i32) -> f64 {
-    let size = maths::powi(10.0, power.unsigned_abs());
-    if power < 0 { 1.0 / size } else { size }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
+use crate::base::text::short;
 use crate::layers::technique::Turned;
 
 mod outlines;
@@ -56,6 +57,5 @@ fn pair(p: impl Into<(f64, f64)>) -> Value {
 
 /// A number for messages.
 fn told(x: f64) -> String {
-    let text = format!("{x:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    short(x, 2)
 }
