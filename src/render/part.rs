@@ -34,7 +34,7 @@ impl Part {
     }
 
     /// Width and height of what is visible, in pixels of the picture.
-    pub fn seen(&self) -> Vec2 {
+    pub fn extent(&self) -> Vec2 {
         Vec2::new(self.dots.0 as f64, self.dots.1 as f64) * self.scale
     }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::graphics::Shown;
+use super::graphics::TerminalPicture;
 use super::graphics::probed::Probed;
 use crate::preview::editor;
 use crate::render::Synth;
@@ -32,7 +32,7 @@ pub enum Event {
     /// What a pixel does.
     Probed(Arc<Probed>),
     /// A picture is there.
-    Framed(Arc<Shown>),
+    Picture(Arc<TerminalPicture>),
     /// Long work has got on.
     Progress(String),
     /// Long work has ended; what it said last.

@@ -136,7 +136,7 @@ fn times(state: &State) -> Vec<String> {
 
 /// What stands on the right, as much of it as fits: the least important goes first.
 fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
-    let percent = state.camera.zoom * 100.0;
+    let percent = state.viewport.zoom * 100.0;
     let percent = if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 };
     let mut parts: Vec<(u8, String)> = Vec::new();
     parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));

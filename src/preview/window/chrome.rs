@@ -48,7 +48,7 @@ fn border(canvas: &mut Canvas, state: &State) {
 /// A cross at the point that was marked last.
 fn marked(canvas: &mut Canvas, state: &State) {
     let Some(at) = state.marked else { return };
-    let (at, scale) = (state.camera.screen_from_image(at, state.area()), state.scale);
+    let (at, scale) = (state.viewport.screen_from_image(at, state.area()), state.scale);
     canvas.with_halo(|c| {
         for way in [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, -1.0)] {
             c.line(at + way * 3.0 * scale, at + way * 11.0 * scale, 1.5 * scale, ACCENT);

@@ -6,11 +6,11 @@ use std::rc::Rc;
 
 use kurbo::{Point, Rect, Size, Vec2};
 
-use super::camera::Camera;
 use super::canvas::Canvas;
 use super::marks::color_of;
 use super::stroke::Color;
 use super::text::{Letters, Text};
+use super::viewport::Viewport;
 use crate::layers::parts::marks::{Mark, Shape};
 
 const LABEL_PX: f64 = 8.0;
@@ -30,9 +30,9 @@ const SIDES: [(f64, f64); 8] =
     [(1.0, -1.0), (1.0, 0.0), (1.0, 1.0), (0.0, -1.0), (0.0, 1.0), (-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0)];
 
 /// Draws the labels among marks, those of what is selected first. One that finds no room waits until there is some.
-pub fn draw(marks: &[Mark], camera: &Camera, area: Size, scale: f64, letters: &Letters) -> Canvas {
+pub fn draw(marks: &[Mark], viewport: &Viewport, area: Size, scale: f64, letters: &Letters) -> Canvas {
     let mut canvas = Canvas::default();
-    let screen = |at: Point| camera.screen_from_image(at, area);
+    let screen = |at: Point| viewport.screen_from_image(at, area);
     let labels = found(marks, &screen, area, scale, letters);
     if labels.is_empty() {
         return canvas;
@@ -168,8 +168,8 @@ impl Taken {
 
 #[cfg(test)]
 mod tests {
-    use super::super::camera::Fit;
     use super::super::stroke::BOX;
+    use super::super::viewport::Fit;
     use super::*;
     use crate::layers::parts::marks::Look;
 
@@ -191,9 +191,9 @@ mod tests {
 
     /// Where the labels stand.
     fn boxes(marks: &[Mark]) -> Vec<Rect> {
-        let mut camera = Camera::default();
-        camera.fit(AREA, AREA, Fit::Window);
-        let canvas = draw(marks, &camera, AREA, 1.0, &Letters::default());
+        let mut viewport = Viewport::default();
+        viewport.fit(AREA, AREA, Fit::Window);
+        let canvas = draw(marks, &viewport, AREA, 1.0, &Letters::default());
         let rect = |s: &super::super::stroke::Stroke| {
             let [x0, y0, x1, y1] = [s.a[0], s.a[1], s.b[0], s.b[1]].map(f64::from);
             Rect::new(x0, y0, x1, y1)

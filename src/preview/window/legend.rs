@@ -93,7 +93,7 @@ struct ScaleBar {
 impl ScaleBar {
     fn new(state: &State, letters: &Letters) -> Option<ScaleBar> {
         let scale = state.scale;
-        let screen_from_jump = state.arrow_scale * state.camera.zoom / scale;
+        let screen_from_jump = state.arrow_scale * state.viewport.zoom / scale;
         let jump = nice(LONGEST_PX / screen_from_jump)?;
         let length = jump * screen_from_jump * scale;
         let text = format!("{jump} px   one every {} px", short(state.field_spacing(), 1));

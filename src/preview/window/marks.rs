@@ -2,9 +2,9 @@
 
 use kurbo::{Point, Rect, Size, Vec2};
 
-use super::camera::Camera;
 use super::canvas::Canvas;
 use super::stroke::Color;
+use super::viewport::Viewport;
 use crate::base::geometry::Polygon;
 use crate::layers::parts::marks::{Dot, FILL_ALPHA, Look, Mark, SELECTED, SELECTED_GROWTH, Shape};
 
@@ -16,24 +16,24 @@ const GRID_ZOOM: f64 = 8.0;
 const GRID: Color = [255, 255, 255, 28];
 
 /// Draws marks; their labels are drawn apart, over all of them.
-pub fn draw(marks: &[Mark], camera: &Camera, area: Size, scale: f64) -> Canvas {
+pub fn draw(marks: &[Mark], viewport: &Viewport, area: Size, scale: f64) -> Canvas {
     let mut canvas = Canvas::default();
-    let painter = Painter { camera, area, scale };
+    let painter = Painter { viewport, area, scale };
     marks.iter().for_each(|mark| painter.mark(&mut canvas, mark));
     canvas
 }
 
 /// Draws the borders of the picture's pixels, where they are large enough.
-pub fn grid(canvas: &mut Canvas, picture: Size, camera: &Camera, area: Size) {
-    if camera.zoom < GRID_ZOOM {
+pub fn grid(canvas: &mut Canvas, picture: Size, viewport: &Viewport, area: Size) {
+    if viewport.zoom < GRID_ZOOM {
         return;
     }
     let seen = Rect::from_points(
-        camera.image_from_screen(Point::ZERO, area),
-        camera.image_from_screen((area.width, area.height).into(), area),
+        viewport.image_from_screen(Point::ZERO, area),
+        viewport.image_from_screen((area.width, area.height).into(), area),
     );
     let seen = seen.intersect(picture.to_rect()).expand();
-    let screen = |x: f64, y: f64| camera.screen_from_image(Point::new(x, y), area);
+    let screen = |x: f64, y: f64| viewport.screen_from_image(Point::new(x, y), area);
     for x in seen.x0 as i64..=seen.x1 as i64 {
         canvas.line(screen(x as f64, seen.y0), screen(x as f64, seen.y1), 1.0, GRID);
     }
@@ -43,14 +43,14 @@ pub fn grid(canvas: &mut Canvas, picture: Size, camera: &Camera, area: Size) {
 }
 
 struct Painter<'a> {
-    camera: &'a Camera,
+    viewport: &'a Viewport,
     area: Size,
     scale: f64,
 }
 
 impl Painter<'_> {
     fn screen(&self, at: Point) -> Point {
-        self.camera.screen_from_image(at, self.area)
+        self.viewport.screen_from_image(at, self.area)
     }
 
     fn seen(&self, points: &[Point]) -> bool {
@@ -131,16 +131,16 @@ pub fn color_of(mark: &Mark) -> Color {
 
 #[cfg(test)]
 mod tests {
-    use super::super::camera::Fit;
+    use super::super::viewport::Fit;
     use super::*;
 
     static LOOK: Look = Look::new("dashed", 0, [240, 160, 40, 255], 1.6).dashed(6.0, 4.0).dots(Dot::Square, 3.0);
     const AREA: Size = Size::new(200.0, 100.0);
 
-    fn camera() -> Camera {
-        let mut camera = Camera::default();
-        camera.fit(AREA, AREA, Fit::Window);
-        camera
+    fn viewport() -> Viewport {
+        let mut viewport = Viewport::default();
+        viewport.fit(AREA, AREA, Fit::Window);
+        viewport
     }
 
     fn mark(shape: Shape, selected: bool) -> Mark {
@@ -148,7 +148,7 @@ mod tests {
     }
 
     fn strokes(shape: Shape, selected: bool) -> usize {
-        draw(&[mark(shape, selected)], &camera(), AREA, 1.0).strokes.len()
+        draw(&[mark(shape, selected)], &viewport(), AREA, 1.0).strokes.len()
     }
 
     #[test]
@@ -161,17 +161,17 @@ mod tests {
     #[test]
     fn what_fades_is_less_opaque_and_cells_stand_on_whole_pixels() {
         let faint = Mark { strength: 0.5, ..mark(Shape::Dot(Point::new(50.0, 50.0)), false) };
-        let canvas = draw(&[faint], &camera(), AREA, 1.0);
+        let canvas = draw(&[faint], &viewport(), AREA, 1.0);
         assert_eq!(canvas.strokes.last().unwrap().color[3], 128);
         let cell = mark(Shape::Cell(Point::new(50.3, 50.0), 4.5, [9; 4]), false);
-        let canvas = draw(&[cell], &camera(), AREA, 1.0);
+        let canvas = draw(&[cell], &viewport(), AREA, 1.0);
         assert_eq!((canvas.strokes[0].a, canvas.strokes[0].b), ([48.0, 48.0], [53.0, 52.0]));
     }
 
     #[test]
     fn hatches_stay_inside() {
         let polygon = vec![(20.0, 20.0).into(), (60.0, 20.0).into(), (60.0, 60.0).into(), (20.0, 60.0).into()];
-        let canvas = draw(&[mark(Shape::Fill(polygon), false)], &camera(), AREA, 1.0);
+        let canvas = draw(&[mark(Shape::Fill(polygon), false)], &viewport(), AREA, 1.0);
         assert!(canvas.strokes.len() > 5);
         let inside = |p: [f32; 2]| p.iter().all(|c| (19.9..=60.1).contains(c));
         assert!(canvas.strokes.iter().all(|s| inside(s.a) && inside(s.b)));
@@ -180,9 +180,9 @@ mod tests {
     #[test]
     fn the_grid_waits_until_pixels_are_large() {
         let mut canvas = Canvas::default();
-        grid(&mut canvas, Size::new(4.0, 4.0), &camera(), AREA);
+        grid(&mut canvas, Size::new(4.0, 4.0), &viewport(), AREA);
         assert!(canvas.strokes.is_empty());
-        let mut near = Camera::default();
+        let mut near = Viewport::default();
         near.fit(Size::new(4.0, 4.0), AREA, Fit::Window);
         grid(&mut canvas, Size::new(4.0, 4.0), &near, AREA);
         assert_eq!(canvas.strokes.len(), 10);

@@ -17,7 +17,6 @@ use crate::base::error::{Error, Result};
 
 mod app;
 mod bar;
-mod camera;
 mod canvas;
 mod chrome;
 mod clock;
@@ -43,6 +42,7 @@ mod stroke;
 mod style;
 mod text;
 mod transport;
+mod viewport;
 mod words;
 mod worker;
 #[cfg_attr(any(not(unix), target_os = "macos"), path = "x11_none.rs")]

@@ -187,7 +187,7 @@ mod tests {
     fn what_is_pressed_is_what_is_moved() {
         let now = Instant::now();
         let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
-        let place = |state: &State| state.camera.origin(state.area());
+        let place = |state: &State| state.viewport.origin(state.area());
         let origin = place(&state);
         let across = [(100.0, 100.0), (150.0, 110.0)];
         assert_eq!(drag(&mut mouse, &mut state, Button::Left, &across, now), Asked::Nothing);
@@ -237,7 +237,7 @@ mod tests {
             (&[-3.0], 50),
         ] {
             turns.iter().for_each(|&steps| mouse.turned(&mut state, steps));
-            assert_eq!((state.camera.zoom * 100.0).round() as i32, percent, "{turns:?}");
+            assert_eq!((state.viewport.zoom * 100.0).round() as i32, percent, "{turns:?}");
         }
     }
 

@@ -18,7 +18,7 @@ impl State {
     /// Pixels of the picture between two of those whose jump vectors are shown, when they are about `px` logical pixels
     /// of the screen apart: a power of two.
     fn spacing(&self, px: f64) -> f64 {
-        let wanted = px * self.scale / self.camera.zoom;
+        let wanted = px * self.scale / self.viewport.zoom;
         (0..24).map(|k| f64::from(1 << k)).find(|&s| s >= wanted).unwrap_or(wanted)
     }
 
@@ -77,7 +77,7 @@ mod tests {
         let mut state = State::for_tests();
         state.run("view-field");
         for _ in 0..16 {
-            let on_screen = state.fixed_view().spacing_px * state.camera.zoom;
+            let on_screen = state.fixed_view().spacing_px * state.viewport.zoom;
             assert!(on_screen >= FIELD_PX, "{on_screen}");
             state.run("zoom-out");
         }

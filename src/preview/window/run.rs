@@ -2,8 +2,8 @@
 
 use kurbo::Vec2;
 
-use super::camera::Fit;
 use super::state::{Panel, State};
+use super::viewport::Fit;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::views::{self, FIELD};
 
@@ -56,9 +56,9 @@ impl State {
             "mark-point" => self.marked = self.pointed(),
             "zoom-in" => self.zoom(1, about),
             "zoom-out" => self.zoom(-1, about),
-            "zoom-fit" => self.camera.fit(self.picture, area, Fit::Window),
-            "zoom-whole" => self.camera.fit(self.picture, area, Fit::Whole),
-            "zoom-one" => self.camera.one(self.picture, area),
+            "zoom-fit" => self.viewport.fit(self.picture, area, Fit::Window),
+            "zoom-whole" => self.viewport.fit(self.picture, area, Fit::Whole),
+            "zoom-one" => self.viewport.one(self.picture, area),
             "pan-left" => self.pan(pan(-1.0, 0.0)),
             "pan-right" => self.pan(pan(1.0, 0.0)),
             "pan-up" => self.pan(pan(0.0, -1.0)),

@@ -365,8 +365,8 @@ fn uniform(state: &State, Pictures { frame, scale, .. }: &Pictures) -> ScreenUni
         let [r, g, b, _] = color.map(|code| linear_from_srgb(f64::from(code) / 255.0) as f32);
         [r, g, b, 1.0]
     };
-    let origin = state.camera.origin(state.area());
-    let zoom = state.camera.zoom / scale;
+    let origin = state.viewport.origin(state.area());
+    let zoom = state.viewport.zoom / scale;
     let checks = if state.shows("view-checkerboard") { [LIGHT, DARK] } else { [GROUND; 2] };
     ScreenUniform {
         size: [state.window.width as f32, state.window.height as f32],

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use kurbo::{Point, Size, Vec2};
 
-use super::camera::Camera;
 use super::canvas::Canvas;
 use super::state::State;
 use super::text::Letters;
+use super::viewport::Viewport;
 use super::{labels, marks};
 use crate::layers::parts::marks::View;
 use crate::render::Synth;
@@ -84,7 +84,7 @@ pub struct Cached {
 /// Everything but the overlays that strokes depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Sight {
-    camera: Camera,
+    viewport: Viewport,
     window: Size,
     scale: f64,
     grid: bool,
@@ -96,9 +96,9 @@ struct Sight {
 impl Cached {
     /// Makes the strokes again where anything that they show has changed.
     pub fn follow(&mut self, state: &State, show: &Show, letters: &Letters) {
-        let camera = state.camera.clone();
+        let viewport = state.viewport.clone();
         let (window, scale, grid) = (state.window, state.scale, state.shows("view-grid"));
-        let sight = Sight { camera, window, scale, grid, revision: self.revision, letters: letters.generation() };
+        let sight = Sight { viewport, window, scale, grid, revision: self.revision, letters: letters.generation() };
         let (fixed, moving) = (Some((state.fixed_view(), sight.clone())), Some((state.moving_view(), sight)));
         if self.made_for != fixed {
             self.made_for = fixed;
@@ -107,7 +107,7 @@ impl Cached {
         if self.moved_for != moving {
             self.moved_for = moving;
             let found = overlay(&show.scene, Some(&show.synth), &state.moving_view());
-            self.moving = marks::draw(&found, &state.camera, state.area(), state.scale);
+            self.moving = marks::draw(&found, &state.viewport, state.area(), state.scale);
         }
     }
 
@@ -116,10 +116,10 @@ impl Cached {
         let found = overlay(&show.scene, Some(&show.synth), &view);
         self.fixed = Canvas::default();
         if state.shows("view-grid") {
-            marks::grid(&mut self.fixed, state.picture, &state.camera, state.area());
+            marks::grid(&mut self.fixed, state.picture, &state.viewport, state.area());
         }
-        self.fixed.strokes.extend(marks::draw(&found, &state.camera, state.area(), state.scale).strokes);
-        self.labels = labels::draw(&found, &state.camera, state.area(), state.scale, letters);
+        self.fixed.strokes.extend(marks::draw(&found, &state.viewport, state.area(), state.scale).strokes);
+        self.labels = labels::draw(&found, &state.viewport, state.area(), state.scale, letters);
         let legends = state.shows("view-field") || state.shows("view-wheel");
         self.longest = if legends { longest(&show.synth) } else { 0.0 };
         self.arrow_scale = View { longest_px: self.longest, ..view }.arrow_scale();

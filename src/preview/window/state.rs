@@ -2,8 +2,8 @@
 
 use kurbo::{Point, Size, Vec2};
 
-use super::camera::{Camera, Fit};
 use super::transport::Transport;
+use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
@@ -21,7 +21,7 @@ pub struct State {
     /// Size of the picture, in its pixels.
     pub picture: Size,
     /// Zoom and place.
-    pub camera: Camera,
+    pub viewport: Viewport,
     /// Playing.
     pub transport: Transport,
     /// The scene's timeline.
@@ -74,7 +74,7 @@ impl Default for State {
             window: Size::ZERO,
             scale: 1.0,
             picture: Size::ZERO,
-            camera: Camera::default(),
+            viewport: Viewport::default(),
             transport: Transport::default(),
             timeline: Timeline::default(),
             switches: Switches::default(),
@@ -114,16 +114,16 @@ impl State {
     /// Takes a new size of the window.
     pub fn resize(&mut self, window: Size, scale: f64) {
         (self.window, self.scale) = (window, scale);
-        self.camera.resized(self.picture, self.area());
+        self.viewport.resized(self.picture, self.area());
     }
 
     /// Takes the size of a new picture and its timeline.
     pub fn load(&mut self, picture: Size, timeline: &Timeline) {
         let before = std::mem::replace(&mut self.picture, picture);
         if before == Size::ZERO {
-            self.camera.first(picture, self.area());
+            self.viewport.first(picture, self.area());
         } else if before != picture {
-            self.camera.fit(picture, self.area(), Fit::Window);
+            self.viewport.fit(picture, self.area(), Fit::Window);
         }
         self.timeline = timeline.clone();
         self.transport.follow(timeline);
@@ -139,29 +139,29 @@ impl State {
 
     /// Zooms by steps about a place on the screen.
     pub fn zoom(&mut self, steps: i32, about: Point) {
-        self.camera.zoom_step(steps, about, self.picture, self.area());
+        self.viewport.zoom_step(steps, about, self.picture, self.area());
     }
 
     /// Moves what is seen by a distance on the screen.
     pub fn pan(&mut self, by: Vec2) {
-        self.camera.pan(by, self.picture, self.area());
+        self.viewport.pan(by, self.picture, self.area());
     }
 
     /// The place in the picture under the pointer; `None` if the pointer is not on the picture.
     pub fn pointed(&self) -> Option<Point> {
-        let at = self.camera.image_from_screen(self.pointer.filter(|p| p.y < self.area().height)?, self.area());
+        let at = self.viewport.image_from_screen(self.pointer.filter(|p| p.y < self.area().height)?, self.area());
         self.picture.to_rect().contains(at).then_some(at)
     }
 
     /// Puts the border between still and moving at a place on the screen.
     pub fn drag_wipe(&mut self, x: f64) {
-        let at = self.camera.image_from_screen(Point::new(x, 0.0), self.area()).x;
+        let at = self.viewport.image_from_screen(Point::new(x, 0.0), self.area()).x;
         self.wipe = (at / self.picture.width.max(1.0)).clamp(0.0, 1.0);
     }
 
     /// Where the border between still and moving stands on the screen, if it is shown.
     pub fn wipe_at(&self) -> Option<f64> {
-        let at = self.camera.screen_from_image(Point::new(self.picture.width * self.wipe, 0.0), self.area());
+        let at = self.viewport.screen_from_image(Point::new(self.picture.width * self.wipe, 0.0), self.area());
         (self.shows("view-wipe") && !self.shows("view-seam")).then(|| at.x.round().clamp(0.0, self.window.width))
     }
 
@@ -193,11 +193,11 @@ mod tests {
     fn an_edit_keeps_the_view_and_another_picture_is_fitted() {
         let mut state = State::for_tests();
         state.run("zoom-in");
-        let kept = state.camera.clone();
+        let kept = state.viewport.clone();
         state.load(Size::new(320.0, 200.0), &Timeline::default());
-        assert_eq!(state.camera, kept);
+        assert_eq!(state.viewport, kept);
         state.load(Size::new(100.0, 200.0), &Timeline::default());
-        assert_ne!(state.camera, kept);
+        assert_ne!(state.viewport, kept);
     }
 
     #[test]
@@ -206,7 +206,7 @@ mod tests {
         state.resize(Size::new(640.0, 434.0), 1.0);
         state.run("zoom-one");
         state.load(Size::new(320.0, 200.0), &Timeline::default());
-        assert_eq!((state.camera.zoom, state.camera.center), (1.0, Point::new(160.0, 100.0)));
+        assert_eq!((state.viewport.zoom, state.viewport.center), (1.0, Point::new(160.0, 100.0)));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::add_here;
-use super::{life, messages};
+use super::{conflicts, messages};
 use crate::base::maths::ten_to;
 use crate::base::problem;
 use crate::scene::Edit;
@@ -46,7 +46,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
     let (row, cell) = current(state).ok_or("there is nothing to edit here: o adds an item")?;
     let missing = field::value(state.document(), &cell.pointer).is_none_or(|value| value.is_null());
     if cell.is_node() && missing {
-        state.door.writable()?;
+        state.scene.writable()?;
         return add_here(state, 1);
     }
     // The kind of an item with an inside of its own stands for the item; its form has the kind again.
@@ -55,7 +55,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
         state.show(if into { row.pointer } else { cell.pointer });
         return Ok(());
     }
-    state.door.writable()?;
+    state.scene.writable()?;
     let sheet = state.sheet();
     let others = entry::cells(state, &sheet).iter().map(|(_, cell)| cell.pointer.clone()).collect();
     if is_typed(&cell) {
@@ -191,7 +191,7 @@ fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
             _ => return Err(format!("{pointer} has no kinds")),
         },
         Then::Go => return messages::go_to(state, call, word),
-        Then::Answer(question) => return life::answer(state, question.about, word, choice),
+        Then::Answer(question) => return conflicts::answer(state, question.about, word, choice),
     };
     state.edit(edit, false)?;
     if let Then::Set(_) = &choice.then {

@@ -1,4 +1,4 @@
-//! What a command is, and the one door that lines of them pass. What is not in the table but on the command line of `plica`
+//! What a command is, and the one function that runs a line. What is not in the table but on the command line of `plica`
 //! (render, synth, ...) runs as there, with the same arguments.
 
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use crate::files::paths;
 use crate::ops;
 use crate::tui::events::Effect;
 use crate::tui::state::State;
-use crate::tui::state::recorder::{Ended, Kept};
+use crate::tui::state::recorder::{Ended, Recorded};
 use crate::tui::text::said::{Said, one_of, words};
 
 /// How a command ends: what to say where it could not be done.
@@ -82,15 +82,15 @@ pub struct Command {
     pub args: &'static str,
     /// What it does, in a few words.
     pub help: &'static str,
-    /// What is kept of it: in the log of the session, in macros, for `.`.
-    pub kept: Kept,
+    /// What the recorder notes of it: in the log of the session, in macros, for `.`.
+    pub recorded: Recorded,
     /// Whether it takes a count.
     pub counts: Counts,
     /// Does it.
     pub run: fn(&mut State, &Call) -> Done,
 }
 
-/// Where a command does something with a count: repeats itself, or goes so far. Elsewhere the door refuses one.
+/// Where a command does something with a count: repeats itself, or goes so far. Elsewhere a count is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counts {
     /// Nowhere.
@@ -104,7 +104,7 @@ pub enum Counts {
 impl Command {
     /// One that changes the scene, which `.` repeats.
     pub const fn change(self) -> Command {
-        Command { kept: Kept::Change, ..self }
+        Command { recorded: Recorded::Change, ..self }
     }
 
     /// One that takes a count.
@@ -152,22 +152,22 @@ impl Command {
     /// Whether it would change the scene.
     fn edits(&self, said: &Said) -> bool {
         // `place next` and `place previous` only go to points.
-        self.kept == Kept::Change && !matches!(said.text, "next" | "previous")
+        self.recorded == Recorded::Change && !matches!(said.text, "next" | "previous")
     }
 
     /// One that answers a list of choices.
     pub const fn answer(self) -> Command {
-        Command { kept: Kept::Answer, ..self }
+        Command { recorded: Recorded::Answer, ..self }
     }
 
     /// One that plays lines, which are kept in its place.
     pub const fn played(self) -> Command {
-        Command { kept: Kept::Played, ..self }
+        Command { recorded: Recorded::Played, ..self }
     }
 
     /// One of which only the lines are kept that it runs itself, if any: it types, asks, or only shows.
     pub const fn inside(self) -> Command {
-        Command { kept: Kept::Inside, ..self }
+        Command { recorded: Recorded::Inside, ..self }
     }
 }
 
@@ -178,14 +178,16 @@ pub const fn command(
     help: &'static str,
     run: fn(&mut State, &Call) -> Done,
 ) -> Command {
-    Command { name, args, help, kept: Kept::Line, counts: Counts::Never, run }
+    Command { name, args, help, recorded: Recorded::Line, counts: Counts::Never, run }
 }
 
-/// Other names of commands, as vim has them.
+/// Other names of commands: as vim has them, and as they were called before.
 const ALIASES: &[(&str, &str)] = &[
     ("edit", "e"),
     ("edit!", "e!"),
+    ("fold", "collapse"),
     ("h", "help"),
+    ("open", "expand"),
     ("qa", "q"),
     ("qa!", "q!"),
     ("quit", "q"),
@@ -215,6 +217,11 @@ impl Table {
     pub fn find(&self, name: &str) -> Option<&'static Command> {
         let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
         self.all().find(|command| command.name == name)
+    }
+
+    /// The other names of commands.
+    pub fn aliases(&self) -> impl Iterator<Item = &'static str> {
+        ALIASES.iter().map(|(alias, _)| *alias)
     }
 
     /// Whether a line only saves or leaves.
@@ -253,7 +260,7 @@ impl Table {
         }
     }
 
-    /// Runs a line `[COUNT] NAME [ARGS]`: the one door that keys, what is typed after `:`, scripts, macros and windows pass.
+    /// Runs a line `[COUNT] NAME [ARGS]`: keys, what is typed after `:`, scripts, macros and windows all come here.
     ///
     /// # Errors
     /// What to say where it could not be done.
@@ -268,14 +275,14 @@ impl Table {
         #[cfg(test)]
         crate::tui::tests::coverage::ran(said.name);
         let command = self.find(said.name);
-        let kept = command.map_or(Kept::Line, |command| command.kept);
-        let (revision, asked) = (state.door.revision(), state.typing.mode.asks());
-        state.memory.recorder.begin(kept);
+        let recorded = command.map_or(Recorded::Line, |command| command.recorded);
+        let (revision, asked) = (state.scene.revision(), state.typing.mode.asks());
+        state.memory.recorder.begin(recorded);
         let done = match command {
             Some(command) => command.takes(&said).and_then(|()| {
                 // Nothing is typed or chosen that would be refused at its end.
                 if command.edits(&said) {
-                    state.door.writable()?;
+                    state.scene.writable()?;
                 }
                 (command.run)(state, &Call { text: said.text, count: said.count, table: self })
             }),
@@ -283,16 +290,16 @@ impl Table {
         };
         let asks = state.typing.mode.asks() && !asked;
         // Only a run of steps joins into one step of undo, whatever was looked at meanwhile.
-        if done.is_ok() && !matches!(kept, Kept::Inside | Kept::Played) && !asks && said.name != "step" {
-            state.door.close_step();
+        if done.is_ok() && !matches!(recorded, Recorded::Inside | Recorded::Played) && !asks && said.name != "step" {
+            state.scene.close_step();
         }
         let refused = done.as_ref().err().map(String::as_str);
         state.memory.recorder.end(Ended {
             line: said.to_string(),
-            kept,
+            recorded,
             refused,
             asks,
-            changed: state.door.revision() != revision,
+            changed: state.scene.revision() != revision,
         });
         done
     }

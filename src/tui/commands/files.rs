@@ -20,7 +20,7 @@ pub const COMMANDS: &[Command] = &[
     }),
     command("q", "", "Leave; refused with unsaved edits", quit),
     command("q!", "", "Leave without saving; undo still has the edits", |state, _| {
-        state.door.give_up();
+        state.scene.give_up();
         state.ask(Effect::Quit);
         Ok(())
     }),
@@ -44,7 +44,7 @@ pub const COMMANDS: &[Command] = &[
 ];
 
 fn refuse_unsaved(state: &State, instead: &str) -> Done {
-    if state.door.is_saved() {
+    if state.scene.is_saved() {
         return Ok(());
     }
     Err(format!("there are unsaved edits: :w saves them, {instead} leaves them"))
@@ -52,8 +52,8 @@ fn refuse_unsaved(state: &State, instead: &str) -> Done {
 
 fn save(state: &mut State, call: &Call, overwrite: bool, leave: bool) -> Done {
     let to = call.path()?;
-    if state.door.read_only() && to.is_none() {
-        return state.door.writable();
+    if state.scene.read_only() && to.is_none() {
+        return state.scene.writable();
     }
     state.ask(Effect::Save { to, overwrite, leave });
     Ok(())
@@ -68,7 +68,7 @@ fn quit(state: &mut State, _: &Call) -> Done {
 fn open(state: &mut State, call: &Call) -> Done {
     if let Some(path) = call.path()? {
         state.ask(Effect::Open(path));
-    } else if let Some(change) = state.door.revert().map_err(|error| error.to_string())? {
+    } else if let Some(change) = state.scene.revert().map_err(|error| error.to_string())? {
         state.changed(change);
         state.say("the scene is as its file has it; u takes it back");
     }
@@ -103,8 +103,8 @@ fn image(state: &mut State, call: &Call) -> Done {
     };
     let path = &image.ok_or_else(|| format!("there is no picture {name}: {}", names()))?.path;
     // Nothing is opened that the scene may not name.
-    paths::open(state.door.path(), path, state.door.options()).map_err(|error| error.to_string())?;
-    let path = std::path::absolute(paths::beside(state.door.path(), path)).map_err(|error| error.to_string())?;
+    paths::open(state.scene.path(), path, state.scene.options()).map_err(|error| error.to_string())?;
+    let path = std::path::absolute(paths::beside(state.scene.path(), path)).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(path));
     Ok(())
 }

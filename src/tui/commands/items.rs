@@ -12,7 +12,7 @@ use crate::scene::{Edit, json, pointer};
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::sheet::Cell;
-use crate::tui::state::recorder::Work;
+use crate::tui::state::recorder::WorkLimit;
 use crate::tui::state::{Mode, Pane, State, first};
 use crate::tui::text::line::Line;
 
@@ -236,7 +236,7 @@ fn follow(state: &mut State, list: &str, at: usize, by: i64) {
 
 /// Refuses what would take this much memory beside the scene, before any of it is made.
 pub fn bearable(state: &State, bytes: u64) -> Done {
-    let most = state.door.options().limits.paste.saturating_mul(8);
+    let most = state.scene.options().limits.paste.saturating_mul(8);
     if bytes <= most {
         return Ok(());
     }
@@ -254,7 +254,7 @@ pub fn insert_entries(
     entries: &Map<String, Value>,
     times: usize,
 ) -> Result<Option<(Edit, String)>, String> {
-    let (mut document, mut work) = (state.document().clone(), Work::default());
+    let (mut document, mut work) = (state.document().clone(), WorkLimit::default());
     let (mut edits, mut first_path) = (Vec::new(), None);
     for _ in 0..times {
         work.spend(&document)?;
@@ -285,9 +285,9 @@ fn duplicate(state: &mut State, call: &Call) -> Done {
     let copies = items.iter().cloned().cycle().take(items.len() * times).collect();
     let added = Edit::insert_all(state.document(), &list, to + 1, copies);
     let (edit, path) = added.ok_or("only items of lists are duplicated")?;
-    let revision = state.door.revision();
+    let revision = state.scene.revision();
     state.edit(edit, false)?;
-    if state.door.revision() == revision {
+    if state.scene.revision() == revision {
         return Err("copies of several of these would stand where they do: duplicate them one by one".into());
     }
     match state.cursor.selected_from {

@@ -48,7 +48,7 @@ fn play(state: &mut State, call: &Call) -> Done {
 
 /// Runs a line of several; one that is refused leaves no list open.
 fn repeat(state: &mut State, call: &Call, line: &str) -> Done {
-    state.memory.recorder.spend(state.door.document())?;
+    state.memory.recorder.spend(state.scene.document())?;
     call.obey(state, line).inspect_err(|_| {
         if matches!(state.typing.mode, Mode::Choice(_)) {
             state.typing.mode = Mode::Normal;

@@ -6,7 +6,7 @@ use crate::scene::{address, pointer};
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::plain;
-use crate::tui::text::wrap::folded;
+use crate::tui::text::wrap::wrapped_lines;
 
 pub const COMMANDS: &[Command] = &[
     command("messages", "", "Show what was said before, to its end", messages).inside(),
@@ -18,7 +18,7 @@ pub const COMMANDS: &[Command] = &[
 const WIDTH: u16 = 70;
 
 fn messages(state: &mut State, _: &Call) -> Done {
-    let lines: Vec<String> = state.memory.said.iter().flat_map(|message| folded(&message.text, WIDTH)).collect();
+    let lines: Vec<String> = state.memory.said.iter().flat_map(|message| wrapped_lines(&message.text, WIDTH)).collect();
     if lines.is_empty() {
         return Err("nothing was said yet".into());
     }

@@ -6,6 +6,7 @@ use command::{Command, Done, Table};
 mod cells;
 pub mod command;
 mod completing;
+pub mod conflicts;
 pub mod contexts;
 mod files;
 mod filling;
@@ -13,7 +14,6 @@ mod finding;
 pub mod help;
 mod items;
 mod keymap;
-pub mod life;
 mod macros;
 pub mod manual;
 pub mod messages;
@@ -22,10 +22,10 @@ mod naming;
 pub mod own_keys;
 mod palette;
 pub mod pasting;
+mod picture;
 mod placing;
 mod playing;
 mod scripts;
-mod seeing;
 mod selecting;
 pub mod tutor;
 mod typing;
@@ -52,11 +52,11 @@ pub static TABLE: Table = Table(&[
     messages::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
-    seeing::COMMANDS,
+    picture::COMMANDS,
     typing::COMMANDS,
     scripts::COMMANDS,
     macros::COMMANDS,
-    life::COMMANDS,
+    conflicts::COMMANDS,
     keymap::COMMANDS,
     tutor::COMMANDS,
 ]);

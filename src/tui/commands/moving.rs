@@ -10,8 +10,8 @@ pub const COMMANDS: &[Command] = &[
     command("move", "down|up|left|right|first|last|start|end|page-down|page-up|next", "Move the cursor", go)
         .counted_with(&["down", "up", "left", "right", "first", "last", "page-down", "page-up", "next"]),
     command("pane", "next|previous|tree|table|picture", "Go to another pane", pane).counted_with(&["next", "previous"]),
-    command("fold", "", "Fold the node of the tree, else go to its parent", fold).counted(),
-    command("open", "", "Unfold the node of the tree, else edit it", open).counted(),
+    command("collapse", "", "Collapse the node of the tree, else go to its parent", collapse).counted(),
+    command("expand", "", "Expand the node of the tree, else edit it", expand).counted(),
     command("up", "", "Go to the node that holds this one", up).counted(),
     command("back", "", "End the selection, else running work", back).counted(),
     command("leave", "", "As back, and say how to leave", leave).counted(),
@@ -99,15 +99,15 @@ fn pane(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-fn fold(state: &mut State, call: &Call) -> Done {
-    call.steps().for_each(|_| fold_once(state));
+fn collapse(state: &mut State, call: &Call) -> Done {
+    call.steps().for_each(|_| collapse_once(state));
     Ok(())
 }
 
-fn fold_once(state: &mut State) {
+fn collapse_once(state: &mut State) {
     let rows = tree::rows(state.document(), &state.cursor.collapsed);
     let at = tree::row_of(&rows, &state.cursor.node);
-    if rows[at].folded == Some(false) {
+    if rows[at].collapsed == Some(false) {
         state.cursor.collapsed.insert(rows[at].pointer.clone());
         return;
     }
@@ -115,14 +115,14 @@ fn fold_once(state: &mut State) {
     state.show(rows[parent].pointer.clone());
 }
 
-fn open(state: &mut State, call: &Call) -> Done {
-    call.steps().try_for_each(|_| open_once(state))
+fn expand(state: &mut State, call: &Call) -> Done {
+    call.steps().try_for_each(|_| expand_once(state))
 }
 
-fn open_once(state: &mut State) -> Done {
+fn expand_once(state: &mut State) -> Done {
     let rows = tree::rows(state.document(), &state.cursor.collapsed);
     let at = tree::row_of(&rows, &state.cursor.node);
-    if rows[at].folded == Some(true) {
+    if rows[at].collapsed == Some(true) {
         state.cursor.collapsed.remove(&rows[at].pointer);
         return Ok(());
     }

@@ -4,7 +4,7 @@ use super::command::{Call, Command, Done, command};
 use crate::tui::commands::command::Table;
 use crate::tui::document::palette::{Action, Palette};
 use crate::tui::keys;
-use crate::tui::state::recorder::Kept;
+use crate::tui::state::recorder::Recorded;
 use crate::tui::state::{Mode, State};
 
 pub const COMMANDS: &[Command] = &[
@@ -61,7 +61,7 @@ fn actions(table: &Table, state: &State) -> Vec<Action> {
         let mut rows = state.keymap.rows().iter().filter(|row| row.command.split(' ').next() == Some(name)).peekable();
         rows.peek().is_some() && rows.all(|row| !shown.contains(&row.context))
     };
-    let offered = |command: &&Command| command.kept != Kept::Inside && !only_typing(command.name);
+    let offered = |command: &&Command| command.recorded != Recorded::Inside && !only_typing(command.name);
     for command in table.all().filter(offered) {
         let Command { name, args, help, .. } = command;
         if args.is_empty() && all.iter().any(|one| one.line == *name) {

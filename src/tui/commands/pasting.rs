@@ -15,7 +15,7 @@ use crate::tui::text::numbers;
 
 /// Takes a pasted text, as one step of undo; where something is wrong with it, nothing changes.
 pub fn pasted(state: &mut State, text: &str) -> Done {
-    let limits = &state.door.options().limits;
+    let limits = &state.scene.options().limits;
     if text.len() as u64 > limits.paste {
         return Err(format!("{} bytes are too many to paste: {} at most", text.len(), limits.paste));
     }

@@ -7,7 +7,7 @@ use super::items::go_to;
 use crate::base::problem::quoted;
 use crate::render::overlay;
 use crate::tui::events::Effect;
-use crate::tui::layout::seeing;
+use crate::tui::layout::picture;
 use crate::tui::state::{Mode, Pane, State, entry, place};
 use crate::tui::text::numbers::short;
 
@@ -37,13 +37,10 @@ fn cursor(state: &mut State, call: &Call) -> Done {
     if place && call.count.is_some() {
         return Err("cursor at takes no count".into());
     }
-    let to = if place {
-        Vec2::new(x, y) - state.picture.placing.cursor.to_vec2()
-    } else {
-        Vec2::new(x, y) * call.times() as f64
-    };
+    let to =
+        if place { Vec2::new(x, y) - state.picture.cursor.to_vec2() } else { Vec2::new(x, y) * call.times() as f64 };
     state.picture.step(to);
-    seeing::settle(state);
+    picture::settle(state);
     Ok(())
 }
 
@@ -74,8 +71,8 @@ fn placed(state: &mut State, call: &Call) -> Done {
             let (row, at) = place::next_point(state, by).ok_or("no row here has a place")?;
             state.cursor.row = row;
             state.settle();
-            state.picture.placing.cursor = at;
-            seeing::settle(state);
+            state.picture.cursor = at;
+            picture::settle(state);
             state.ask(Effect::Show);
             Ok(())
         }

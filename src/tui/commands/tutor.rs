@@ -12,7 +12,7 @@ pub const COMMANDS: &[Command] =
 fn tutor(state: &mut State, call: &Call) -> Done {
     match (call.text, &state.tutor) {
         ("", None) => {
-            if !state.door.is_saved() {
+            if !state.scene.is_saved() {
                 return Err("there are unsaved edits: :w saves them before the tutor opens its own scene".into());
             }
             state.ask(Effect::Tutor);

@@ -4,7 +4,7 @@ use crate::tui::text::plain;
 use std::time::Duration;
 
 use super::command::{Call, Command, Done, command};
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Change;
 use crate::tui::state::{Mode, Pages, State};
 
@@ -21,14 +21,14 @@ pub const COMMANDS: &[Command] = &[
         "earlier",
         "STEPS|30s|3m|2h|1d",
         "Go back in time, through all branches: by states, or to the scene as it was so long ago",
-        |state, call| travel(state, call, UNDO, Door::earlier),
+        |state, call| travel(state, call, UNDO, OpenScene::earlier),
     )
     .counted_with(&[""]),
     command(
         "later",
         "STEPS|30s|3m|2h|1d",
         "Go on in time, through all branches: by states, or by so long a time",
-        |state, call| travel(state, call, REDO, Door::later),
+        |state, call| travel(state, call, REDO, OpenScene::later),
     )
     .counted_with(&[""]),
     command("history", "", "List what can be undone and redone, and the other branches", history).inside(),
@@ -41,31 +41,31 @@ const MOST_TOLD: usize = 500;
 #[derive(Clone, Copy)]
 struct Way {
     back: bool,
-    step: fn(&mut Door) -> Option<Change>,
+    step: fn(&mut OpenScene) -> Option<Change>,
     /// What the step does that is so far away, in words; the next one is 1 away.
-    told: fn(&Door, usize) -> Option<String>,
+    told: fn(&OpenScene, usize) -> Option<String>,
     done: &'static str,
     nothing: &'static str,
 }
 
 const UNDO: Way = Way {
     back: true,
-    step: Door::undo,
-    told: |door, away| door.history().told(away).pop(),
+    step: OpenScene::undo,
+    told: |scene, away| scene.history().told(away).pop(),
     done: "undone",
     nothing: "nothing to undo",
 };
 
 const REDO: Way = Way {
     back: false,
-    step: Door::redo,
-    told: |door, away| door.history().told_ahead(away).pop(),
+    step: OpenScene::redo,
+    told: |scene, away| scene.history().told_ahead(away).pop(),
     done: "done again",
     nothing: "nothing to redo",
 };
 
 fn steps(state: &mut State, call: &Call, way: Way) -> Done {
-    state.door.writable()?;
+    state.scene.writable()?;
     let times = match call.text {
         "" => call.times(),
         text => text.parse().ok().filter(|&n: &i64| n > 0).ok_or_else(|| format!("{text} is no number of steps"))?,
@@ -73,8 +73,8 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
     let mut count = 0;
     let mut words = None;
     while count < times {
-        let told = (way.told)(&state.door, 1);
-        let Some(change) = (way.step)(&mut state.door) else { break };
+        let told = (way.told)(&state.scene, 1);
+        let Some(change) = (way.step)(&mut state.scene) else { break };
         (count, words) = (count + 1, told);
         state.changed(change);
     }
@@ -88,14 +88,19 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
 }
 
 /// By states in the order in which they came to be, or by time.
-fn travel(state: &mut State, call: &Call, way: Way, by: fn(&mut Door, Duration) -> (usize, Option<Change>)) -> Done {
-    state.door.writable()?;
+fn travel(
+    state: &mut State,
+    call: &Call,
+    way: Way,
+    by: fn(&mut OpenScene, Duration) -> (usize, Option<Change>),
+) -> Done {
+    state.scene.writable()?;
     if call.text.is_empty() || call.text.bytes().all(|b| b.is_ascii_digit()) {
         let times = if call.text.is_empty() { call.times() } else { call.text.parse().unwrap_or(i64::MAX) };
         return by_states(state, usize::try_from(times).unwrap_or(1), way);
     }
     let time = duration(call.text).ok_or_else(|| format!("{} is no time: 30s, 3m, 2h or 1d", call.text))?;
-    let (count, change) = by(&mut state.door, time);
+    let (count, change) = by(&mut state.scene, time);
     let change = change.ok_or_else(|| format!("{} within {}", way.nothing, call.text))?;
     state.changed(change);
     let steps = if count == 1 { "1 step".to_owned() } else { format!("{count} steps") };
@@ -104,7 +109,7 @@ fn travel(state: &mut State, call: &Call, way: Way, by: fn(&mut Door, Duration) 
 }
 
 fn by_states(state: &mut State, times: usize, way: Way) -> Done {
-    let history = state.door.history();
+    let history = state.scene.history();
     let (here, newest) = (history.state(), history.newest());
     let to = if way.back { here.saturating_sub(times) } else { here.saturating_add(times).min(newest) };
     if to == here {
@@ -117,8 +122,8 @@ fn by_states(state: &mut State, times: usize, way: Way) -> Done {
         (false, 0, on) => history.undone().map(|(state, _)| state).take(on).eq(route.on).then_some(on),
         _ => None,
     };
-    let words = straight.and_then(|count| (way.told)(&state.door, count));
-    let change = state.door.go_to(to).ok_or(way.nothing)?;
+    let words = straight.and_then(|count| (way.told)(&state.scene, count));
+    let change = state.scene.go_to(to).ok_or(way.nothing)?;
     state.changed(change);
     match (straight, words) {
         (Some(1), Some(words)) => state.say(format!("{}: {}", way.done, plain(&words))),
@@ -130,11 +135,11 @@ fn by_states(state: &mut State, times: usize, way: Way) -> Done {
 
 /// To a state by its number.
 fn go_to(state: &mut State, number: &str) -> Done {
-    state.door.writable()?;
-    let newest = state.door.history().newest();
+    state.scene.writable()?;
+    let newest = state.scene.history().newest();
     let to = number.parse().ok().filter(|to| *to <= newest);
     let to = to.ok_or_else(|| format!("#{number} is no state: there are #0 to #{newest} (:history lists them)"))?;
-    if let Some(change) = state.door.go_to(to) {
+    if let Some(change) = state.scene.go_to(to) {
         state.changed(change);
     }
     say_state(state);
@@ -143,7 +148,7 @@ fn go_to(state: &mut State, number: &str) -> Done {
 
 /// Says which state this is.
 fn say_state(state: &mut State) {
-    let history = state.door.history();
+    let history = state.scene.history();
     let (here, newest) = (history.state(), history.newest());
     let words = history.told(1).pop().unwrap_or_else(|| "the beginning".into());
     state.say(plain(&format!("at #{here} of {newest}: {words}")));
@@ -165,13 +170,13 @@ fn duration(text: &str) -> Option<Duration> {
 /// What can be redone, the present, what can be undone: the numbers are what `:redo` and `:undo` take; then the steps of
 /// other branches. `#` numbers name the states in the order in which they came to be.
 fn history(state: &mut State, _: &Call) -> Done {
-    let history = state.door.history();
+    let history = state.scene.history();
     let saved = history.saved();
     let line = |way: String, state_of: usize, ago: String, words: &str| {
         let mark = if saved == Some(state_of) { "  (as saved)" } else { "" };
         plain(&format!("{way:<10} #{state_of:<5} {ago:>11}  {words}{mark}"))
     };
-    let ago = |time_ms: u64| state.door.ago(time_ms);
+    let ago = |time_ms: u64| state.scene.ago(time_ms);
     let ahead = history.told_ahead(MOST_TOLD).into_iter().zip(history.undone()).zip(1..);
     let mut lines: Vec<String> =
         ahead.map(|((words, (state, step)), n)| line(format!("redo {n}"), state, ago(step.time_ms), &words)).collect();

@@ -8,7 +8,7 @@ use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
-use super::{life, tutor};
+use super::{conflicts, tutor};
 use crate::preview::editor::{self, Asked};
 use crate::preview::wire::message::ToEditor;
 use crate::tui::commands;
@@ -36,7 +36,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Synthesising => state.picture.synthesising = true,
         Event::Probed(probed) => state.picture.probed = Some(probed),
         Event::Synthesised(result) => synthesised(state, result),
-        Event::Framed(shown) => state.picture.shown = Some(shown),
+        Event::Picture(shown) => state.picture.latest = Some(shown),
         Event::Progress(line) => state.outside.work = Some(line),
         Event::Done(result) => {
             if let (Some(work), Ok(_)) = (state.outside.work.take(), &result) {
@@ -45,7 +45,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             report(state, result);
         }
         Event::Saved(result) => {
-            if state.door.is_saved() {
+            if state.scene.is_saved() {
                 state.outside.file = None;
             }
             report(state, result);
@@ -59,7 +59,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             // A line that is running is not to blame.
             state.say(format!("the log of this session is not kept: {why}"));
         }
-        Event::FilesChanged(files) => life::follow(state, &files),
+        Event::FilesChanged(files) => conflicts::follow(state, &files),
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),
     }
@@ -95,9 +95,9 @@ fn synthesised(state: &mut State, result: Result<Synthesis, String>) {
     }
 }
 
-/// An edit that a script asks for goes through the same door.
+/// Applies an edit that a script asks for.
 fn answer(state: &mut State, asked: Asked) {
-    match state.door.apply(asked.edit.clone(), false) {
+    match state.scene.apply(asked.edit.clone(), false) {
         Ok(change) => {
             change.into_iter().for_each(|change| state.changed(change));
             asked.answer(Vec::new());

@@ -19,7 +19,7 @@ fn set(state: &mut State, call: &Call) -> Done {
     if settings.is_empty() {
         return Err("set takes PATH=VALUE".into());
     }
-    let scene = state.door.path().to_owned();
+    let scene = state.scene.path().to_owned();
     let (edit, lost) = set::edit(state.document(), &settings, &scene).map_err(|error| match error {
         // The scene is the one that is open: its name says nothing.
         Error::Scene { problems, .. } => first(&problems),

@@ -1,8 +1,8 @@
-//! Views of a document: its nodes as rows and as a tree, its places, tables as text, and the door to its file.
+//! Views of a document: its nodes as rows and as a tree, its places, tables as text, and the open scene with its file.
 
 pub mod choice;
-pub mod door;
 pub mod entry;
+pub mod open_scene;
 pub mod palette;
 pub mod places;
 pub mod pointers;

@@ -23,24 +23,25 @@ pub struct TreeRow {
     pub note: String,
     /// How deep it stands.
     pub depth: usize,
-    /// Whether it is folded; `None` if nothing is below it.
-    pub folded: Option<bool>,
+    /// Whether it is collapsed; `None` if nothing is below it.
+    pub collapsed: Option<bool>,
 }
 
 /// The rows of the tree, from the scene itself down.
-pub fn rows(document: &Document, folded: &BTreeSet<String>) -> Vec<TreeRow> {
-    let scene = TreeRow { pointer: String::new(), label: "scene".into(), note: String::new(), depth: 0, folded: None };
+pub fn rows(document: &Document, collapsed: &BTreeSet<String>) -> Vec<TreeRow> {
+    let scene =
+        TreeRow { pointer: String::new(), label: "scene".into(), note: String::new(), depth: 0, collapsed: None };
     let mut rows = vec![scene];
-    below(Place::root(document.json()), "", 0, folded, &mut rows);
+    below(Place::root(document.json()), "", 0, collapsed, &mut rows);
     rows
 }
 
-fn below(place: Place, pointer: &str, depth: usize, folded: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
+fn below(place: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
     for (child, place) in field::below(place, pointer) {
         let value = place.value.filter(|value| sheet::is_node(&child.field.kind) && !value.is_null());
         let Some(value) = value else { continue };
         if named(value) {
-            below_list(place, &child.pointer, depth, folded, rows);
+            below_list(place, &child.pointer, depth, collapsed, rows);
         } else {
             rows.push(leaf(child, value, depth));
         }
@@ -48,14 +49,14 @@ fn below(place: Place, pointer: &str, depth: usize, folded: &BTreeSet<String>, r
 }
 
 /// The items of a list of named things, each with what is below it.
-fn below_list(list: Place, pointer: &str, depth: usize, folded: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
+fn below_list(list: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
     for (item, place) in field::below(list, pointer) {
-        let is_folded = folded.contains(&item.pointer);
+        let is_collapsed = collapsed.contains(&item.pointer);
         let label = plain(&item.name);
         let inside = item.pointer.clone();
-        rows.push(TreeRow { pointer: item.pointer, label, note: String::new(), depth, folded: Some(is_folded) });
-        if !is_folded {
-            below(place, &inside, depth + 1, folded, rows);
+        rows.push(TreeRow { pointer: item.pointer, label, note: String::new(), depth, collapsed: Some(is_collapsed) });
+        if !is_collapsed {
+            below(place, &inside, depth + 1, collapsed, rows);
         }
     }
 }
@@ -65,7 +66,7 @@ fn leaf(child: Child, value: &Value, depth: usize) -> TreeRow {
         Kind::Object => String::new(),
         _ => sheet::summary(&child.field, value),
     };
-    TreeRow { pointer: child.pointer, label: plain(&child.name), note, depth, folded: None }
+    TreeRow { pointer: child.pointer, label: plain(&child.name), note, depth, collapsed: None }
 }
 
 /// Whether a value is a list of named things.

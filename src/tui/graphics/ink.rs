@@ -3,7 +3,7 @@
 
 use kurbo::{Point, Vec2};
 
-use super::sight::clipped;
+use super::viewport::clipped;
 use crate::base::geometry::Polygon;
 use crate::base::maths;
 use crate::base::pixels::Frame;

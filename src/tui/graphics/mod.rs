@@ -4,12 +4,13 @@
 mod diacritics;
 mod encode;
 mod ink;
+mod picture;
 pub mod probed;
 mod protocol;
-mod shown;
-pub mod sight;
+pub mod request;
 mod sixel;
+pub mod viewport;
 
 pub use encode::forget;
+pub use picture::TerminalPicture;
 pub use protocol::{Graphics, Marks, Protocol, Wanted};
-pub use shown::Shown;

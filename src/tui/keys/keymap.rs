@@ -358,7 +358,7 @@ mod tests {
             assert_eq!(map.mistakes().len(), 1, "{text}: {told}");
             assert_eq!(map.find(&[TREE], "Y"), Found::Line("add".into()), "{text}");
         }
-        let many = read("k", "[tree]\n\"Ctrl-i\" = \"x\"\n\"x\" = \"x\"\n[no]\n");
+        let many = read("k", "[tree]\n\"Ctrl-i\" = \"x\"\n\"x\" = \"xx\"\n[no]\n");
         let lines: Vec<_> = many.mistakes().iter().map(|told| told[..4].to_owned()).collect();
         assert_eq!(lines, ["k:2:", "k:3:", "k:4:"]);
     }

@@ -6,7 +6,7 @@ use ratatui::layout::{Constraint, Layout, Margin, Position, Rect, Spacing};
 use super::state::{Mode, Pane, State};
 
 pub mod lesson;
-pub mod seeing;
+pub mod picture;
 
 /// From this width on there are panes at the right.
 const WIDE: u16 = 112;
@@ -77,7 +77,7 @@ pub fn middle(state: &State, areas: &Areas) -> Rect {
 }
 
 /// The inside of the picture's pane, where it is on the screen.
-pub fn picture(state: &State) -> Option<Rect> {
+pub fn picture_area(state: &State) -> Option<Rect> {
     if !fits(state.size) {
         return None;
     }

@@ -14,7 +14,7 @@ use crate::files::watch::Watch;
 use crate::preview::editor::{self, Preview};
 use crate::tui::commands::update::update;
 use crate::tui::document::choice::{Choice, Then};
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::graphics;
 use crate::tui::state::tutor::Tutor;
@@ -50,7 +50,7 @@ pub struct Editor {
     /// The log of the session; `None` if there is no folder for it.
     pub(super) log: Option<Log>,
     /// What the panes have asked the worker for.
-    pub(super) eyes: Throttle,
+    pub(super) throttle: Throttle,
     /// Whether it ends.
     pub(super) leaving: bool,
     /// Whether a signal ends it.
@@ -72,7 +72,7 @@ impl Editor {
     /// The terminal cannot be asked for its size, or the first script cannot be read.
     pub fn new(
         options: Options,
-        door: Door,
+        scene: OpenScene,
         screen: Option<terminal::Screen>,
         sender: mpsc::Sender<Event>,
     ) -> Result<Self> {
@@ -87,13 +87,13 @@ impl Editor {
             input::read(pieces, sender.clone());
         }
         let worker = Worker::start(options.files.clone(), sender.clone());
-        let preview = listen(&door, &options.files, sender.clone());
+        let preview = listen(&scene, &options.files, sender.clone());
         let changed = sender.clone();
         // Without it changes from outside are met at the next save.
         let watch = Watch::new(move |files| drop(changed.send(Event::FilesChanged(files))));
         let watch = watch.inspect_err(|error| tracing::warn!("{error}")).ok();
-        let log = begin_log(&door, size, sender.clone());
-        let mut state = State::new(door, size, depth);
+        let log = begin_log(&scene, size, sender.clone());
+        let mut state = State::new(scene, size, depth);
         state.memory.recorder.set_place(log.as_ref().map(|log| log.path().to_owned()));
         state.picture.graphics = graphics;
         let mut editor = Editor {
@@ -108,7 +108,7 @@ impl Editor {
             watch,
             scripts: Scripts::default(),
             log,
-            eyes: Throttle::default(),
+            throttle: Throttle::default(),
             leaving: false,
             interrupted: false,
             drawn: None,
@@ -120,7 +120,7 @@ impl Editor {
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
             editor.preview.open_window();
         }
-        if let (Some(keep), true) = (editor.options.keep_recovery, editor.state.door.offered().is_some()) {
+        if let (Some(keep), true) = (editor.options.keep_recovery, editor.state.scene.offered().is_some()) {
             editor.take(Event::Line(format!("recovery {}", if keep { "keep" } else { "drop" })));
         }
         if let Some(script) = editor.options.script.clone() {
@@ -141,7 +141,7 @@ impl Editor {
     /// What is done once for every scene that is opened.
     pub fn begin(&mut self) {
         self.state.picture.size = picture_size(&self.state);
-        let greeting = self.state.door.greeting(editor::way_home(self.state.door.path()));
+        let greeting = self.state.scene.greeting(editor::way_home(self.state.scene.path()));
         self.state.say(greeting);
         self.watch_files();
         // Windows learn what is selected before the first key.
@@ -151,7 +151,7 @@ impl Editor {
     /// Watches the scene and all that it names.
     pub fn watch_files(&mut self) {
         let Some(watch) = &mut self.watch else { return };
-        let path = self.state.door.path();
+        let path = self.state.scene.path();
         let mut all = files::materials::files(path, self.state.document().scene());
         all.push(path.to_owned());
         if let Err(error) = watch.set(&all) {
@@ -169,8 +169,8 @@ impl Editor {
 
     /// Brings everything to the disk.
     pub fn end(&mut self) {
-        self.state.door.tend();
-        self.state.door.flush();
+        self.state.scene.tend();
+        self.state.scene.flush();
         self.job.take().into_iter().for_each(Job::end);
         self.log = None;
     }
@@ -282,8 +282,8 @@ impl Editor {
 }
 
 /// Listens for windows of the scene; what they say comes as events.
-pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
-    let preview = Preview::start(door.path(), door.document(), door.revision(), move |said| {
+pub fn listen(scene: &OpenScene, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
+    let preview = Preview::start(scene.path(), scene.document(), scene.revision(), move |said| {
         // Nobody listens once the editor has left.
         let _ = sender.send(Event::Window(said));
     });
@@ -291,19 +291,19 @@ pub fn listen(door: &Door, options: &files::Options, sender: mpsc::Sender<Event>
 }
 
 /// The log of this session; it tells the editor where it cannot be written.
-fn begin_log(door: &Door, (width, height): (u16, u16), sender: mpsc::Sender<Event>) -> Option<Log> {
+fn begin_log(scene: &OpenScene, (width, height): (u16, u16), sender: mpsc::Sender<Event>) -> Option<Log> {
     let header = vec![
         format!("plica {}", env!("CARGO_PKG_VERSION")),
-        format!("scene {}", plain(&door.path().display().to_string())),
+        format!("scene {}", plain(&scene.path().display().to_string())),
         format!("terminal {width} x {height}"),
     ];
     // Nobody listens once the editor has left.
-    Log::begin(door.path(), header, move |why| drop(sender.send(Event::Unlogged(why))))
+    Log::begin(scene.path(), header, move |why| drop(sender.send(Event::Unlogged(why))))
 }
 
 /// The size of the first layer's picture, from its header.
 fn picture_size(state: &State) -> Option<(usize, usize)> {
     let image = state.document().scene().layers.first()?.technique().frame_of()?;
-    let (sizes, _) = files::materials::sizes(state.door.path(), state.document().scene(), state.door.options());
+    let (sizes, _) = files::materials::sizes(state.scene.path(), state.document().scene(), state.scene.options());
     sizes.get(image).copied()
 }

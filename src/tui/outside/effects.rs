@@ -12,11 +12,11 @@ use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
 use crate::files::{lines, paths, picture, write};
 use crate::ops;
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
-use crate::tui::graphics::probed::Request;
+use crate::tui::graphics::request::Request;
 use crate::tui::keys::Keymap;
-use crate::tui::layout::seeing;
+use crate::tui::layout::picture::request;
 use crate::tui::state::State;
 use crate::tui::text::said;
 
@@ -33,7 +33,7 @@ impl Editor {
                 self.preview.transport(self.state.transport());
             }
             Effect::Pass => self.preview.passing(self.state.transport().time),
-            Effect::Reload => self.worker.ask(Request { fresh: true, ..seeing::request(&self.state) }),
+            Effect::Reload => self.worker.ask(Request { fresh: true, ..request(&self.state) }),
             Effect::Save { to, overwrite, leave } => self.save(to.as_deref(), overwrite, leave),
             Effect::Write(path, text) => self.write(&path, &text),
             Effect::Source(path) => {
@@ -44,7 +44,7 @@ impl Editor {
             Effect::Keymap => self.load_keys(),
             Effect::Open(path) => drop(self.open(&path, self.options.mode())),
             Effect::TakeOver => {
-                let path = self.state.door.path().to_owned();
+                let path = self.state.scene.path().to_owned();
                 self.open(&path, Mode::TakeOver);
             }
             Effect::Tutor => self.learn(),
@@ -78,11 +78,11 @@ impl Editor {
 
     /// Saves the scene, to another file if one is given, and leaves once it is safe.
     fn save(&mut self, to: Option<&Path>, overwrite: bool, leave: bool) {
-        let result = self.state.door.save(to, overwrite);
+        let result = self.state.scene.save(to, overwrite);
         self.leaving = leave && result.is_ok();
         if self.leaving {
             // The copy has the edits: the scene itself is left as its file has it.
-            self.state.door.give_up();
+            self.state.scene.give_up();
         }
         self.take(Event::Saved(result.map_err(|error| error.to_string())));
     }
@@ -119,19 +119,19 @@ impl Editor {
 
     /// Opens another scene in the place of this one; says why where it cannot, and false.
     fn open(&mut self, path: &Path, mode: Mode) -> bool {
-        match Door::open(path, mode, &self.options.files) {
-            Ok(door) => {
+        match OpenScene::open(path, mode, &self.options.files) {
+            Ok(scene) => {
                 // Whoever opens another scene with unsaved edits here was asked.
-                self.state.door.give_up();
+                self.state.scene.give_up();
                 let window = self.preview.has_window();
                 // First, for it may be the same scene, and a scene has one editor.
                 self.preview.close();
-                self.preview = listen(&door, &self.options.files, self.sender.clone());
+                self.preview = listen(&scene, &self.options.files, self.sender.clone());
                 if window {
                     self.preview.open_window();
                 }
                 let State { size, depth, .. } = self.state;
-                let before = std::mem::replace(&mut self.state, State::new(door, size, depth));
+                let before = std::mem::replace(&mut self.state, State::new(scene, size, depth));
                 self.state.keymap = before.keymap;
                 self.state.memory.recorder = before.memory.recorder;
                 self.state.picture.graphics = before.picture.graphics;
@@ -163,7 +163,7 @@ impl Editor {
         if self.state.outside.work.is_some() {
             return self.state.complain("something runs already: Esc ends it");
         }
-        let path = self.state.door.path().to_owned();
+        let path = self.state.scene.path().to_owned();
         let words: Vec<String> = words.iter().map(|word| at_home(word)).collect();
         let mut with = words.clone();
         with.insert(1, path.to_string_lossy().into_owned());

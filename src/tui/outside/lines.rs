@@ -1,6 +1,6 @@
 //! The line mode, for a terminal that draws nothing (TERM=dumb) or none at all: the lines that are typed after `:` come
 //! from standard input, answers go to standard output as plain text, mistakes to standard error with the number of the
-//! line. The same commands through the same door; long work runs in the foreground.
+//! line. The same commands, run in the same way; long work runs in the foreground.
 
 use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
@@ -49,20 +49,20 @@ impl Editor {
     pub fn run_lines(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         let interactive = terminal::is_interactive();
         let mut session = Session { interactive, ..Session::default() };
-        if let Some(aside) = self.state.door.kept_aside() {
+        if let Some(aside) = self.state.scene.kept_aside() {
             let what = "the journal was damaged, what could not be read is in";
             terminal::remark(&format!("{what} {}", plain(&aside.display().to_string())));
         }
         if interactive {
-            terminal::print(&format!("{}  (? lists the commands, q leaves)", self.state.door.path().display()));
+            terminal::print(&format!("{}  (? lists the commands, q leaves)", self.state.scene.path().display()));
         }
         self.state.message = None;
         let mut reading = false;
         while !self.leaving {
             self.run_scripts();
             self.answer(&mut session);
-            self.state.door.tend();
-            session.see_journal(self.state.door.failing());
+            self.state.scene.tend();
+            session.see_journal(self.state.scene.failing());
             let busy = self.state.outside.work.is_some() || !self.scripts.is_empty();
             if !busy && !reading {
                 session.prompt(&self.state);
@@ -118,12 +118,12 @@ impl Editor {
 
     /// The input has ended: that leaves, but a person with unsaved edits is asked to say it twice.
     fn input_ended(&mut self, session: &mut Session) {
-        let unsaved = !self.state.door.is_saved();
+        let unsaved = !self.state.scene.is_saved();
         if unsaved && session.interactive && !session.warned {
             session.warned = true;
             return terminal::remark("there are unsaved edits: w saves them, q! leaves them");
         }
-        session.left = unsaved.then(|| self.state.door.left_unsaved());
+        session.left = unsaved.then(|| self.state.scene.left_unsaved());
         self.leaving = true;
     }
 
@@ -158,7 +158,7 @@ impl Session {
             }
         }
         if self.interactive {
-            let unsaved = if state.door.is_saved() { "" } else { "*" };
+            let unsaved = if state.scene.is_saved() { "" } else { "*" };
             let mut out = stdout();
             // A terminal that has gone away ends the input too.
             let _ = write!(out, "plica{unsaved}> ").and_then(|()| out.flush());

@@ -9,7 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::files::session::Mode;
 use crate::files::{self};
 use crate::tui::commands::update::update;
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Change, Effect, Event};
 use crate::tui::panes::view;
 use crate::tui::state::State;
@@ -27,10 +27,10 @@ impl Offscreen {
     /// # Errors
     /// The scene cannot be read, or somebody else edits it.
     pub fn open(path: &Path, (width, height): (u16, u16)) -> Result<Offscreen> {
-        let door = Door::open(path, Mode::Edit, &files::Options::default())?;
+        let scene = OpenScene::open(path, Mode::Edit, &files::Options::default())?;
         let terminal =
             Terminal::new(TestBackend::new(width, height)).map_err(|error| Error::at("the screen", error))?;
-        Ok(Offscreen { state: State::new(door, (width, height), Depth::True), terminal })
+        Ok(Offscreen { state: State::new(scene, (width, height), Depth::True), terminal })
     }
 
     /// Presses a key, by its name in the table, and draws the screen that it leads to.

@@ -10,7 +10,7 @@ use super::terminal;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::system::signals::{Answer, Signal};
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Event;
 
 /// How long the editor has to end by itself once the system asks for it.
@@ -21,13 +21,13 @@ const GRACE: Duration = Duration::from_secs(2);
 /// # Errors
 /// The scene cannot be opened, or there is no terminal.
 pub fn run(options: Options) -> Result<()> {
-    let door = Door::open(&options.path, options.mode(), &options.files)?;
+    let scene = OpenScene::open(&options.path, options.mode(), &options.files)?;
     let (sender, events) = mpsc::channel();
     let unseen = !terminal::is_there();
     let _signals = end_on_signals(sender.clone(), unseen && terminal::is_interactive())?;
     if unseen {
         let script = options.script.is_some();
-        let editor = Editor::new(options, door, None, sender)?;
+        let editor = Editor::new(options, scene, None, sender)?;
         return if script { editor.run_unseen(&events) } else { editor.run_lines(&events) };
     }
     let faults = sender.clone();
@@ -36,7 +36,7 @@ pub fn run(options: Options) -> Result<()> {
     let screen = terminal::enter()?;
     // A panic in a loop over all cores comes back to this thread without a word of its own.
     let result = fault::caught(|| {
-        Editor::new(options, door, Some(screen), sender).and_then(|editor| editor.run_on_screen(&events))
+        Editor::new(options, scene, Some(screen), sender).and_then(|editor| editor.run_on_screen(&events))
     });
     terminal::restore();
     let left =

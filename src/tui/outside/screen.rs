@@ -6,7 +6,7 @@ use crate::base::error::{Error, Result};
 use crate::preview::editor::Status;
 use crate::tui::events::Event;
 use crate::tui::graphics::{self, Protocol};
-use crate::tui::layout::seeing;
+use crate::tui::layout::picture;
 use crate::tui::panes::view;
 use crate::tui::state::play::Stopwatch;
 use std::io::Write;
@@ -25,11 +25,11 @@ impl Editor {
     pub fn run_on_screen(mut self, events: &mpsc::Receiver<Event>) -> Result<Option<PathBuf>> {
         let mut watch = Stopwatch::default();
         while !self.leaving {
-            self.eyes.request(&self.state).into_iter().for_each(|request| self.worker.ask(request));
+            self.throttle.request(&self.state).into_iter().for_each(|request| self.worker.ask(request));
             self.draw()?;
             self.wait(events, &mut watch);
         }
-        if let (Protocol::Kitty, Some(screen)) = (seeing::protocol(&self.state), &mut self.screen) {
+        if let (Protocol::Kitty, Some(screen)) = (picture::protocol(&self.state), &mut self.screen) {
             // A terminal that has gone away has nothing to forget.
             let _ = screen.backend_mut().write_all(graphics::forget().as_bytes());
         }
@@ -49,13 +49,13 @@ impl Editor {
             }
         }
         if let Some(begun) = self.drawn.take() {
-            self.eyes.wrote(state, begun.elapsed());
+            self.throttle.wrote(state, begun.elapsed());
         }
         let begun = Instant::now();
         screen.draw(|frame| view::draw(frame, state)).map_err(failed)?;
         match pace::is_behind() {
             true => self.drawn = Some(begun),
-            false => self.eyes.wrote(state, begun.elapsed()),
+            false => self.throttle.wrote(state, begun.elapsed()),
         }
         Ok(())
     }
@@ -67,9 +67,9 @@ impl Editor {
             _ if script_goes_on => Duration::ZERO,
             _ if pace::is_behind() => BEHIND,
             true => Duration::from_millis(33),
-            false => self.eyes.patience(self.state.door.patience()),
+            false => self.throttle.patience(self.state.scene.patience()),
         };
-        self.state.door.tend();
+        self.state.scene.tend();
         let first = events.recv_timeout(patience).ok();
         for event in first.into_iter().chain(events.try_iter()) {
             self.take(event);
@@ -86,7 +86,7 @@ impl Editor {
     fn see_window(&mut self) {
         let seen = match self.preview.status() {
             // Windows belong to whoever edits the scene.
-            _ if self.state.door.held_by().is_some() => String::new(),
+            _ if self.state.scene.held_by().is_some() => String::new(),
             Status::Off => String::new(),
             status => format!("window: {status}"),
         };

@@ -19,8 +19,8 @@ impl Editor {
     /// The first mistake.
     pub fn run_unseen(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         let result = self.refuse_undecided().and_then(|()| self.run_all(events));
-        let unsaved = !self.leaving && !self.state.door.is_saved();
-        let left = unsaved.then(|| self.state.door.left_unsaved());
+        let unsaved = !self.leaving && !self.state.scene.is_saved();
+        let left = unsaved.then(|| self.state.scene.left_unsaved());
         self.end();
         self.ended()?;
         match (result, left) {
@@ -37,15 +37,15 @@ impl Editor {
 
     /// A script does not run on a scene of which nobody has said what it is.
     fn refuse_undecided(&self) -> Result<()> {
-        let Some(offer) = self.state.door.offered() else { return Ok(()) };
+        let Some(offer) = self.state.scene.offered() else { return Ok(()) };
         let what = format!("{} left behind, and the script is not run", offer.in_words());
-        Err(Error::at(self.state.door.path().display(), what)
+        Err(Error::at(self.state.scene.path().display(), what)
             .cure("--after-recovery keep takes them, drop leaves them; plica edit shows them"))
     }
 
     fn run_all(&mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         while !self.leaving && !self.scripts.is_empty() {
-            self.state.door.tend();
+            self.state.scene.tend();
             let ran = self.run_next()?;
             self.said().iter().for_each(|line| terminal::print(line));
             let patience = if ran { Duration::ZERO } else { PATIENCE };

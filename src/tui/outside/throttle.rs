@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::tui::graphics::Shown;
-use crate::tui::graphics::probed::Request;
-use crate::tui::layout::seeing::request;
+use crate::tui::graphics::TerminalPicture;
+use crate::tui::graphics::request::Request;
+use crate::tui::layout::picture::request;
 use crate::tui::state::State;
 
 /// What was asked of the worker, and when it may be asked for the next picture. Writing a picture to a slow link takes
@@ -14,7 +14,7 @@ use crate::tui::state::State;
 #[derive(Default)]
 pub struct Throttle {
     asked: Option<Request>,
-    written: Option<Arc<Shown>>,
+    written: Option<Arc<TerminalPicture>>,
     free: Option<Instant>,
 }
 
@@ -41,7 +41,7 @@ impl Throttle {
 
     /// A screen has been written, and it took so long.
     pub fn wrote(&mut self, state: &State, took: Duration) {
-        let shown = state.picture.shown.as_ref();
+        let shown = state.picture.latest.as_ref();
         if self.written.as_ref().map(Arc::as_ptr) != shown.map(Arc::as_ptr) {
             self.written = shown.cloned();
             self.free = Some(Instant::now() + (took * 2).min(LONGEST));

@@ -15,8 +15,9 @@ use crate::ops;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
 use crate::tui::events::{Event, Synthesis};
-use crate::tui::graphics::Shown;
-use crate::tui::graphics::probed::{Probed, Request};
+use crate::tui::graphics::TerminalPicture;
+use crate::tui::graphics::probed::Probed;
+use crate::tui::graphics::request::Request;
 
 /// The thread that synthesises.
 pub struct Worker {
@@ -90,7 +91,7 @@ struct Studio {
     options: files::Options,
     cache: files::materials::Cache,
     made: Option<Made>,
-    picture: Option<Arc<Shown>>,
+    picture: Option<Arc<TerminalPicture>>,
     running: Running,
 }
 
@@ -132,9 +133,9 @@ impl Studio {
             return false;
         }
         let Some(wanted) = request.picture.clone() else { return true };
-        let picture = Shown::new(synth, scene, request.time, wanted, self.picture.as_deref());
+        let picture = TerminalPicture::new(synth, scene, request.time, wanted, self.picture.as_deref());
         self.picture = Some(picture.clone());
-        events.send(Event::Framed(picture)).is_ok()
+        events.send(Event::Picture(picture)).is_ok()
     }
 
     fn run(&self, what: Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>) {
@@ -293,7 +294,7 @@ impl ops::Progress for Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::layout::seeing;
+    use crate::tui::layout::picture;
 
     #[test]
     fn what_was_only_said_is_one_line_that_begins_with_the_end() {
@@ -316,7 +317,7 @@ mod tests {
         let (sender, events) = mpsc::channel();
         let worker = Worker::start(files::Options::default(), sender);
         let state = crate::tui::tests::support::state();
-        let request = |path: &str| Request { path: path.into(), fresh: true, ..seeing::request(&state) };
+        let request = |path: &str| Request { path: path.into(), fresh: true, ..picture::request(&state) };
         let ended = || {
             let ends = |event| match event {
                 Event::Synthesised(result) => Some(result.map(drop)),

@@ -90,7 +90,7 @@ fn text(cell: &Cell, row: &Row, room: i32) -> String {
 
 /// Which cells of a row are in sight, and how far they are moved to the left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sight {
+pub struct VisibleCells {
     /// Whether the first cell stays where it is.
     frozen: bool,
     /// The first of the others.
@@ -100,34 +100,34 @@ pub struct Sight {
     shift: i32,
 }
 
-impl Sight {
+impl VisibleCells {
     /// What is in sight of a row whose cell `focus` is to be.
-    pub fn of(row: &[Placed], item: bool, focus: usize, room: i32) -> Sight {
+    pub fn of(row: &[Placed], item: bool, focus: usize, room: i32) -> VisibleCells {
         let frozen = item && focus > 0 && row.len() > 1;
         let least = usize::from(frozen);
         let focus = focus.min(row.len().saturating_sub(1));
-        let from = (least..=focus).map(|first| Sight::from(row, frozen, first, room));
+        let from = (least..=focus).map(|first| VisibleCells::from(row, frozen, first, room));
         from.into_iter().find(|sight| sight.end > focus).unwrap_or_else(|| {
-            let sight = Sight::from(row, frozen, focus, room);
-            Sight { end: sight.end.max((focus + 1).min(row.len())), ..sight }
+            let sight = VisibleCells::from(row, frozen, focus, room);
+            VisibleCells { end: sight.end.max((focus + 1).min(row.len())), ..sight }
         })
     }
 
     /// What is in sight of a row beside one with other columns, of which `first` is the first.
-    pub fn beside(row: &[Placed], item: bool, other: Sight, room: i32) -> Sight {
+    pub fn beside(row: &[Placed], item: bool, other: VisibleCells, room: i32) -> VisibleCells {
         let frozen = other.frozen && item && row.len() > 1;
         let first = if other.first <= usize::from(other.frozen) { usize::from(frozen) } else { other.first };
-        Sight::from(row, frozen, first.min(row.len().saturating_sub(1)), room)
+        VisibleCells::from(row, frozen, first.min(row.len().saturating_sub(1)), room)
     }
 
-    fn from(row: &[Placed], frozen: bool, first: usize, room: i32) -> Sight {
+    fn from(row: &[Placed], frozen: bool, first: usize, room: i32) -> VisibleCells {
         // One more column for the mark.
         let begin = if frozen { row[0].end + GAP + 1 } else { GAP };
         let scrolled = first > usize::from(frozen);
         let shift = if scrolled { row.get(first).map_or(0, |placed| placed.start - begin) } else { 0 };
         let fits = |i: &usize| row[*i].end - shift <= room - if i + 1 < row.len() { GAP } else { 0 };
         let end = (first..row.len()).take_while(fits).last().map_or(first, |last| last + 1);
-        Sight { frozen, first, end, shift }
+        VisibleCells { frozen, first, end, shift }
     }
 
     /// The cells in sight with the places they have.

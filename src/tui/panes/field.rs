@@ -64,7 +64,7 @@ fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer:
 
 /// The jump vector of the pixel under the picture's cursor.
 fn under_cursor(state: &State, field: &VectorField) -> String {
-    let at = state.picture.placing.cursor;
+    let at = state.picture.cursor;
     let (x, y) = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
     let Some(jump) = field.at((x, y)) else { return format!("at {x},{y}: outside the zone") };
     let (length, degrees) = polar(jump);

@@ -10,7 +10,7 @@ use ratatui::widgets::{Clear, Widget};
 use super::{typed, write};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::color;
-use crate::tui::text::wrap::{folded, width};
+use crate::tui::text::wrap::{width, wrapped_lines};
 
 /// Draws it; the cursor is in the line being typed.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -41,7 +41,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         true => state.depth.ink(Style::new().add_modifier(Modifier::BOLD), Color::Red),
         false => Style::new(),
     };
-    let lines = folded(&message.text, area.width.saturating_sub(2));
+    let lines = wrapped_lines(&message.text, area.width.saturating_sub(2));
     let rows = (lines.len() as u16).min(area.bottom() / 2).max(1);
     let area = Rect { y: area.bottom().saturating_sub(rows), height: rows, ..area };
     if rows > 1 {

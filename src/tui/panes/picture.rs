@@ -11,8 +11,8 @@ use super::{arrow, write};
 use crate::layers::parts::marks::{Dot, Mark, SELECTED, Shape};
 use crate::render::overlay;
 use crate::render::part::Part;
-use crate::tui::graphics::{Protocol, Shown, sight};
-use crate::tui::layout::seeing;
+use crate::tui::graphics::{Protocol, TerminalPicture, viewport};
+use crate::tui::layout::picture;
 use crate::tui::state::{Mode, Pane, State, place};
 use crate::tui::text::color;
 use crate::tui::text::color::Depth;
@@ -20,18 +20,18 @@ use crate::tui::text::numbers::short;
 
 /// The cursor's coordinates, how large the picture is shown, and how it comes to the terminal.
 pub fn title(state: &State) -> String {
-    let at = state.picture.placing.cursor;
-    let part = seeing::part(state);
-    let scale = part.map(|part| format!("  {}", sight::words(part.scale))).unwrap_or_default();
-    let fit = if state.picture.placing.zoom.is_none() { " fit" } else { "" };
-    let reduced = state.picture.shown.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
-    let protocol = seeing::protocol(state).name();
+    let at = state.picture.cursor;
+    let part = picture::part(state);
+    let scale = part.map(|part| format!("  {}", viewport::words(part.scale))).unwrap_or_default();
+    let fit = if state.picture.viewport.zoom.is_none() { " fit" } else { "" };
+    let reduced = state.picture.latest.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
+    let protocol = picture::protocol(state).name();
     format!("picture  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
 
 /// Draws it; the real cursor is on the placing cursor where the picture has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let Some(part) = seeing::part(state).filter(|_| area.width > 0 && area.height > 0) else {
+    let Some(part) = picture::part(state).filter(|_| area.width > 0 && area.height > 0) else {
         write(buffer, area, 1, 0, "no picture yet", color::faint());
         return (state.cursor.focus == Pane::Picture).then(|| area.as_position());
     };
@@ -43,7 +43,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         }
         None => draw_blocks(state, &part, area, buffer),
     }
-    let cursor = seeing::cursor_cell(state, &part);
+    let cursor = picture::cursor_cell(state, &part);
     let within = |cell: f64, cells: u16| cell.clamp(0.0, f64::from(cells - 1)) as u16;
     let cursor = Position::new(area.x + within(cursor.x, area.width), area.y + within(cursor.y, area.height));
     (state.cursor.focus == Pane::Picture).then_some(cursor)
@@ -51,16 +51,18 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
 
 /// The cells of the picture in a pane of this size, where the terminal takes pixels.
 fn pixels(state: &State, area: Rect) -> Option<&Buffer> {
-    let shown = state.picture.shown.as_ref()?;
-    let fits = shown.wanted.cells == (area.width, area.height) && shown.wanted.protocol == seeing::protocol(state);
+    let shown = state.picture.latest.as_ref()?;
+    let fits = shown.wanted.cells == (area.width, area.height) && shown.wanted.protocol == picture::protocol(state);
     shown.cells.as_ref().filter(|_| fits)
 }
 
 /// Where something was drawn over the pixels, half-blocks take their place: a picture that is sent whole would be painted
 /// over it. Kitty's cells are characters like others and stay.
 pub fn give_way(state: &State, buffer: &mut Buffer) {
-    let Some(area) = layout::picture(state).filter(|_| seeing::protocol(state) != Protocol::Kitty) else { return };
-    let (Some(cells), Some(part)) = (pixels(state, area), seeing::part(state)) else { return };
+    let Some(area) = layout::picture_area(state).filter(|_| picture::protocol(state) != Protocol::Kitty) else {
+        return;
+    };
+    let (Some(cells), Some(part)) = (pixels(state, area), picture::part(state)) else { return };
     let free = |(at, cell): &(Position, &_)| buffer.cell(*at) == Some(*cell);
     let free: Vec<Position> = area.positions().zip(cells.content()).filter(free).map(|(at, _)| at).collect();
     if free.len() == cells.content().len() {
@@ -79,11 +81,11 @@ fn draw_blocks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     // In half-blocks, whatever the dots of the terminal are.
     let scale = part.scale * part.dots.0 as f64 / f64::from(area.width);
     let part = Part { scale, dots: (area.width.into(), usize::from(area.height) * 2), ..*part };
-    if let Some(shown) = &state.picture.shown {
+    if let Some(shown) = &state.picture.latest {
         draw_pixels(shown, &part, state.depth, area, buffer);
     }
     draw_marks(state, &part, area, buffer);
-    let (x, half) = cell(&part, state.picture.placing.cursor);
+    let (x, half) = cell(&part, state.picture.cursor);
     let style = Style::new().fg(Color::Reset).bg(Color::Reset).add_modifier(Modifier::REVERSED);
     write(buffer, area, x as i32, half.div_euclid(2).max(0) as u16, "┼", style);
 }
@@ -95,7 +97,7 @@ fn cell(part: &Part, at: Point) -> (i64, i64) {
     (whole(dot.x), whole(dot.y))
 }
 
-fn draw_pixels(shown: &Shown, part: &Part, depth: Depth, area: Rect, buffer: &mut Buffer) {
+fn draw_pixels(shown: &TerminalPicture, part: &Part, depth: Depth, area: Rect, buffer: &mut Buffer) {
     for (x, y) in (0..area.height).flat_map(|y| (0..area.width).map(move |x| (x, y))) {
         let dot = |lower: f64| Point::new(f64::from(x) + 0.5, f64::from(y) * 2.0 + lower + 0.5);
         let half = |lower: f64| shown.color_at(part.place_of(dot(lower)));
@@ -129,14 +131,14 @@ fn both(upper: Option<[u8; 3]>, lower: Option<[u8; 3]>) -> [u8; 3] {
 /// Outlines, regions, curves, anchors and their jumps, the selected ones on top.
 fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     let synth = state.picture.synth.as_deref();
-    let mut marks = overlay::overlay(state.document().scene(), synth, &seeing::overlays(state));
+    let mut marks = overlay::overlay(state.document().scene(), synth, &picture::overlays(state));
     marks.sort_by_key(|mark| mark.selected);
     for mark in &marks {
         draw_mark(mark, state.depth, part, area, buffer);
     }
     if let (Mode::Aim, Some(from)) = (&state.typing.mode, place::selected(state)) {
         let style = Style::new().add_modifier(Modifier::BOLD);
-        line(from, state.picture.placing.cursor, part, |x, half| put(buffer, area, x, half, "•", style));
+        line(from, state.picture.cursor, part, |x, half| put(buffer, area, x, half, "•", style));
     }
 }
 
@@ -190,7 +192,7 @@ fn put(buffer: &mut Buffer, area: Rect, x: i64, half: i64, glyph: &str, style: S
 
 /// Every half-block that a line meets.
 fn line(from: Point, to: Point, part: &Part, mut each: impl FnMut(i64, i64)) {
-    let Some((a, b)) = sight::clipped(part.dot_of(from), part.dot_of(to), part.dots) else { return };
+    let Some((a, b)) = viewport::clipped(part.dot_of(from), part.dot_of(to), part.dots) else { return };
     let steps = (b - a).hypot2().sqrt().ceil().max(1.0);
     for i in 0..=steps as u32 {
         let dot = a.lerp(b, f64::from(i) / steps);

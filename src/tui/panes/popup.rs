@@ -13,7 +13,7 @@ use crate::tui::document::choice::{Choice, Then};
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::color;
-use crate::tui::text::wrap::{folded, width};
+use crate::tui::text::wrap::{width, wrapped_lines};
 
 /// Draws what there is; the cursor is in the list.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -37,7 +37,7 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = plain(&choice.title);
     let above = text.lines().map(width).max().unwrap_or(0).max(width(&title));
     let wide = (words + help + 6).max(above + 4).clamp(30, screen.width - 8);
-    let text = folded(&text, wide - 4);
+    let text = wrapped_lines(&text, wide - 4);
     // What is cut is told below the list, for the row under the cursor.
     let room = wide.saturating_sub(words + 6);
     let told = choice.options.iter().map(|(_, help)| width(help)).filter(|&help| help > room);
@@ -47,7 +47,9 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let area = window(screen, wide, tall, &title, buffer);
     let (area, foot) = (Rect { height: area.height - below_.min(area.height), ..area }, area);
     if let Some((_, help)) = choice.options.get(choice.at).filter(|_| below_ > 0) {
-        for (y, line) in folded(help, foot.width.saturating_sub(2)).iter().take(usize::from(below_) - 1).enumerate() {
+        for (y, line) in
+            wrapped_lines(help, foot.width.saturating_sub(2)).iter().take(usize::from(below_) - 1).enumerate()
+        {
             write(buffer, foot, 1, area.height + 1 + y as u16, line, Style::new());
         }
     }

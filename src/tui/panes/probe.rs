@@ -9,7 +9,7 @@ use super::write;
 use crate::base::text::hex;
 use crate::layers::parts::readout::{Axis, Entry, Value};
 use crate::tui::graphics::probed::Probed;
-use crate::tui::layout::seeing;
+use crate::tui::layout::picture;
 use crate::tui::state::State;
 use crate::tui::text::color;
 use crate::tui::text::numbers::{polar, short};
@@ -20,8 +20,8 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         write(buffer, area, 0, 0, "looking ...", color::faint());
         return;
     };
-    let style = if seeing::asked(state) == Some(probed.asked) { Style::new() } else { color::faint() };
-    let (x, y) = probed.asked.pixel;
+    let style = if picture::probe_at(state) == Some(probed.at) { Style::new() } else { color::faint() };
+    let (x, y) = probed.at.pixel;
     let place = write(buffer, area, 0, 0, &format!("pixel {x},{y}   "), style);
     let entries = probed.read.iter().flat_map(|read| &read.entries);
     let Some(Some(of)) = entries.clone().find_map(of) else {
@@ -38,7 +38,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     let lines = [
         (1, joined(entries.clone().filter_map(vector))),
-        (4, numbers(entries.clone(), axis, probed.asked.time)),
+        (4, numbers(entries.clone(), axis, probed.at.time)),
         (5, joined(entries.clone().filter_map(read).chain([shows(probed)]))),
         (6, joined(entries.filter_map(list))),
     ];

@@ -55,12 +55,12 @@ fn place(state: &State) -> String {
 }
 
 fn marks(state: &State) -> String {
-    let failing = state.door.failing().map(|why| format!("  no journal: {}", plain(&why)));
+    let failing = state.scene.failing().map(|why| format!("  no journal: {}", plain(&why)));
     let mark = |on: bool, text: &'static str| if on { text } else { "" };
     [
-        mark(!state.door.is_saved(), "  *"),
-        mark(!state.door.is_synced(), " ~"),
-        mark(state.door.read_only(), "  RO"),
+        mark(!state.scene.is_saved(), "  *"),
+        mark(!state.scene.is_synced(), " ~"),
+        mark(state.scene.read_only(), "  RO"),
         &state.outside.file.map(|word| format!("  {word}")).unwrap_or_default(),
         failing.as_deref().unwrap_or_default(),
     ]

@@ -8,7 +8,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
-use super::columns::{Columns, GAP, Placed, Sight};
+use super::columns::{Columns, GAP, Placed, VisibleCells};
 use super::{typed, write};
 use crate::scene::address;
 use crate::tui::document::sheet::Row;
@@ -81,9 +81,9 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
 }
 
 /// Which cells of each row are in sight: like rows show the same ones, and the row under the cursor its cell.
-fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i32) -> Vec<Sight> {
-    let Some(own) = rows.get(at) else { return vec![Sight::default(); rows.len()] };
-    let here = Sight::of(&laid[at], own.item, state.cursor.column, room);
+fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i32) -> Vec<VisibleCells> {
+    let Some(own) = rows.get(at) else { return vec![VisibleCells::default(); rows.len()] };
+    let here = VisibleCells::of(&laid[at], own.item, state.cursor.column, room);
     let like = |row: &Row| {
         let heads = |row: &Row| row.cells.iter().map(|cell| cell.head.clone()).collect::<Vec<_>>();
         row.item == own.item && heads(row) == heads(own)
@@ -91,8 +91,8 @@ fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i3
     let sight = |(i, row): (usize, &Row)| match row {
         _ if i == at => here,
         row if row.item && like(row) => here,
-        row if row.item => Sight::beside(&laid[i], true, here, room),
-        _ => Sight::of(&laid[i], false, 0, room),
+        row if row.item => VisibleCells::beside(&laid[i], true, here, room),
+        _ => VisibleCells::of(&laid[i], false, 0, room),
     };
     rows.iter().enumerate().map(sight).collect()
 }
@@ -104,7 +104,7 @@ fn text(placed: &Placed, room: i32) -> String {
 }
 
 /// Marks where cells are left out; gives where the last one in sight ends.
-fn draw_marks(row: &[Placed], sight: Sight, cells: Rect, y: u16, buffer: &mut Buffer) -> i32 {
+fn draw_marks(row: &[Placed], sight: VisibleCells, cells: Rect, y: u16, buffer: &mut Buffer) -> i32 {
     if let Some(x) = sight.before(row) {
         write(buffer, cells, x, y, "<", color::faint());
     }
@@ -138,7 +138,7 @@ fn draw_label(row: &Row, selected: bool, area: Rect, y: u16, buffer: &mut Buffer
     }
 }
 
-fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], sights: &[Sight], cells: Rect, buffer: &mut Buffer) {
+fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], sights: &[VisibleCells], cells: Rect, buffer: &mut Buffer) {
     let under = |row: &Vec<Placed>| row.len() == heads.len() && row.iter().all(|placed| placed.head.is_none());
     let Some(at) = laid.iter().position(under) else { return };
     draw_marks(&laid[at], sights[at], cells, 0, buffer);

@@ -19,7 +19,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let mut cursor = None;
     for (y, (i, row)) in rows.iter().enumerate().skip(first).take(usize::from(area.height)).enumerate() {
         let y = y as u16;
-        let mark = row.folded.map_or("  ", |folded| if folded { "▸ " } else { "▾ " });
+        let mark = row.collapsed.map_or("  ", |collapsed| if collapsed { "▸ " } else { "▾ " });
         let style = match i == at {
             true if state.cursor.focus == Pane::Tree => color::focus(),
             true => Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED),

@@ -26,11 +26,10 @@ use self::play::{Passed, Play};
 use self::tutor::Tutor;
 use self::typing::Typing;
 pub use self::typing::{Mode, Pages};
-use super::document::door::Door;
+use super::document::open_scene::OpenScene;
 use super::document::sheet::{Row, Sheet};
 use super::document::tree;
 use super::events::{Change, Effect};
-use super::graphics::sight::Placing;
 use super::keys::Keymap;
 use super::text::color::Depth;
 use crate::base::problem::Problem;
@@ -52,7 +51,7 @@ pub fn fits((width, height): (u16, u16)) -> bool {
 /// Everything that the screen shows and the keys change.
 pub struct State {
     /// The scene, its history and its file.
-    pub door: Door,
+    pub scene: OpenScene,
     /// Width and height of the terminal.
     pub size: (u16, u16),
     /// What the terminal shows of colors.
@@ -81,21 +80,21 @@ pub struct State {
 
 impl State {
     /// The editor as it opens: the tree has the focus, the first zone is shown.
-    pub fn new(door: Door, size: (u16, u16), depth: Depth) -> Self {
+    pub fn new(scene: OpenScene, size: (u16, u16), depth: Depth) -> Self {
         let mut state = State {
             size,
             depth,
             keymap: Keymap::default(),
-            cursor: Cursor::new(tree::first(door.document())),
+            cursor: Cursor::new(tree::first(scene.document())),
             typing: Typing::default(),
-            picture: Picture::new(Placing::new(tree::picture_centre(door.document()))),
+            picture: Picture::new(tree::picture_centre(scene.document())),
             play: Play::default(),
-            outside: Outside::new(&door),
+            outside: Outside::new(&scene),
             memory: Memory::default(),
             tutor: None,
             message: None,
             effects: VecDeque::new(),
-            door,
+            scene,
         };
         state.ask_waiting();
         state
@@ -103,7 +102,7 @@ impl State {
 
     /// The scene as it is now.
     pub fn document(&self) -> &Document {
-        self.door.document()
+        self.scene.document()
     }
 
     /// The node in the middle, as rows.
@@ -149,12 +148,12 @@ impl State {
         self.effects.push_back(effect);
     }
 
-    /// Applies an edit through the one door. One of a held key joins the one before it into one step of undo.
+    /// Applies an edit. One of a held key joins the one before it into one step of undo.
     pub fn edit(&mut self, edit: Edit, held: bool) -> Result<(), String> {
         if edit.is_empty() {
             return Ok(());
         }
-        if let Some(change) = self.door.apply(edit, held).map_err(|problems| self.refusal(problems))? {
+        if let Some(change) = self.scene.apply(edit, held).map_err(|problems| self.refusal(problems))? {
             self.changed(change);
         }
         Ok(())
@@ -210,7 +209,7 @@ impl State {
 
     /// Plays or stands as a window does.
     pub fn follow(&mut self, transport: Transport) {
-        let timeline = &self.door.document().scene().timeline;
+        let timeline = &self.scene.document().scene().timeline;
         if self.play.follow(transport, timeline) {
             self.ask(Effect::Pass);
         }
@@ -218,7 +217,7 @@ impl State {
 
     /// Lets so many seconds pass.
     pub fn pass(&mut self, seconds: f64) {
-        let timeline = &self.door.document().scene().timeline;
+        let timeline = &self.scene.document().scene().timeline;
         match self.play.pass(seconds, timeline) {
             Passed::Nothing => {}
             Passed::On => self.ask(Effect::Pass),

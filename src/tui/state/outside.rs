@@ -2,7 +2,7 @@
 //! else who edits the scene.
 
 use crate::tui::document::choice::{About, Choice, Question, Then};
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::text::plain;
 
 /// So many changes are shown in a question; the rest can be looked at.
@@ -27,8 +27,8 @@ pub struct Outside {
 
 impl Outside {
     /// With what is to be asked when a scene has been opened.
-    pub fn new(door: &Door) -> Outside {
-        let held = door.held_by().map(|holder| {
+    pub fn new(scene: &OpenScene) -> Outside {
+        let held = scene.held_by().map(|holder| {
             let text = vec![format!("The scene {}.", plain(&holder.in_words()))];
             let mut options = vec![("look", "Open it to read only; it follows what is saved there")];
             if !holder.certain {
@@ -37,14 +37,14 @@ impl Outside {
             options.push(("quit", "Leave"));
             question(About::Holder, "the scene is open elsewhere".into(), text, &options)
         });
-        Outside { waiting: held.or_else(|| about_recovery(door)), ..Outside::default() }
+        Outside { waiting: held.or_else(|| about_recovery(scene)), ..Outside::default() }
     }
 }
 
 /// What is asked about unsaved edits that were left behind.
-pub fn about_recovery(door: &Door) -> Option<Choice> {
-    let offer = door.offered()?;
-    let title = format!("{} left behind, {}", offer.in_words(), door.ago(offer.time_ms));
+pub fn about_recovery(scene: &OpenScene) -> Option<Choice> {
+    let offer = scene.offered()?;
+    let title = format!("{} left behind, {}", offer.in_words(), scene.ago(offer.time_ms));
     let mut text = few(&offer.words);
     if offer.file_changed {
         text.push("Another program has changed the file since.".into());

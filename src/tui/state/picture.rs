@@ -2,22 +2,26 @@
 
 use std::sync::Arc;
 
+use kurbo::{Point, Vec2};
+
 use crate::render::Synth;
 use crate::tui::graphics::probed::Probed;
-use crate::tui::graphics::sight::Placing;
-use crate::tui::graphics::{Graphics, Shown};
+use crate::tui::graphics::viewport::Viewport;
+use crate::tui::graphics::{Graphics, TerminalPicture};
 
 /// The picture and its read-out; what the threads have made is old while they work on.
 #[derive(Clone)]
 pub struct Picture {
-    /// The cursor and zoom of the picture.
-    pub placing: Placing,
+    /// The cursor, in pixels of the picture; on the center of a pixel unless a number has set it.
+    pub cursor: Point,
+    /// Which part is visible.
+    pub viewport: Viewport,
     /// Width and height of the picture, once known.
     pub size: Option<(usize, usize)>,
     /// What pictures the terminal takes.
     pub graphics: Graphics,
     /// The picture that the worker made last.
-    pub shown: Option<Arc<Shown>>,
+    pub latest: Option<Arc<TerminalPicture>>,
     /// Whether the read-out of the pixel under the cursor is open.
     pub probing: bool,
     /// What the worker said about a pixel last.
@@ -33,13 +37,14 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Nothing made yet, all of it in sight.
-    pub fn new(placing: Placing) -> Picture {
+    /// Nothing made yet, the cursor at a place, all of the picture visible.
+    pub fn new(cursor: Point) -> Picture {
         Picture {
-            placing,
+            cursor,
+            viewport: Viewport { zoom: None, center: cursor },
             size: None,
             graphics: Graphics::default(),
-            shown: None,
+            latest: None,
             probing: false,
             probed: None,
             synthesising: false,
@@ -50,7 +55,9 @@ impl Picture {
     }
 
     /// Moves the cursor, within the picture if its size is known.
-    pub fn step(&mut self, by: kurbo::Vec2) {
-        self.placing.step(by, self.size);
+    pub fn step(&mut self, by: Vec2) {
+        let moved = self.cursor + by;
+        let (w, h) = self.size.map_or((1e6, 1e6), |(w, h)| (w as f64, h as f64));
+        self.cursor = Point::new(moved.x.clamp(0.5, (w - 0.5).max(0.5)), moved.y.clamp(0.5, (h - 0.5).max(0.5)));
     }
 }

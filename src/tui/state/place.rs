@@ -64,7 +64,7 @@ fn placed(state: &State) -> Option<(String, Place, Point)> {
 /// Moves the thing in focus to the cursor.
 pub fn move_here(state: &State) -> Result<Edit, String> {
     let (_, place, _) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
-    Ok(move_to(state.document(), &place, state.picture.placing.cursor))
+    Ok(move_to(state.document(), &place, state.picture.cursor))
 }
 
 /// JSON pointer of the cell in focus.
@@ -79,7 +79,7 @@ pub fn jump_in_focus(state: &State) -> Option<Vec2> {
     let cell = cell(state)?;
     let children = field::children(state.document(), &pointer);
     let is_jump = children.iter().any(|child| is_pair(&child.field, ["dx", "dy"]) && child.pointer == cell);
-    is_jump.then(|| state.picture.placing.cursor - at)
+    is_jump.then(|| state.picture.cursor - at)
 }
 
 /// Lets the jump vector (or the dragged place) of the thing in focus end at the cursor.
@@ -87,7 +87,7 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
     let document = state.document();
     let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     let children = field::children(document, &pointer);
-    let cursor = state.picture.placing.cursor;
+    let cursor = state.picture.cursor;
     let cell = cell(state);
     let vectors = || children.iter().filter(|child| is_pair(&child.field, ["dx", "dy"]));
     let in_focus = vectors().find(|child| Some(&child.pointer) == cell.as_ref());
@@ -117,7 +117,7 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
         for list in lists {
             let end = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
             let index = if is_list { after.map_or(end, |i| i + 1) } else { end };
-            if let Some(added) = add_to(document, &list, index, state.picture.placing.cursor) {
+            if let Some(added) = add_to(document, &list, index, state.picture.cursor) {
                 return Ok(added);
             }
         }

@@ -1,4 +1,4 @@
-//! What was run, and who listens: every line that the editor runs passes one door (`commands::obey`) and is told here. The
+//! What was run: every line that the editor runs goes through `commands::obey`, which reports it here. The
 //! log of the session keeps all of them, so that they lead to the same scene again; a macro keeps what the person asked for;
 //! `.` keeps the last change. Typing, choosing and the help are not kept, but what came of them is: `put *1.1`.
 
@@ -18,12 +18,12 @@ const MOST_CHANGED: u64 = 16 << 30;
 
 /// How much the lines that one key plays have done.
 #[derive(Clone, Debug, Default)]
-pub struct Work {
+pub struct WorkLimit {
     lines: usize,
     bytes: u64,
 }
 
-impl Work {
+impl WorkLimit {
     /// A line is about to change `document`.
     ///
     /// # Errors
@@ -38,9 +38,9 @@ impl Work {
     }
 }
 
-/// What is kept of a command that was run.
+/// What the recorder notes of a command that was run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kept {
+pub enum Recorded {
     /// Its line.
     Line,
     /// Its line, which `.` repeats where it changed the scene.
@@ -57,8 +57,8 @@ pub enum Kept {
 pub struct Ended<'a> {
     /// The line, with its count.
     pub line: String,
-    /// What is kept of its command.
-    pub kept: Kept,
+    /// What the recorder notes of its command.
+    pub recorded: Recorded,
     /// What was said where it could not be done.
     pub refused: Option<&'a str>,
     /// Whether it began to ask for something: an entry or a list of choices is open, which was not before.
@@ -88,50 +88,50 @@ pub struct Recorder {
     played: Option<char>,
     /// Commands running now that play other lines, and how many lines they have played.
     playing: usize,
-    spent: Work,
-    /// Commands running now of which the line is kept: what they run is part of them.
+    spent: WorkLimit,
+    /// Commands running now of which the line is recorded: what they run is part of them.
     within: usize,
 }
 
 impl Recorder {
     /// A command begins.
-    pub fn begin(&mut self, kept: Kept) {
-        match kept {
-            Kept::Inside => {}
-            Kept::Played => {
+    pub fn begin(&mut self, recorded: Recorded) {
+        match recorded {
+            Recorded::Inside => {}
+            Recorded::Played => {
                 if self.playing == 0 {
-                    self.spent = Work::default();
+                    self.spent = WorkLimit::default();
                 }
                 self.playing += 1;
             }
-            Kept::Line | Kept::Change | Kept::Answer => self.within += 1,
+            Recorded::Line | Recorded::Change | Recorded::Answer => self.within += 1,
         }
     }
 
     /// A command that began has ended.
     pub fn end(&mut self, ended: Ended) {
-        match ended.kept {
-            Kept::Inside => return,
-            Kept::Played => self.playing -= 1,
-            Kept::Line | Kept::Change | Kept::Answer => self.within -= 1,
+        match ended.recorded {
+            Recorded::Inside => return,
+            Recorded::Played => self.playing -= 1,
+            Recorded::Line | Recorded::Change | Recorded::Answer => self.within -= 1,
         }
         if self.within > 0 {
             return;
         }
-        let Ended { line, kept, refused, asks, changed } = ended;
+        let Ended { line, recorded, refused, asks, changed } = ended;
         if let Some(why) = refused {
             self.log.push(format!("# {}", plain(&format!("{line}: {why}"))));
             return;
         }
-        match kept {
-            Kept::Played => self.keep_in_macro(&[line]),
+        match recorded {
+            Recorded::Played => self.keep_in_macro(&[line]),
             _ if asks => self.asked = Some(line),
             _ => {
-                let asked = self.asked.take().filter(|_| kept == Kept::Answer);
+                let asked = self.asked.take().filter(|_| recorded == Recorded::Answer);
                 let lines: Vec<String> = asked.into_iter().chain([line]).collect();
                 self.keep_in_macro(&lines);
                 self.log.extend_from_slice(&lines);
-                if changed && matches!(kept, Kept::Change | Kept::Answer) {
+                if changed && matches!(recorded, Recorded::Change | Recorded::Answer) {
                     self.change = lines;
                 }
             }

@@ -11,7 +11,7 @@ use crate::files::session::Mode as Open;
 use crate::tui::commands::command::Counts;
 use crate::tui::commands::update::update;
 use crate::tui::commands::{self, obey};
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
 use crate::tui::text::color::Depth;
@@ -29,8 +29,8 @@ fn everything(state: &State) -> String {
     let State { cursor, typing, picture, play, memory, .. } = state;
     let effects: Vec<&Effect> =
         state.effects.iter().filter(|effect| matches!(effect, Effect::View(_) | Effect::Copy(_))).collect();
-    let (placing, yanked) = (picture.placing, &memory.yanked);
-    format!("{} {cursor:?} {typing:?} {placing:?} {play:?} {effects:?} {yanked:?}", state.document().json())
+    let (at, viewport, yanked) = (picture.cursor, picture.viewport, &memory.yanked);
+    format!("{} {cursor:?} {typing:?} {at:?} {viewport:?} {play:?} {effects:?} {yanked:?}", state.document().json())
 }
 
 /// Every command that takes a count: the keys before it, and the line.
@@ -61,8 +61,8 @@ const COUNTED: &[(&str, &str)] = &[
     (MOTION, "move next"),
     ("", "pane next"),
     ("", "pane previous"),
-    ("", "fold"),
-    ("h", "open"),
+    ("", "collapse"),
+    ("h", "expand"),
     ("", "up"),
     ("/ \"motion\" Enter Enter v", "back"),
     ("/ \"motion\" Enter Enter v", "leave"),
@@ -158,7 +158,7 @@ pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
             let line = format!("2 {} {word}", command.name);
             let refused = obey(&mut state, &line, None).unwrap_err();
             assert!(refused.contains("takes no count") || word.is_empty(), "{line}: {refused}");
-            assert!(refused.starts_with(command.name) && state.door.is_saved(), "{line}: {refused}");
+            assert!(refused.starts_with(command.name) && state.scene.is_saved(), "{line}: {refused}");
         }
     }
 }
@@ -277,8 +277,8 @@ fn a_scene_that_is_only_looked_at_refuses_at_the_first_key() {
     let path = folder.path().join("scene.plica.json");
     std::fs::write(&path, super::support::SCENE).unwrap();
     let open = || {
-        let door = Door::open(&path, Open::ReadOnly, &crate::files::Options::default()).unwrap();
-        State::new(door, (80, 24), Depth::None)
+        let scene = OpenScene::open(&path, Open::ReadOnly, &crate::files::Options::default()).unwrap();
+        State::new(scene, (80, 24), Depth::None)
     };
     for keys in [
         "/ \"name\" Enter Enter",

@@ -1,6 +1,6 @@
 //! Every command has a case (scene, keys, scene). To add one: write a row into a table of `check` in a file of tests, in a
-//! test function of its own or of others, and name that function in [`TABLES`]. What the tables run is seen at the one
-//! door, so nobody writes down which command a row is about.
+//! test function of its own or of others, and name that function in [`TABLES`]. What the tables run is seen in
+//! `obey`, so nobody writes down which command a row is about.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -25,12 +25,12 @@ const TABLES: &[fn()] = &[
     super::told::tables_are_pasted_over_a_selection,
     super::told::what_was_said_and_what_is_wrong_can_be_read_again,
     super::images::a_picture_of_the_scene_is_opened_and_nothing_else,
-    super::life::unsaved_edits_that_were_left_behind_are_told_in_words_and_offered,
-    super::life::what_another_program_writes_is_taken_in_merged_or_asked_about,
+    super::conflicts::unsaved_edits_that_were_left_behind_are_told_in_words_and_offered,
+    super::conflicts::what_another_program_writes_is_taken_in_merged_or_asked_about,
     super::finding::what_is_found_is_edited,
     super::tutor::lessons_are_gone_through_by_command,
     super::lines::lines_say_what_keys_do,
-    super::lines::nodes_are_reached_by_folding_and_going_up,
+    super::lines::nodes_are_reached_by_collapsing_and_going_up,
     super::lines::what_is_outside_is_asked_for,
     super::lines::the_pointer_of_a_window_is_kept_as_a_place,
     super::data::what_is_yanked_is_pasted_where_it_fits,
@@ -39,9 +39,9 @@ const TABLES: &[fn()] = &[
     super::data::undo_says_what_it_undid,
     super::data::pictures_and_names_come_and_go,
     super::lines::what_lasts_of_no_key_changes_no_scene,
-    super::seeing::zooming_keeps_the_cursor_and_panning_takes_it_along,
-    super::seeing::graphics_are_told_and_set,
-    super::seeing::the_read_out_opens_follows_and_closes,
+    super::picture::zooming_keeps_the_cursor_and_panning_takes_it_along,
+    super::picture::graphics_are_told_and_set,
+    super::picture::the_read_out_opens_follows_and_closes,
 ];
 
 thread_local! {

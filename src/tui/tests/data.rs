@@ -6,7 +6,7 @@ use super::support::{press, state, state_of};
 use super::{check, motion, zone};
 use crate::scene::field::{self, Kind};
 use crate::tui::commands::update::update;
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
 
@@ -68,7 +68,7 @@ fn what_does_not_fit_says_why_and_changes_nothing() {
         press(&mut state, keys);
         let (bad, text) = said(&state);
         assert!(bad && text.contains(part), "{keys}: {text}");
-        assert!(state.door.is_saved(), "{keys}");
+        assert!(state.scene.is_saved(), "{keys}");
     }
 }
 
@@ -116,7 +116,7 @@ fn every_kind_of_node_can_be_yanked_and_pasted() {
             state.cursor.row = state.sheet().position(&child.pointer).unwrap_or(0);
             press(&mut state, "y p");
             assert!(!said(&state).0, "{}: {}", child.pointer, said(&state).1);
-            while !state.door.is_saved() {
+            while !state.scene.is_saved() {
                 press(&mut state, "u");
             }
         }
@@ -150,7 +150,7 @@ fn rows_are_pasted_into_tables() {
         assert_eq!(at(&state, &zone("/motion")).as_array().unwrap().len(), 4 + count, "{text}");
         assert_eq!(state.cursor.row, 1);
         press(&mut state, "u");
-        assert!(state.door.is_saved(), "one step: {text}");
+        assert!(state.scene.is_saved(), "one step: {text}");
     }
 }
 
@@ -206,7 +206,7 @@ fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
         paste(&mut state, text);
         let (bad, told) = said(&state);
         assert!(bad && told.contains(part), "{text}: {told}");
-        assert!(state.door.is_saved(), "{text}");
+        assert!(state.scene.is_saved(), "{text}");
     }
 }
 
@@ -284,9 +284,9 @@ fn a_held_key_is_one_step_whatever_it_steps() {
     ] {
         let mut state = state();
         press(&mut state, &keys);
-        assert!(!state.door.is_saved(), "{keys}");
+        assert!(!state.scene.is_saved(), "{keys}");
         press(&mut state, "u");
-        assert!(state.door.is_saved(), "{keys}");
+        assert!(state.scene.is_saved(), "{keys}");
     }
 }
 
@@ -349,10 +349,10 @@ fn the_history_marks_the_state_that_is_saved() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cat.plica.json");
     std::fs::write(&path, super::support::SCENE).unwrap();
-    let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
-    let mut state = State::new(door, (80, 24), crate::tui::text::color::Depth::None);
+    let scene = OpenScene::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
+    let mut state = State::new(scene, (80, 24), crate::tui::text::color::Depth::None);
     press(&mut state, "/ \"radius\" Enter + k j +");
-    state.door.save(None, false).unwrap();
+    state.scene.save(None, false).unwrap();
     press(&mut state, "k j +");
     for (keys, now) in [("", "-- now --"), ("u", "-- now (saved) --"), ("2 u", "-- now --"), ("3 Ctrl-r", "-- now --")]
     {
@@ -371,20 +371,21 @@ fn undo_goes_on_over_save_and_reopening_and_the_mark_follows() {
     let path = folder.path().join("cat.plica.json");
     std::fs::write(&path, super::support::SCENE).unwrap();
     let open = || {
-        let door = Door::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
-        State::new(door, (80, 24), crate::tui::text::color::Depth::None)
+        let scene =
+            OpenScene::open(&path, crate::files::session::Mode::Edit, &crate::files::Options::default()).unwrap();
+        State::new(scene, (80, 24), crate::tui::text::color::Depth::None)
     };
     let marks = |state: &mut State, keys: &[(&str, bool, i64)]| {
         for (key, saved, radius) in keys {
             press(state, key);
             let found = at(state, &zone("/interpolation/radius"));
-            assert_eq!((state.door.is_saved(), found), (*saved, json!(radius)), "{key}");
+            assert_eq!((state.scene.is_saved(), found), (*saved, json!(radius)), "{key}");
         }
     };
     let mut first = open();
     press(&mut first, "/ \"radius\" Enter");
     marks(&mut first, &[("+", false, 61), ("k j +", false, 62)]);
-    first.door.save(None, false).unwrap();
+    first.scene.save(None, false).unwrap();
     marks(&mut first, &[("u", false, 61), ("Ctrl-r", true, 62), ("k j +", false, 63), ("u", true, 62)]);
     drop(first);
     let mut second = open();
@@ -421,7 +422,7 @@ pub fn pictures_and_names_come_and_go() {
 
 #[test]
 fn paths_are_asked_for_and_completed() {
-    let beside = |state: &State| state.door.path().parent().map(std::path::Path::to_owned);
+    let beside = |state: &State| state.scene.path().parent().map(std::path::Path::to_owned);
     for (keys, name, path, relative) in [
         ("/ \"images\" Enter o \"ca\" Tab", "add", "ca", true),
         (": \"w a/\" Tab", "w", "a/", false),
@@ -459,8 +460,8 @@ fn every_list_of_the_schema_can_be_added_to() {
         let (bad, text) = said(&state);
         let told = bad && text.contains("expected 2 items");
         let asked = matches!(state.typing.mode, Mode::Line(_));
-        assert!(asked || told || !state.door.is_saved() && !bad, "{pointer}: {text}");
-        while !state.door.is_saved() {
+        assert!(asked || told || !state.scene.is_saved() && !bad, "{pointer}: {text}");
+        while !state.scene.is_saved() {
             press(&mut state, "u");
         }
     }

@@ -23,8 +23,8 @@ pub fn a_picture_of_the_scene_is_opened_and_nothing_else() {
     let scene = folder.path().join("s.plica.json");
     std::fs::write(&scene, r#"{"plica": 1, "images": {"cat": {"path": "cat.png"}}}"#).unwrap();
     for line in ["image edit", "image edit cat"] {
-        let door = crate::tui::document::door::Door::in_memory(&scene);
-        let mut state = crate::tui::state::State::new(door, (80, 24), crate::tui::text::color::Depth::None);
+        let scene = crate::tui::document::open_scene::OpenScene::in_memory(&scene);
+        let mut state = crate::tui::state::State::new(scene, (80, 24), crate::tui::text::color::Depth::None);
         run(&mut state, line, None);
         let asked = state.effects.pop_front();
         assert!(matches!(&asked, Some(Effect::EditImage(path)) if path.ends_with("cat.png")), "{line}");

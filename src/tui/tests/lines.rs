@@ -42,11 +42,13 @@ pub fn what_lasts_of_no_key_changes_no_scene() {
 }
 
 #[test]
-pub fn nodes_are_reached_by_folding_and_going_up() {
+pub fn nodes_are_reached_by_collapsing_and_going_up() {
     check(&[
         ("h d", "/layers/0/zones/0/name", json!("mouth")),
         ("h h D", "/layers/1/name", json!("face 2")),
         ("h l l i \"x\" Enter", &zone("/name"), json!("x")),
+        // As these commands were called before.
+        (": \"fold\" Enter : \"2 open\" Enter i \"x\" Enter", &zone("/name"), json!("x")),
         (&motion("Backspace g g i \"x\" Enter"), &zone("/name"), json!("x")),
         (&motion("g i + l r"), &zone("/motion/0/at"), json!([31.5, 25.5])),
         ("d : \"und\" Tab Enter", &zone("/name"), json!("left eye")),
@@ -88,7 +90,7 @@ fn a_command_that_takes_nothing_says_so_where_it_is_given_something() {
         let mut state = state();
         let refused = obey(&mut state, &line, None).unwrap_err();
         assert!(refused.contains(" takes nothing after it, not \""), "{line}: {refused}");
-        assert!(state.effects.is_empty() && state.door.revision() == 0, "{line}");
+        assert!(state.effects.is_empty() && state.scene.revision() == 0, "{line}");
     }
 }
 
@@ -104,7 +106,7 @@ fn a_path_is_one_word_or_in_quotes_and_no_program() {
             let mut state = state();
             let refused = obey(&mut state, &format!("{name} {path}"), None).unwrap_err();
             assert!(refused.contains(refusal), "{name} {path}: {refused}");
-            assert!(state.effects.is_empty() && state.door.revision() == 0, "{name} {path}");
+            assert!(state.effects.is_empty() && state.scene.revision() == 0, "{name} {path}");
         }
     }
 }

@@ -6,16 +6,16 @@ use super::events::Effect;
 use super::state::Mode;
 use super::tests::support::{press, replayed, state};
 
+mod conflicts;
 mod counts;
 pub mod coverage;
 mod data;
 pub mod finding;
 mod images;
-mod life;
 mod lines;
 mod macros;
+mod picture;
 mod screens;
-mod seeing;
 pub mod support;
 mod table;
 mod told;
@@ -111,7 +111,7 @@ fn what_is_no_number_does_not_step() {
         press(&mut state, &keys);
         let message = state.message.clone().unwrap();
         assert!(message.bad && message.text.contains("is no number"), "{keys}: {message:?}");
-        assert!(state.door.is_saved(), "{keys}");
+        assert!(state.scene.is_saved(), "{keys}");
     }
 }
 

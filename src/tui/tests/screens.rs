@@ -12,9 +12,9 @@ use crate::base::picture::Picture;
 use crate::layers::parts::materials::Materials;
 use crate::tui::commands::update::update;
 use crate::tui::events::{Event, Synthesis};
-use crate::tui::graphics::Shown;
+use crate::tui::graphics::TerminalPicture;
 use crate::tui::graphics::probed::Probed;
-use crate::tui::layout::seeing;
+use crate::tui::layout::picture;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 
@@ -58,7 +58,7 @@ pub fn see(state: &mut State) {
     let shade = |i: usize| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, 0.3, 1.0];
     let picture = Arc::new(Picture::from_cells(64, 64, (0..64 * 64).map(shade).collect()));
     let materials = Materials { pictures: [("cat".to_string(), picture)].into(), ..Materials::default() };
-    let request = seeing::request(state);
+    let request = picture::request(state);
     let synth = Arc::new(crate::render::synth(&request.scene, &materials, None).unwrap());
     let longest = probed::longest(&synth);
     update(state, Event::Synthesised(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest, warning: None })));
@@ -67,9 +67,9 @@ pub fn see(state: &mut State) {
         update(state, Event::Probed(Arc::new(probed)));
     }
     if let Some(wanted) = request.picture {
-        let before = state.picture.shown.clone();
-        let shown = Shown::new(&synth, &request.scene, request.time, wanted, before.as_deref());
-        update(state, Event::Framed(shown));
+        let before = state.picture.latest.clone();
+        let shown = TerminalPicture::new(&synth, &request.scene, request.time, wanted, before.as_deref());
+        update(state, Event::Picture(shown));
     }
 }
 

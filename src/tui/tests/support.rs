@@ -6,7 +6,7 @@ use crate::preview::editor;
 use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
@@ -50,8 +50,8 @@ pub fn state() -> State {
         std::fs::write(folder.path().join("cat.plica.json"), SCENE).unwrap();
         folder
     });
-    let door = Door::in_memory(&FOLDER.path().join("cat.plica.json"));
-    let mut state = State::new(door, (80, 24), Depth::None);
+    let scene = OpenScene::in_memory(&FOLDER.path().join("cat.plica.json"));
+    let mut state = State::new(scene, (80, 24), Depth::None);
     state.picture.size = Some((64, 64));
     state
 }
@@ -61,7 +61,7 @@ pub fn state_of(text: &str) -> State {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.plica.json");
     std::fs::write(&path, text).unwrap();
-    State::new(Door::in_memory(&path), (80, 24), Depth::None)
+    State::new(OpenScene::in_memory(&path), (80, 24), Depth::None)
 }
 
 /// Presses keys, written with spaces between them; `"text"` types text. Gives all effects.

@@ -54,7 +54,7 @@ pub fn tables_are_pasted_over_a_selection() {
         assert_eq!(Value::from(found), jumps, "{keys} {text}: {}", said(&state));
         assert_eq!(replayed(&state).document().json(), state.document().json(), "{text}");
         press(&mut state, "u");
-        assert!(state.door.is_saved(), "{text}");
+        assert!(state.scene.is_saved(), "{text}");
     }
 }
 
@@ -77,7 +77,7 @@ fn what_was_yanked_changes_nothing_where_it_was() {
             assert!(said(&state).ends_with("pasted over"), "{place} {yank}: {}", said(&state));
             assert_eq!(state.document().json(), &before, "{place} {yank}");
             press(&mut state, "p u");
-            assert!(state.door.is_saved(), "no step of undo: {place} {yank}");
+            assert!(state.scene.is_saved(), "no step of undo: {place} {yank}");
         }
     }
 }
@@ -100,7 +100,7 @@ fn json_goes_over_all_that_is_selected_or_is_refused() {
         assert_eq!(at(&state, &zone("/motion")).as_array().unwrap().len(), 4, "{keys} {text}");
         assert!(said(&state).ends_with("pasted over"), "{keys} {text}: {}", said(&state));
         press(&mut state, "u");
-        assert!(state.door.is_saved(), "{keys} {text}");
+        assert!(state.scene.is_saved(), "{keys} {text}");
     }
     for (keys, text, why) in [
         ("v 2 j", r#"[{"tool":"point","at":[9,9]},{"tool":"point","at":[8,8]}]"#, "2 rows over 3 selected"),
@@ -110,7 +110,7 @@ fn json_goes_over_all_that_is_selected_or_is_refused() {
         let mut state = state();
         press(&mut state, &motion(keys));
         update(&mut state, Event::Paste(text.into()));
-        assert!(said(&state).contains(why) && state.door.is_saved(), "{keys} {text}: {}", said(&state));
+        assert!(said(&state).contains(why) && state.scene.is_saved(), "{keys} {text}: {}", said(&state));
     }
 }
 

@@ -7,7 +7,7 @@ use crate::files::profiles::TUTOR;
 use crate::files::session::Mode as Open;
 use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::keys::Keymap;
 use crate::tui::state::State;
@@ -19,8 +19,8 @@ use crate::tui::tutor::lessons::LESSONS;
 fn begun() -> (tempfile::TempDir, State) {
     let folder = tempfile::tempdir().unwrap();
     let scene = TUTOR.unpack(folder.path()).unwrap();
-    let door = Door::open(&scene, Open::Edit, &Options::default()).unwrap();
-    let mut state = State::new(door, (80, 24), Depth::None);
+    let scene = OpenScene::open(&scene, Open::Edit, &Options::default()).unwrap();
+    let mut state = State::new(scene, (80, 24), Depth::None);
     state.picture.size = Some((480, 360));
     state.tutor = Some(Tutor::begin());
     (folder, state)
@@ -31,7 +31,7 @@ fn perform(state: &mut State, effects: Vec<Effect>) {
     for effect in effects {
         match effect {
             Effect::Save { overwrite, .. } => {
-                let result = state.door.save(None, overwrite).map_err(|error| error.to_string());
+                let result = state.scene.save(None, overwrite).map_err(|error| error.to_string());
                 update(state, Event::Saved(result));
             }
             Effect::Run(words) => {
@@ -50,7 +50,7 @@ fn at(state: &State) -> usize {
 /// The line of the closed lid is dark from one corner of the eye to the other, and below it nothing is.
 fn lid_is_closed(state: &State) {
     let scene = state.document().scene();
-    let loaded = materials::load(state.door.path(), scene, &Options::default(), &mut materials::Cache::default());
+    let loaded = materials::load(state.scene.path(), scene, &Options::default(), &mut materials::Cache::default());
     let frame = cpu::frame(&render::synth(scene, &loaded.unwrap().0, None).unwrap(), 0.5);
     let dark = |x: usize, y: usize| frame.get(x, y)[..3].iter().map(|c| u32::from(*c)).sum::<u32>() < 200;
     for x in 126..213 {

@@ -63,7 +63,7 @@ fn a_point_marked_in_a_window_moves_the_cursor_only() {
     let before = state.document().json().clone();
     update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
     update(&mut state, said(ToEditor::Command("mark-point".into())));
-    assert_eq!(state.picture.placing.cursor, (12.5, 13.25).into());
+    assert_eq!(state.picture.cursor, (12.5, 13.25).into());
     assert_eq!(state.document().json(), &before);
     assert!(state.message.as_ref().is_some_and(|said| said.text.starts_with("marked 12.5, 13.25")));
 }

@@ -52,7 +52,7 @@ pub fn wrapped(text: &str, room: u16) -> Vec<String> {
 }
 
 /// A text of several lines in lines that fit: at words, and where one is longer than a line inside it. None is empty.
-pub fn folded(text: &str, room: u16) -> Vec<String> {
+pub fn wrapped_lines(text: &str, room: u16) -> Vec<String> {
     let room = room.max(1);
     let mut lines = Vec::new();
     for line in text.lines().filter(|line| !line.trim().is_empty()) {
@@ -84,8 +84,8 @@ mod tests {
         assert_eq!(wrapped("one two  three", 8), ["one two", "three"]);
         assert_eq!(wrapped("", 8), [""]);
         assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
-        assert_eq!(folded("a-word-too-long x\n\nyes", 6), ["a-word", "-too-l", "ong", "x", "yes"]);
-        assert_eq!(folded("日本語", 4), ["日本", "語"]);
+        assert_eq!(wrapped_lines("a-word-too-long x\n\nyes", 6), ["a-word", "-too-l", "ong", "x", "yes"]);
+        assert_eq!(wrapped_lines("日本語", 4), ["日本", "語"]);
     }
 
     #[test]

@@ -252,7 +252,7 @@ pub const LESSONS: &[Lesson] = &[
             "it is not lost: each edit is in a journal. The Space menu has Save: use it.",
         ],
         keys: &[Key(HELP, "cancel"), Key(EVERYWHERE, "w")],
-        done: |state| state.door.is_saved(),
+        done: |state| state.scene.is_saved(),
     },
     Lesson {
         title: "an animation",

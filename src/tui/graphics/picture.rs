@@ -15,7 +15,7 @@ use crate::scene::Scene;
 
 /// A picture as it can be shown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct TerminalPicture {
     /// What it was made for.
     pub wanted: Wanted,
     /// The dots, fewer by `by` each way; transparent beyond the picture.
@@ -31,13 +31,19 @@ pub struct Shown {
 /// No picture is reduced further than this, whatever the bound.
 const MOST_REDUCED: usize = 64;
 
-impl Shown {
+impl TerminalPicture {
     /// The picture at `time`, reduced until it fits its bound of bytes. `before` is the picture that was shown last: its
     /// size is the first guess.
-    pub fn new(synth: &Synth, scene: &Scene, time: f64, wanted: Wanted, before: Option<&Shown>) -> Arc<Shown> {
+    pub fn new(
+        synth: &Synth,
+        scene: &Scene,
+        time: f64,
+        wanted: Wanted,
+        before: Option<&TerminalPicture>,
+    ) -> Arc<TerminalPicture> {
         let mut by = before.map_or(1, |before| guess(before, &wanted));
         loop {
-            let shown = Shown::reduced(synth, scene, time, &wanted, by);
+            let shown = TerminalPicture::reduced(synth, scene, time, &wanted, by);
             if shown.bytes <= wanted.bytes || by >= MOST_REDUCED {
                 return Arc::new(shown);
             }
@@ -45,7 +51,7 @@ impl Shown {
         }
     }
 
-    fn reduced(synth: &Synth, scene: &Scene, time: f64, wanted: &Wanted, by: usize) -> Shown {
+    fn reduced(synth: &Synth, scene: &Scene, time: f64, wanted: &Wanted, by: usize) -> TerminalPicture {
         let part = wanted.part.reduced(by);
         let mut frame = part::frame(synth, time, &part);
         ground(&mut frame, synth.size, &part);
@@ -56,7 +62,7 @@ impl Shown {
             ink.cross(marks.cursor);
         }
         let (cells, bytes) = encode::encode(&frame, by, wanted);
-        Shown { wanted: wanted.clone(), frame, by, cells, bytes }
+        TerminalPicture { wanted: wanted.clone(), frame, by, cells, bytes }
     }
 
     /// The color that a place of the picture has in it; none beyond the picture, or where it was not in sight.
@@ -70,7 +76,7 @@ impl Shown {
 }
 
 /// How many times a picture must be reduced, after how many bytes one like it took.
-fn guess(before: &Shown, wanted: &Wanted) -> usize {
+fn guess(before: &TerminalPicture, wanted: &Wanted) -> usize {
     let (old, new) = (&before.wanted, wanted);
     // Once playing has ended a picture becomes as sharp as it can be.
     if (old.protocol, old.part.dots, old.bytes) != (new.protocol, new.part.dots, new.bytes) {

@@ -30,13 +30,13 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
         (About::Recovery, "recover") => return recover(state, true),
         (About::Recovery, "leave") => return recover(state, false),
         (About::Recovery, _) if word == "difference" => {
-            let lines = state.door.offered().map(|offer| offer.words.clone()).unwrap_or_default();
+            let lines = state.scene.offered().map(|offer| offer.words.clone()).unwrap_or_default();
             look(state, lines, asked);
         }
         (About::File, "mine") => return take_in(state, Some(Side::Mine)),
         (About::File, "theirs") => return take_in(state, Some(Side::Theirs)),
         (About::File, "difference") => {
-            let lines = state.door.difference().map_err(|error| error.to_string())?;
+            let lines = state.scene.difference().map_err(|error| error.to_string())?;
             look(state, lines, asked);
         }
         _ => {}
@@ -46,13 +46,13 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
 
 /// Takes the unsaved edits that are offered, or leaves them.
 fn recover(state: &mut State, take: bool) -> Done {
-    let change = state.door.recover(take);
+    let change = state.scene.recover(take);
     change.into_iter().for_each(|change| state.changed(change));
     if take { take_in(state, None) } else { Ok(()) }
 }
 
 fn recovery(state: &mut State, call: &Call) -> Done {
-    let asked = about_recovery(&state.door).ok_or("no unsaved edits were left behind")?;
+    let asked = about_recovery(&state.scene).ok_or("no unsaved edits were left behind")?;
     match call.text {
         "" => state.outside.waiting = Some(asked),
         "keep" => return recover(state, true),
@@ -72,10 +72,10 @@ fn look(state: &mut State, lines: Vec<String>, then: Choice) {
 
 /// Another program wrote the scene or one of its pictures.
 pub fn follow(state: &mut State, files: &[PathBuf]) {
-    if files.iter().any(|file| file != state.door.path()) {
+    if files.iter().any(|file| file != state.scene.path()) {
         state.ask(Effect::Reload);
     }
-    if files.iter().any(|file| file == state.door.path())
+    if files.iter().any(|file| file == state.scene.path())
         && let Err(why) = take_in(state, None)
     {
         state.complain(why);
@@ -98,7 +98,7 @@ fn merge(state: &mut State, call: &Call) -> Done {
 
 /// Takes the file's version in, says so, or asks.
 fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
-    let (taken, change) = match state.door.take_in(prefer) {
+    let (taken, change) = match state.scene.take_in(prefer) {
         Ok(taken) => taken,
         Err(error) => {
             state.outside.file = Some("file unreadable");
@@ -113,7 +113,7 @@ fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
             state.outside.file = Some("file gone");
             state.complain("the file was taken away: :w writes it again");
         }
-        Taken::Whole if state.door.read_only() => state.say("the file was saved: this is what it holds now"),
+        Taken::Whole if state.scene.read_only() => state.say("the file was saved: this is what it holds now"),
         Taken::Whole => state.say("the file was changed by another program: its version is here, u takes it back"),
         Taken::Merged => {
             state.say("the file was changed by another program: its changes are here beside the unsaved ones")

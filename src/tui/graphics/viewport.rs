@@ -9,29 +9,13 @@ const LARGEST: f64 = 64.0;
 /// The share of what is in sight that one pan goes.
 const PAN: f64 = 0.25;
 
-/// The cursor and the zoom of the picture.
+/// The zoom, and what the pane is centered on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placing {
-    /// The cursor, in image pixels; on the centre of a pixel unless set by a number.
-    pub cursor: Point,
-    /// Pixels of the picture a dot; none: as many as show all of it.
+pub struct Viewport {
+    /// Pixels of the picture a dot; `None` if all of it is visible.
     pub zoom: Option<f64>,
-    /// The middle of what is in sight, as far as the picture and the cursor allow.
-    pub middle: Point,
-}
-
-impl Placing {
-    /// The cursor at a place, all of the picture in sight.
-    pub fn new(cursor: Point) -> Self {
-        Placing { cursor, zoom: None, middle: cursor }
-    }
-
-    /// Moves the cursor, within the picture where its size is known.
-    pub fn step(&mut self, by: Vec2, size: Option<(usize, usize)>) {
-        let moved = self.cursor + by;
-        let (w, h) = size.map_or((1e6, 1e6), |(w, h)| (w as f64, h as f64));
-        self.cursor = Point::new(moved.x.clamp(0.5, (w - 0.5).max(0.5)), moved.y.clamp(0.5, (h - 0.5).max(0.5)));
-    }
+    /// The center of what is visible, as far as the picture and the cursor allow.
+    pub center: Point,
 }
 
 /// The scale at which all of the picture fits on so many dots.
@@ -42,8 +26,8 @@ pub fn fit((width, height): (usize, usize), (across, down): (usize, usize)) -> f
 
 /// What is in sight: all of the picture in the middle, or as the zoom says, around the middle that was looked at last; the
 /// cursor always.
-pub fn part(placing: &Placing, size: (usize, usize), dots: (usize, usize)) -> Part {
-    let scale = placing.zoom.unwrap_or(f64::INFINITY).min(fit(size, dots));
+pub fn part(viewport: &Viewport, cursor: Point, size: (usize, usize), dots: (usize, usize)) -> Part {
+    let scale = viewport.zoom.unwrap_or(f64::INFINITY).min(fit(size, dots));
     let axis = |middle: f64, cursor: f64, size: usize, dots: usize| {
         let (size, seen) = (size as f64, dots as f64 * scale);
         if seen >= size {
@@ -57,8 +41,8 @@ pub fn part(placing: &Placing, size: (usize, usize), dots: (usize, usize)) -> Pa
         corner.clamp(least, (cursor.max(0.5) - 0.5).max(least)).clamp(0.0, size - seen)
     };
     let corner = Point::new(
-        axis(placing.middle.x, placing.cursor.x, size.0, dots.0),
-        axis(placing.middle.y, placing.cursor.y, size.1, dots.1),
+        axis(viewport.center.x, cursor.x, size.0, dots.0),
+        axis(viewport.center.y, cursor.y, size.1, dots.1),
     );
     Part { corner, scale, dots }
 }
@@ -74,22 +58,22 @@ pub fn zoomed(from: f64, fit: f64, inward: bool) -> Option<f64> {
 
 /// Goes a quarter of what is in sight to a side, as far as the picture goes; the cursor comes along where it would be left
 /// behind.
-pub fn pan(placing: &mut Placing, part: &Part, (width, height): (usize, usize), way: Vec2) {
-    let seen = part.seen();
+pub fn pan(viewport: &mut Viewport, cursor: &mut Point, part: &Part, (width, height): (usize, usize), way: Vec2) {
+    let seen = part.extent();
     let half = seen / 2.0;
     let moved = |corner: f64, seen: f64, way: f64, size: usize| {
         let most = size as f64 - seen;
         if most <= 0.0 { corner } else { (corner + (seen * PAN * way).round()).clamp(0.0, most) }
     };
     let (x, y) = (part.corner.x, part.corner.y);
-    placing.middle = Point::new(moved(x, seen.x, way.x, width), moved(y, seen.y, way.y, height)) + half;
+    viewport.center = Point::new(moved(x, seen.x, way.x, width), moved(y, seen.y, way.y, height)) + half;
     let within = |cursor: f64, middle: f64, half: f64| {
         let reach = (half - 0.5).max(0.0);
         let clamped = cursor.clamp(middle - reach, middle + reach);
         if clamped == cursor { cursor } else { clamped.floor() + 0.5 }
     };
-    placing.cursor.x = within(placing.cursor.x, placing.middle.x, half.x);
-    placing.cursor.y = within(placing.cursor.y, placing.middle.y, half.y);
+    cursor.x = within(cursor.x, viewport.center.x, half.x);
+    cursor.y = within(cursor.y, viewport.center.y, half.y);
 }
 
 /// How large the picture is shown, in words: dots a pixel, or pixels a dot.
@@ -120,16 +104,21 @@ pub fn clipped(a: Point, b: Point, (width, height): (usize, usize)) -> Option<(P
 mod tests {
     use super::*;
 
+    /// All of the picture, and the cursor on it.
+    fn at(x: f64, y: f64) -> (Viewport, Point) {
+        (Viewport { zoom: None, center: Point::new(x, y) }, Point::new(x, y))
+    }
+
     #[test]
     fn the_whole_picture_fits_and_the_zoom_keeps_the_cursor_in_sight() {
-        let mut placing = Placing::new(Point::new(390.5, 290.5));
-        let whole = part(&placing, (400, 300), (40, 40));
+        let (mut viewport, mut cursor) = at(390.5, 290.5);
+        let whole = part(&viewport, cursor, (400, 300), (40, 40));
         assert_eq!((whole.scale, whole.corner), (10.0, Point::new(0.0, -50.0)));
-        placing.zoom = Some(2.0);
-        let near = part(&placing, (400, 300), (40, 40));
+        viewport.zoom = Some(2.0);
+        let near = part(&viewport, cursor, (400, 300), (40, 40));
         assert_eq!((near.scale, near.corner), (2.0, Point::new(320.0, 220.0)));
-        placing.cursor = Point::new(100.5, 290.5);
-        let far = part(&placing, (400, 300), (40, 40));
+        cursor = Point::new(100.5, 290.5);
+        let far = part(&viewport, cursor, (400, 300), (40, 40));
         assert_eq!(far.corner, Point::new(100.0, 220.0), "as little as needed");
     }
 
@@ -150,18 +139,19 @@ mod tests {
 
     #[test]
     fn panning_takes_the_cursor_along() {
-        let mut placing = Placing { zoom: Some(1.0), ..Placing::new(Point::new(100.5, 100.5)) };
-        let before = part(&placing, (400, 300), (40, 40));
+        let (mut viewport, mut cursor) = at(100.5, 100.5);
+        viewport.zoom = Some(1.0);
+        let before = part(&viewport, cursor, (400, 300), (40, 40));
         assert_eq!(before.corner, Point::new(81.0, 81.0));
-        pan(&mut placing, &before, (400, 300), Vec2::new(1.0, 0.0));
-        let after = part(&placing, (400, 300), (40, 40));
-        assert_eq!((after.corner.x, placing.cursor.x), (91.0, 100.5));
+        pan(&mut viewport, &mut cursor, &before, (400, 300), Vec2::new(1.0, 0.0));
+        let after = part(&viewport, cursor, (400, 300), (40, 40));
+        assert_eq!((after.corner.x, cursor.x), (91.0, 100.5));
         for _ in 0..3 {
-            let now = part(&placing, (400, 300), (40, 40));
-            pan(&mut placing, &now, (400, 300), Vec2::new(1.0, 0.0));
+            let now = part(&viewport, cursor, (400, 300), (40, 40));
+            pan(&mut viewport, &mut cursor, &now, (400, 300), Vec2::new(1.0, 0.0));
         }
-        assert_eq!(part(&placing, (400, 300), (40, 40)).corner.x, 121.0);
-        assert_eq!(placing.cursor, Point::new(121.5, 100.5));
+        assert_eq!(part(&viewport, cursor, (400, 300), (40, 40)).corner.x, 121.0);
+        assert_eq!(cursor, Point::new(121.5, 100.5));
     }
 
     #[test]

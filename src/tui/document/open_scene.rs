@@ -1,5 +1,5 @@
-//! The one door through which the editor changes a scene: a session (document, history, journal, file) and what the
-//! editor says about it.
+//! The scene that is open: its session (document, history, journal, file), and what the editor says about it. Every edit
+//! of the editor goes through it.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,7 +21,7 @@ use crate::tui::events::Change;
 const READ_ONLY: &str = "the scene is open for reading only: :w PATH saves a copy of it";
 
 /// A scene that is open.
-pub struct Door {
+pub struct OpenScene {
     session: Session,
     options: files::Options,
     read_only: bool,
@@ -29,18 +29,18 @@ pub struct Door {
     made: bool,
 }
 
-impl Door {
+impl OpenScene {
     /// Opens a scene; or a picture, whose scene lies beside it and is made where it is not there.
     ///
     /// # Errors
     /// The scene or the picture cannot be read, or somebody else edits the scene.
-    pub fn open(path: &Path, mode: Mode, options: &files::Options) -> Result<Door> {
+    pub fn open(path: &Path, mode: Mode, options: &files::Options) -> Result<OpenScene> {
         let read_only = mode == Mode::ReadOnly;
         let (scene, made) =
             if files::scene::is_one(path) { (path.to_owned(), false) } else { beside(path, read_only, options)? };
         let session = Session::open(&scene, options, mode)?;
         let read_only = session.reads_only();
-        Ok(Door { session, options: options.clone(), read_only, journaled: !read_only, made })
+        Ok(OpenScene { session, options: options.clone(), read_only, journaled: !read_only, made })
     }
 
     /// The scene as it is now.
@@ -303,7 +303,7 @@ impl Door {
     /// What the file has otherwise than the scene here, in words.
     ///
     /// # Errors
-    /// As [`Door::take_in`].
+    /// As [`OpenScene::take_in`].
     pub fn difference(&self) -> Result<Vec<String>> {
         self.session.difference()
     }
@@ -360,11 +360,11 @@ fn refuse_other(picture: &Path, scene: &Path, options: &files::Options) -> Resul
 }
 
 #[cfg(test)]
-impl Door {
+impl OpenScene {
     /// A scene whose edits stay in memory.
-    pub fn in_memory(path: &Path) -> Door {
+    pub fn in_memory(path: &Path) -> OpenScene {
         let options = files::Options::default();
         let session = Session::open(path, &options, Mode::ReadOnly).expect("a scene of the tests");
-        Door { session, options, read_only: false, journaled: false, made: false }
+        OpenScene { session, options, read_only: false, journaled: false, made: false }
     }
 }

@@ -5,8 +5,9 @@ use kurbo::Vec2;
 use super::command::{Call, Command, Done, command};
 use crate::base::problem;
 use crate::tui::events::Effect;
-use crate::tui::graphics::{Protocol, sight};
-use crate::tui::layout::seeing;
+use crate::tui::graphics::{Protocol, viewport};
+use crate::tui::layout::picture;
+use crate::tui::state::picture::Picture;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::numbers::short;
 
@@ -23,17 +24,19 @@ fn zoom(state: &mut State, call: &Call) -> Done {
     let (_, same) = known.iter().find(|(way, _)| *way == call.text).ok_or("zoom takes in, out, fit or one")?;
     let steps = call.steps();
     steps.clone().for_each(|_| state.ask(Effect::View(Some((*same).to_string()))));
-    let (Some(before), Some(size)) = (seeing::part(state), state.picture.size) else { return Ok(()) };
-    let fit = sight::fit(size, before.dots);
-    state.picture.placing.zoom = match call.text {
+    let (Some(before), Some(size)) = (picture::part(state), state.picture.size) else { return Ok(()) };
+    let fit = viewport::fit(size, before.dots);
+    state.picture.viewport.zoom = match call.text {
         "fit" => None,
         "one" => (fit > 1.0).then_some(1.0),
-        way => steps.fold(state.picture.placing.zoom, |zoom, _| sight::zoomed(zoom.unwrap_or(fit), fit, way == "in")),
+        way => {
+            steps.fold(state.picture.viewport.zoom, |zoom, _| viewport::zoomed(zoom.unwrap_or(fit), fit, way == "in"))
+        }
     };
     // What is under the cursor stays there.
-    let (cursor, scale) = (state.picture.placing.cursor, state.picture.placing.zoom.unwrap_or(fit));
-    state.picture.placing.middle = cursor + (before.corner + before.seen() / 2.0 - cursor) * (scale / before.scale);
-    seeing::settle(state);
+    let (cursor, scale) = (state.picture.cursor, state.picture.viewport.zoom.unwrap_or(fit));
+    state.picture.viewport.center = cursor + (before.corner + before.extent() / 2.0 - cursor) * (scale / before.scale);
+    picture::settle(state);
     Ok(())
 }
 
@@ -44,18 +47,19 @@ fn pan(state: &mut State, call: &Call) -> Done {
         "up" => (0.0, -1.0),
         "down" => (0.0, 1.0),
         "cursor" => {
-            state.picture.placing.middle = state.picture.placing.cursor;
+            state.picture.viewport.center = state.picture.cursor;
             return Ok(());
         }
         _ => return Err("pan takes left, right, up, down or cursor".into()),
     };
     for _ in call.steps() {
-        if let (Some(part), Some(size)) = (seeing::part(state), state.picture.size) {
-            sight::pan(&mut state.picture.placing, &part, size, Vec2::new(x, y));
+        if let (Some(part), Some(size)) = (picture::part(state), state.picture.size) {
+            let Picture { viewport, cursor, .. } = &mut state.picture;
+            viewport::pan(viewport, cursor, &part, size, Vec2::new(x, y));
         }
     }
     state.picture.step(Vec2::ZERO);
-    seeing::settle(state);
+    picture::settle(state);
     Ok(())
 }
 
@@ -81,11 +85,11 @@ fn graphics(state: &mut State, call: &Call) -> Done {
     let (playing, still) = state.picture.graphics.bytes;
     let (width, height) = state.picture.graphics.cell;
     let taken =
-        state.picture.shown.as_ref().map(|shown| format!(", the last took {}", shown.bytes)).unwrap_or_default();
+        state.picture.latest.as_ref().map(|shown| format!(", the last took {}", shown.bytes)).unwrap_or_default();
     state.say(format!(
         "graphics: {} (the terminal: {}), cells of {width} x {height} px, at most {playing} bytes a frame while playing, \
          {still} still{taken}",
-        seeing::protocol(state).name(),
+        picture::protocol(state).name(),
         state.picture.graphics.found.name(),
     ));
     Ok(())
@@ -95,20 +99,20 @@ fn graphics(state: &mut State, call: &Call) -> Done {
 fn probe(state: &mut State, call: &Call) -> Done {
     if call.text == "off" || (call.text.is_empty() && state.picture.probing) {
         state.picture.probing = false;
-        seeing::settle(state);
+        picture::settle(state);
         return Ok(());
     }
     if !call.text.is_empty() {
         let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
         let [x, y] = numbers[..] else { return Err("probe takes X,Y or off".into()) };
-        state.picture.placing.cursor = (x, y).into();
+        state.picture.cursor = (x, y).into();
         state.picture.step(Vec2::ZERO);
     } else {
         state.cursor.focus = Pane::Picture;
     }
     state.picture.probing = true;
-    seeing::settle(state);
-    let at = state.picture.placing.cursor;
+    picture::settle(state);
+    let at = state.picture.cursor;
     let words = ["probe", "--at", &format!("{},{}", short(at.x), short(at.y)), "--time", &state.play.time.to_string()];
     state.ask(Effect::Probe(words.map(str::to_owned).to_vec()));
     Ok(())

@@ -13,7 +13,7 @@ const IN_SIGHT_PX: f64 = 64.0;
 
 /// Zoom and place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Camera {
+pub struct Viewport {
     /// Pixels of the screen a pixel of the picture.
     pub zoom: f64,
     /// The place in the picture that stands in the middle of the area.
@@ -31,13 +31,13 @@ pub enum Fit {
     Whole,
 }
 
-impl Default for Camera {
+impl Default for Viewport {
     fn default() -> Self {
-        Camera { zoom: 1.0, center: Point::ZERO, fitted: Some(Fit::Window) }
+        Viewport { zoom: 1.0, center: Point::ZERO, fitted: Some(Fit::Window) }
     }
 }
 
-impl Camera {
+impl Viewport {
     /// Where the picture's origin stands on the screen: always a whole pixel, so that 1:1 is exact.
     pub fn origin(&self, area: Size) -> Vec2 {
         let corner = area.to_vec2() / 2.0 - self.center.to_vec2() * self.zoom;
@@ -128,32 +128,32 @@ mod tests {
 
     #[test]
     fn fitting_fills_the_window_or_keeps_whole_pixels() {
-        let mut camera = Camera::default();
-        camera.fit(PICTURE, AREA, Fit::Whole);
-        assert_eq!((camera.zoom, camera.origin(AREA)), (2.0, Vec2::new(20.0, 0.0)));
-        camera.resized(PICTURE, Size::new(150.0, 400.0));
-        assert_eq!(camera.zoom, 0.5);
+        let mut viewport = Viewport::default();
+        viewport.fit(PICTURE, AREA, Fit::Whole);
+        assert_eq!((viewport.zoom, viewport.origin(AREA)), (2.0, Vec2::new(20.0, 0.0)));
+        viewport.resized(PICTURE, Size::new(150.0, 400.0));
+        assert_eq!(viewport.zoom, 0.5);
         for (area, zoom) in
             [((960.0, 400.0), 2.0), ((480.0, 1000.0), 1.6), ((302.0, 400.0), 1.0), ((150.0, 90.0), 0.45)]
         {
-            camera.fit(PICTURE, area.into(), Fit::Window);
-            assert_eq!(camera.zoom, zoom, "{area:?}");
+            viewport.fit(PICTURE, area.into(), Fit::Window);
+            assert_eq!(viewport.zoom, zoom, "{area:?}");
         }
-        camera.resized(PICTURE, Size::new(600.0, 600.0));
-        assert_eq!(camera.zoom, 2.0, "stays fitted");
+        viewport.resized(PICTURE, Size::new(600.0, 600.0));
+        assert_eq!(viewport.zoom, 2.0, "stays fitted");
     }
 
     #[test]
     fn the_picture_is_never_lost() {
         for zoom in [-12, 0, 12] {
             for way in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 1.0)] {
-                let mut camera = Camera::default();
-                camera.fit(PICTURE, AREA, Fit::Window);
-                camera.zoom_step(zoom, Point::new(320.0, 200.0), PICTURE, AREA);
-                (0..90).for_each(|_| camera.pan(Vec2::from(way) * 500.0, PICTURE, AREA));
-                let corner = camera.origin(AREA).to_point();
-                let seen = kurbo::Rect::from_origin_size(corner, PICTURE * camera.zoom).intersect(AREA.to_rect());
-                let least = IN_SIGHT_PX.min(PICTURE.height * camera.zoom) - 1.0;
+                let mut viewport = Viewport::default();
+                viewport.fit(PICTURE, AREA, Fit::Window);
+                viewport.zoom_step(zoom, Point::new(320.0, 200.0), PICTURE, AREA);
+                (0..90).for_each(|_| viewport.pan(Vec2::from(way) * 500.0, PICTURE, AREA));
+                let corner = viewport.origin(AREA).to_point();
+                let seen = kurbo::Rect::from_origin_size(corner, PICTURE * viewport.zoom).intersect(AREA.to_rect());
+                let least = IN_SIGHT_PX.min(PICTURE.height * viewport.zoom) - 1.0;
                 assert!(seen.width() >= least && seen.height() >= least, "{zoom} {way:?}: {seen:?}");
             }
         }
@@ -161,31 +161,31 @@ mod tests {
 
     #[test]
     fn zooming_keeps_the_place_under_the_pointer_and_meets_one_to_one() {
-        let mut camera = Camera::default();
-        camera.fit(PICTURE, AREA, Fit::Window);
+        let mut viewport = Viewport::default();
+        viewport.fit(PICTURE, AREA, Fit::Window);
         let about = Point::new(230.0, 150.0);
-        camera.one(PICTURE, AREA);
-        let kept = camera.image_from_screen(about, AREA);
+        viewport.one(PICTURE, AREA);
+        let kept = viewport.image_from_screen(about, AREA);
         for _ in 0..12 {
-            camera.zoom_step(1, about, PICTURE, AREA);
-            let off = (camera.screen_from_image(kept, AREA) - about).hypot();
-            assert!(off <= camera.zoom * 0.75 + 0.75, "{off} at {}", camera.zoom);
+            viewport.zoom_step(1, about, PICTURE, AREA);
+            let off = (viewport.screen_from_image(kept, AREA) - about).hypot();
+            assert!(off <= viewport.zoom * 0.75 + 0.75, "{off} at {}", viewport.zoom);
         }
         let mut seen = Vec::new();
         for _ in 0..16 {
-            camera.zoom_step(-1, about, PICTURE, AREA);
-            seen.push(camera.zoom);
+            viewport.zoom_step(-1, about, PICTURE, AREA);
+            seen.push(viewport.zoom);
         }
         assert!(seen.contains(&1.0), "{seen:?}");
     }
 
     #[test]
     fn places_round_trip() {
-        let mut camera = Camera::default();
-        camera.fit(PICTURE, AREA, Fit::Window);
-        camera.pan(Vec2::new(7.0, -3.0), PICTURE, AREA);
+        let mut viewport = Viewport::default();
+        viewport.fit(PICTURE, AREA, Fit::Window);
+        viewport.pan(Vec2::new(7.0, -3.0), PICTURE, AREA);
         let at = Point::new(12.25, 80.5);
-        let back = camera.image_from_screen(camera.screen_from_image(at, AREA), AREA);
+        let back = viewport.image_from_screen(viewport.screen_from_image(at, AREA), AREA);
         assert!((back - at).hypot() < 1e-9);
     }
 }

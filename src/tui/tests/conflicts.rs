@@ -7,7 +7,7 @@ use crate::files::Options;
 use crate::files::session::Mode as Open;
 use crate::tui::commands::update::update;
 use crate::tui::document::choice::Then;
-use crate::tui::document::door::Door;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::color::Depth;
@@ -27,8 +27,8 @@ fn place() -> Place {
 
 impl Place {
     fn open(&self) -> State {
-        let door = Door::open(&self.scene, Open::EditOrLook, &Options::default()).unwrap();
-        State::new(door, (80, 24), Depth::None)
+        let scene = OpenScene::open(&self.scene, Open::EditOrLook, &Options::default()).unwrap();
+        State::new(scene, (80, 24), Depth::None)
     }
 
     /// Another program puts `new` in the place of `old`.
@@ -53,7 +53,7 @@ fn asked(state: &State) -> Option<(Vec<&str>, String)> {
 fn save(state: &mut State, line: &str) -> Result<String, String> {
     let effects = press(state, &format!(": \"{line}\" Enter"));
     let Some(Effect::Save { to, overwrite, .. }) = effects.into_iter().next() else { panic!("{:?}", state.message) };
-    let result = state.door.save(to.as_deref(), overwrite).map_err(|error| error.to_string());
+    let result = state.scene.save(to.as_deref(), overwrite).map_err(|error| error.to_string());
     update(state, Event::Saved(result.clone()));
     result
 }
@@ -89,10 +89,10 @@ pub fn unsaved_edits_that_were_left_behind_are_told_in_words_and_offered() {
         press(&mut state, keys);
         assert_eq!((speed_now(&state), asked(&state).is_some()), (expected, false), "{keys}");
         if keys == "Esc" {
-            assert!(state.door.offered().is_some(), "not decided");
+            assert!(state.scene.offered().is_some(), "not decided");
             continue;
         }
-        let undone = (0..9).take_while(|_| state.door.undo().is_some()).count();
+        let undone = (0..9).take_while(|_| state.scene.undo().is_some()).count();
         assert_eq!(undone, depth, "{keys}");
     }
 }
@@ -119,7 +119,7 @@ fn a_second_editor_is_told_and_looks_on() {
     save(&mut first, "w").unwrap();
     update(&mut second, Event::FilesChanged(vec![place.scene.clone()]));
     assert_eq!(speed_now(&second), 2.0);
-    assert!(second.door.is_saved());
+    assert!(second.scene.is_saved());
     assert!(press(&mut second, ": \"q\" Enter").iter().any(|effect| matches!(effect, Effect::Quit)));
     let mut third = place.open();
     assert!(press(&mut third, "j Enter").iter().any(|effect| matches!(effect, Effect::Quit)), "quit");
@@ -193,5 +193,5 @@ fn a_file_that_is_gone_or_broken_leaves_the_last_good_state() {
     assert!(state.message.clone().unwrap().text.contains(":w writes it again"));
     assert!(press(&mut state, ": \"q\" Enter").is_empty(), "it is not saved any more");
     save(&mut state, "w").unwrap();
-    assert!(place.saved().contains("left eye") && state.outside.file.is_none() && state.door.is_saved());
+    assert!(place.saved().contains("left eye") && state.outside.file.is_none() && state.scene.is_saved());
 }

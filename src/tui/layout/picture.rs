@@ -1,7 +1,7 @@
 //! What the panes see of the picture: which part they want from the worker, as a function of the state, and what it has
 //! answered. The runner asks whenever this is something else than it asked for last.
 
-use crate::tui::graphics::probed::{Asked, Request};
+use crate::tui::graphics::request::{ProbeAt, Request};
 use crate::tui::layout;
 use kurbo::Point;
 
@@ -9,22 +9,22 @@ use crate::layers::parts::marks::{View, When};
 use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::document::tree;
-use crate::tui::graphics::{Marks, Protocol, Wanted, sight};
+use crate::tui::graphics::{Marks, Protocol, Wanted, viewport};
 use crate::tui::state::{Mode, State, place};
 
 /// What the panes want now.
 pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
-    let path = state.door.path().to_owned();
-    Request { scene, path, time: state.play.time, fresh: false, picture: wanted(state), probe: asked(state) }
+    let path = state.scene.path().to_owned();
+    Request { scene, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
 }
 
 /// The pixel under the cursor, where its read-out is open.
-pub fn asked(state: &State) -> Option<Asked> {
-    let at = state.picture.placing.cursor;
+pub fn probe_at(state: &State) -> Option<ProbeAt> {
+    let at = state.picture.cursor;
     let pixel = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
     let layer = tree::layer_of(&state.cursor.node).unwrap_or(0);
-    state.picture.probing.then_some(Asked { layer, pixel, time: state.play.time })
+    state.picture.probing.then_some(ProbeAt { layer, pixel, time: state.play.time })
 }
 
 /// The protocol in force.
@@ -34,15 +34,15 @@ pub fn protocol(state: &State) -> Protocol {
 
 /// The part of the picture that its pane shows; `None` if there is no such pane on the screen.
 pub fn part(state: &State) -> Option<Part> {
-    let area = layout::picture(state)?;
+    let area = layout::picture_area(state)?;
     let dots = state.picture.graphics.dots(protocol(state), (area.width, area.height));
-    Some(sight::part(&state.picture.placing, state.picture.size?, dots))
+    Some(viewport::part(&state.picture.viewport, state.picture.cursor, state.picture.size?, dots))
 }
 
 /// Remembers what is in sight, so that the picture only moves when the cursor would leave it.
 pub fn settle(state: &mut State) {
     if let Some(part) = part(state) {
-        state.picture.placing.middle = part.corner + part.seen() / 2.0;
+        state.picture.viewport.center = part.corner + part.extent() / 2.0;
     }
 }
 
@@ -54,13 +54,13 @@ pub fn overlays(state: &State) -> View {
 }
 
 fn wanted(state: &State) -> Option<Wanted> {
-    let area = layout::picture(state)?;
+    let area = layout::picture_area(state)?;
     let graphics = &state.picture.graphics;
     let (playing, still) = graphics.bytes;
     let protocol = protocol(state);
     let marks = || Marks {
         view: overlays(state),
-        cursor: state.picture.placing.cursor,
+        cursor: state.picture.cursor,
         aim: place::selected(state).filter(|_| matches!(state.typing.mode, Mode::Aim)),
     };
     Some(Wanted {
@@ -76,6 +76,6 @@ fn wanted(state: &State) -> Option<Wanted> {
 /// The place of the cursor on its pane, in cells from its corner.
 pub fn cursor_cell(state: &State, part: &Part) -> Point {
     let (across, down) = state.picture.graphics.dots_a_cell(protocol(state));
-    let dot = part.dot_of(state.picture.placing.cursor);
+    let dot = part.dot_of(state.picture.cursor);
     Point::new((dot.x / across as f64).floor(), (dot.y / down as f64).floor())
 }

@@ -16,7 +16,7 @@ use crate::layers::parts::readout::{Entry, Value};
 use crate::tui::commands::update::update;
 use crate::tui::events::Event;
 use crate::tui::graphics::Protocol;
-use crate::tui::layout::seeing;
+use crate::tui::layout::picture;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
@@ -76,24 +76,24 @@ pub fn zooming_keeps_the_cursor_and_panning_takes_it_along() {
     ] {
         let mut state = opened((160, 48));
         press(&mut state, keys);
-        let part = seeing::part(&state).unwrap();
+        let part = picture::part(&state).unwrap();
         assert_eq!(part.dots, (62, 44), "{keys}");
         assert!((part.scale - scale).abs() < 1e-9, "{keys}: {}", part.scale);
         corner.into_iter().for_each(|corner| assert_eq!(part.corner, Point::from(corner), "{keys}"));
-        assert_eq!(state.picture.placing.cursor, Point::from(cursor), "{keys}");
+        assert_eq!(state.picture.cursor, Point::from(cursor), "{keys}");
     }
 }
 
 #[test]
 fn nothing_is_asked_for_that_no_pane_shows() {
     let mut state = opened((80, 24));
-    assert!(seeing::request(&state).picture.is_none());
+    assert!(picture::request(&state).picture.is_none());
     press(&mut state, "g i");
-    let wanted = seeing::request(&state).picture.unwrap();
+    let wanted = picture::request(&state).picture.unwrap();
     assert_eq!((wanted.cells, wanted.part.dots), ((55, 20), (55, 40)));
-    assert!(seeing::request(&state) == seeing::request(&state));
+    assert!(picture::request(&state) == picture::request(&state));
     press(&mut state, "l");
-    assert_eq!(seeing::request(&state).picture, Some(wanted), "half-blocks have their cursor over them");
+    assert_eq!(picture::request(&state).picture, Some(wanted), "half-blocks have their cursor over them");
 }
 
 #[test]
@@ -103,10 +103,10 @@ fn every_protocol_fills_its_pane_and_stays_within_its_bytes() {
     {
         for bytes in [4_000, 64_000] {
             let state = shown_by(protocol, &format!(": \"graphics bytes {bytes}\" Enter"));
-            let shown = state.picture.shown.clone().unwrap();
+            let shown = state.picture.latest.clone().unwrap();
             assert!(shown.bytes <= bytes, "{protocol:?}: {} bytes", shown.bytes);
             assert_eq!(shown.by > 1, bytes == 4_000, "{protocol:?} {bytes}: by {}", shown.by);
-            let area = layout::picture(&state).unwrap();
+            let area = layout::picture_area(&state).unwrap();
             let found = cells(&state);
             let first = found.cell(area.as_position()).unwrap();
             assert!(first.symbol().contains(start), "{protocol:?}: {:.60}", first.symbol());
@@ -122,19 +122,19 @@ fn every_protocol_fills_its_pane_and_stays_within_its_bytes() {
 #[test]
 fn half_blocks_stay_within_their_bytes_too() {
     let state = shown_by(Protocol::Blocks, ": \"graphics bytes 8000\" Enter");
-    let shown = state.picture.shown.clone().unwrap();
+    let shown = state.picture.latest.clone().unwrap();
     assert!(shown.bytes <= 8000 && shown.by > 1 && shown.cells.is_none());
 }
 
 #[test]
 fn a_picture_is_sharp_again_after_playing() {
     let mut state = shown_by(Protocol::Sixel, "");
-    assert_eq!(state.picture.shown.as_ref().unwrap().by, 1);
+    assert_eq!(state.picture.latest.as_ref().unwrap().by, 1);
     state.picture.graphics.bytes = (4_000, 256_000);
     for (playing, reduced) in [(true, true), (false, false)] {
         state.play.playing = playing;
         see(&mut state);
-        assert_eq!(state.picture.shown.as_ref().unwrap().by > 1, reduced, "playing: {playing}");
+        assert_eq!(state.picture.latest.as_ref().unwrap().by > 1, reduced, "playing: {playing}");
     }
 }
 
@@ -143,7 +143,7 @@ fn what_lies_over_a_picture_is_not_painted_over() {
     for protocol in [Protocol::Kitty, Protocol::Iterm2, Protocol::Sixel] {
         let mut state = shown_by(protocol, "");
         press(&mut state, "g");
-        let (found, area) = (cells(&state), layout::picture(&state).unwrap());
+        let (found, area) = (cells(&state), layout::picture_area(&state).unwrap());
         let pixels = area.positions().filter(|&at| {
             let cell = found.cell(at).unwrap();
             cell.diff_option == CellDiffOption::Skip || cell.symbol().contains('\x1b')
@@ -183,7 +183,7 @@ pub fn graphics_are_told_and_set() {
 fn without_colors_kitty_is_not_used() {
     let mut state = opened((160, 48));
     press(&mut state, ": \"graphics kitty\" Enter");
-    assert_eq!(seeing::protocol(&state), Protocol::Blocks);
+    assert_eq!(picture::protocol(&state), Protocol::Blocks);
     assert!(screen(&state).contains("blocks"));
 }
 
@@ -204,7 +204,7 @@ pub fn the_read_out_opens_follows_and_closes() {
         press(&mut state, keys);
         see(&mut state);
         assert_eq!(state.picture.probing, open, "{keys}");
-        assert_eq!(seeing::asked(&state).map(|asked| asked.pixel), pixel, "{keys}");
+        assert_eq!(picture::probe_at(&state).map(|asked| asked.pixel), pixel, "{keys}");
         assert_eq!(screen(&state).contains("┬ probe ─") || screen(&state).contains(" probe ─"), open, "{keys}");
     }
     let mut state = opened((160, 48));
@@ -222,7 +222,7 @@ pub fn the_read_out_opens_follows_and_closes() {
         assert!(text.contains(part), "{part}:\n{text}");
     }
     press(&mut state, "] ]");
-    assert_ne!(seeing::asked(&state), state.picture.probed.as_ref().map(|probed| probed.asked), "it follows the time");
+    assert_ne!(picture::probe_at(&state), state.picture.probed.as_ref().map(|probed| probed.at), "it follows the time");
 }
 
 #[test]
