@@ -5,9 +5,10 @@ use std::fs::File;
 use std::io::{Cursor, Seek, Write};
 
 use plica::base::budget::Budget;
+use plica::base::error::Error;
 use plica::base::expression::{Variables, evaluate};
 use plica::files::journal::{self, Contents};
-use plica::files::{Limits, fields, picture, recovery};
+use plica::files::{Limits, fields, mesh, picture, recovery};
 use plica::preview::wire::frame;
 use plica::preview::wire::message::{FromEditor, Message, ToEditor};
 use plica::scene::Document;
@@ -19,6 +20,7 @@ pub const CHECKS: &[(&str, fn(&[u8]))] = &[
     ("message", message),
     ("picture", picture),
     ("flo", flo),
+    ("mesh", mesh),
     ("expression", expression),
     #[cfg(feature = "tui")]
     ("keymap", keymap),
@@ -81,6 +83,25 @@ pub fn flo(bytes: &[u8]) {
     if let Ok((field, _)) = fields::decode(file(bytes), "a field", &limits, &Budget::new(limits.memory)) {
         assert!(field.cells().iter().flatten().all(|value| value.is_finite()));
     }
+}
+
+/// A mesh has vertices for all corners, and they are as a renderer expects them; what it kept on the way is given back.
+pub fn mesh(bytes: &[u8]) {
+    let limits = Limits { triangles: 1 << 16, mesh: 1 << 20, memory: 64 << 20, ..Limits::default() };
+    let budget = limits.budget();
+    let none = |path: &str| Err(Error::at(path, "is not there"));
+    let Ok((mesh, _, share)) = mesh::decode(file(bytes), "a.obj", &limits, &budget, &none) else {
+        assert_eq!(budget.taken(), 0);
+        return;
+    };
+    assert_eq!(budget.taken(), mesh.bytes());
+    drop(share);
+    assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < mesh.vertices.len()));
+    for vertex in &mesh.vertices {
+        assert!(vertex.position.is_finite() && vertex.uv.is_finite(), "{vertex:?}");
+        assert!((vertex.normal.length() - 1.0).abs() < 1e-9, "{vertex:?}");
+    }
+    assert!((1..=1 << 16).contains(&mesh.triangles.len()) && mesh.bounds().is_some());
 }
 
 /// A value is finite, and the same each time.

@@ -17,7 +17,7 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["cosmic_text", "dejavu"], &["preview/window/text"]),
     (&["ratatui", "crossterm", "terminput", "tui_input", "nucleo_matcher"], &["tui/"]),
     (&["toml", "csv"], &["tui/"]),
-    (&["base64"], &["export/field/svg", "tui/"]),
+    (&["base64"], &["export/field/svg", "files/mesh", "tui/"]),
     (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),
     // The link handles the file of its socket; `base/system` creates the user's folders.
     (&["std::fs"], &["files/", "base/system", "preview/wire/socket"]),

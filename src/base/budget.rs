@@ -69,6 +69,12 @@ impl Budget {
 }
 
 impl Share {
+    /// Both as one; they are of one budget.
+    pub fn and(mut self, mut other: Share) -> Share {
+        self.bytes += std::mem::take(&mut other.bytes);
+        self
+    }
+
     /// Keeps only `bytes` of it, if that is less: what was needed on the way is given back.
     pub fn shrink(&mut self, bytes: u64) {
         let less = self.bytes.saturating_sub(bytes);
@@ -141,7 +147,9 @@ mod tests {
         second.shrink(30);
         assert_eq!(budget.taken(), 10);
         assert!(budget.take(u64::MAX, "c").is_err() && budget.take(91, "c").is_err());
-        drop(second);
+        let both = second.and(budget.take(20, "d").unwrap());
+        assert_eq!(budget.taken(), 30);
+        drop(both);
         assert_eq!(budget.taken(), 0);
         let problem = budget.try_take(5 << 30).unwrap_err().problem("/layers/0");
         assert_eq!(problem.path, "/layers/0");

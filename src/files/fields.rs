@@ -5,6 +5,7 @@
 use std::fs::File;
 use std::io::{Read, Seek};
 
+use super::limits::within;
 use super::{Limits, picture};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
@@ -50,8 +51,8 @@ fn flo(mut file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<
         return Err(Error::at(place, format!("has no vectors: it is {width} x {height}")));
     }
     let size = format!("is {width} x {height}:");
-    picture::within(place, &size, "pixels wide or high", "side", width.max(height), limits.side)?;
-    picture::within(place, &size, "pixels", "pixels", width * height, limits.pixels)?;
+    within(place, &size, "pixels wide or high", "side", width.max(height), limits.side)?;
+    within(place, &size, "pixels", "pixels", width * height, limits.pixels)?;
     // The length first: a header alone must not cost the memory that it claims.
     if file.metadata().map_err(|error| Error::at(place, error))?.len() < 12 + width * height * 8 {
         return Err(cut_short(place));

@@ -28,6 +28,10 @@ pub struct Limits {
     pub expression: u64,
     /// Depth of an expression.
     pub expression_depth: u64,
+    /// Bytes of a file that holds a mesh, or a part of one.
+    pub mesh: u64,
+    /// Triangles of a mesh.
+    pub triangles: u64,
     /// Frames of an animation.
     pub frames: u64,
     /// Bytes of a message between editor and window.
@@ -81,12 +85,14 @@ pub static TABLE: LazyLock<Vec<Limit>> = LazyLock::new(|| {
     SCENE.into_iter().chain(counted).chain(REST).collect()
 });
 
-const SCENE: [Limit; 5] = [
+const SCENE: [Limit; 7] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
     limit("memory", "bytes that everything read and computed may take in total", 4096 * MIB, |l| &mut l.memory),
     limit("scene", "bytes of a scene file", 64 * MIB, |l| &mut l.scene),
     limit("depth", "depth of a scene's JSON", 64, |l| &mut l.depth),
+    limit("mesh", "bytes of a file with a mesh, or with a part of one", 512 * MIB, |l| &mut l.mesh),
+    limit("triangles", "triangles of a mesh", 10_000_000, |l| &mut l.triangles),
 ];
 
 const REST: [Limit; 7] = [
@@ -114,6 +120,8 @@ impl Default for Limits {
             counted: BTreeMap::new(),
             expression: 0,
             expression_depth: 0,
+            mesh: 0,
+            triangles: 0,
             frames: 0,
             message: 0,
             paste: 0,
@@ -172,6 +180,15 @@ impl Limits {
             .map(|(row, value)| format!("{}={value}", row.name))
             .collect()
     }
+}
+
+/// Refuses `found` above `most`, naming the limit.
+pub(super) fn within(place: &str, size: &str, unit: &str, limit: &str, found: u64, most: u64) -> Result<()> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(Error::at(place, format!("{size} {found} {unit}, at most {most} are allowed"))
+        .cure(format!("make it smaller, or give --limit {limit}={found}")))
 }
 
 fn unknown(name: &str) -> Error {

@@ -13,6 +13,7 @@ pub mod limits;
 pub mod lines;
 pub mod log;
 pub mod materials;
+pub mod mesh;
 pub mod originals;
 pub mod outputs;
 pub mod paths;

@@ -11,10 +11,11 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
-use super::limits::{self, within};
+use super::limits;
 use super::{Color, Decoded, Model, Opened, Raw, icc, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
+use crate::files::limits::within;
 
 /// Reads the header, and checks that the file is complete.
 pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) -> Result<Opened> {

@@ -9,7 +9,7 @@ use image::ImageFormat;
 use crate::base::error::{Error, Result};
 
 /// How many first bytes are looked at.
-pub(super) const LOOKED_AT: u64 = 512;
+pub(in crate::files) const LOOKED_AT: u64 = 512;
 
 /// A kind that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,23 +22,23 @@ pub(super) enum Kind {
     Plain(ImageFormat),
 }
 
-/// The first bytes of the kinds that are read.
-const KINDS: &[(&[u8], Kind)] = &[
-    (b"\x89PNG\r\n\x1a\n", Kind::Png),
-    (b"\xff\xd8\xff", Kind::Jpeg),
-    (b"II*\0", Kind::Tiff),
-    (b"MM\0*", Kind::Tiff),
-    (b"II+\0", Kind::Tiff),
-    (b"MM\0+", Kind::Tiff),
-    (b"\x76\x2f\x31\x01", Kind::Exr),
-    (b"GIF87a", Kind::Plain(ImageFormat::Gif)),
-    (b"GIF89a", Kind::Plain(ImageFormat::Gif)),
-    (b"#?RADIANCE", Kind::Plain(ImageFormat::Hdr)),
-    (b"#?RGBE", Kind::Plain(ImageFormat::Hdr)),
-    (b"BM", Kind::Plain(ImageFormat::Bmp)),
-    (b"qoif", Kind::Plain(ImageFormat::Qoi)),
-    (b"DDS ", Kind::Plain(ImageFormat::Dds)),
-    (b"\0\0\x01\0", Kind::Plain(ImageFormat::Ico)),
+/// The first bytes of the kinds that are read, and what each is.
+const KINDS: &[(&[u8], Kind, &str)] = &[
+    (b"\x89PNG\r\n\x1a\n", Kind::Png, "a PNG picture"),
+    (b"\xff\xd8\xff", Kind::Jpeg, "a JPEG picture"),
+    (b"II*\0", Kind::Tiff, "a TIFF picture"),
+    (b"MM\0*", Kind::Tiff, "a TIFF picture"),
+    (b"II+\0", Kind::Tiff, "a TIFF picture"),
+    (b"MM\0+", Kind::Tiff, "a TIFF picture"),
+    (b"\x76\x2f\x31\x01", Kind::Exr, "an OpenEXR picture"),
+    (b"GIF87a", Kind::Plain(ImageFormat::Gif), "a GIF picture"),
+    (b"GIF89a", Kind::Plain(ImageFormat::Gif), "a GIF picture"),
+    (b"#?RADIANCE", Kind::Plain(ImageFormat::Hdr), "a Radiance HDR picture"),
+    (b"#?RGBE", Kind::Plain(ImageFormat::Hdr), "a Radiance HDR picture"),
+    (b"BM", Kind::Plain(ImageFormat::Bmp), "a BMP picture"),
+    (b"qoif", Kind::Plain(ImageFormat::Qoi), "a QOI picture"),
+    (b"DDS ", Kind::Plain(ImageFormat::Dds), "a DDS picture"),
+    (b"\0\0\x01\0", Kind::Plain(ImageFormat::Ico), "an icon of Windows"),
 ];
 
 const READ: &str = "Plica reads PNG, JPEG, TIFF, WebP, GIF, OpenEXR, Radiance HDR, BMP, TGA, PNM, QOI, DDS and ICO";
@@ -97,32 +97,47 @@ const BRANDS: &[(&[u8], Foreign)] =
 
 /// The kind of the file that begins with `start`.
 pub(super) fn kind(start: &[u8], file: &mut File, place: &str) -> Result<Kind> {
-    if let Some((.., found)) =
-        FOREIGN.iter().find(|(at, magic, _)| start.get(*at..).is_some_and(|s| s.starts_with(magic)))
-    {
+    if let Some(found) = unread(start) {
         return Err(convert(place, found));
     }
-    if let Some((_, kind)) = KINDS.iter().find(|(magic, _)| start.starts_with(magic)) {
-        return Ok(*kind);
-    }
-    if start.starts_with(b"RIFF") && start.get(8..12) == Some(b"WEBP") {
-        return Ok(Kind::Plain(ImageFormat::WebP));
-    }
-    if let [b'P', b'1'..=b'7', space, ..] = start
-        && space.is_ascii_whitespace()
-    {
-        return Ok(Kind::Plain(ImageFormat::Pnm));
-    }
-    if start.get(4..8) == Some(b"ftyp") {
-        return Err(convert(place, brand(start)));
-    }
-    if is_svg(start) {
-        return Err(convert(place, &SVG));
+    if let Some((kind, _)) = read(start) {
+        return Ok(kind);
     }
     if is_tga(start, file, place) {
         return Ok(Kind::Plain(ImageFormat::Tga));
     }
     Err(Error::at(place, "is not a picture of a known kind").cure(READ))
+}
+
+/// What a picture is that begins with `start`, as "a PNG picture".
+pub(in crate::files) fn name(start: &[u8]) -> Option<&'static str> {
+    unread(start).map(|found| found.name).or_else(|| read(start).map(|(_, name)| name))
+}
+
+/// The kind that begins with `start`, if it is not read.
+fn unread(start: &[u8]) -> Option<&'static Foreign> {
+    let begins = |(at, magic, _): &&(usize, &[u8], Foreign)| start.get(*at..).is_some_and(|s| s.starts_with(magic));
+    match FOREIGN.iter().find(begins) {
+        Some((.., found)) => Some(found),
+        None if start.get(4..8) == Some(b"ftyp") => Some(brand(start)),
+        None => is_svg(start).then_some(&SVG),
+    }
+}
+
+/// The kind that begins with `start`, if it is read, and what it is.
+fn read(start: &[u8]) -> Option<(Kind, &'static str)> {
+    if let Some((_, kind, name)) = KINDS.iter().find(|(magic, ..)| start.starts_with(magic)) {
+        return Some((*kind, name));
+    }
+    if start.starts_with(b"RIFF") && start.get(8..12) == Some(b"WEBP") {
+        return Some((Kind::Plain(ImageFormat::WebP), "a WebP picture"));
+    }
+    match start {
+        [b'P', b'1'..=b'7', space, ..] if space.is_ascii_whitespace() => {
+            Some((Kind::Plain(ImageFormat::Pnm), "a PNM picture"))
+        }
+        _ => None,
+    }
 }
 
 /// The kind that the first known brand names; brands of AVIF take precedence over those of HEIF.
@@ -152,9 +167,14 @@ fn is_tga(start: &[u8], file: &mut File, place: &str) -> bool {
 }
 
 fn convert(place: &str, Foreign { name, command }: &Foreign) -> Error {
-    let stem = place.rsplit_once('.').map_or(place, |(stem, end)| if end.contains('/') { place } else { stem });
-    let command = command.split(' ').map(|word| word_of(word, place, stem)).collect::<Vec<_>>().join(" ");
+    let command = self::command(command, place);
     Error::at(place, format!("is {name}, which Plica does not read")).cure(format!("convert it: {command}"))
+}
+
+/// A command for a shell: `IN` stands for the file, `OUT` for its name without an extension.
+pub(in crate::files) fn command(command: &str, place: &str) -> String {
+    let stem = place.rsplit_once('.').map_or(place, |(stem, end)| if end.contains('/') { place } else { stem });
+    command.split(' ').map(|word| word_of(word, place, stem)).collect::<Vec<_>>().join(" ")
 }
 
 fn word_of(word: &str, place: &str, stem: &str) -> String {
@@ -177,10 +197,6 @@ pub(super) fn raw(place: &str) -> Error {
 
 /// The error for a picture of a known kind in a form that is not read.
 pub(super) fn other_kind(place: &str, what: impl std::fmt::Display) -> Error {
-    let command = convert(place, &foreign("", "magick IN OUT.png"));
-    let cure = match command {
-        Error::Failed { cure, .. } => cure.unwrap_or_default(),
-        _ => String::new(),
-    };
+    let cure = format!("convert it: {}", command("magick IN OUT.png", place));
     Error::at(place, format!("is a picture in a form that Plica does not read: {what}")).cure(cure)
 }

@@ -5,6 +5,7 @@ use image::ImageError;
 use super::kinds;
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
+use crate::files::limits::within;
 
 /// Bytes that a file may take besides its pixels: profiles are read, converted to something small and dropped.
 pub(super) const BESIDES_PIXELS: u64 = 32 << 20;
@@ -17,15 +18,6 @@ pub(super) fn check_size(place: &str, (width, height): (usize, usize), limits: &
     let size = format!("is {width} x {height}:");
     within(place, &size, "pixels wide or high", "side", width.max(height) as u64, limits.side)?;
     within(place, &size, "pixels", "pixels", (width as u64).saturating_mul(height as u64), limits.pixels)
-}
-
-/// Refuses `found` above `most`, naming the limit.
-pub(in crate::files) fn within(place: &str, size: &str, unit: &str, limit: &str, found: u64, most: u64) -> Result<()> {
-    if found <= most {
-        return Ok(());
-    }
-    Err(Error::at(place, format!("{size} {found} {unit}, at most {most} are allowed"))
-        .cure(format!("make it smaller, or give --limit {limit}={found}")))
 }
 
 /// The limits for a decoder of the image crate.

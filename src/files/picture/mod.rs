@@ -21,7 +21,7 @@ mod exr;
 mod icc;
 mod ifd;
 mod jpeg;
-mod kinds;
+pub(super) mod kinds;
 mod limits;
 mod plain;
 mod png;
@@ -31,7 +31,6 @@ mod tiff;
 mod upright;
 
 pub(super) use exr::vectors;
-pub(super) use limits::within;
 pub(super) use png::words;
 
 use kinds::Kind;

@@ -1,0 +1,127 @@
+//! The parts of a glTF 2.0 file that a mesh is made from, as its JSON has them. What is not listed here is skipped.
+
+use std::borrow::Cow;
+
+use serde::Deserialize;
+
+/// A text that is not copied where the JSON has it as it is: buffers may be in one.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Text<'a>(#[serde(borrow)] pub(super) Cow<'a, str>);
+
+/// The whole of it. Indices are those of the lists.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Document<'a> {
+    #[serde(borrow)]
+    pub(super) asset: Asset<'a>,
+    pub(super) scene: Option<usize>,
+    pub(super) scenes: Vec<Scene>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) meshes: Vec<Mesh>,
+    pub(super) accessors: Vec<Accessor>,
+    pub(super) buffer_views: Vec<View>,
+    #[serde(borrow)]
+    pub(super) buffers: Vec<Buffer<'a>>,
+    #[serde(borrow)]
+    pub(super) extensions_required: Vec<Text<'a>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Asset<'a> {
+    #[serde(borrow)]
+    pub(super) version: Text<'a>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Scene {
+    pub(super) nodes: Vec<usize>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Node {
+    pub(super) children: Vec<usize>,
+    pub(super) mesh: Option<usize>,
+    pub(super) skin: Option<usize>,
+    /// By columns; in place of the three below.
+    pub(super) matrix: Option<[f64; 16]>,
+    pub(super) translation: Option<[f64; 3]>,
+    /// A quaternion: x, y, z, w.
+    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) scale: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Mesh {
+    pub(super) primitives: Vec<Primitive>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Primitive {
+    pub(super) attributes: Attributes,
+    pub(super) indices: Option<usize>,
+    /// Points, lines, a loop and a strip of them, triangles, a strip and a fan of them; from 0.
+    pub(super) mode: Option<u32>,
+    pub(super) targets: Vec<serde::de::IgnoredAny>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "SCREAMING_SNAKE_CASE")]
+pub(super) struct Attributes {
+    pub(super) position: Option<usize>,
+    pub(super) normal: Option<usize>,
+    pub(super) texcoord_0: Option<usize>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Accessor {
+    /// All zero without one.
+    pub(super) buffer_view: Option<usize>,
+    pub(super) byte_offset: u64,
+    pub(super) component_type: u32,
+    pub(super) normalized: bool,
+    pub(super) count: u64,
+    #[serde(rename = "type")]
+    pub(super) shape: String,
+    pub(super) sparse: Option<Sparse>,
+}
+
+/// Elements that differ from those of the view.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Sparse {
+    pub(super) count: u64,
+    pub(super) indices: Part,
+    pub(super) values: Part,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Part {
+    pub(super) buffer_view: usize,
+    pub(super) byte_offset: u64,
+    pub(super) component_type: u32,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct View {
+    pub(super) buffer: usize,
+    pub(super) byte_offset: u64,
+    pub(super) byte_length: u64,
+    pub(super) byte_stride: Option<u64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Buffer<'a> {
+    pub(super) byte_length: u64,
+    /// The second chunk of a `.glb` without one.
+    #[serde(borrow)]
+    pub(super) uri: Option<Text<'a>>,
+}

@@ -1,0 +1,269 @@
+//! glTF 2.0, `.glb` and `.gltf`: the triangles of the default scene, moved as its nodes say. Everything is checked here
+//! as it is used, so that no file, however wrong, leads further than to a message.
+
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3};
+
+use super::input::Opener;
+use crate::base::budget::{Budget, Share};
+use crate::base::error::{Error, Result};
+use crate::base::mesh::{Builder, Corner, Counts, unit};
+use crate::files::Limits;
+use crate::files::limits::within;
+
+mod accessor;
+mod document;
+mod source;
+
+use document::{Node, Primitive};
+use source::{Source, With};
+
+/// The lists and the triangles of a file, and what in it could not be honored.
+pub(super) fn read(
+    bytes: &[u8],
+    place: &str,
+    limits: &Limits,
+    budget: &Budget,
+    sibling: Opener,
+) -> Result<(Builder, Vec<String>)> {
+    let source = Source::of(bytes, With { place, limits, budget, sibling })?;
+    let nodes = nodes(&source)?;
+    // Many nodes may show a mesh of many parts.
+    let most =
+        nodes.iter().filter_map(|(node, _)| source.document.meshes.get(node.mesh?)).map(|mesh| mesh.primitives.len());
+    let _share = budget.take((most.sum::<usize>() * size_of::<Piece>()) as u64, place)?;
+    let (pieces, notes) = pieces(&source, nodes)?;
+    let counts = pieces.iter().fold(Counts::default(), |sum, piece| piece.add_to(sum));
+    within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
+    if counts.triangles == 0 {
+        return Err(Error::at(place, "has no triangles").cure("name a mesh with faces"));
+    }
+    let mut builder = Builder::new(counts, place, budget)?;
+    for piece in &pieces {
+        piece.put(&source, &mut builder)?;
+    }
+    Ok((builder, notes))
+}
+
+/// How corners make triangles.
+#[derive(Clone, Copy, Debug)]
+enum Mode {
+    List,
+    Strip,
+    Fan,
+}
+
+impl Mode {
+    /// The corners of a triangle, as places among all corners.
+    fn triangle(self, at: usize) -> [usize; 3] {
+        match self {
+            Mode::List => [3 * at, 3 * at + 1, 3 * at + 2],
+            // Every other one would face away.
+            Mode::Strip => [at, at + 1 + at % 2, at + 2 - at % 2],
+            Mode::Fan => [at + 1, at + 2, 0],
+        }
+    }
+
+    fn triangles(self, corners: u64) -> u64 {
+        match self {
+            Mode::List => corners / 3,
+            Mode::Strip | Mode::Fan => corners.saturating_sub(2),
+        }
+    }
+}
+
+/// Triangles at a place in the scene.
+struct Piece<'a> {
+    primitive: &'a Primitive,
+    /// The accessor of its positions.
+    positions: usize,
+    mode: Mode,
+    count: u64,
+    corners: u64,
+    transform: DAffine3,
+}
+
+/// The triangles of the scene in the order of its nodes, and what in it could not be honored.
+fn pieces<'a>(source: &'a Source, nodes: Vec<(&'a Node, DAffine3)>) -> Result<(Vec<Piece<'a>>, Vec<String>)> {
+    let mut pieces = Vec::new();
+    let (mut others, mut posed) = (false, false);
+    for (node, transform) in nodes {
+        let Some(mesh) = node.mesh else { continue };
+        let mesh = source.get(&source.document.meshes, mesh, "mesh")?;
+        posed |= node.skin.is_some() || mesh.primitives.iter().any(|primitive| !primitive.targets.is_empty());
+        for primitive in &mesh.primitives {
+            let Some(positions) = primitive.attributes.position else { continue };
+            let mode = match primitive.mode {
+                None | Some(4) => Mode::List,
+                Some(5) => Mode::Strip,
+                Some(6) => Mode::Fan,
+                Some(_) => {
+                    others = true;
+                    continue;
+                }
+            };
+            let count = source.accessor::<3>(positions)?.count;
+            let indices = primitive.indices.map(|indices| source.accessor::<1>(indices)).transpose()?;
+            let corners = indices.map_or(count, |indices| indices.count);
+            pieces.push(Piece { primitive, positions, mode, count, corners, transform });
+        }
+    }
+    let notes = [
+        (others, "its points and lines are not drawn"),
+        (posed, "its bones and morph targets are not applied: it is shown as it is stored"),
+    ];
+    Ok((pieces, notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect()))
+}
+
+/// The nodes of the default scene, each before its children, and where they are.
+fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>> {
+    let all = &source.document.nodes;
+    let mut ahead: Vec<(usize, DAffine3)> = Vec::new();
+    let queue = |nodes: &[usize], transform, ahead: &mut Vec<_>| {
+        ahead.extend(nodes.iter().rev().map(|&node| (node, transform)));
+    };
+    queue(&roots(source)?, DAffine3::IDENTITY, &mut ahead);
+    let mut seen = vec![false; all.len()];
+    let mut found = Vec::new();
+    while let Some((index, transform)) = ahead.pop() {
+        let node = source.get(all, index, "node")?;
+        // A tree: neither a circle nor a node in two places, which could multiply without end.
+        if std::mem::replace(&mut seen[index], true) {
+            return Err(source.wrong(format!("node {index} is in the scene twice")));
+        }
+        let transform = transform * own_transform(node);
+        found.push((node, transform));
+        queue(&node.children, transform, &mut ahead);
+    }
+    Ok(found)
+}
+
+/// The nodes that the default scene begins with: of a file without scenes those that are nobody's children.
+fn roots(source: &Source) -> Result<Vec<usize>> {
+    let document = &source.document;
+    if document.scenes.is_empty() && document.scene.is_none() {
+        let mut child = vec![false; document.nodes.len()];
+        for &node in document.nodes.iter().flat_map(|node| &node.children) {
+            source.get(&document.nodes, node, "node")?;
+            child[node] = true;
+        }
+        return Ok((0..child.len()).filter(|&node| !child[node]).collect());
+    }
+    Ok(source.get(&document.scenes, document.scene.unwrap_or(0), "scene")?.nodes.clone())
+}
+
+fn own_transform(node: &Node) -> DAffine3 {
+    if let Some(matrix) = &node.matrix {
+        return DAffine3::from_mat4(DMat4::from_cols_array(matrix));
+    }
+    let rotation = node.rotation.map(DQuat::from_array).filter(|rotation| rotation.length_squared() > 0.0);
+    DAffine3::from_scale_rotation_translation(
+        node.scale.map_or(DVec3::ONE, DVec3::from_array),
+        rotation.map_or(DQuat::IDENTITY, DQuat::normalize),
+        node.translation.map_or(DVec3::ZERO, DVec3::from_array),
+    )
+}
+
+impl Piece<'_> {
+    fn add_to(&self, sum: Counts) -> Counts {
+        let Piece { primitive, count, .. } = self;
+        let listed = |accessor: Option<usize>| accessor.map_or(0, |_| *count);
+        let triangles = self.mode.triangles(self.corners);
+        Counts {
+            positions: sum.positions.saturating_add(*count),
+            normals: sum.normals.saturating_add(listed(primitive.attributes.normal)),
+            uvs: sum.uvs.saturating_add(listed(primitive.attributes.texcoord_0)),
+            // A vertex for each position: two where some of its faces have a normal that is zero elsewhere.
+            corners: sum.corners.saturating_add(triangles.saturating_mul(3).min(count.saturating_mul(2))),
+            triangles: sum.triangles.saturating_add(triangles),
+        }
+    }
+
+    /// Adds the lists and the triangles to a mesh.
+    fn put(&self, source: &Source, builder: &mut Builder) -> Result<()> {
+        let from = [builder.positions.len(), builder.normals.len(), builder.uvs.len()].map(|length| length as u32);
+        self.put_positions(source, builder)?;
+        let has_normals = self.put_normals(source, builder)?;
+        let has_uvs = self.put_uvs(source, builder)?;
+        let (corners, _share) = self.corners(source)?;
+        let corner = |at: usize| {
+            let index = corners.get(at).copied().unwrap_or(at as u32);
+            Corner {
+                position: from[0] + index,
+                normal: has_normals.then_some(from[1] + index),
+                uv: has_uvs.then_some(from[2] + index),
+            }
+        };
+        let mirrored = self.transform.matrix3.determinant() < 0.0;
+        for at in 0..self.mode.triangles(self.corners) as usize {
+            let [a, b, c] = self.mode.triangle(at).map(corner);
+            builder.polygon(&if mirrored { [a, c, b] } else { [a, b, c] });
+        }
+        Ok(())
+    }
+
+    /// The indices of positions, corner by corner; empty if the corners are the positions in order.
+    fn corners(&self, source: &Source) -> Result<(Vec<u32>, Share)> {
+        let Some(indices) = self.primitive.indices else { return Ok(Default::default()) };
+        let With { place, budget, .. } = source.with;
+        let share = budget.take(self.corners.saturating_mul(size_of::<u32>() as u64), place)?;
+        let mut corners = vec![0; self.corners as usize];
+        source.whole_numbers(indices, |at, index| corners[at] = index)?;
+        match corners.iter().find(|&&index| u64::from(index) >= self.count) {
+            Some(index) => {
+                let what = format!("accessor {indices}: there is no vertex {index}: there are {}", self.count);
+                Err(source.wrong(what))
+            }
+            None => Ok((corners, share)),
+        }
+    }
+
+    fn put_positions(&self, source: &Source, builder: &mut Builder) -> Result<()> {
+        let from = builder.positions.len();
+        builder.positions.resize(from + self.count as usize, DVec3::ZERO);
+        let positions = &mut builder.positions[from..];
+        source.numbers(self.positions, |at, position| positions[at] = DVec3::from_array(position))?;
+        for position in positions.iter_mut() {
+            *position = self.transform.transform_point3(*position);
+        }
+        match positions.iter().all(|position| position.is_finite()) {
+            true => Ok(()),
+            false => Err(source.wrong(format!("accessor {}: its node moves it out of all bounds", self.positions))),
+        }
+    }
+
+    /// Whether there are any. Normals turn by the inverse transpose, which the cofactors are but for a factor.
+    fn put_normals(&self, source: &Source, builder: &mut Builder) -> Result<bool> {
+        let Some(accessor) = self.primitive.attributes.normal else { return Ok(false) };
+        self.check_length::<3>(source, accessor)?;
+        let from = builder.normals.len();
+        builder.normals.resize(from + self.count as usize, DVec3::ZERO);
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.transform.matrix3;
+        let sign = if self.transform.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let turn = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
+        let normals = &mut builder.normals[from..];
+        source.numbers(accessor, |at, normal| normals[at] = unit(turn * unit(DVec3::from_array(normal))))?;
+        Ok(true)
+    }
+
+    /// Whether there are any; v goes up, in the file it goes down.
+    fn put_uvs(&self, source: &Source, builder: &mut Builder) -> Result<bool> {
+        let Some(accessor) = self.primitive.attributes.texcoord_0 else { return Ok(false) };
+        self.check_length::<2>(source, accessor)?;
+        let from = builder.uvs.len();
+        builder.uvs.resize(from + self.count as usize, DVec2::new(0.0, 1.0));
+        let uvs = &mut builder.uvs[from..];
+        source.numbers(accessor, |at, [u, v]| uvs[at] = DVec2::new(u, 1.0 - v))?;
+        Ok(true)
+    }
+
+    fn check_length<const N: usize>(&self, source: &Source, accessor: usize) -> Result<()> {
+        let found = source.accessor::<N>(accessor)?.count;
+        match found == self.count {
+            true => Ok(()),
+            false => {
+                let what = format!("accessor {accessor} has {found} elements for {} positions", self.count);
+                Err(source.wrong(what))
+            }
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! A glTF file taken apart: its JSON, and the bytes of its buffers, which are read when they are first asked for.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::fmt::Display;
+
+use base64::Engine;
+use base64::alphabet;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+
+use super::document::{Buffer, Document, Text};
+use crate::base::budget::{Budget, Share};
+use crate::base::error::{Error, Result};
+use crate::files::Limits;
+use crate::files::mesh::input::{self, Opener};
+use crate::files::picture::kinds::command;
+
+/// Files of some programs leave the padding out.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Extensions that change nothing about a mesh: where their names begin. Quantized numbers are read.
+const HARMLESS: [&str; 8] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "MSFT_texture_",
+    "KHR_lights_",
+    "EXT_lights_",
+    "KHR_xmp",
+    "KHR_mesh_quantization",
+];
+
+/// Extensions that pack the numbers of a mesh, which a command undoes.
+const PACKED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// What a file is read with.
+#[derive(Clone, Copy)]
+pub(super) struct With<'a> {
+    pub(super) place: &'a str,
+    pub(super) limits: &'a Limits,
+    pub(super) budget: &'a Budget,
+    pub(super) sibling: Opener<'a>,
+}
+
+/// A file taken apart.
+pub(super) struct Source<'a> {
+    pub(super) document: Document<'a>,
+    pub(super) with: With<'a>,
+    /// The second chunk of a `.glb`.
+    binary: Option<&'a [u8]>,
+    buffers: Vec<OnceCell<(Cow<'a, [u8]>, Share)>>,
+    _share: Share,
+}
+
+impl<'a> Source<'a> {
+    /// Takes a `.glb` or `.gltf` apart.
+    pub(super) fn of(bytes: &'a [u8], with: With<'a>) -> Result<Source<'a>> {
+        let (json, binary) =
+            if bytes.starts_with(b"glTF") { chunks(bytes, with.place)? } else { (input::text(bytes), None) };
+        let share = with.budget.take(most_bytes(json), with.place)?;
+        let document: Document = serde_json::from_slice(json).map_err(|error| explain(with.place, &error))?;
+        let buffers = document.buffers.iter().map(|_| OnceCell::new()).collect();
+        let source = Source { document, with, binary, buffers, _share: share };
+        source.check_version()?;
+        source.check_extensions()?;
+        Ok(source)
+    }
+
+    fn check_version(&self) -> Result<()> {
+        let version = &self.document.asset.version.0;
+        if version.starts_with("2.") {
+            return Ok(());
+        }
+        let what = if version.is_empty() { "is not a glTF file".to_owned() } else { format!("is glTF {version}") };
+        Err(Error::at(self.with.place, what).cure("Plica reads glTF 2.0: export it again as .glb"))
+    }
+
+    fn check_extensions(&self) -> Result<()> {
+        let required = self.document.extensions_required.iter().map(|Text(name)| name);
+        let mut unknown = required.filter(|name| !HARMLESS.iter().any(|known| name.starts_with(known)));
+        let Some(name) = unknown.next() else { return Ok(()) };
+        let place = self.with.place;
+        let cure = match PACKED.contains(&&**name) {
+            true => format!("unpack it: {}", command("gltf-transform cp IN OUT-plain.glb", place)),
+            false => "export it again without that extension".to_owned(),
+        };
+        Err(Error::at(place, format!("needs the extension {name}, which Plica does not read")).cure(cure))
+    }
+
+    /// An error about this file.
+    pub(super) fn wrong(&self, what: impl Display) -> Error {
+        Error::at(self.with.place, what).cure("export it again")
+    }
+
+    /// What an index in the JSON means.
+    pub(super) fn get<'t, T>(&self, list: &'t [T], index: usize, name: &str) -> Result<&'t T> {
+        list.get(index).ok_or_else(|| self.wrong(format!("there is no {name} {index}: there are {}", list.len())))
+    }
+
+    /// The bytes of a buffer.
+    pub(super) fn buffer(&self, index: usize) -> Result<&[u8]> {
+        let buffer = self.get(&self.document.buffers, index, "buffer")?;
+        let known = &self.buffers[index];
+        let bytes = match known.get() {
+            Some((bytes, _)) => bytes,
+            None => {
+                let read = self.read(index, buffer)?;
+                &known.get_or_init(|| read).0
+            }
+        };
+        match usize::try_from(buffer.byte_length).ok().and_then(|length| bytes.get(..length)) {
+            Some(bytes) => Ok(bytes),
+            None => Err(cut_short(self.with.place)),
+        }
+    }
+
+    fn read(&self, index: usize, buffer: &Buffer<'a>) -> Result<(Cow<'a, [u8]>, Share)> {
+        let With { place, limits, budget, sibling } = self.with;
+        let Some(Text(uri)) = &buffer.uri else {
+            let binary = self.binary.filter(|_| index == 0);
+            let missing = || self.wrong(format!("buffer {index} is not in the file"));
+            return Ok((Cow::Borrowed(binary.ok_or_else(missing)?), Share::default()));
+        };
+        if uri.starts_with("data:") {
+            return data(uri, place, budget).map(|(bytes, share)| (Cow::Owned(bytes), share));
+        }
+        let path = self.path(uri)?;
+        let (bytes, share) = input::whole(sibling(&path)?, &path, limits, budget)?;
+        Ok((Cow::Owned(bytes), share))
+    }
+
+    /// The path, relative to the file, that an address means.
+    fn path(&self, uri: &str) -> Result<String> {
+        let scheme = uri.split_once(':').map(|(scheme, _)| scheme).filter(|scheme| !scheme.contains('/'));
+        if scheme.is_some() {
+            let what = format!("has a part at {uri}, which Plica does not fetch");
+            return Err(Error::at(self.with.place, what).cure("export it as .glb, which is one file"));
+        }
+        unescaped(uri).ok_or_else(|| self.wrong(format!("has a part at {uri}, which is no path")))
+    }
+}
+
+/// The JSON and the binary chunk of a `.glb`.
+fn chunks<'a>(bytes: &'a [u8], place: &str) -> Result<(&'a [u8], Option<&'a [u8]>)> {
+    let number = |at: usize| bytes.get(at..)?.first_chunk().copied().map(u32::from_le_bytes);
+    let short = || cut_short(place);
+    let version = number(4).ok_or_else(short)?;
+    if version != 2 {
+        let what = format!("is a .glb of version {version}");
+        return Err(Error::at(place, what).cure("Plica reads glTF 2.0: export it again as .glb"));
+    }
+    let whole = number(8).ok_or_else(short)? as usize;
+    let chunk = |at: usize| {
+        let kind = bytes.get(at + 4..at + 8)?;
+        let contents = bytes.get(at + 8..)?.get(..number(at)? as usize)?;
+        Some((kind, contents))
+    };
+    let (kind, json) = chunk(12).filter(|_| bytes.len() >= whole).ok_or_else(short)?;
+    if kind != b"JSON" {
+        return Err(Error::at(place, "is not a glTF file: it does not begin with its JSON").cure("export it again"));
+    }
+    let after = 20 + json.len();
+    if after >= whole {
+        return Ok((json, None));
+    }
+    let (kind, binary) = chunk(after).ok_or_else(short)?;
+    Ok((json, (kind == b"BIN\0").then_some(binary)))
+}
+
+/// The most bytes that a document of this JSON takes, by what it counts: a struct for each brace, a number or a text for
+/// each comma, with room for lists to grow.
+fn most_bytes(json: &[u8]) -> u64 {
+    let cost = |byte: &u8| match byte {
+        b'{' => 1024,
+        b',' | b'[' => 128,
+        _ => 0,
+    };
+    json.iter().map(cost).sum::<u64>()
+}
+
+fn explain(place: &str, error: &serde_json::Error) -> Error {
+    if error.is_eof() {
+        return cut_short(place);
+    }
+    let (line, column) = (error.line(), error.column());
+    let message = error.to_string();
+    let what = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
+    Error::at(place, format!("is not a glTF file: line {line}, column {column}: {what}")).cure("export it again")
+}
+
+/// The bytes of a `data:` address.
+fn data(uri: &str, place: &str, budget: &Budget) -> Result<(Vec<u8>, Share)> {
+    let broken = || Error::at(place, "has a buffer that is not in base64").cure("export it again as .glb");
+    let (head, text) = uri.split_once(',').ok_or_else(broken)?;
+    if !head.ends_with(";base64") {
+        return Err(broken());
+    }
+    let share = budget.take(base64::decoded_len_estimate(text.len()) as u64, place)?;
+    let bytes = BASE64.decode(text).map_err(|_| broken())?;
+    Ok((bytes, share))
+}
+
+/// A path whose `%20` and the like are undone; `None` if that is no text.
+fn unescaped(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let Some((&byte, after)) = rest.split_first() {
+        let digits = after.get(..2).filter(|digits| byte == b'%' && digits.iter().all(u8::is_ascii_hexdigit));
+        let escaped = digits.and_then(|digits| u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok());
+        bytes.push(escaped.unwrap_or(byte));
+        rest = if escaped.is_some() { &after[2..] } else { after };
+    }
+    String::from_utf8(bytes).ok()
+}
+
+fn cut_short(place: &str) -> Error {
+    Error::at(place, "is cut short").cure("copy it again from where it came")
+}

@@ -1,0 +1,116 @@
+//! Meshes from files: Wavefront OBJ and glTF 2.0. The size of a file and what it counts are checked against the limits
+//! before memory is taken. Numbers are finite and indices in range, or the file is refused with the place of the first
+//! that is not.
+
+use std::fs::File;
+
+use super::Limits;
+use super::picture::kinds;
+use crate::base::budget::{Budget, Share};
+use crate::base::error::{Error, Result};
+use crate::base::mesh::Mesh;
+
+mod gltf;
+mod input;
+mod obj;
+#[cfg(test)]
+mod tests;
+
+pub use input::Opener;
+
+/// A kind of file that is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Obj,
+    Gltf,
+}
+
+/// Kinds that are not read: the end of the name, how the file may begin, and what it is.
+const FOREIGN: &[(&str, &[&[u8]], &str)] = &[
+    (".ply", &[b"ply\n", b"ply\r"], "a PLY mesh"),
+    (".stl", &[b"solid "], "an STL mesh"),
+    (".off", &[b"OFF\n", b"OFF\r", b"COFF"], "an OFF mesh"),
+    (".fbx", &[b"Kaydara FBX", b"; FBX"], "an FBX scene"),
+    (".blend", &[b"BLENDER"], "a file of Blender"),
+    (".dae", &[], "a Collada scene"),
+    (".usda", &[b"#usda"], "a USD scene"),
+    (".usdc", &[b"PXR-USDC"], "a USD scene"),
+    (".usdz", &[], "a USD scene"),
+    (".usd", &[], "a USD scene"),
+    (".abc", &[b"Ogawa"], "an Alembic scene"),
+    (".3ds", &[], "a 3DS scene"),
+    (".3mf", &[], "a 3MF model"),
+    (".zip", &[b"PK\x03\x04"], "a ZIP archive"),
+    (".gz", &[b"\x1f\x8b"], "compressed by gzip"),
+];
+
+/// How a line of an OBJ begins.
+const OBJ_KEYS: [&[u8]; 10] = [b"v", b"vt", b"vn", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl", b"vp"];
+
+/// The mesh in an open file, what in it could not be honored in words, and the memory that it takes; `place` is its name
+/// in messages. `sibling` opens a file that the mesh names, by a path relative to it.
+///
+/// # Errors
+/// If it is no mesh, is broken, or is larger than the limits allow.
+pub fn decode(
+    file: File,
+    place: &str,
+    limits: &Limits,
+    budget: &Budget,
+    sibling: Opener,
+) -> Result<(Mesh, Vec<String>, Share)> {
+    let (bytes, share) = input::whole(file, place, limits, budget)?;
+    let (builder, mut notes) = match kind(&bytes, place)? {
+        Kind::Obj => obj::read(&bytes, place, limits, budget)?,
+        Kind::Gltf => gltf::read(&bytes, place, limits, budget, sibling)?,
+    };
+    // The file is not kept beside the mesh.
+    drop((bytes, share));
+    let (mesh, share) = builder.finish()?;
+    notes.extend(unseen(&mesh));
+    Ok((mesh, notes, share))
+}
+
+fn unseen(mesh: &Mesh) -> Option<String> {
+    let (unseen, all) = (mesh.degenerate, mesh.triangles.len());
+    let have = if unseen == 1 { "has no area and is" } else { "have no area and are" };
+    (unseen > 0).then(|| format!("{unseen} of {all} triangles {have} never seen"))
+}
+
+/// The kind of a file by how it begins, and by its name where that does not tell.
+fn kind(bytes: &[u8], place: &str) -> Result<Kind> {
+    const READ: &str = "Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf)";
+    let name = place.to_ascii_lowercase();
+    let start = &bytes[..bytes.len().min(kinds::LOOKED_AT as usize)];
+    if start.starts_with(b"glTF") {
+        return Ok(Kind::Gltf);
+    }
+    let foreign = |(_, begins, _): &&(_, &[&[u8]], _)| begins.iter().any(|begin| start.starts_with(begin));
+    let foreign = FOREIGN.iter().find(foreign);
+    let picture = kinds::name(start).filter(|_| foreign.is_none());
+    if let Some(picture) = picture {
+        return Err(Error::at(place, format!("is {picture}, not a mesh")).cure(READ));
+    }
+    let text = input::text(bytes);
+    let first = text.trim_ascii_start().first();
+    if foreign.is_none() && first == Some(&b'{') {
+        return Ok(Kind::Gltf);
+    }
+    if foreign.is_none() && (is_obj(text) || name.ends_with(".obj") && first != Some(&b'<') && !start.contains(&0)) {
+        return Ok(Kind::Obj);
+    }
+    let foreign = foreign.or_else(|| FOREIGN.iter().find(|(end, ..)| name.ends_with(end)));
+    Err(match foreign {
+        Some((.., what)) => Error::at(place, format!("is {what}, which Plica does not read"))
+            .cure("export it as .glb or .obj, with Blender for example"),
+        None => Error::at(place, "is not a mesh").cure(READ),
+    })
+}
+
+/// Whether the first line that says something is one of an OBJ.
+fn is_obj(text: &[u8]) -> bool {
+    let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
+    let mut words = first.split(u8::is_ascii_whitespace);
+    words.next().is_some_and(|word| OBJ_KEYS.contains(&word)) && words.next().is_some()
+}

@@ -1,0 +1,428 @@
+//! glTF: files built here, whole and broken.
+
+use base64::Engine;
+use glam::{DVec2, DVec3};
+use serde_json::{Value, json};
+
+use super::*;
+
+/// A `.glb` of these chunks.
+fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
+    let mut json = json.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let number = |number: usize| (number as u32).to_le_bytes();
+    let length = number(12 + 8 + json.len() + 8 + binary.len());
+    let head = [&b"glTF"[..], &number(2), &length].concat();
+    [&head[..], &number(json.len()), b"JSON", &json, &number(binary.len()), b"BIN\0", binary].concat()
+}
+
+fn floats(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+/// Views, one after the other, of parts of a buffer.
+fn views(parts: &[&[u8]]) -> (Value, Vec<u8>) {
+    let binary = parts.concat();
+    let mut at = 0;
+    let view = |part: &&[u8]| {
+        at += part.len();
+        json!({ "buffer": 0, "byteOffset": at - part.len(), "byteLength": part.len() })
+    };
+    (parts.iter().map(view).collect(), binary)
+}
+
+/// A square in two triangles, facing forward: views of positions, normals, texture coordinates and indices.
+fn square() -> (Value, Vec<u8>) {
+    let positions = floats(&[0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.]);
+    let normals = floats(&[0., 0., 2., 0., 0., 2., 0., 0., 2., 0., 0., 2.]);
+    let uvs = floats(&[0., 1., 1., 1., 1., 0., 0., 0.]);
+    let (views, binary) = views(&[&positions, &normals, &uvs, &[0, 1, 2, 0, 2, 3]]);
+    let json = json!({
+        "asset": { "version": "2.0", "generator": "by hand" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "_MORE": 9 }, "indices": 3 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC3" },
+            { "bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2" },
+            { "bufferView": 3, "componentType": 5121, "count": 6, "type": "SCALAR" },
+        ],
+        "bufferViews": views,
+        "buffers": [{ "byteLength": binary.len() }],
+    });
+    (json, binary)
+}
+
+/// The square with changes: each a pointer and what is put there.
+fn changed(changes: &[(&str, Value)]) -> std::result::Result<(Mesh, Vec<String>), String> {
+    let (mut json, binary) = square();
+    for (pointer, value) in changes {
+        put(&mut json, pointer, value.clone());
+    }
+    read("a.glb", &glb(&json, &binary))
+}
+
+fn put(json: &mut Value, pointer: &str, value: Value) {
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    match json.pointer_mut(parent).unwrap() {
+        Value::Array(list) => match name.parse::<usize>() {
+            Ok(at) => list[at] = value,
+            Err(_) => list.push(value),
+        },
+        parent => parent[name] = value,
+    }
+}
+
+fn positions(mesh: &Mesh) -> Vec<[f64; 3]> {
+    mesh.triangles.iter().flatten().map(|&at| mesh.vertices[at as usize].position.to_array()).collect()
+}
+
+#[test]
+fn a_model_is_the_same_in_one_file_and_in_several() {
+    let (json, binary) = square();
+    let (mesh, notes) = read("a.glb", &glb(&json, &binary)).unwrap();
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!((mesh.without_uv, mesh.degenerate, notes), (None, 0, Vec::new()));
+    assert!(mesh.vertices.iter().all(|vertex| vertex.normal == DVec3::Z));
+    assert_eq!(mesh.vertices[0].uv, DVec2::ZERO, "v goes up");
+    assert_eq!(mesh.vertices[2].uv, DVec2::ONE);
+    let mut embedded = json.clone();
+    let text = base64::engine::general_purpose::STANDARD.encode(&binary);
+    for text in [text.clone(), text.trim_end_matches('=').to_owned()] {
+        embedded["buffers"][0]["uri"] = json!(format!("data:application/octet-stream;base64,{text}"));
+        assert_eq!(read("a.gltf", embedded.to_string().as_bytes()).unwrap().0, mesh);
+    }
+    let mut beside = json;
+    for (uri, path) in [("parts/a%20b%.bin", "parts/a b%.bin"), ("../\u{e9}.bin", "../\u{e9}.bin")] {
+        beside["buffers"][0]["uri"] = json!(uri);
+        let text = format!("\u{feff} {beside}");
+        let found = read_with("a.gltf", text.as_bytes(), &[(path, &binary)], &Limits::default());
+        assert_eq!(found.unwrap().0, mesh);
+        assert_eq!(read("a.gltf", text.as_bytes()).unwrap_err(), format!("{path}: there is no such file"));
+        let limits = Limits { mesh: text.len() as u64, ..Limits::default() };
+        let long = vec![0; text.len() + 1];
+        let error = read_with("a.gltf", text.as_bytes(), &[(path, &long)], &limits).unwrap_err();
+        assert!(error.starts_with(&format!("{path}: has {} bytes", long.len())), "{error}");
+    }
+}
+
+#[test]
+fn nodes_move_what_they_hold() {
+    let turned = [0.0, 0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()];
+    // The corner that was at (1, 0, 0), the normal, and the winding.
+    for (nodes, expected, normal, mirrored) in [
+        (json!([{ "mesh": 0, "translation": [1, 2, 3] }]), [2.0, 2.0, 3.0], DVec3::Z, false),
+        (json!([{ "mesh": 0, "rotation": turned }]), [0.0, 1.0, 0.0], DVec3::Z, false),
+        (json!([{ "mesh": 0, "rotation": turned.map(|x| x * 3.0) }]), [0.0, 1.0, 0.0], DVec3::Z, false),
+        (json!([{ "mesh": 0, "rotation": [0, 0, 0, 0] }]), [1.0, 0.0, 0.0], DVec3::Z, false),
+        (json!([{ "mesh": 0, "scale": [-2, 1, 1] }]), [-2.0, 0.0, 0.0], DVec3::Z, true),
+        (json!([{ "mesh": 0, "scale": [2, 1, -1] }]), [2.0, 0.0, 0.0], DVec3::NEG_Z, true),
+        (json!([{ "mesh": 0, "scale": [2, 2, 0] }]), [2.0, 0.0, 0.0], DVec3::Z, false),
+        (
+            json!([{ "mesh": 0, "matrix": [1, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1] }]),
+            [6.0, 0.0, 1.0],
+            DVec3::new(-1.0, 0.0, 1.0).normalize(),
+            false,
+        ),
+        (
+            // Translation, rotation and scale of the child come first, in the order scale, rotation, translation.
+            json!([
+                { "children": [1], "translation": [10, 0, 0] },
+                { "mesh": 0, "translation": [0, 1, 0], "rotation": turned, "scale": [3, 1, 1] },
+            ]),
+            [10.0, 4.0, 0.0],
+            DVec3::Z,
+            false,
+        ),
+    ] {
+        let (mesh, _) = changed(&[("/nodes", nodes.clone())]).unwrap();
+        let corner = mesh.vertices[mesh.triangles[0][if mirrored { 2 } else { 1 }] as usize];
+        assert!(corner.position.abs_diff_eq(DVec3::from_array(expected), 1e-15), "{nodes}: {corner:?}");
+        assert!(corner.normal.abs_diff_eq(normal, 1e-15), "{nodes}: {corner:?}");
+        // The front stays the front.
+        let [a, b, c] = mesh.triangles[0].map(|at| mesh.vertices[at as usize].position);
+        assert!((b - a).cross(c - a).dot(corner.normal) > 0.0, "{nodes}");
+    }
+}
+
+#[test]
+fn the_default_scene_is_read_in_the_order_of_its_nodes() {
+    let at = |x: i32| json!({ "mesh": 0, "translation": [x, 0, 0] });
+    let mut parent = at(1);
+    parent["children"] = json!([3, 2]);
+    let nodes = ("/nodes", json!([at(0), parent, at(2), at(3)]));
+    let list = |scenes: Value, scene: Value| vec![nodes.clone(), ("/scenes", scenes), ("/scene", scene)];
+    for (changes, expected) in [
+        (list(json!([{ "nodes": [0] }, { "nodes": [1, 0] }]), json!(1)), &[1.0, 4.0, 3.0, 0.0][..]),
+        (list(json!([{ "nodes": [0] }, { "nodes": [1] }]), json!(null)), &[0.0]),
+        (list(json!([]), json!(null)), &[0.0, 1.0, 4.0, 3.0]),
+    ] {
+        let (mesh, _) = changed(&changes).unwrap();
+        let found: Vec<f64> = mesh.triangles.iter().map(|&[a, ..]| mesh.vertices[a as usize].position.x).collect();
+        let expected: Vec<f64> = expected.iter().flat_map(|&x| [x, x]).collect();
+        assert_eq!(found, expected);
+    }
+    // A tree may be deep, and many nodes may show one mesh.
+    let chain = |i: usize| if i < 50_000 { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) };
+    let (mesh, _) = changed(&[("/nodes", (0..=50_000).map(chain).collect())]).unwrap();
+    assert_eq!(mesh.triangles.len(), 2);
+}
+
+#[test]
+fn triangles_come_as_lists_strips_and_fans() {
+    for (mode, indices, expected) in [
+        (json!(null), json!(3), &[0, 1, 2, 0, 2, 3][..]),
+        (json!(4), json!(null), &[0, 1, 2]),
+        (json!(5), json!(null), &[0, 1, 2, 1, 3, 2]),
+        (json!(6), json!(null), &[1, 2, 0, 2, 3, 0]),
+    ] {
+        let (mesh, notes) =
+            changed(&[("/meshes/0/primitives/0/mode", mode), ("/meshes/0/primitives/0/indices", indices)]).unwrap();
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!(positions(&mesh), expected.iter().map(|&at: &usize| corners[at]).collect::<Vec<_>>());
+        assert_eq!(notes, [""; 0]);
+    }
+    let lines = json!({ "attributes": { "POSITION": 0 }, "mode": 1 });
+    let posed = json!({ "attributes": { "POSITION": 0 }, "targets": [{ "POSITION": 0 }] });
+    let bare = json!({ "attributes": { "NORMAL": 1 } });
+    let add = |primitive| ("/meshes/0/primitives/-", primitive);
+    let (mesh, notes) = changed(&[add(lines), add(posed), add(bare), ("/nodes/0/skin", json!(0))]).unwrap();
+    assert_eq!((mesh.triangles.len(), mesh.without_uv), (3, Some(2)));
+    assert_eq!(
+        notes,
+        [
+            "its points and lines are not drawn",
+            "its bones and morph targets are not applied: it is shown as it is stored"
+        ]
+    );
+}
+
+#[test]
+fn numbers_are_read_as_they_are_stored() {
+    let bytes = |words: &[u16]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    let long = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    let corners = floats(&[0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.]);
+    // What is stored, the accessor, and what the first coordinates of the four positions are.
+    for (stored, accessor, expected) in [
+        (vec![0, 0, 0, 129, 0, 0, 127, 1, 0, 255, 1, 0], json!({ "componentType": 5120 }), [0.0, -127.0, 127.0, -1.0]),
+        (
+            vec![0, 0, 0, 128, 0, 0, 127, 1, 0, 129, 1, 0],
+            json!({ "componentType": 5120, "normalized": true }),
+            [0.0, -1.0, 1.0, -1.0],
+        ),
+        (
+            vec![0, 0, 0, 255, 0, 0, 51, 1, 0, 0, 1, 0],
+            json!({ "componentType": 5121, "normalized": true }),
+            [0.0, 1.0, 0.2, 0.0],
+        ),
+        (
+            bytes(&[0, 0, 0, 65535, 0, 0, 32767, 1, 0, 0, 1, 0]),
+            json!({ "componentType": 5122 }),
+            [0.0, -1.0, 32767.0, 0.0],
+        ),
+        (
+            bytes(&[0, 0, 0, 65535, 0, 0, 13107, 1, 0, 0, 1, 0]),
+            json!({ "componentType": 5123, "normalized": true }),
+            [0.0, 1.0, 0.2, 0.0],
+        ),
+        ([&[9, 9, 9, 9], &corners[..]].concat(), json!({ "byteOffset": 4 }), [0.0, 1.0, 1.0, 0.0]),
+    ] {
+        let (mut json, _) = square();
+        let (views, binary) = views(&[&stored]);
+        put(&mut json, "/bufferViews", views);
+        put(&mut json, "/buffers/0/byteLength", json!(binary.len()));
+        put(&mut json, "/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "mode": 5 }));
+        for (name, value) in accessor.as_object().unwrap() {
+            put(&mut json, &format!("/accessors/0/{name}"), value.clone());
+        }
+        let (mesh, _) = read("a.glb", &glb(&json, &binary)).unwrap();
+        let found = [0, 1, 2, 4].map(|at| positions(&mesh)[at][0]);
+        assert_eq!([found[0], found[1], found[2], found[3]], expected, "{accessor}");
+    }
+    for (kind, indices) in [(5123, bytes(&[0, 1, 2, 0, 2, 3])), (5125, long(&[0, 1, 2, 0, 2, 3]))] {
+        let (mut json, binary) = square();
+        let buffer = [&binary[..], &indices].concat();
+        put(&mut json, "/buffers/0/byteLength", json!(buffer.len()));
+        put(
+            &mut json,
+            "/bufferViews/3",
+            json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": indices.len() }),
+        );
+        put(&mut json, "/accessors/3/componentType", json!(kind));
+        assert_eq!(read("a.glb", &glb(&json, &buffer)).unwrap(), read("a.glb", &glb(&square().0, &binary)).unwrap());
+    }
+}
+
+#[test]
+fn sparse_and_strided_accessors_are_read() {
+    let (mut json, binary) = square();
+    // Elements 1 and 3 are the positions 2 and 0 of the square: their view is read with a stride, from its third.
+    let sparse = json!({
+        "count": 2,
+        "indices": { "bufferView": 4, "componentType": 5123 },
+        "values": { "bufferView": 5 },
+    });
+    let buffer = [&binary[..], &[1, 0, 3, 0], &floats(&[7., 8., 9., 4., 5., 6.])].concat();
+    put(&mut json, "/buffers/0/byteLength", json!(buffer.len()));
+    put(&mut json, "/bufferViews/-", json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": 4 }));
+    put(&mut json, "/bufferViews/-", json!({ "buffer": 0, "byteOffset": binary.len() + 4, "byteLength": 24 }));
+    put(&mut json, "/accessors/0/sparse", sparse);
+    put(&mut json, "/meshes/0/primitives/0/mode", json!(5));
+    put(&mut json, "/meshes/0/primitives/0/indices", json!(null));
+    let corners = |mesh: &Mesh| [0, 1, 2, 4].map(|at| positions(mesh)[at]);
+    let (mesh, _) = read("a.glb", &glb(&json, &buffer)).unwrap();
+    assert_eq!(corners(&mesh), [[0.0; 3], [7.0, 8.0, 9.0], [1.0, 1.0, 0.0], [4.0, 5.0, 6.0]]);
+    put(&mut json, "/accessors/0/bufferView", json!(null));
+    let (mesh, _) = read("a.glb", &glb(&json, &buffer)).unwrap();
+    assert_eq!(corners(&mesh), [[0.0; 3], [7.0, 8.0, 9.0], [0.0; 3], [4.0, 5.0, 6.0]], "the others are zero");
+    put(&mut json, "/accessors/0/sparse", json!(null));
+    put(&mut json, "/accessors/0/bufferView", json!(0));
+    put(&mut json, "/accessors/0/count", json!(2));
+    put(&mut json, "/bufferViews/0/byteStride", json!(24));
+    put(&mut json, "/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "indices": 3 }));
+    put(&mut json, "/accessors/3", json!({ "componentType": 5125, "count": 3, "type": "SCALAR" }));
+    let (mesh, notes) = read("a.glb", &glb(&json, &buffer)).unwrap();
+    assert_eq!((positions(&mesh), mesh.degenerate), (vec![[0.0; 3]; 3], 1));
+    assert_eq!(notes, ["1 of 1 triangles has no area and is never seen"]);
+    put(&mut json, "/accessors/3", json!({ "bufferView": 3, "componentType": 5121, "count": 3, "type": "SCALAR" }));
+    put(&mut json, "/accessors/3/byteOffset", json!(0));
+    assert!(read("a.glb", &glb(&json, &buffer)).unwrap_err().contains("there is no vertex 2: there are 2"));
+}
+
+#[test]
+fn what_is_wrong_is_told_by_its_number() {
+    const AGAIN: &str = "(export it again)";
+    for (pointer, value, expected) in [
+        ("/meshes", json!([]), format!("there is no mesh 0: there are 0 {AGAIN}")),
+        ("/nodes", json!([{}]), "has no triangles (name a mesh with faces)".to_owned()),
+        ("/scene", json!(7), format!("there is no scene 7: there are 1 {AGAIN}")),
+        ("/scenes/0/nodes", json!([1]), format!("there is no node 1: there are 1 {AGAIN}")),
+        ("/scenes/0/nodes", json!([0, 0]), format!("node 0 is in the scene twice {AGAIN}")),
+        ("/nodes/0/children", json!([0]), format!("node 0 is in the scene twice {AGAIN}")),
+        (
+            "/nodes/0/matrix",
+            json!([1e308, 0, 0, 0, 0, 1e308, 0, 0, 0, 0, 1, 0, 1e308, 0, 0, 1]),
+            format!("accessor 0: its node moves it out of all bounds {AGAIN}"),
+        ),
+        ("/accessors/0/bufferView", json!(9), format!("there is no buffer view 9: there are 4 {AGAIN}")),
+        ("/accessors/0/type", json!("VEC4"), format!("accessor 0 is VEC4, and VEC3 was expected {AGAIN}")),
+        ("/accessors/0/componentType", json!(5124), format!("there is no type of numbers 5124 {AGAIN}")),
+        ("/accessors/0/count", json!(3), format!("accessor 1 has 4 elements for 3 positions {AGAIN}")),
+        ("/accessors/1/byteOffset", json!(4), format!("buffer view 1 is too short for 4 elements {AGAIN}")),
+        ("/accessors/1/byteOffset", json!(u64::MAX), format!("buffer view 1 is too short for 4 elements {AGAIN}")),
+        (
+            "/accessors/3/count",
+            json!(u64::MAX),
+            "has 6148914691236517205 triangles, at most 10000000 are allowed \
+             (make it smaller, or give --limit triangles=6148914691236517205)"
+                .to_owned(),
+        ),
+        ("/accessors/3/count", json!(7), format!("buffer view 3 is too short for 7 elements {AGAIN}")),
+        ("/accessors/3/componentType", json!(5120), format!("accessor 3 is not of whole numbers {AGAIN}")),
+        ("/accessors/3/componentType", json!(5126), format!("accessor 3 is not of whole numbers {AGAIN}")),
+        ("/bufferViews/3/byteStride", json!(u64::MAX), format!("buffer view 3 is too short for 6 elements {AGAIN}")),
+        ("/bufferViews/3/byteOffset", json!(u64::MAX), format!("buffer view 3 reaches beyond its buffer {AGAIN}")),
+        ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there are 1 {AGAIN}")),
+        ("/buffers/0/byteLength", json!(200), "is cut short (copy it again from where it came)".to_owned()),
+        ("/buffers/0/uri", json!("data:,a"), "has a buffer that is not in base64 (export it again as .glb)".to_owned()),
+        (
+            "/buffers/0/uri",
+            json!("data:a/b;base64,=?"),
+            "has a buffer that is not in base64 (export it again as .glb)".to_owned(),
+        ),
+        (
+            "/buffers/0/uri",
+            json!("https://x.org/a.bin"),
+            "has a part at https://x.org/a.bin, which Plica does not fetch \
+             (export it as .glb, which is one file)"
+                .to_owned(),
+        ),
+        ("/buffers/0/uri", json!("%ff.bin"), format!("has a part at %ff.bin, which is no path {AGAIN}")),
+        ("/accessors/0/sparse", json!({ "count": 5 }), format!("accessor 0: 5 of 4 elements differ {AGAIN}")),
+        (
+            "/accessors/0/sparse",
+            json!({ "count": 1, "indices": { "bufferView": 2, "componentType": 5123, "byteOffset": 6 }, "values": {} }),
+            format!("accessor 0: there is no element 16256: there are 4 {AGAIN}"),
+        ),
+        ("/asset/version", json!("1.0"), "is glTF 1.0 (Plica reads glTF 2.0: export it again as .glb)".to_owned()),
+        (
+            "/extensionsRequired",
+            json!(["KHR_texture_transform", "KHR_draco_mesh_compression"]),
+            "needs the extension KHR_draco_mesh_compression, which Plica does not read \
+             (unpack it: gltf-transform cp a.glb a-plain.glb)"
+                .to_owned(),
+        ),
+        (
+            "/extensionsRequired",
+            json!(["EXT_mesh_gpu_instancing"]),
+            "needs the extension EXT_mesh_gpu_instancing, which Plica does not read \
+             (export it again without that extension)"
+                .to_owned(),
+        ),
+        (
+            "/nodes/0/mesh",
+            json!(-1),
+            format!("is not a glTF file: line 1, column 103: invalid value: integer `-1`, expected usize {AGAIN}"),
+        ),
+    ] {
+        assert_eq!(
+            changed(&[(pointer, value.clone())]).unwrap_err(),
+            format!("a.glb: {expected}"),
+            "{pointer} {value}"
+        );
+    }
+    changed(&[("/extensionsRequired", json!(["KHR_mesh_quantization", "KHR_materials_unlit"]))]).unwrap();
+    let (json, mut binary) = square();
+    binary[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let error = read("a.glb", &glb(&json, &binary)).unwrap_err();
+    assert_eq!(error, format!("a.glb: accessor 0: element 0 is not finite {AGAIN}"));
+}
+
+#[test]
+fn a_file_that_is_cut_short_says_so() {
+    let (json, binary) = square();
+    let whole = glb(&json, &binary);
+    for length in 4..whole.len() {
+        let error = read("a.glb", &whole[..length]).unwrap_err();
+        assert_eq!(error, "a.glb: is cut short (copy it again from where it came)", "{length}");
+    }
+    let text = json.to_string();
+    for length in 1..text.len() {
+        let error = read("a.gltf", &text.as_bytes()[..length]).unwrap_err();
+        assert_eq!(error, "a.gltf: is cut short (copy it again from where it came)", "{length}");
+    }
+    assert_eq!(read("a.gltf", text.as_bytes()).unwrap_err(), "a.gltf: buffer 0 is not in the file (export it again)");
+    assert_eq!(
+        read("a.gltf", b"{}").unwrap_err(),
+        "a.gltf: is not a glTF file (Plica reads glTF 2.0: export it again as .glb)"
+    );
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(read("a.glb", &old).unwrap_err().contains("is a .glb of version 1"));
+    let mut odd = whole;
+    odd[16] = b'X';
+    assert!(read("a.glb", &odd).unwrap_err().contains("does not begin with its JSON"));
+}
+
+#[test]
+fn a_small_file_that_means_much_is_refused() {
+    let limits = Limits { memory: 16 << 20, ..Limits::default() };
+    let braces = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}]}}", vec!["{}"; 20_000].join(","));
+    // Many nodes show a mesh of many parts.
+    let (mut json, binary) = square();
+    let many = vec![json!({ "attributes": { "POSITION": 0 } }); 1000];
+    put(&mut json, "/meshes/0/primitives", json!(many));
+    put(&mut json, "/nodes", json!(vec![json!({ "mesh": 0 }); 1000]));
+    put(&mut json, "/scenes/0/nodes", json!((0..1000).collect::<Vec<_>>()));
+    let parts = glb(&json, &binary);
+    let (mut json, binary) = square();
+    put(&mut json, "/accessors/0", json!({ "componentType": 5126, "count": 1_000_000, "type": "VEC3" }));
+    put(&mut json, "/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "mode": 5 }));
+    let zeros = glb(&json, &binary);
+    for bytes in [braces.into_bytes(), parts, zeros] {
+        let error = read_with("a.glb", &bytes, &[], &limits).unwrap_err();
+        assert!(error.contains("of memory besides"), "{error}");
+    }
+}
