@@ -56,7 +56,8 @@ impl Histogram {
         if points.is_empty() {
             return Vec::new();
         }
-        let centers = settle(&points, cut(points.clone(), most));
+        let centers = cut(points.clone(), most).into_iter().map(|group| group.mean).collect();
+        let centers = settle(&points, centers);
         let mut colors: Vec<[u8; 3]> = centers.into_iter().map(|c| c.map(|code| code.round() as u8)).collect();
         colors.sort_unstable();
         colors.dedup();
@@ -64,16 +65,22 @@ impl Histogram {
     }
 }
 
+/// A color, and how often it occurs.
 #[derive(Clone, Copy)]
-struct Point {
-    color: Codes,
-    weight: f64,
+pub struct Point {
+    /// In sRGB codes.
+    pub color: Codes,
+    /// How often.
+    pub weight: f64,
 }
 
-/// Points together: their mean, and the axis on which they spread most.
-struct Group {
-    points: Vec<Point>,
-    mean: Codes,
+/// Points that one color may stand for.
+pub struct Group {
+    /// At least one.
+    pub points: Vec<Point>,
+    /// Their mean: that color.
+    pub mean: Codes,
+    /// The axis on which they spread most.
     axis: usize,
     /// Sum of weighted squared distances to the mean.
     spread: f64,
@@ -93,8 +100,11 @@ impl Group {
     }
 }
 
-/// The means of at most `most` groups.
-fn cut(points: Vec<Point>, most: usize) -> Vec<Codes> {
+/// All points in at most `most` groups; none if there are none.
+pub fn cut(points: Vec<Point>, most: usize) -> Vec<Group> {
+    if points.is_empty() {
+        return Vec::new();
+    }
     let mut groups = vec![Group::of(points)];
     while groups.len() < most {
         let Some(worst) = (0..groups.len()).max_by(|&a, &b| groups[a].spread.total_cmp(&groups[b].spread)) else {
@@ -108,7 +118,7 @@ fn cut(points: Vec<Point>, most: usize) -> Vec<Codes> {
         }
         groups.extend([Group::of(low), Group::of(high)]);
     }
-    groups.into_iter().map(|g| g.mean).collect()
+    groups
 }
 
 /// Moves each color to the mean of the points nearest to it, a few times.

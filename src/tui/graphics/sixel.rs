@@ -1,9 +1,10 @@
-//! Sixels: bands of six rows, color by color, runs counted. At most 255 colors, cut at medians, and fewer in a picture
-//! that has to be small; nothing is dithered, since grains make runs short and pictures large.
+//! Sixels: bands of six rows, color by color, runs counted. At most 255 colors, and fewer in a picture that has to be small;
+//! nothing is dithered, since grains make runs short and pictures large.
 
 use std::fmt::Write;
 
 use crate::base::pixels::Frame;
+use crate::base::quantise::{Point, cut};
 
 /// The most colors, and of a picture that is reduced: pixels are worth more than shades.
 const COLORS: usize = 255;
@@ -68,68 +69,30 @@ struct Palette {
     index: Vec<u8>,
 }
 
-/// One bin that is not empty: its number, its mean color, its pixels.
-#[derive(Clone, Copy)]
-struct Bin {
-    number: usize,
-    mean: [u8; 3],
-    count: u64,
-}
-
 impl Palette {
+    /// Without the rounds that settle a palette for a file: a picture in the terminal must be there at once.
     fn of(frame: &Frame, most: usize) -> Palette {
         let mut sums = vec![[0u64; 4]; BINS];
         for cell in frame.cells().iter().filter(|cell| cell[3] > 0) {
             let sum = &mut sums[bin(*cell)];
             *sum = [sum[0] + u64::from(cell[0]), sum[1] + u64::from(cell[1]), sum[2] + u64::from(cell[2]), sum[3] + 1];
         }
-        let filled = sums.iter().enumerate().filter(|(_, sum)| sum[3] > 0);
-        let mean = |sum: &[u64; 4]| std::array::from_fn(|i| (sum[i] / sum[3]) as u8);
-        let bins: Vec<Bin> = filled.map(|(number, sum)| Bin { number, mean: mean(sum), count: sum[3] }).collect();
+        let filled = sums.into_iter().filter(|sum| sum[3] > 0);
+        let point = |[r, g, b, count]: [u64; 4]| Point {
+            color: [r, g, b].map(|sum| sum as f64 / count as f64),
+            weight: count as f64,
+        };
         let mut palette = Palette { colors: Vec::new(), index: vec![0; BINS] };
-        for one in cut(bins, most) {
-            let count = one.iter().map(|bin| bin.count).sum::<u64>().max(1);
-            let mean = |i: usize| (one.iter().map(|bin| u64::from(bin.mean[i]) * bin.count).sum::<u64>() / count) as u8;
-            one.iter().for_each(|bin| palette.index[bin.number] = palette.colors.len() as u8);
-            palette.colors.push(std::array::from_fn(mean));
+        for group in cut(filled.map(point).collect(), most) {
+            for point in group.points {
+                // The mean of a bin lies in it.
+                let [r, g, b] = point.color.map(|code| code as u8);
+                palette.index[bin([r, g, b, 255])] = palette.colors.len() as u8;
+            }
+            palette.colors.push(group.mean.map(|code| code.round() as u8));
         }
         palette
     }
-}
-
-/// Cuts the box of the most pixels and the widest spread in two at its median, until there are enough. Spread counts most:
-/// a few dark pixels do not become black because marks nearby are.
-fn cut(bins: Vec<Bin>, most: usize) -> Vec<Vec<Bin>> {
-    let mut boxes = vec![bins];
-    boxes.retain(|one| !one.is_empty());
-    while boxes.len() < most {
-        let worth = |one: &Vec<Bin>| one.iter().map(|bin| bin.count).sum::<u64>() * u64::from(widest(one).1).pow(4);
-        let Some((at, best)) = boxes.iter().map(worth).enumerate().max_by_key(|&(_, worth)| worth) else { break };
-        if best == 0 {
-            break;
-        }
-        let mut one = boxes.swap_remove(at);
-        let (channel, _) = widest(&one);
-        one.sort_unstable_by_key(|bin| (bin.mean[channel], bin.number));
-        let half = one.iter().map(|bin| bin.count).sum::<u64>() / 2;
-        let mut before = 0;
-        let middle = one.iter().position(|bin| {
-            before += bin.count;
-            before > half
-        });
-        let rest = one.split_off(middle.unwrap_or(0).clamp(1, one.len() - 1));
-        boxes.extend([one, rest]);
-    }
-    boxes
-}
-
-/// The channel in which the bins differ most, and by how much.
-fn widest(bins: &[Bin]) -> (usize, u8) {
-    let spread = |i: usize| {
-        let values = || bins.iter().map(|bin| bin.mean[i]);
-        values().max().unwrap_or(0) - values().min().unwrap_or(0)
-    };
-    (0..3).map(|i| (i, spread(i))).max_by_key(|&(_, spread)| spread).unwrap_or((0, 0))
 }
 
 #[cfg(test)]
@@ -204,6 +167,18 @@ mod tests {
         };
         assert!(frame.cells().iter().all(|cell| error(cell) < 64));
         assert!(frame.cells().iter().map(error).sum::<u32>() / 4096 < 24);
+    }
+
+    #[test]
+    fn a_thin_mark_keeps_its_color_among_many_and_few() {
+        let ground = |i: usize| [(i % 64 * 3) as u8, (i / 64 * 3) as u8, (i * 7 % 90) as u8, 255];
+        let color = |i: usize| if i / 64 == i % 64 { [255, 0, 255, 255] } else { ground(i) };
+        let frame = Frame::from_cells(64, 64, (0..64 * 64).map(color).collect());
+        for most in [COLORS, FEW_COLORS] {
+            let palette = Palette::of(&frame, most);
+            let [r, g, b] = palette.colors[usize::from(palette.index[bin([255, 0, 255, 255])])];
+            assert!(r > 235 && g < 20 && b > 235, "{r} {g} {b} of {most}");
+        }
     }
 
     #[test]
