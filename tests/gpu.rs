@@ -12,7 +12,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
-use plica::base::maths;
+use glam::{DVec2, DVec3};
+use plica::base::maths::{self, TAU};
+use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Grid, decode, encode};
 use plica::base::progress::Progress;
@@ -153,6 +155,29 @@ fn the_gpu_shows_what_the_cpu_shows() {
     }
 }
 
+/// A ring about the z axis, of radius 1 and thickness 0.35.
+fn ring() -> Mesh {
+    let (around, across) = (24, 12);
+    let vertex = |i: usize| {
+        let (u, v) = ((i % (around + 1)) as f64 / around as f64, (i / (around + 1)) as f64 / across as f64);
+        let (a, b) = (u * TAU, v * TAU);
+        let normal = DVec3::new(maths::cos(b) * maths::cos(a), maths::cos(b) * maths::sin(a), maths::sin(b));
+        let middle = DVec3::new(maths::cos(a), maths::sin(a), 0.0);
+        Vertex { position: middle + normal * 0.35, normal, uv: DVec2::new(u * 3.0, v) }
+    };
+    let corner = |x: usize, y: usize| (y * (around + 1) + x) as u32;
+    let pair = |i: usize| {
+        let (x, y) = (i % around, i / around);
+        let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    Mesh {
+        vertices: (0..(around + 1) * (across + 1)).map(vertex).collect(),
+        triangles: (0..around * across).flat_map(pair).collect(),
+        ..Mesh::default()
+    }
+}
+
 /// The example of each technique, with pictures of 96 x 64 for the images that it names.
 fn examples() -> Vec<(&'static str, Scene, Materials)> {
     let example = |kind: &&'static Kind| {
@@ -162,7 +187,7 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
         for (seed, Use { of, what, .. }) in uses.enumerate() {
             match of {
                 Of::Name(List::Layers, _) => {}
-                Of::Name(List::Meshes, _) => unreachable!("no example has a mesh yet"),
+                Of::Name(List::Meshes, name) => drop(materials.meshes.insert(name.to_owned(), Arc::new(ring()))),
                 Of::Name(List::Images, name) => {
                     let picture = waves(96, 64, seed + 1, what != What::Picture || seed > 0);
                     drop(materials.pictures.insert(name.to_owned(), picture));
@@ -195,8 +220,7 @@ fn every_technique_answers_everything() {
         let again = render::synth(&scene, &materials, Some(&synth)).unwrap();
         let samples = render::samples(&scene, &materials, 2).unwrap();
         let small = reduced(&synth, 4);
-        let still =
-            Synth { layers: synth.layers.iter().map(|layer| layer.clone().unmoved()).collect(), ..synth.clone() };
+        let still = synth.unmoved();
         let bands = Bands::new(&scene, &materials, 1).unwrap();
         for time in [0.13, 0.77] {
             let frame = cpu::frame(&synth, time);

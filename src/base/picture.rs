@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use crate::base::pixels::{Beyond, Linear, Rgba, bilinear, encode, linear_from_srgb};
+use crate::base::pixels::{Beyond, Linear, Rgba, bilinear, bilinear_repeated, encode, linear_from_srgb};
 
 /// A picture that a scene names.
 #[derive(Clone, Debug)]
@@ -270,6 +270,11 @@ impl Picture {
     /// The bilinear read at image coordinates (x, y); the centre of pixel (i, j) is (i + 0.5, j + 0.5).
     pub fn read(&self, x: f64, y: f64, beyond: Beyond) -> Rgba {
         with_texels!(self, texels => bilinear((self.width, self.height), (x, y), beyond, |i| texels.at(i)))
+    }
+
+    /// As [`Picture::read`], of a picture that repeats in both directions.
+    pub fn read_repeated(&self, x: f64, y: f64) -> Rgba {
+        with_texels!(self, texels => bilinear_repeated((self.width, self.height), (x, y), |i| texels.at(i)))
     }
 
     /// All of it in linear light.

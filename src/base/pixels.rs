@@ -101,6 +101,19 @@ pub fn bilinear(
         }
         texel(y.clamp(0, h - 1) as usize * width + x.clamp(0, w - 1) as usize)
     };
+    mean_of_four((x, y), texel)
+}
+
+/// As [`bilinear`], of a picture that repeats in both directions.
+#[inline]
+pub fn bilinear_repeated((width, height): (usize, usize), (x, y): (f64, f64), texel: impl Fn(usize) -> Rgba) -> Rgba {
+    let (w, h) = (width as i64, height as i64);
+    mean_of_four((x, y), |x, y| texel(y.rem_euclid(h) as usize * width + x.rem_euclid(w) as usize))
+}
+
+/// The mean of the four pixels round a place, by their distances.
+#[inline]
+fn mean_of_four((x, y): (f64, f64), texel: impl Fn(i64, i64) -> Rgba) -> Rgba {
     let (gx, gy) = (x - 0.5, y - 0.5);
     let (fx, fy) = (gx.floor(), gy.floor());
     let (wx, wy) = ((gx - fx) as f32, (gy - fy) as f32);

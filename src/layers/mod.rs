@@ -10,6 +10,7 @@ pub mod check;
 pub mod fill;
 pub mod folding;
 pub mod keyframes;
+pub mod mesh;
 pub mod parts;
 pub mod ready;
 pub mod space;
@@ -19,7 +20,7 @@ pub mod timeline;
 use technique::{Kind, Technique};
 
 /// The techniques: what `kind` can be in the document.
-pub static KINDS: &[&Kind] = &[&folding::KIND, &fill::KIND];
+pub static KINDS: &[&Kind] = &[&folding::KIND, &fill::KIND, &mesh::KIND];
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,6 +30,8 @@ pub enum Layer {
     Picture(folding::model::PictureLayer),
     /// A color or a gradient over the whole frame.
     Fill(fill::model::FillLayer),
+    /// A mesh in space, seen by the scene's camera.
+    Mesh(mesh::model::MeshLayer),
 }
 
 impl Layer {
@@ -37,6 +40,7 @@ impl Layer {
         match self {
             Layer::Picture(layer) => layer,
             Layer::Fill(layer) => layer,
+            Layer::Mesh(layer) => layer,
         }
     }
 
@@ -46,7 +50,7 @@ impl Layer {
         match self {
             _ if *change.field("kind") != Change::Same => None,
             Layer::Picture(layer) => folding::reread::layer(layer, json, change).map(Layer::Picture),
-            Layer::Fill(_) => None,
+            Layer::Fill(_) | Layer::Mesh(_) => None,
         }
     }
 }

@@ -141,6 +141,15 @@ pub struct Kind {
     /// A layer that shows the image of this name, of this width and height; `None` if the technique does not start from
     /// a picture.
     pub template: Option<fn(image: &str, size: (usize, usize)) -> Value>,
+    /// How new things in its layers begin.
+    pub starts: Starts,
+    /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
+    pub example: &'static str,
+}
+
+/// How new things in a document begin, and which lists ascend.
+#[derive(Debug)]
+pub struct Starts {
     /// The initial value of the field `field` of a new `variant`, if the schema has no default and zeros will not do.
     pub start: fn(variant: &str, field: &str, bounds: Rect) -> Option<Value>,
     /// An optional field, with its value, that a new item of the list `list` of a `variant` starts with.
@@ -150,8 +159,26 @@ pub struct Kind {
     /// A new item for the list `list` of a `variant`, to go before item `index`, and the index it gets; `None` if items
     /// do not depend on their neighbors.
     pub item: fn(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)>,
-    /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
-    pub example: &'static str,
+}
+
+impl Starts {
+    /// Everything by the schema alone.
+    pub const PLAIN: Starts =
+        Starts { start: |_, _, _| None, beyond: |_, _| None, ascending: |_, _| None, item: |_, _, _, _| None };
+}
+
+/// A new item for a list that ascends from 0 to 1 in the numbers at `key`: half way between its neighbors, otherwise like
+/// the one before; and the index it gets.
+pub fn halfway(items: &[Value], index: usize, key: &str) -> Option<(usize, Value)> {
+    let at = |i: usize| items.get(i)?.pointer(key)?.as_f64();
+    // Nothing fits before 0 or after 1.
+    let index = if at(0) == Some(0.0) { index.max(1) } else { index };
+    let index = if at(items.len().checked_sub(1)?) == Some(1.0) { index.min(items.len() - 1) } else { index };
+    let before = index.checked_sub(1);
+    let middle = (before.and_then(at).unwrap_or(0.0) + at(index).unwrap_or(1.0)) / 2.0;
+    let mut item = items.get(before.unwrap_or(0))?.clone();
+    *item.pointer_mut(key)? = middle.into();
+    Some((index, item))
 }
 
 /// All layers of one technique as textures for other engines.

@@ -108,6 +108,8 @@ fn value(value: &Value) -> Json {
         Value::Place(place) => json!([place.x, place.y]),
         Value::List(numbers) => json!(numbers),
         Value::Number(number) => json!(number),
+        Value::Index(index) => json!(index),
+        Value::Coordinates(numbers, _) => json!(numbers),
         Value::Flag { on, .. } => json!(on),
     }
 }
@@ -146,6 +148,11 @@ fn said(label: &str, value: &Value) -> String {
             format!("{label} {}", numbers.join(", "))
         }
         Value::Number(number) => format!("{label} {number:.4}"),
+        Value::Index(index) => format!("{label} {index}"),
+        Value::Coordinates(numbers, unit) => {
+            let numbers: Vec<String> = numbers.iter().map(|number| format!("{number:.4}")).collect();
+            format!("{label} {} {unit}", numbers.join(", ")).trim_end().to_owned()
+        }
         Value::Flag { on, off } => if *on { label } else { off }.to_owned(),
     }
 }

@@ -40,6 +40,14 @@ impl Synth {
     pub fn moment(&self, t: f64) -> Moment {
         self.stage.moment(t, self.size)
     }
+
+    /// The same with nothing that moves.
+    pub fn unmoved(&self) -> Synth {
+        let camera = self.stage.camera.as_ref().map(|camera| camera.unmoved());
+        let stage = Stage { camera, ..(*self.stage).clone() };
+        let layers = self.layers.iter().map(|layer| layer.clone().unmoved()).collect();
+        Synth { size: self.size, layers, stage: Arc::new(stage) }
+    }
 }
 
 /// Prepares a scene for rendering at any time. What it has in common with `previous` is reused.

@@ -8,7 +8,8 @@ use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
 use super::{Document, field, pointer, shape};
 use crate::layers::KINDS;
-use crate::layers::technique::{Kind, Technique, Turned};
+use crate::layers::space::camera;
+use crate::layers::technique::{Kind, Starts, Technique, Turned};
 
 impl Edit {
     /// Writes `value` at `path`. Missing parents are created from their defaults; `null` removes an optional value, so
@@ -160,15 +161,15 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     let index = index.min(items.len());
     let (holder, name) = pointer::split(list)?;
     let variant = variant_of(Place::of(json, holder)?);
-    let kind = Fresh::layer(document, list).map(|(layer, _)| layer.kind());
-    if let Some(between) = kind.and_then(|kind| (kind.item)(variant, &name, items, index)) {
+    let starts = Fresh::starts(document, list);
+    if let Some(between) = (starts.item)(variant, &name, items, index) {
         return Some(between);
     }
     let mut value = Fresh::at(document, &pointer::join(list, index)).value(item);
     if value.get("name").is_some() {
         value["name"] = unique(name.trim_end_matches('s'), items).into();
     }
-    if let Some((field, start)) = kind.and_then(|kind| (kind.beyond)(variant, &name)) {
+    if let Some((field, start)) = (starts.beyond)(variant, &name) {
         value[field] = start;
     }
     Some((index, value))
@@ -201,6 +202,8 @@ pub(super) struct Fresh<'a> {
     document: &'a Document,
     /// The technique of the layer that the values belong to.
     kind: Option<&'static Kind>,
+    /// The index of that layer.
+    own: Option<usize>,
     /// Whether the values are layers themselves, whose variant is the technique.
     layers: bool,
 }
@@ -213,7 +216,8 @@ impl<'a> Fresh<'a> {
         let inside = layer.filter(|(_, rest)| !rest.is_empty());
         let layers = inside.is_none() && (path == "/layers" || path.starts_with("/layers/"));
         let kind = inside.map(|(layer, _)| layer.kind());
-        Fresh { bounds, document, kind, layers }
+        let own = path.strip_prefix("/layers/").and_then(|rest| pointer::index(rest.split('/').next()?));
+        Fresh { bounds, document, kind, own, layers }
     }
 
     /// The layer that a place is in, and the place relative to it.
@@ -221,6 +225,15 @@ impl<'a> Fresh<'a> {
         let (layer, rest) = path.strip_prefix("/layers/")?.split_once('/').unwrap_or((&path[8..], ""));
         let layer = document.scene().layers.get(layer.parse::<usize>().ok()?)?;
         Some((layer.technique(), if rest.is_empty() { String::new() } else { format!("/{rest}") }))
+    }
+
+    /// How new things at a place begin.
+    pub(super) fn starts(document: &Document, path: &str) -> &'static Starts {
+        match Fresh::layer(document, path) {
+            Some((layer, _)) => &layer.kind().starts,
+            None if path.starts_with("/camera/") => &camera::STARTS,
+            None => &Starts::PLAIN,
+        }
     }
 
     /// The same for the fields of a new `variant`.
@@ -231,10 +244,16 @@ impl<'a> Fresh<'a> {
         }
     }
 
-    /// The first name, by the alphabet, in a list of the scene.
+    /// The first name in a list of the scene: by the alphabet, or of the first item that is not the place's own.
     fn first(&self, list: &str) -> Option<&'a str> {
-        let names = self.document.json().get(list)?.as_object()?.keys();
-        names.map(String::as_str).min()
+        match self.document.json().get(list)? {
+            Value::Object(map) => map.keys().map(String::as_str).min(),
+            Value::Array(items) => {
+                let names = items.iter().filter_map(|item| item.get("name")?.as_str());
+                names.enumerate().find(|(i, _)| self.own != Some(*i)).map(|(_, name)| name)
+            }
+            _ => None,
+        }
     }
 
     /// A new value of a shape, with only the required fields.
@@ -261,7 +280,7 @@ impl<'a> Fresh<'a> {
     fn object(&self, shape: Shape, variant: &str) -> Value {
         let required = shape.required().filter_map(|name| {
             let field = shape.property(None, name)?;
-            let start = || (self.kind?.start)(variant, name, self.bounds);
+            let start = || (self.kind?.starts.start)(variant, name, self.bounds);
             let start = shape.constant(name).cloned().or_else(start);
             Some((name.to_owned(), start.unwrap_or_else(|| self.value(field))))
         });

@@ -10,7 +10,7 @@ use super::edit::Edit;
 use super::schema::{Body, Place};
 use super::{Document, field, pointer, shape};
 use crate::base::problem::Problem;
-use crate::layers::technique::Kind;
+use crate::layers::technique::Starts;
 
 /// More items than this are inserted by replacing the whole list: a single operation, however many there are.
 const ONE_BY_ONE: usize = 100;
@@ -36,10 +36,10 @@ impl Edit {
         let (holder, name) = pointer::split(list)?;
         let variant = variant_of(Place::of(document.json(), holder)?);
         let (index, items) = (index.min(old.len()), named_apart(old, items));
-        let kind = Fresh::layer(document, list).map(|(layer, _)| layer.kind());
-        if let Some((kind, key)) = kind.and_then(|kind| Some((kind, (kind.ascending)(variant, &name)?))) {
+        let starts = Fresh::starts(document, list);
+        if let Some(key) = (starts.ascending)(variant, &name) {
             let placed = match items.as_slice() {
-                [one] => placed_alone(kind, (variant, &name), key, old, one, index)?,
+                [one] => placed_alone(starts, (variant, &name), key, old, one, index)?,
                 _ => placed(key, old, items)?,
             };
             return Some((write(document, list, placed.0.into()), pointer::join(list, placed.1)));
@@ -92,7 +92,7 @@ fn key_of(item: &Value, key: &str) -> Option<f64> {
 
 /// One item in an ascending list: at its place, or if that is taken half way to the next, as for a duplicate.
 fn placed_alone(
-    kind: &Kind,
+    starts: &Starts,
     (variant, list): (&str, &str),
     key: &str,
     old: &[Value],
@@ -102,7 +102,7 @@ fn placed_alone(
     let mut to = old.partition_point(|one| key_of(one, key) < key_of(item, key));
     let mut item = item.clone();
     if old.get(to).is_some_and(|one| key_of(one, key) == key_of(&item, key)) {
-        let (near, between) = (kind.item)(variant, list, old, index)?;
+        let (near, between) = (starts.item)(variant, list, old, index)?;
         (*item.pointer_mut(key)?, to) = (between.pointer(key)?.clone(), near);
     }
     let mut all = old.to_vec();

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use self::model::FillLayer;
 use super::parts::moment::Space;
 use super::ready::{Making, Ready};
-use super::technique::{Checked, Kind, Technique};
+use super::technique::{Checked, Kind, Starts, Technique, halfway};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -26,10 +26,7 @@ pub static KIND: Kind = Kind {
     passes: &[],
     looks: &[],
     template: None,
-    start,
-    beyond: |_, _| None,
-    ascending,
-    item,
+    starts: Starts { start, ascending, item, ..Starts::PLAIN },
     example: include_str!("example.json"),
 };
 
@@ -74,17 +71,8 @@ fn ascending(_variant: &str, list: &str) -> Option<&'static str> {
     (list == "stops").then_some("/0")
 }
 
-/// A new stop half way between its neighbors, with the color of the one before.
 fn item(_variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
-    let along = |i: usize| items.get(i)?.get(0)?.as_f64();
-    // Nothing fits before the first or after the last stop if those are at the ends of the line.
-    let index = if along(0) == Some(0.0) { index.max(1) } else { index };
-    let index = if along(items.len().checked_sub(1)?) == Some(1.0) { index.min(items.len() - 1) } else { index };
-    let before = index.checked_sub(1);
-    let middle = (before.and_then(along).unwrap_or(0.0) + along(index).unwrap_or(1.0)) / 2.0;
-    let mut item = items.get(before.unwrap_or(0))?.clone();
-    item[0] = json!(middle);
-    (list == "stops").then_some((index, item))
+    halfway(items, index, "/0").filter(|_| list == "stops")
 }
 
 #[cfg(test)]

@@ -75,6 +75,8 @@ impl Ready for Synth {
                 constants: Vec::new(),
                 binds: vec![Bind::Bytes(bytes)],
                 blend: Blend::Replace,
+                vertices: 3,
+                depth: false,
                 scissor_px: None,
             }],
         }

@@ -48,7 +48,7 @@ use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready};
-use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
+use super::technique::{Bundle, Checked, Count, Counted, Kind, Starts, Technique, Turned};
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
@@ -66,10 +66,7 @@ pub static KIND: Kind = Kind {
     passes: &[],
     looks: looks::LOOKS,
     template: Some(starts::template),
-    start: starts::start,
-    beyond: starts::beyond,
-    ascending: starts::ascending,
-    item: starts::item,
+    starts: Starts { start: starts::start, beyond: starts::beyond, ascending: starts::ascending, item: starts::item },
     example: include_str!("example.json"),
 };
 

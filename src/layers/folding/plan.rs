@@ -40,6 +40,8 @@ pub fn plan(synth: &Synth, t: f64) -> Plan {
         constants: Vec::new(),
         binds: vec![Bind::Upload(synth.picture.clone(), 0)],
         blend: Blend::Replace,
+        vertices: 3,
+        depth: false,
         scissor_px: None,
     };
     Plan { draws: std::iter::once(still).chain(synth.zones.iter().map(|one| zone(one, t))).collect() }
@@ -71,6 +73,8 @@ fn zone(zone: &ZoneSynth, t: f64) -> Draw {
             Bind::Upload(source.picture.clone(), 0),
         ],
         blend: if source.over { Blend::Over } else { Blend::Replace },
+        vertices: 3,
+        depth: false,
         scissor_px: Some(size.map(|n| n as u32)),
     }
 }

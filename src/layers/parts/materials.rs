@@ -117,6 +117,15 @@ impl Materials {
         }
     }
 
+    /// The mesh of that name.
+    ///
+    /// # Errors
+    /// It is not there; `path` tells where it is named.
+    pub fn mesh(&self, name: &str, path: &str) -> Result<Arc<Mesh>, Problem> {
+        let missing = || Problem::error(path, format!("the mesh \"{name}\" is not there"));
+        self.meshes.get(name).cloned().ok_or_else(missing)
+    }
+
     /// The picture of that name.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ pub struct Program {
     pub name: &'static str,
     /// The parts of its WGSL.
     pub source: &'static [&'static str],
-    /// The entry point for vertices; three vertices are drawn, without buffers.
+    /// The entry point for vertices; it has their numbers, and no buffers.
     pub vertex: &'static str,
     /// The entry point for pixels.
     pub fragment: &'static str,
@@ -38,6 +38,19 @@ pub struct Plan {
     pub draws: Vec<Draw>,
 }
 
+impl Plan {
+    /// Everything that is packed for it.
+    pub fn uploads(self) -> Vec<Arc<dyn Upload>> {
+        let binds = self.draws.into_iter().flat_map(|draw| draw.binds);
+        let uploads = binds.flat_map(|bind| match bind {
+            Bind::Upload(of, _) => vec![of],
+            Bind::Drawn(drawn) => drawn.plan.uploads(),
+            Bind::Bytes(_) => Vec::new(),
+        });
+        uploads.collect()
+    }
+}
+
 /// One draw.
 #[derive(Debug)]
 pub struct Draw {
@@ -49,6 +62,10 @@ pub struct Draw {
     pub binds: Vec<Bind>,
     /// How a pixel is blended with what is there.
     pub blend: Blend,
+    /// How many vertices are drawn: three for all of the frame.
+    pub vertices: u32,
+    /// Whether a pixel is drawn only where it is nearer than all before, and hides what is farther then.
+    pub depth: bool,
     /// The pixels to draw: left, top, width, height, clipped to the frame; `None` for all.
     pub scissor_px: Option<[u32; 4]>,
 }
@@ -63,12 +80,22 @@ pub enum Blend {
 }
 
 /// A resource that a program reads.
-#[derive(Clone)]
 pub enum Bind {
     /// A uniform, in the memory layout of WGSL.
     Bytes(Vec<u8>),
     /// One of the textures that an upload is packed into, by its number.
     Upload(Arc<dyn Upload>, usize),
+    /// A texture that is drawn first.
+    Drawn(Box<Drawn>),
+}
+
+/// A texture that is drawn before what reads it.
+#[derive(Debug)]
+pub struct Drawn {
+    /// Its width and height, in pixels.
+    pub size_px: (usize, usize),
+    /// What is drawn in it.
+    pub plan: Plan,
 }
 
 impl fmt::Debug for Bind {
@@ -76,6 +103,7 @@ impl fmt::Debug for Bind {
         match self {
             Bind::Bytes(bytes) => f.debug_tuple("Bytes").field(&bytes.len()).finish(),
             Bind::Upload(_, part) => f.debug_tuple("Upload").field(part).finish(),
+            Bind::Drawn(drawn) => drawn.fmt(f),
         }
     }
 }

@@ -38,6 +38,10 @@ pub enum Value {
     List(Vec<f64>),
     /// A number.
     Number(f64),
+    /// The number of something in its list, from 0.
+    Index(usize),
+    /// Coordinates, and their unit; empty if they have none.
+    Coordinates(Vec<f64>, &'static str),
     /// Something that is true or false.
     Flag {
         /// Whether it is true.

@@ -3,12 +3,14 @@
 use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::eye::Eye;
 use crate::base::geometry::Xyz;
 use crate::base::problem::Problem;
 use crate::layers::check;
 use crate::layers::keyframes;
+use crate::layers::technique::{Starts, halfway};
 
 /// Where the scene is seen from. It looks from its position to its target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,6 +69,17 @@ pub enum Between {
     Smooth,
 }
 
+/// How new keys begin: half way between their neighbors, like the one before.
+pub static STARTS: Starts = Starts { ascending, item, ..Starts::PLAIN };
+
+fn ascending(_variant: &str, list: &str) -> Option<&'static str> {
+    (list == "keys").then_some("/at")
+}
+
+fn item(_variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
+    halfway(items, index, "/at").filter(|_| list == "keys")
+}
+
 impl Default for Camera {
     fn default() -> Self {
         Camera {
@@ -99,6 +112,12 @@ impl Camera {
             .map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(axis, (self.turn * t).to_radians()));
         let position = if self.turn == 0.0 { position } else { target + turn * (position - target) };
         ([position, target, up], fov)
+    }
+
+    /// The camera that stays where this one begins.
+    pub fn unmoved(&self) -> Camera {
+        let ([position, target, _], fov) = self.view(0.0);
+        Camera { position: position.into(), target: target.into(), up: self.up, fov, ..Camera::default() }
     }
 
     /// What the keys say about one field at `t`, each number for itself; `own` if none names it.

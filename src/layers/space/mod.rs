@@ -3,3 +3,5 @@
 
 pub mod camera;
 pub mod eye;
+pub mod raster;
+pub mod upload;

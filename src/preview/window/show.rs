@@ -37,7 +37,7 @@ impl Show {
         let factor = largest.div_ceil(most.max(1)).max(1);
         let frames = if factor > 1 { reduced(&synth, factor) } else { synth.clone() };
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
-        (Show { scene, still: still(&frames), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
+        (Show { scene, still: frames.unmoved(), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
     }
 }
 
@@ -124,11 +124,6 @@ impl Cached {
         self.longest = if legends { longest(&show.synth) } else { 0.0 };
         self.arrow_scale = View { longest_px: self.longest, ..view }.arrow_scale();
     }
-}
-
-/// The same picture, nothing moving.
-fn still(synth: &Synth) -> Synth {
-    Synth { layers: synth.layers.iter().map(|layer| layer.clone().unmoved()).collect(), ..synth.clone() }
 }
 
 #[cfg(test)]

@@ -3,13 +3,11 @@
 
 use super::device::Device;
 use super::kept::{Kept, check_size, texture};
-use super::run::Runner;
+use super::run::{FRAME, Runner};
 use crate::base::error::Result;
 use crate::layers::parts::plan::{Blend, COMMON, Plan, Program};
 use crate::render::Synth;
 
-/// The format of frames on the device.
-pub const FRAME: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The format of encoded frames.
 const ENCODED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 

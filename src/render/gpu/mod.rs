@@ -7,7 +7,7 @@ use std::sync::{Arc, mpsc};
 use crate::base::error::Result;
 use crate::base::pixels::{Frame, Grid};
 use crate::base::progress::Progress;
-use crate::layers::parts::plan::{Bind, Upload};
+use crate::layers::parts::plan::{Plan, Upload};
 use crate::render::Synth;
 
 pub mod device;
@@ -16,8 +16,9 @@ mod kept;
 mod run;
 
 use device::{Device, failed};
-pub use draw::{FRAME, PROGRAMS};
+pub use draw::PROGRAMS;
 pub use kept::Uploaded;
+pub use run::FRAME;
 
 /// A GPU that draws frames.
 pub struct Gpu {
@@ -38,11 +39,7 @@ impl Uploader {
     /// The device is lost, or has not enough memory; or `stop` was set, soon after that.
     pub fn upload(&self, scenes: &[&Synth], sent: &Progress, stop: &AtomicBool) -> Result<Uploaded> {
         let layers = scenes.iter().flat_map(|synth| synth.layers.iter().map(|layer| layer.plan(&synth.moment(0.0))));
-        let binds = layers.flat_map(|plan| plan.draws).flat_map(|draw| draw.binds);
-        let wanted = binds.filter_map(|bind| match bind {
-            Bind::Upload(of, _) => Some(of),
-            Bind::Bytes(_) => None,
-        });
+        let wanted = layers.flat_map(Plan::uploads);
         kept::upload_all(&self.device, wanted, &self.known, (sent, stop))
     }
 

@@ -3,10 +3,15 @@
 use std::collections::HashMap;
 
 use super::device::{Device, failed};
-use super::kept::{Kept, Texture};
+use super::kept::{Kept, Texture, check_size, texture};
 use crate::base::error::Result;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::plan::{Bind, Blend, Draw, Format, Plan, Program};
+
+/// The format of frames on the device.
+pub const FRAME: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// The format of depths.
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Executes plans, with everything that is kept from frame to frame.
 #[derive(Default)]
@@ -23,8 +28,16 @@ struct Key {
     /// Names and bits of the constants.
     constants: Vec<(&'static str, u64)>,
     binds: Vec<Kind>,
+    way: Way,
+}
+
+/// How what is drawn gets to what is there.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Way {
     blend: Blend,
     into: wgpu::TextureFormat,
+    /// Whether pixels are tested by depth; `None` if the pass has no depth.
+    depth: Option<bool>,
 }
 
 /// The kind of resource at a binding.
@@ -47,6 +60,7 @@ struct Ready {
     group: wgpu::BindGroup,
     /// Left, top, width, height.
     scissor: Option<[u32; 4]>,
+    vertices: u32,
 }
 
 /// A resource on the device that a program reads.
@@ -65,21 +79,24 @@ impl Runner {
         plan: &Plan,
     ) -> Result<()> {
         let mut draws = Vec::with_capacity(plan.draws.len());
+        let deep = plan.draws.iter().any(|draw| draw.depth);
         for draw in &plan.draws {
             let Some(scissor) = scissor(draw, into) else { continue };
-            let bound = draw.binds.iter().map(|bind| self.bound(device, bind)).collect::<Result<Vec<_>>>()?;
-            let (pipeline, group) =
-                self.pipeline(device, (draw.program, &draw.constants), &bound, (draw.blend, into.format()))?;
-            draws.push(Ready { pipeline, group, scissor: Some(scissor) });
+            let bound = draw.binds.iter().map(|bind| self.bound(device, encoder, bind)).collect::<Result<Vec<_>>>()?;
+            let way = Way { blend: draw.blend, into: into.format(), depth: deep.then_some(draw.depth) };
+            let (pipeline, group) = self.pipeline(device, (draw.program, &draw.constants), &bound, way)?;
+            draws.push(Ready { pipeline, group, scissor: Some(scissor), vertices: draw.vertices });
         }
-        pass(encoder, into, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), &draws);
+        let size = (into.width() as usize, into.height() as usize);
+        let depth = deep.then(|| texture(device, size, DEPTH, wgpu::TextureUsages::RENDER_ATTACHMENT)).transpose()?;
+        pass(encoder, (into, depth.as_ref()), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), &draws);
         Ok(())
     }
 
     /// Fills a texture with one color.
     pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, into: &wgpu::Texture, color: Rgba) {
         let [r, g, b, a] = color.map(f64::from);
-        pass(encoder, into, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }), &[]);
+        pass(encoder, (into, None), wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }), &[]);
     }
 
     /// Runs a program that reads one float texture, over all of another texture.
@@ -92,8 +109,10 @@ impl Runner {
     ) -> Result<()> {
         let view = from.create_view(&Default::default());
         let bound = [Bound::Texture(Texture { view, format: Format::Rgba32Float })];
-        let (pipeline, group) = self.pipeline(device, (program, &[]), &bound, (blend, into.format()))?;
-        pass(encoder, into, wgpu::LoadOp::Load, &[Ready { pipeline, group, scissor: None }]);
+        let way = Way { blend, into: into.format(), depth: None };
+        let (pipeline, group) = self.pipeline(device, (program, &[]), &bound, way)?;
+        let draw = Ready { pipeline, group, scissor: None, vertices: 3 };
+        pass(encoder, (into, None), wgpu::LoadOp::Load, &[draw]);
         Ok(())
     }
 
@@ -107,7 +126,7 @@ impl Runner {
         self.kept.end_frame();
     }
 
-    fn bound(&mut self, device: &Device, bind: &Bind) -> Result<Bound> {
+    fn bound(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, bind: &Bind) -> Result<Bound> {
         match bind {
             Bind::Bytes(bytes) => {
                 let buffer = device.raw.create_buffer(&wgpu::BufferDescriptor {
@@ -120,6 +139,14 @@ impl Runner {
                 Ok(Bound::Buffer(buffer))
             }
             Bind::Upload(of, part) => self.kept.get(device, of, *part).map(Bound::Texture),
+            Bind::Drawn(drawn) => {
+                check_size(device, drawn.size_px.0, drawn.size_px.1)?;
+                let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+                let into = texture(device, drawn.size_px, FRAME, usage)?;
+                self.run(device, encoder, &into, &drawn.plan)?;
+                let view = into.create_view(&Default::default());
+                Ok(Bound::Texture(Texture { view, format: Format::Rgba32Float }))
+            }
         }
     }
 
@@ -129,14 +156,13 @@ impl Runner {
         device: &Device,
         (program, constants): (&'static Program, &[(&'static str, f64)]),
         bound: &[Bound],
-        (blend, into): (Blend, wgpu::TextureFormat),
+        way: Way,
     ) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup)> {
         let key = Key {
             program: std::ptr::from_ref(program).addr(),
             constants: constants.iter().map(|&(name, value)| (name, value.to_bits())).collect(),
             binds: bound.iter().map(Bound::kind).collect(),
-            blend,
-            into,
+            way,
         };
         let pipeline = match self.pipelines.get(&key) {
             Some(pipeline) => pipeline.clone(),
@@ -219,11 +245,11 @@ fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], 
         ..Default::default()
     });
     let options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-    let blend = match key.blend {
+    let blend = match key.way.blend {
         Blend::Replace => None,
         Blend::Over => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
     };
-    let target = wgpu::ColorTargetState { format: key.into, blend, write_mask: wgpu::ColorWrites::ALL };
+    let target = wgpu::ColorTargetState { format: key.way.into, blend, write_mask: wgpu::ColorWrites::ALL };
     let raw = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(program.name),
         layout: Some(&layout),
@@ -234,7 +260,7 @@ fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], 
             buffers: &[],
         },
         primitive: Default::default(),
-        depth_stencil: None,
+        depth_stencil: key.way.depth.map(depth),
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
@@ -248,8 +274,25 @@ fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], 
     Pipeline { raw, bindings }
 }
 
-/// One pass of draws into a texture.
-fn pass(encoder: &mut wgpu::CommandEncoder, into: &wgpu::Texture, load: wgpu::LoadOp<wgpu::Color>, draws: &[Ready]) {
+/// Tested draws show what is nearest, and of that the first; the others show everything.
+fn depth(tested: bool) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(tested),
+        depth_compare: Some(if tested { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Always }),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
+}
+
+/// One pass of draws into a texture, with depth if there is a texture for it.
+fn pass(
+    encoder: &mut wgpu::CommandEncoder,
+    (into, depth): (&wgpu::Texture, Option<&wgpu::Texture>),
+    load: wgpu::LoadOp<wgpu::Color>,
+    draws: &[Ready],
+) {
+    let depth = depth.map(|depth| depth.create_view(&Default::default()));
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: &into.create_view(&Default::default()),
@@ -257,6 +300,12 @@ fn pass(encoder: &mut wgpu::CommandEncoder, into: &wgpu::Texture, load: wgpu::Lo
             resolve_target: None,
             ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
         })],
+        depth_stencil_attachment: depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            // Depths are reversed: 0 is infinitely far.
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
         ..Default::default()
     });
     for draw in draws {
@@ -265,6 +314,6 @@ fn pass(encoder: &mut wgpu::CommandEncoder, into: &wgpu::Texture, load: wgpu::Lo
         }
         pass.set_pipeline(&draw.pipeline);
         pass.set_bind_group(0, &draw.group, &[]);
-        pass.draw(0..3, 0..1);
+        pass.draw(0..draw.vertices, 0..1);
     }
 }

@@ -1,0 +1,86 @@
+// The triangles of a mesh, bent, posed and seen by the camera: the same as frame.rs.
+
+struct Mesh {
+    eye_from_model: mat4x4f,
+    world_from_normal: mat4x4f,
+    along: vec3f,
+    start: f32,
+    light: vec3f,
+    ambient: f32,
+    color: vec4f,
+    focal: vec2f,
+    shift: vec2f,
+    bend: f32,
+    length: f32,
+    near: f32,
+    both: f32,
+}
+
+@group(0) @binding(0) var<uniform> mesh: Mesh;
+@group(0) @binding(1) var vertices: texture_2d<f32>;
+@group(0) @binding(2) var triangles: texture_2d<u32>;
+@group(0) @binding(3) var picture: texture_2d<f32>;
+
+struct Corner {
+    @builtin(position) position: vec4f,
+    @location(0) normal: vec3f,
+    @location(1) uv: vec2f,
+}
+
+const WIDTH: u32 = 4096u;
+
+fn place(i: u32) -> vec2u {
+    return vec2u(i % WIDTH, i / WIDTH);
+}
+
+// About the model's z.
+fn bent(v: vec3f, angle: f32) -> vec3f {
+    let c = cos(angle);
+    let s = sin(angle);
+    return vec3f(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
+}
+
+@vertex
+fn corner(@builtin(vertex_index) i: u32) -> Corner {
+    let triangle = textureLoad(triangles, place(i / 3u), 0);
+    let vertex = triangle[i % 3u];
+    let first = textureLoad(vertices, place(2u * vertex), 0);
+    let second = textureLoad(vertices, place(2u * vertex + 1u), 0);
+    let angle = mesh.bend * clamp((dot(first.xyz, mesh.along) - mesh.start) / mesh.length, 0.0, 1.0);
+    let seen = (mesh.eye_from_model * vec4f(bent(first.xyz, angle), 1.0)).xyz;
+    let depth = -seen.z;
+    var out: Corner;
+    out.position = vec4f(seen.xy * mesh.focal + depth * mesh.shift, mesh.near, depth);
+    out.normal = (mesh.world_from_normal * vec4f(bent(second.xyz, angle), 0.0)).xyz;
+    out.uv = vec2f(first.w, second.w);
+    return out;
+}
+
+fn shaded(color: vec4f, normal: vec3f, front: bool) -> vec4f {
+    if !front && mesh.both == 0.0 {
+        discard;
+    }
+    let facing = normalize(normal) * select(-1.0, 1.0, front);
+    let light = mesh.ambient + (1.0 - mesh.ambient) * max(dot(facing, mesh.light), 0.0);
+    return vec4f(color.rgb * light, color.a);
+}
+
+@fragment
+fn plain(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return shaded(mesh.color, in.normal, front);
+}
+
+fn texel(at: vec2i, size: vec2i) -> vec4f {
+    return textureLoad(picture, ((at % size) + size) % size, 0);
+}
+
+@fragment
+fn pictured(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let size = vec2i(textureDimensions(picture));
+    let at = vec2f(fract(in.uv.x), 1.0 - fract(in.uv.y)) * vec2f(size) - 0.5;
+    let low = vec2i(floor(at));
+    let part = at - floor(at);
+    let top = mix(texel(low, size), texel(low + vec2i(1, 0), size), part.x);
+    let bottom = mix(texel(low + vec2i(0, 1), size), texel(low + vec2i(1, 1), size), part.x);
+    return shaded(mix(top, bottom, part.y), in.normal, front);
+}

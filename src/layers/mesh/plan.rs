@@ -1,0 +1,87 @@
+//! What the GPU draws for a mesh layer: all triangles, nearest first to be seen.
+
+use glam::{DMat3, DVec3, Mat4};
+
+use super::model::Sides;
+use super::pose::Placed;
+use super::synth::Synth;
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::space::eye::{Eye, NEAR_M};
+use crate::layers::space::upload::{TRIANGLES, VERTICES};
+
+const SOURCE: &[&str] = &[COMMON, include_str!("frame.wgsl")];
+
+/// The mesh in one color.
+pub static PLAIN: Program = Program { name: "mesh/frame.wgsl", source: SOURCE, vertex: "corner", fragment: "plain" };
+/// The mesh with a picture.
+pub static PICTURED: Program =
+    Program { name: "mesh/frame.wgsl", source: SOURCE, vertex: "corner", fragment: "pictured" };
+
+/// `Mesh` in frame.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Uniform {
+    eye_from_model: [f32; 16],
+    world_from_normal: [f32; 16],
+    along: [f32; 3],
+    from: f32,
+    light: [f32; 3],
+    ambient: f32,
+    color: [f32; 4],
+    focal: [f32; 2],
+    shift: [f32; 2],
+    bend: f32,
+    length: f32,
+    near: f32,
+    both: f32,
+}
+
+/// The layer at one time; nothing without a camera.
+pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
+    let Some(eye) = moment.eye else { return Plan::default() };
+    let placed = synth.pose.at(synth.time(moment));
+    let (color, picture) = synth.surface.plan(moment);
+    let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
+    let focal = [2.0 * eye.focal_px / width, 2.0 * eye.focal_px / height];
+    // A pixel is drawn at its centre; what is to be seen there is moved there.
+    let shift = [(1.0 - 2.0 * synth.place.x) / width, (2.0 * synth.place.y - 1.0) / height];
+    let light = -DVec3::from(synth.light.direction).normalize_or_zero();
+    let uniform = Uniform {
+        eye_from_model: eye_from_model(&eye, &placed),
+        world_from_normal: columns(placed.turn, DVec3::ZERO),
+        along: placed.along.as_vec3().to_array(),
+        from: placed.from as f32,
+        light: light.as_vec3().to_array(),
+        ambient: synth.light.ambient as f32,
+        color,
+        focal: focal.map(|v| v as f32),
+        shift: shift.map(|v| v as f32),
+        bend: placed.bend_radians as f32,
+        length: placed.length as f32,
+        near: NEAR_M as f32,
+        both: if synth.sides == Sides::Both { 1.0 } else { 0.0 },
+    };
+    let mut binds = vec![
+        Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
+        Bind::Upload(synth.mesh.clone(), VERTICES),
+        Bind::Upload(synth.mesh.clone(), TRIANGLES),
+    ];
+    let program = if picture.is_some() { &PICTURED } else { &PLAIN };
+    binds.extend(picture);
+    let vertices = 3 * synth.mesh.triangles.len() as u32;
+    let draw =
+        Draw { program, constants: Vec::new(), binds, blend: Blend::Replace, vertices, depth: true, scissor_px: None };
+    Plan { draws: vec![draw] }
+}
+
+fn eye_from_model(eye: &Eye, placed: &Placed) -> [f32; 16] {
+    columns(eye.turn * placed.turn * placed.scale, eye.turn * (placed.position - eye.position))
+}
+
+/// A turn and a shift as WGSL has a matrix.
+fn columns(turn: DMat3, shift: DVec3) -> [f32; 16] {
+    let column = |v: DVec3, w: f32| v.as_vec3().extend(w);
+    Mat4::from_cols(column(turn.x_axis, 0.0), column(turn.y_axis, 0.0), column(turn.z_axis, 0.0), column(shift, 1.0))
+        .to_cols_array()
+}

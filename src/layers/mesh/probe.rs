@@ -1,0 +1,36 @@
+//! One pixel of a mesh layer explained.
+
+use super::frame::{Spot, View};
+use super::model::MeshLayer;
+use crate::base::problem::Problem;
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::readout::{Entry, ReadOut, Value};
+use crate::layers::ready::Making;
+
+/// What the pixel in column `x`, row `y` shows of the mesh.
+///
+/// # Errors
+/// If the mesh is not there; the problem's path is relative to the layer.
+pub fn probe(layer: &MeshLayer, making: &Making, (x, y): (usize, usize), moment: &Moment) -> Result<ReadOut, Problem> {
+    let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
+    let view = View::new(&mesh, layer.sides, &layer.pose.at(moment.t), making.place, moment);
+    let within = x < moment.size_px.0 && y < moment.size_px.1;
+    Ok(read_out(layer, within.then(|| view.at(x, y)).flatten()))
+}
+
+fn read_out(layer: &MeshLayer, spot: Option<Spot>) -> ReadOut {
+    let entry = |key, label, value| Entry { key, label, value };
+    let Some(spot) = spot else {
+        return ReadOut { entries: vec![entry("mesh", "mesh", Value::Of(None))], axis: None };
+    };
+    let entries = vec![
+        entry("mesh", "mesh", Value::Of(Some(layer.mesh.clone()))),
+        entry("triangle", "triangle", Value::Index(spot.hit.triangle)),
+        entry("position", "position", Value::Coordinates(spot.position.to_array().to_vec(), "m")),
+        entry("normal", "normal", Value::Coordinates(spot.normal.to_array().to_vec(), "")),
+        entry("uv", "uv", Value::Coordinates(spot.uv.to_array().to_vec(), "")),
+        entry("depth", "depth", Value::Coordinates(vec![spot.hit.depth], "m")),
+        entry("front", "front", Value::Flag { on: spot.hit.front, off: "back" }),
+    ];
+    ReadOut { entries, axis: None }
+}

@@ -1,0 +1,99 @@
+//! What a mesh shows on its surface. This file is the only list of kinds of surface; each is a file of its own.
+
+pub mod layer;
+pub mod plain;
+pub mod texture;
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use glam::DVec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::base::pixels::Rgba;
+use crate::base::problem::Problem;
+use crate::base::reduce::Reduced;
+use crate::layers::parts::materials::Use;
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::plan::Bind;
+use crate::layers::ready::Making;
+
+/// What the surface of a mesh shows, told apart by `kind`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Surface {
+    /// One color.
+    Plain(plain::Plain),
+    /// An image, by the texture coordinates of the mesh.
+    Texture(texture::Texture),
+    /// A layer at its own time, by the texture coordinates of the mesh.
+    Layer(layer::LayerSurface),
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Surface::Plain(plain::Plain::default())
+    }
+}
+
+impl Surface {
+    /// The surface as its kind.
+    pub fn slot(&self) -> &dyn Slot {
+        match self {
+            Surface::Plain(surface) => surface,
+            Surface::Texture(surface) => surface,
+            Surface::Layer(surface) => surface,
+        }
+    }
+}
+
+/// The interface of a kind of surface in the document. Paths are relative to it.
+pub trait Slot {
+    /// The checks beyond shape.
+    fn check(&self) -> Vec<Problem> {
+        Vec::new()
+    }
+
+    /// What it names.
+    fn uses(&self) -> Vec<Use<'_>> {
+        Vec::new()
+    }
+
+    /// Whether the mesh needs texture coordinates.
+    fn needs_uv(&self) -> bool {
+        false
+    }
+
+    /// Prepares it for any time.
+    ///
+    /// # Errors
+    /// If something that it names is not there.
+    fn synth(&self, making: &Making) -> Result<Arc<dyn ReadySurface>, Problem>;
+}
+
+/// A surface ready for any time.
+pub trait ReadySurface: Debug + Send + Sync {
+    /// The surface at one time, on the CPU: the reference.
+    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn StillSurface + 'a>;
+
+    /// The same for the GPU: a color that counts where the picture is not used, and the picture.
+    fn plan(&self, moment: &Moment) -> (Rgba, Option<Bind>);
+
+    /// The same with nothing that moves.
+    fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface>;
+
+    /// The same with pictures made smaller.
+    fn reduced(self: Arc<Self>, pictures: &mut Reduced) -> Arc<dyn ReadySurface>;
+
+    /// The largest side of any picture that it reads, in pixels.
+    fn largest_texture(&self) -> usize {
+        0
+    }
+}
+
+/// A surface at one time.
+pub trait StillSurface: Sync {
+    /// Its color at a place, before light falls on it: linear light, premultiplied.
+    fn color(&self, uv: DVec2) -> Rgba;
+}
