@@ -5,6 +5,7 @@ pub mod model;
 pub mod plan;
 pub mod pose;
 pub mod probe;
+pub mod ready;
 pub mod surface;
 pub mod synth;
 

@@ -77,8 +77,9 @@ impl Pose {
     /// The checks beyond shape.
     pub fn check(&self) -> Vec<Problem> {
         let level = self.bend.from == self.bend.to;
-        let problem =
-            || Problem::error("/pose/bend/to", "the bend ends where it begins").hint("make to greater than from");
+        let problem = || {
+            Problem::error("/pose/bend/to", "the bend ends where it begins").hint("give it a length: from 0 to 1, say")
+        };
         level.then(problem).into_iter().collect()
     }
 

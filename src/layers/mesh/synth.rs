@@ -4,17 +4,13 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
-use super::frame::Seen;
 use super::model::{Light, MeshLayer, Sides};
-use super::plan;
 use super::pose::Pose;
 use super::surface::ReadySurface;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
-use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::plan::Plan;
-use crate::layers::ready::{Making, Ready, Still};
+use crate::layers::ready::Making;
 
 /// A mesh with its surface.
 #[derive(Clone, Debug)]
@@ -57,27 +53,5 @@ impl Synth {
     /// The scene time that the pose is at.
     pub fn time(&self, moment: &Moment) -> f64 {
         if self.still { 0.0 } else { moment.t }
-    }
-}
-
-impl Ready for Synth {
-    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
-        Box::new(Seen::new(self, moment))
-    }
-
-    fn plan(&self, moment: &Moment) -> Plan {
-        plan::plan(self, moment)
-    }
-
-    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
-        Arc::new(Synth { still: true, surface: self.surface.clone().unmoved(), ..(*self).clone() })
-    }
-
-    fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
-        Arc::new(Synth { surface: self.surface.clone().reduced(pictures), ..self.clone() })
-    }
-
-    fn largest_texture(&self) -> usize {
-        self.surface.largest_texture()
     }
 }
