@@ -90,6 +90,8 @@ pub fn mesh(bytes: &[u8]) {
     let limits = Limits { triangles: 1 << 16, mesh: 1 << 20, memory: 64 << 20, ..Limits::default() };
     let budget = limits.budget();
     let none = |path: &str| Err(Error::at(path, "is not there"));
+    let _ = mesh::pictures(file(bytes), "a.glb", &limits);
+    let _ = picture::header(file(bytes), "a.glb#0", &limits);
     let Ok((mesh, _, share)) = mesh::decode(file(bytes), "a.obj", &limits, &budget, &none) else {
         assert_eq!(budget.taken(), 0);
         return;

@@ -13,19 +13,37 @@ pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
     folder_of_scene(scene_path).join(file_of(path))
 }
 
-/// The file of a path written in a scene, without the layer in it (`a.exr#beauty`).
+/// The path in a scene of what the file at `path` names relative to itself.
+pub fn sibling(path: &str, name: &str) -> String {
+    let folder = Path::new(file_of(path)).parent().unwrap_or(Path::new(""));
+    folder.join(name).to_string_lossy().into_owned()
+}
+
+/// The file of a path written in a scene, without the layer (`a.exr#beauty`) or the picture (`a.glb#0`) in it.
 pub fn file_of(path: &str) -> &str {
     parts(path).map_or(path, |(file, _)| file)
 }
 
-/// The layer that a path names; only OpenEXR files have layers.
+/// The layer that a path names: only OpenEXR files have layers, and glTF models numbered pictures.
 pub fn layer_of(path: &str) -> Option<&str> {
     parts(path).map(|(_, layer)| layer)
 }
 
 fn parts(path: &str) -> Option<(&str, &str)> {
-    let named = |(file, layer): &(&str, &str)| file.to_ascii_lowercase().ends_with(".exr") && !layer.is_empty();
+    let named = |(file, layer): &(&str, &str)| {
+        let file = file.to_ascii_lowercase();
+        file.ends_with(".exr") && !layer.is_empty() || is_model(&file) && layer.parse::<usize>().is_ok()
+    };
     path.rsplit_once('#').filter(named)
+}
+
+/// The number of the picture that a path names in a model.
+pub fn image_of(path: &str) -> Option<usize> {
+    parts(path).filter(|(file, _)| is_model(&file.to_ascii_lowercase()))?.1.parse().ok()
+}
+
+fn is_model(name: &str) -> bool {
+    name.ends_with(".glb") || name.ends_with(".gltf")
 }
 
 /// The folder that the scene is really in: a scene opened through a link finds the same pictures.
@@ -152,6 +170,7 @@ mod tests {
         std::fs::create_dir_all(root.join("sub")).unwrap();
         std::fs::write(root.join("sub/cat.png"), "").unwrap();
         std::fs::write(root.join("sub/a.exr"), "").unwrap();
+        std::fs::write(root.join("sub/b.GLB"), "").unwrap();
         std::fs::write(outer.path().join("dog.png"), "").unwrap();
         symlink("../dog.png", root.join("link.png")).unwrap();
         rustix::fs::mknodat(rustix::fs::CWD, root.join("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RUSR, 0)
@@ -169,6 +188,8 @@ mod tests {
             ("fifo", Some("a FIFO"), Some("a FIFO")),
             ("no.png", Some("no such file"), Some("no such file")),
             ("no.exr#layer", Some("no such file"), Some("no such file")),
+            ("sub/b.GLB#12", None, None),
+            ("sub/b.GLB#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),
             ("sub/cat.png#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),
             ("sub/a.exr#", Some("has no name of a layer after the #"), Some("name the layer")),
             ("a\0b", Some("cannot be opened"), Some("cannot be opened")),
@@ -184,6 +205,9 @@ mod tests {
             }
         }
         assert_eq!(beside(Path::new("scene.plica.json"), "cat.png"), Path::new("./cat.png"));
+        for (path, name, expected) in [("a.gltf", "b.bin", "b.bin"), ("sub/a.gltf", "c/b.bin", "sub/c/b.bin")] {
+            assert_eq!(sibling(path, name), expected);
+        }
         std::fs::write(&scene, "").unwrap();
         let link = outer.path().join("link.plica.json");
         symlink(&scene, &link).unwrap();

@@ -1,7 +1,7 @@
 //! The few system calls: signals, opening beneath a folder, the folders of the user, processes and sockets. All of it
 //! through `rustix` and `signal-hook`; nothing here is `unsafe`.
 
-use std::io;
+use std::io::{self, Seek, Write};
 use std::os::fd::AsFd;
 
 pub mod beneath;
@@ -32,6 +32,37 @@ pub fn copy_attributes(from: impl AsFd, to: impl AsFd) {
 /// Gives one file the extended attributes of another: not known here.
 #[cfg(not(target_os = "linux"))]
 pub fn copy_attributes(_: impl AsFd, _: impl AsFd) {}
+
+/// A file that is in memory alone, read from its beginning.
+///
+/// # Errors
+/// If there is no memory for it.
+#[cfg(target_os = "linux")]
+pub fn in_memory(bytes: &[u8]) -> io::Result<std::fs::File> {
+    let file = rustix::fs::memfd_create("plica", rustix::fs::MemfdFlags::CLOEXEC)?;
+    from_its_beginning(file.into(), bytes)
+}
+
+/// A file that nothing names, read from its beginning.
+///
+/// # Errors
+/// If there is no space for it.
+#[cfg(not(target_os = "linux"))]
+pub fn in_memory(bytes: &[u8]) -> io::Result<std::fs::File> {
+    use std::sync::atomic::{AtomicU64, Ordering};
+    static MADE: AtomicU64 = AtomicU64::new(0);
+    let name = format!("plica-{}-{}", std::process::id(), MADE.fetch_add(1, Ordering::Relaxed));
+    let path = std::env::temp_dir().join(name);
+    let file = std::fs::File::options().read(true).write(true).create_new(true).open(&path)?;
+    std::fs::remove_file(&path)?;
+    from_its_beginning(file, bytes)
+}
+
+fn from_its_beginning(mut file: std::fs::File, bytes: &[u8]) -> io::Result<std::fs::File> {
+    file.write_all(bytes)?;
+    file.rewind()?;
+    Ok(file)
+}
 
 /// Whether this user may not write the file, by its owner and mode.
 pub fn is_denied_to_write(path: &std::path::Path) -> bool {

@@ -9,6 +9,7 @@ use super::picture::kinds;
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
+use crate::base::system;
 
 mod gltf;
 mod input;
@@ -17,6 +18,8 @@ mod obj;
 mod tests;
 
 pub use input::Opener;
+
+use gltf::With;
 
 /// A kind of file that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,13 +65,41 @@ pub fn decode(
     let (bytes, share) = input::whole(file, place, limits, budget)?;
     let (builder, mut notes) = match kind(&bytes, place)? {
         Kind::Obj => obj::read(&bytes, place, limits, budget)?,
-        Kind::Gltf => gltf::read(&bytes, place, limits, budget, sibling)?,
+        Kind::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling })?,
     };
     // The file is not kept beside the mesh.
     drop((bytes, share));
     let (mesh, share) = builder.finish()?;
     notes.extend(unseen(&mesh));
     Ok((mesh, notes, share))
+}
+
+/// The pictures that the surfaces of a model show, as a scene names them that names the model by `place`: files of their
+/// own, or by their number in it (`cow.glb#0`). An OBJ names none.
+///
+/// # Errors
+/// As [`decode`], as far as what it lists shows.
+pub fn pictures(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
+    let budget = &limits.budget();
+    let (bytes, _share) = input::whole(file, place, limits, budget)?;
+    match kind(&bytes, place)? {
+        Kind::Obj => Ok(Vec::new()),
+        Kind::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone }),
+    }
+}
+
+/// The picture with this number in a model, as a file of its own that is nowhere but in memory.
+pub(super) fn embedded(file: File, place: &str, image: usize, limits: &Limits) -> Result<File> {
+    let budget = &limits.budget();
+    let (bytes, _share) = input::whole(file, place, limits, budget)?;
+    gltf::embedded(&bytes, image, With { place, limits, budget, sibling: &alone }, |bytes| {
+        let _share = budget.take(bytes.len() as u64, place)?;
+        system::in_memory(bytes).map_err(|error| Error::at(place, error))
+    })
+}
+
+fn alone(path: &str) -> Result<File> {
+    Err(Error::at(path, "has pictures of a model in it, which Plica does not read there").cure("export it as .glb"))
 }
 
 fn unseen(mesh: &Mesh) -> Option<String> {

@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use super::{Limits, paths};
+use super::{Limits, mesh, paths};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
@@ -141,7 +141,7 @@ enum Color {
     Spoken(conversion::Spoken),
 }
 
-/// Reads the picture at `path` (`a.exr#beauty` is a layer of it), within the limits.
+/// Reads the picture at `path` (`a.exr#beauty` is a layer of it, `a.glb#0` a picture in it), within the limits.
 ///
 /// # Errors
 /// If it cannot be opened, is no picture, is broken, or is larger than the limits allow.
@@ -191,8 +191,12 @@ pub fn header(file: File, place: &str, limits: &Limits) -> Result<(usize, usize)
     Ok(opened.upright())
 }
 
-fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opened> {
+fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
     let failed = |error| Error::at(place, error);
+    let mut file = match paths::image_of(place) {
+        Some(image) => mesh::embedded(file, place, image, limits)?,
+        None => file,
+    };
     let mut start = Vec::new();
     (&mut file).take(kinds::LOOKED_AT).read_to_end(&mut start).map_err(failed)?;
     let length = file.seek(SeekFrom::End(0)).map_err(failed)?;

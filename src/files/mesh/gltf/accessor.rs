@@ -150,7 +150,7 @@ impl Source<'_> {
     }
 
     /// The bytes of a buffer view.
-    fn view(&self, index: usize) -> Result<&[u8]> {
+    pub(super) fn view(&self, index: usize) -> Result<&[u8]> {
         let view = self.get(&self.document.buffer_views, index, "buffer view")?;
         let range = usize::try_from(view.byte_offset).ok().zip(usize::try_from(view.byte_length).ok());
         let bytes = self.buffer(view.buffer)?;

@@ -22,6 +22,10 @@ pub(super) struct Document<'a> {
     pub(super) buffer_views: Vec<View>,
     #[serde(borrow)]
     pub(super) buffers: Vec<Buffer<'a>>,
+    pub(super) materials: Vec<Material>,
+    pub(super) textures: Vec<Texture>,
+    #[serde(borrow)]
+    pub(super) images: Vec<Image<'a>>,
     #[serde(borrow)]
     pub(super) extensions_required: Vec<Text<'a>>,
 }
@@ -64,6 +68,7 @@ pub(super) struct Mesh {
 pub(super) struct Primitive {
     pub(super) attributes: Attributes,
     pub(super) indices: Option<usize>,
+    pub(super) material: Option<usize>,
     /// Points, lines, a loop and a strip of them, triangles, a strip and a fan of them; from 0.
     pub(super) mode: Option<u32>,
     pub(super) targets: Vec<serde::de::IgnoredAny>,
@@ -124,4 +129,49 @@ pub(super) struct Buffer<'a> {
     /// The second chunk of a `.glb` without one.
     #[serde(borrow)]
     pub(super) uri: Option<Text<'a>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Material {
+    pub(super) pbr_metallic_roughness: Option<Surface>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Surface {
+    pub(super) base_color_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct TextureInfo {
+    pub(super) index: usize,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Texture {
+    pub(super) source: Option<usize>,
+    pub(super) extensions: Option<TextureExtensions>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TextureExtensions {
+    /// In place of `source`, where a program can read WebP.
+    #[serde(rename = "EXT_texture_webp")]
+    pub(super) webp: Option<Webp>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Webp {
+    pub(super) source: usize,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Image<'a> {
+    #[serde(borrow)]
+    pub(super) uri: Option<Text<'a>>,
+    pub(super) buffer_view: Option<usize>,
 }

@@ -3,29 +3,26 @@
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3};
 
-use super::input::Opener;
-use crate::base::budget::{Budget, Share};
+use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
 use crate::base::mesh::{Builder, Corner, Counts, unit};
-use crate::files::Limits;
 use crate::files::limits::within;
 
 mod accessor;
 mod document;
+mod pictures;
 mod source;
 
+pub(super) use pictures::{embedded, named};
+pub(super) use source::With;
+
 use document::{Node, Primitive};
-use source::{Source, With};
+use source::Source;
 
 /// The lists and the triangles of a file, and what in it could not be honored.
-pub(super) fn read(
-    bytes: &[u8],
-    place: &str,
-    limits: &Limits,
-    budget: &Budget,
-    sibling: Opener,
-) -> Result<(Builder, Vec<String>)> {
-    let source = Source::of(bytes, With { place, limits, budget, sibling })?;
+pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>)> {
+    let With { place, limits, budget, .. } = with;
+    let source = Source::of(bytes, with)?;
     let nodes = nodes(&source)?;
     // Many nodes may show a mesh of many parts.
     let most =

@@ -38,11 +38,11 @@ const PACKED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compressio
 
 /// What a file is read with.
 #[derive(Clone, Copy)]
-pub(super) struct With<'a> {
-    pub(super) place: &'a str,
-    pub(super) limits: &'a Limits,
-    pub(super) budget: &'a Budget,
-    pub(super) sibling: Opener<'a>,
+pub(in crate::files::mesh) struct With<'a> {
+    pub(in crate::files::mesh) place: &'a str,
+    pub(in crate::files::mesh) limits: &'a Limits,
+    pub(in crate::files::mesh) budget: &'a Budget,
+    pub(in crate::files::mesh) sibling: Opener<'a>,
 }
 
 /// A file taken apart.
@@ -133,7 +133,7 @@ impl<'a> Source<'a> {
     }
 
     /// The path, relative to the file, that an address means.
-    fn path(&self, uri: &str) -> Result<String> {
+    pub(super) fn path(&self, uri: &str) -> Result<String> {
         let scheme = uri.split_once(':').map(|(scheme, _)| scheme).filter(|scheme| !scheme.contains('/'));
         if scheme.is_some() {
             let what = format!("has a part at {uri}, which Plica does not fetch");
@@ -192,8 +192,8 @@ fn explain(place: &str, error: &serde_json::Error) -> Error {
 }
 
 /// The bytes of a `data:` address.
-fn data(uri: &str, place: &str, budget: &Budget) -> Result<(Vec<u8>, Share)> {
-    let broken = || Error::at(place, "has a buffer that is not in base64").cure("export it again as .glb");
+pub(super) fn data(uri: &str, place: &str, budget: &Budget) -> Result<(Vec<u8>, Share)> {
+    let broken = || Error::at(place, "has a part that is not in base64").cure("export it again as .glb");
     let (head, text) = uri.split_once(',').ok_or_else(broken)?;
     if !head.ends_with(";base64") {
         return Err(broken());

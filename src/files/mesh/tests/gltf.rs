@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::*;
 
 /// A `.glb` of these chunks.
-fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
+pub(super) fn glb(json: &Value, binary: &[u8]) -> Vec<u8> {
     let mut json = json.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
     let number = |number: usize| (number as u32).to_le_bytes();
@@ -21,7 +21,7 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
 }
 
 /// Views, one after the other, of parts of a buffer.
-fn views(parts: &[&[u8]]) -> (Value, Vec<u8>) {
+pub(super) fn views(parts: &[&[u8]]) -> (Value, Vec<u8>) {
     let binary = parts.concat();
     let mut at = 0;
     let view = |part: &&[u8]| {
@@ -32,7 +32,7 @@ fn views(parts: &[&[u8]]) -> (Value, Vec<u8>) {
 }
 
 /// A square in two triangles, facing forward: views of positions, normals, texture coordinates and indices.
-fn square() -> (Value, Vec<u8>) {
+pub(super) fn square() -> (Value, Vec<u8>) {
     let positions = floats(&[0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.]);
     let normals = floats(&[0., 0., 2., 0., 0., 2., 0., 0., 2., 0., 0., 2.]);
     let uvs = floats(&[0., 1., 1., 1., 1., 0., 0., 0.]);
@@ -64,7 +64,7 @@ fn changed(changes: &[(&str, Value)]) -> std::result::Result<(Mesh, Vec<String>)
     read("a.glb", &glb(&json, &binary))
 }
 
-fn put(json: &mut Value, pointer: &str, value: Value) {
+pub(super) fn put(json: &mut Value, pointer: &str, value: Value) {
     let (parent, name) = pointer.rsplit_once('/').unwrap();
     match json.pointer_mut(parent).unwrap() {
         Value::Array(list) => match name.parse::<usize>() {
@@ -326,11 +326,11 @@ fn what_is_wrong_is_told_by_its_number() {
         ("/bufferViews/3/byteOffset", json!(u64::MAX), format!("buffer view 3 reaches beyond its buffer {AGAIN}")),
         ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there are 1 {AGAIN}")),
         ("/buffers/0/byteLength", json!(200), "is cut short (copy it again from where it came)".to_owned()),
-        ("/buffers/0/uri", json!("data:,a"), "has a buffer that is not in base64 (export it again as .glb)".to_owned()),
+        ("/buffers/0/uri", json!("data:,a"), "has a part that is not in base64 (export it again as .glb)".to_owned()),
         (
             "/buffers/0/uri",
             json!("data:a/b;base64,=?"),
-            "has a buffer that is not in base64 (export it again as .glb)".to_owned(),
+            "has a part that is not in base64 (export it again as .glb)".to_owned(),
         ),
         (
             "/buffers/0/uri",

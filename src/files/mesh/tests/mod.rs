@@ -8,6 +8,7 @@ use super::*;
 
 mod gltf;
 mod obj;
+mod pictures;
 
 /// Reads a file of this name; those beside it are in `siblings`.
 fn read_with(

@@ -1,0 +1,133 @@
+//! What is loaded, what is kept, and what is said of the rest.
+
+use super::*;
+use image::{DynamicImage, ImageBuffer, Luma};
+
+fn scene(images: &[(&str, &str)], field: Option<&str>) -> Scene {
+    let images: serde_json::Map<_, _> =
+        images.iter().map(|(name, path)| (name.to_string(), serde_json::json!({ "path": path }))).collect();
+    let motion: Vec<_> = field.iter().map(|path| serde_json::json!({ "tool": "field", "path": path })).collect();
+    let outline = serde_json::json!({ "kind": "rectangle", "x": 0, "y": 0, "width": 1, "height": 1 });
+    serde_json::from_value(serde_json::json!({ "plica": 1, "images": images, "layers": [{
+        "kind": "picture", "name": "l", "image": "a",
+        "zones": [{ "name": "z", "outline": outline, "motion": motion }]
+    }] }))
+    .unwrap()
+}
+
+fn paint(folder: &Path, name: &str, width: u32) {
+    let image: DynamicImage = ImageBuffer::from_pixel(width, 1, Luma([9u8])).into();
+    image.save(folder.join(name)).unwrap();
+}
+
+#[test]
+fn what_did_not_change_is_not_loaded_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.plica.json");
+    paint(folder.path(), "a.png", 2);
+    paint(folder.path(), "b.png", 3);
+    let scene = scene(&[("a", "a.png"), ("b", "b.png"), ("again", "a.png")], None);
+    let mut cache = Cache::default();
+    let options = Options::default();
+    let (first, _) = load(&path, &scene, &options, &mut cache).unwrap();
+    assert!(Arc::ptr_eq(&first.pictures["a"], &first.pictures["again"]));
+    paint(folder.path(), "b.png", 4);
+    let (second, _) = load(&path, &scene, &options, &mut cache).unwrap();
+    assert!(Arc::ptr_eq(&first.pictures["a"], &second.pictures["a"]));
+    assert_eq!(second.pictures["b"].width(), 4);
+    std::fs::write(folder.path().join("b.png"), "half a pict").unwrap();
+    for _ in 0..2 {
+        let (third, problems) = gather(&path, &scene, &options, &mut cache);
+        assert!(Arc::ptr_eq(&third.pictures["b"], &second.pictures["b"]), "the last good one");
+        assert_eq!(problems.iter().map(|p| p.path.as_str()).collect::<Vec<_>>(), ["/images/b/path"]);
+    }
+    assert_eq!(files(&path, &scene).len(), 3);
+}
+
+#[test]
+fn every_problem_has_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.plica.json");
+    paint(folder.path(), "good.png", 2);
+    let scene = scene(&[("a", "missing.png"), ("b/c~d", "../out.png"), ("good", "good.png")], Some("v.flo"));
+    let problems = load(&path, &scene, &Options::default(), &mut Cache::default()).unwrap_err();
+    let places = |problems: &[Problem]| problems.iter().map(|p| p.path.clone()).collect::<Vec<_>>();
+    let expected = ["/images/a/path", "/images/b~1c~0d/path", "/layers/0/zones/0/motion/0/path"];
+    assert_eq!(places(&problems), expected);
+    assert!(problems[1].hint.as_ref().unwrap().contains("--allow-outside"));
+    let (sizes, problems) = sizes(&path, &scene, &Options::default());
+    assert_eq!(sizes, BTreeMap::from([("good".to_owned(), (2, 1))]));
+    assert_eq!(places(&problems), expected, "fields are looked for too");
+}
+
+#[test]
+fn copies_stand_for_files_on_another_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    paint(folder.path(), "0.png", 2);
+    paint(folder.path(), "1.png", 3);
+    let scene = scene(&[("a", "a.png"), ("b", "../b.png"), ("c", "c.png")], None);
+    let mut cache = Cache::default();
+    let mut copies =
+        Copies::from([("a.png".into(), Ok(folder.path().join("0.png"))), ("c.png".into(), Err("no".into()))]);
+    let mut look = |copies: &Copies| {
+        let (materials, problems) = gather_copies(copies, &scene, &Options::default(), &mut cache);
+        (materials.pictures.get("a").map(|a| a.width()), problems.iter().map(|p| p.message.clone()).collect::<Vec<_>>())
+    };
+    let missing = vec!["../b.png: is not here yet".to_owned(), "c.png: no".to_owned()];
+    assert_eq!(look(&copies), (Some(2), missing.clone()));
+    copies.insert("a.png".into(), Ok(folder.path().join("1.png")));
+    assert_eq!(look(&copies), (Some(3), missing));
+    copies.insert("a.png".into(), Err("gone".into()));
+    assert_eq!(look(&copies).0, Some(3), "the last good one");
+}
+
+#[test]
+fn meshes_are_loaded_with_what_they_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.plica.json");
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    let corners = |x: f32| [0.0, 0.0, 0.0, x, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
+    let model = |uri: &str| {
+        serde_json::json!({
+            "asset": { "version": "2.0" },
+            "scenes": [{ "nodes": [0] }],
+            "nodes": [{ "mesh": 0 }],
+            "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+            "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+            "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+            "buffers": [{ "byteLength": 36, "uri": uri }],
+        })
+    };
+    write("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
+    write("sub/b.gltf", model("../sub/b.bin").to_string().as_bytes());
+    write("sub/b.bin", &corners(1.0));
+    write("c.gltf", model("../c.bin").to_string().as_bytes());
+    let meshes = serde_json::json!({
+        "a": { "path": "a.obj" }, "b": { "path": "sub/b.gltf" }, "c": { "path": "c.gltf" }, "d": { "path": "d.obj" },
+    });
+    let scene: Scene = serde_json::from_value(serde_json::json!({ "plica": 1, "meshes": meshes })).unwrap();
+    let mut cache = Cache::default();
+    let options = Options::default();
+    let (first, problems) = gather(&path, &scene, &options, &mut cache);
+    let told: Vec<_> = problems.iter().map(|p| (p.path.as_str(), p.message.as_str())).collect();
+    assert_eq!(
+        told,
+        [
+            ("/meshes/c/path", "../c.bin: leads out of the scene's folder"),
+            ("/meshes/d/path", "d.obj: there is no such file"),
+            ("/meshes/a/path", "a.obj: 1 of 2 triangles has no area and is never seen"),
+        ]
+    );
+    assert_eq!(first.meshes.keys().collect::<Vec<_>>(), ["a", "b"]);
+    let taken: u64 = first.meshes.values().map(|mesh| mesh.bytes()).sum();
+    assert_eq!(first.budget.taken(), taken);
+    let (second, _) = gather(&path, &scene, &options, &mut cache);
+    assert!(Arc::ptr_eq(&first.meshes["b"], &second.meshes["b"]));
+    write("sub/b.bin", &corners(2.0));
+    let (third, _) = gather(&path, &scene, &options, &mut cache);
+    assert!(Arc::ptr_eq(&first.meshes["a"], &third.meshes["a"]));
+    assert_eq!(third.meshes["b"].bounds().unwrap().1.x, 2.0, "what it names has changed");
+    assert_eq!(files(&path, &scene).len(), 4);
+    assert_eq!(sizes(&path, &scene, &options).1.len(), 1, "each is opened");
+}

@@ -1,0 +1,72 @@
+//! The pictures of a glTF model: which ones its surfaces show, and those that are in the file itself.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use super::document::{Image, Text};
+use super::nodes;
+use super::source::{Source, With, data};
+use crate::base::budget::Share;
+use crate::base::error::Result;
+use crate::files::paths;
+
+/// The pictures of the base colors of the default scene, each once, in the order in which its nodes show them. Paths are
+/// as a scene names them that names the model by `place`.
+pub(in crate::files::mesh) fn named(bytes: &[u8], with: With) -> Result<Vec<String>> {
+    let source = &Source::of(bytes, with)?;
+    let (mut meshes, mut images, mut found) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
+    for (node, _) in nodes(source)? {
+        let Some(mesh) = node.mesh.filter(|&mesh| meshes.insert(mesh)) else { continue };
+        for primitive in &source.get(&source.document.meshes, mesh, "mesh")?.primitives {
+            let Some(index) = base_color(source, primitive.material)?.filter(|&image| images.insert(image)) else {
+                continue;
+            };
+            let image = source.get(&source.document.images, index, "image")?;
+            found.push(match outside(image) {
+                Some(uri) => paths::sibling(with.place, &source.path(uri)?),
+                None => format!("{}#{index}", with.place),
+            });
+        }
+    }
+    Ok(found)
+}
+
+/// The address of a picture in a file of its own.
+fn outside<'a>(image: &'a Image) -> Option<&'a str> {
+    image.uri.as_ref().map(|Text(uri)| &**uri).filter(|uri| !uri.starts_with("data:"))
+}
+
+/// The image of a material's base color, if it is one that can be read.
+fn base_color(source: &Source, material: Option<usize>) -> Result<Option<usize>> {
+    let Some(material) = material else { return Ok(None) };
+    let material = source.get(&source.document.materials, material, "material")?;
+    let info = material.pbr_metallic_roughness.as_ref().and_then(|surface| surface.base_color_texture.as_ref());
+    let Some(info) = info else { return Ok(None) };
+    let texture = source.get(&source.document.textures, info.index, "texture")?;
+    let webp = texture.extensions.as_ref().and_then(|extensions| extensions.webp.as_ref());
+    Ok(texture.source.or(webp.map(|webp| webp.source)))
+}
+
+/// Hands the bytes of the image with this number, which is in the file itself, to `read`.
+pub(in crate::files::mesh) fn embedded<T>(
+    bytes: &[u8],
+    image: usize,
+    with: With,
+    read: impl FnOnce(&[u8]) -> Result<T>,
+) -> Result<T> {
+    let source = Source::of(bytes, with)?;
+    let found = source.get(&source.document.images, image, "image")?;
+    let (bytes, _share): (Cow<[u8]>, Share) = match (&found.uri, found.buffer_view) {
+        (Some(Text(uri)), _) if outside(found).is_none() => {
+            let (bytes, share) = data(uri, with.place, with.budget)?;
+            (bytes.into(), share)
+        }
+        (None, Some(view)) => (source.view(view)?.into(), Share::default()),
+        (Some(Text(uri)), _) => {
+            let path = paths::sibling(with.place, &source.path(uri)?);
+            return Err(source.wrong(format!("image {image} is not in the file")).cure(format!("name it by {path}")));
+        }
+        (None, None) => return Err(source.wrong(format!("image {image} is empty"))),
+    };
+    read(&bytes)
+}
