@@ -23,8 +23,7 @@ pub struct Items {
     pub ahead: usize,
     /// And so many at the end.
     pub behind: usize,
-    /// The new list's items between; where the list has kept its length, against the old ones at the same places, else
-    /// all [`Change::Other`].
+    /// The new list's items between, against the old ones at the same places; [`Change::Other`] where there are none.
     pub between: Vec<Change>,
 }
 
@@ -67,6 +66,14 @@ pub fn same(a: &Value, b: &Value) -> bool {
     }
 }
 
+/// How many items at the beginning of two lists are the same, and how many of the others at the end.
+pub fn same_ends(old: &[Value], new: &[Value]) -> (usize, usize) {
+    let ahead = old.iter().zip(new).take_while(|(old, new)| same(old, new)).count();
+    let least = old.len().min(new.len()) - ahead;
+    let behind = old.iter().rev().zip(new.iter().rev()).take(least).take_while(|(old, new)| same(old, new)).count();
+    (ahead, behind)
+}
+
 fn fields(old: &Map<String, Value>, new: &Map<String, Value>) -> Change {
     let mut changed = Vec::new();
     let mut note = |key: &String, change: Change| {
@@ -92,10 +99,11 @@ fn fields(old: &Map<String, Value>, new: &Map<String, Value>) -> Change {
 /// Every item is looked at once: an edit of one among ten thousand is found by one walk.
 fn items(old: &[Value], new: &[Value]) -> Change {
     if old.len() != new.len() {
-        let ahead = old.iter().zip(new).take_while(|(old, new)| same(old, new)).count();
-        let least = old.len().min(new.len()) - ahead;
-        let behind = old.iter().rev().zip(new.iter().rev()).take(least).take_while(|(old, new)| same(old, new)).count();
-        return Change::Items(Items { ahead, behind, between: vec![Change::Other; new.len() - ahead - behind] });
+        let (ahead, behind) = same_ends(old, new);
+        let old = &old[ahead..old.len() - behind];
+        let new = new[ahead..new.len() - behind].iter().enumerate();
+        let between = new.map(|(i, new)| old.get(i).map_or(Change::Other, |old| Change::of(old, new))).collect();
+        return Change::Items(Items { ahead, behind, between });
     }
     let mut between: Vec<Change> = old.iter().zip(new).map(|(old, new)| Change::of(old, new)).collect();
     let is_same = |change: &&Change| **change == Change::Same;
@@ -132,6 +140,10 @@ mod tests {
         assert_eq!(changed("/b/2", json!(9)), field("b", items(2, 1, &[other()])));
         assert_eq!(changed("/b", json!([1, 2, 4])), field("b", items(2, 1, &[])));
         assert_eq!(changed("/b", json!([1, 2, 2, 3, 4])), field("b", items(2, 2, &[other()])));
+        assert_eq!(
+            changed("/b", json!([0, 2, 5, 0, 4])),
+            field("b", items(0, 1, &[other(), Change::Same, other(), other()]))
+        );
         assert_eq!(changed("/c", json!({ "e": null })), field("c", field("d", other())));
         assert_eq!(changed("/c", json!({ "e": null, "d": "x" })), field("c", other()));
         assert_eq!(changed("/a", json!(1.0)), field("a", other()));

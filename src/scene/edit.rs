@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 
 use super::schema::Place;
 use super::{Document, json, pointer};
+use crate::base::change::{Change, Items};
 use crate::base::problem::Problem;
 
 /// A change of a scene.
@@ -105,11 +106,12 @@ impl Edit {
     /// The edit that turns `from` into exactly `to`.
     pub fn between(from: &Document, to: &Document) -> Edit {
         let mut edits = Vec::new();
-        difference(from.json(), from.json(), to.json(), "", &mut edits);
+        let (from, to) = (from.json(), to.json());
+        difference(from, &Change::of(from, to), from, to, "", &mut edits);
         let edit = Edit::all(edits);
-        let mut made = from.json().clone();
-        let exact = edit.patch(&mut made).is_ok() && json::same(&made, to.json());
-        if exact { edit } else { Edit::replace("", to.json().clone()) }
+        let mut made = from.clone();
+        let exact = edit.patch(&mut made).is_ok() && json::same(&made, to);
+        if exact { edit } else { Edit::replace("", to.clone()) }
     }
 }
 
@@ -250,29 +252,26 @@ fn place_among(written: &[&str], known: &[&str], key: &str) -> usize {
     written.iter().rposition(|name| known[..rank].contains(name)).map_or(0, |last| last + 1)
 }
 
-/// Adds the edits that turn `from` into `to`, both at `path` in `json`.
-fn difference(json: &Value, from: &Value, to: &Value, path: &str, edits: &mut Vec<Edit>) {
-    match (from, to) {
-        _ if json::same(from, to) => {}
-        (Value::Object(a), Value::Object(b)) if reachable(json, a, b, path) => {
-            let below = |key: &String| pointer::join(path, key);
-            edits.extend(a.keys().filter(|&key| !b.contains_key(key)).map(|key| Edit::remove(&below(key))));
-            for (key, to) in b {
-                match a.get(key) {
-                    Some(from) => difference(json, from, to, &below(key), edits),
-                    None => edits.push(Edit::add(&below(key), to.clone())),
+/// Adds the edits that turn `from` into `to`, both at `path` in `json` and different by `change`.
+fn difference(json: &Value, change: &Change, from: &Value, to: &Value, path: &str, edits: &mut Vec<Edit>) {
+    match (change, from, to) {
+        (Change::Same, ..) => {}
+        (Change::Fields(fields), Value::Object(a), Value::Object(b)) if reachable(json, a, b, path) => {
+            for (key, change) in fields {
+                let below = pointer::join(path, key);
+                match (a.get(key), b.get(key)) {
+                    (Some(from), Some(to)) => difference(json, change, from, to, &below, edits),
+                    (None, Some(to)) => edits.push(Edit::add(&below, to.clone())),
+                    (_, None) => edits.push(Edit::remove(&below)),
                 }
             }
         }
-        (Value::Array(a), Value::Array(b)) => {
-            let ahead = a.iter().zip(b).take_while(|(a, b)| json::same(a, b)).count();
-            let shorter = a.len().min(b.len()) - ahead;
-            let behind = a.iter().rev().zip(b.iter().rev()).take(shorter).take_while(|(a, b)| json::same(a, b)).count();
-            let (a, b) = (&a[ahead..a.len() - behind], &b[ahead..b.len() - behind]);
-            for (i, (a, b)) in a.iter().zip(b).enumerate() {
-                difference(json, a, b, &pointer::join(path, ahead + i), edits);
-            }
+        (Change::Items(Items { ahead, behind, between }), Value::Array(a), Value::Array(b)) => {
+            let (a, b) = (&a[*ahead..a.len() - behind], &b[*ahead..b.len() - behind]);
             let at = |i: usize| pointer::join(path, ahead + i);
+            for (i, ((from, to), change)) in a.iter().zip(b).zip(between).enumerate() {
+                difference(json, change, from, to, &at(i), edits);
+            }
             edits.extend((b.len()..a.len()).rev().map(|i| Edit::remove(&at(i))));
             edits.extend((a.len()..b.len()).map(|i| Edit::add(&at(i), b[i].clone())));
         }

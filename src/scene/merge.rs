@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use super::field::name_of;
 use super::{json, pointer};
+use crate::base::change::same_ends;
 
 /// One of the two versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,10 +170,7 @@ struct Stretch<'a> {
 
 impl<'a> Stretch<'a> {
     fn of(base: &[Value], version: &'a [Value]) -> Stretch<'a> {
-        let start = base.iter().zip(version).take_while(|(a, b)| json::same(a, b)).count();
-        let most = base.len().min(version.len()) - start;
-        let behind = base.iter().rev().zip(version.iter().rev()).take(most);
-        let behind = behind.take_while(|(a, b)| json::same(a, b)).count();
+        let (start, behind) = same_ends(base, version);
         Stretch { start, end: base.len() - behind, new: &version[start..version.len() - behind] }
     }
 }
