@@ -2,7 +2,7 @@
 //! they are on the disk. A file stays open while the scene names it, so that its pieces fit together whatever is saved
 //! meanwhile.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{Read, Seek};
 use std::os::unix::fs::FileExt;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::materials::{self, Stamp};
-use super::{Options, paths};
+use super::{Options, mesh, paths};
 use crate::base::budget::size;
 use crate::base::error::{Error, Result};
 use crate::base::text::hex;
@@ -52,6 +52,8 @@ pub struct Originals {
 struct Found {
     stamp: Stamp,
     contents: Contents,
+    /// The files that it names itself, as the buffers of a model.
+    parts: Vec<String>,
     file: File,
 }
 
@@ -62,7 +64,12 @@ impl Originals {
             let old = before.found.get(path).and_then(|found| found.as_ref().ok());
             (path.to_owned(), look(scene_path, path, options, old).map_err(why))
         };
-        Originals { found: materials::paths(scene).into_iter().map(look).collect() }
+        let mut found: BTreeMap<_, _> = materials::paths(scene).into_iter().map(look).collect();
+        let parts: BTreeSet<String> = found.values().flatten().flat_map(|found| found.parts.iter().cloned()).collect();
+        for part in parts {
+            found.entry(part).or_insert_with_key(|part| look(part).1);
+        }
+        Originals { found }
     }
 
     /// Every file, in the order of the paths.
@@ -108,7 +115,14 @@ fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found
         return Err(Error::at(path, what).cure("make it smaller, or give --limit memory=BYTES"));
     }
     let contents = contents(&mut file).map_err(place)?;
-    Ok(Arc::new(Found { stamp, contents, file }))
+    let parts = if paths::is_model(path) { parts(&mut file, path, options) } else { Vec::new() };
+    Ok(Arc::new(Found { stamp, contents, parts, file }))
+}
+
+/// The files that a model names. What is wrong with it shows when it is loaded.
+fn parts(file: &mut File, path: &str, options: &Options) -> Vec<String> {
+    let copy = file.rewind().and_then(|()| file.try_clone());
+    copy.ok().and_then(|file| mesh::parts(file, path, &options.limits).ok()).unwrap_or_default()
 }
 
 /// The reason alone: the reader knows the path.
@@ -177,5 +191,28 @@ mod tests {
         assert_eq!(second.list()[1].file.as_ref().unwrap().bytes, 5);
         assert!(second.piece(&contents.hash, 0).is_empty(), "gone");
         assert!(second.piece("", u64::MAX).is_empty());
+    }
+
+    #[test]
+    fn a_model_comes_with_its_parts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.plica.json");
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
+        let buffers = serde_json::json!([{ "uri": "a%20b.bin" }, { "uri": "data:,x" }, { "uri": "../../out.bin" }, {}]);
+        let model = serde_json::json!({ "asset": { "version": "2.0" }, "buffers": buffers });
+        std::fs::write(folder.path().join("sub/m.gltf"), model.to_string()).unwrap();
+        std::fs::write(folder.path().join("sub/a b.bin"), "part").unwrap();
+        let meshes = serde_json::json!({ "m": { "path": "sub/m.gltf" } });
+        let scene = serde_json::from_value(serde_json::json!({ "plica": 1, "meshes": meshes })).unwrap();
+        let (options, mut before) = (Options::default(), Originals::default());
+        // The second time nothing is read again.
+        for _ in 0..2 {
+            before = Originals::of(&path, &scene, &options, &before);
+            let list = before.list();
+            let told: Vec<_> = list.iter().map(|one| (one.path.as_str(), one.file.is_ok())).collect();
+            assert_eq!(told, [("sub/../../out.bin", false), ("sub/a b.bin", true), ("sub/m.gltf", true)]);
+        }
+        let part = before.list()[1].file.clone().unwrap();
+        assert_eq!(before.piece(&part.hash, 0), b"part");
     }
 }

@@ -31,18 +31,20 @@ pub fn layer_of(path: &str) -> Option<&str> {
 
 fn parts(path: &str) -> Option<(&str, &str)> {
     let named = |(file, layer): &(&str, &str)| {
-        let file = file.to_ascii_lowercase();
-        file.ends_with(".exr") && !layer.is_empty() || is_model(&file) && layer.parse::<usize>().is_ok()
+        let is_exr = file.to_ascii_lowercase().ends_with(".exr");
+        is_exr && !layer.is_empty() || is_model(file) && layer.parse::<usize>().is_ok()
     };
     path.rsplit_once('#').filter(named)
 }
 
 /// The number of the picture that a path names in a model.
 pub fn image_of(path: &str) -> Option<usize> {
-    parts(path).filter(|(file, _)| is_model(&file.to_ascii_lowercase()))?.1.parse().ok()
+    parts(path).filter(|(file, _)| is_model(file))?.1.parse().ok()
 }
 
-fn is_model(name: &str) -> bool {
+/// Whether it is called as a glTF model is, which may name other files.
+pub fn is_model(path: &str) -> bool {
+    let name = path.to_ascii_lowercase();
     name.ends_with(".glb") || name.ends_with(".gltf")
 }
 

@@ -128,6 +128,10 @@ fn meshes_are_loaded_with_what_they_name() {
     let (third, _) = gather(&path, &scene, &options, &mut cache);
     assert!(Arc::ptr_eq(&first.meshes["a"], &third.meshes["a"]));
     assert_eq!(third.meshes["b"].bounds().unwrap().1.x, 2.0, "what it names has changed");
+    let copy = |name: &str| (name.to_owned(), Ok(folder.path().join(name)));
+    let copies = Copies::from(["sub/b.gltf", "sub/../sub/b.bin"].map(copy));
+    let (copied, _) = gather_copies(&copies, &scene, &options, &mut Cache::default());
+    assert_eq!(copied.meshes["b"], third.meshes["b"]);
     assert_eq!(files(&path, &scene).len(), 4);
     assert_eq!(sizes(&path, &scene, &options).1.len(), 1, "each is opened");
 }

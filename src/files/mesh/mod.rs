@@ -88,6 +88,19 @@ pub fn pictures(file: File, place: &str, limits: &Limits) -> Result<Vec<String>>
     }
 }
 
+/// The files that a model is made from besides its own, as a scene names them that names the model by `place`.
+///
+/// # Errors
+/// As [`pictures`].
+pub fn parts(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
+    let budget = &limits.budget();
+    let (bytes, _share) = input::whole(file, place, limits, budget)?;
+    match kind(&bytes, place)? {
+        Kind::Obj => Ok(Vec::new()),
+        Kind::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone }),
+    }
+}
+
 /// The picture with this number in a model, as a file of its own that is nowhere but in memory.
 pub(super) fn embedded(file: File, place: &str, image: usize, limits: &Limits) -> Result<File> {
     let budget = &limits.budget();

@@ -13,7 +13,7 @@ mod document;
 mod pictures;
 mod source;
 
-pub(super) use pictures::{embedded, named};
+pub(super) use pictures::{embedded, named, parts};
 pub(super) use source::With;
 
 use document::{Node, Primitive};

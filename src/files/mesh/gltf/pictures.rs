@@ -1,9 +1,10 @@
-//! The pictures of a glTF model: which ones its surfaces show, and those that are in the file itself.
+//! What else a glTF model names: the pictures that its surfaces show, those that are in the file itself, and the files
+//! of its buffers.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use super::document::{Image, Text};
+use super::document::Text;
 use super::nodes;
 use super::source::{Source, With, data};
 use crate::base::budget::Share;
@@ -22,7 +23,7 @@ pub(in crate::files::mesh) fn named(bytes: &[u8], with: With) -> Result<Vec<Stri
                 continue;
             };
             let image = source.get(&source.document.images, index, "image")?;
-            found.push(match outside(image) {
+            found.push(match outside(&image.uri) {
                 Some(uri) => paths::sibling(with.place, &source.path(uri)?),
                 None => format!("{}#{index}", with.place),
             });
@@ -31,9 +32,16 @@ pub(in crate::files::mesh) fn named(bytes: &[u8], with: With) -> Result<Vec<Stri
     Ok(found)
 }
 
-/// The address of a picture in a file of its own.
-fn outside<'a>(image: &'a Image) -> Option<&'a str> {
-    image.uri.as_ref().map(|Text(uri)| &**uri).filter(|uri| !uri.starts_with("data:"))
+/// The files of its buffers, as a scene names them.
+pub(in crate::files::mesh) fn parts(bytes: &[u8], with: With) -> Result<Vec<String>> {
+    let source = &Source::of(bytes, with)?;
+    let uris = source.document.buffers.iter().filter_map(|buffer| outside(&buffer.uri));
+    uris.map(|uri| Ok(paths::sibling(with.place, &source.path(uri)?))).collect()
+}
+
+/// The address of what is in a file of its own.
+fn outside<'a>(uri: &'a Option<Text>) -> Option<&'a str> {
+    uri.as_ref().map(|Text(uri)| &**uri).filter(|uri| !uri.starts_with("data:"))
 }
 
 /// The image of a material's base color, if it is one that can be read.
@@ -57,7 +65,7 @@ pub(in crate::files::mesh) fn embedded<T>(
     let source = Source::of(bytes, with)?;
     let found = source.get(&source.document.images, image, "image")?;
     let (bytes, _share): (Cow<[u8]>, Share) = match (&found.uri, found.buffer_view) {
-        (Some(Text(uri)), _) if outside(found).is_none() => {
+        (Some(Text(uri)), _) if outside(&found.uri).is_none() => {
             let (bytes, share) = data(uri, with.place, with.budget)?;
             (bytes.into(), share)
         }
