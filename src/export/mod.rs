@@ -2,6 +2,9 @@
 
 pub mod animation;
 pub mod field;
+mod floats;
 mod icc;
+pub mod numbered;
+pub mod passes;
 pub mod still;
 pub mod textures;

@@ -17,6 +17,7 @@ pub mod cpu;
 pub mod gpu;
 pub mod overlay;
 pub mod part;
+pub mod passes;
 #[cfg(feature = "window")]
 pub mod reduce;
 pub mod seams;

@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::numbered::Pattern;
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{Guard, Kind, Place};
 use crate::files::write;
@@ -120,7 +121,7 @@ impl Target {
     /// # Errors
     /// A wrong command line (for an unknown extension with the table of formats), or a file that the guard refuses.
     pub fn file(path: &Path, numbers: &[u64], guard: &mut Guard) -> Result<Self> {
-        if let Some(pattern) = sequence::Pattern::parse(path)? {
+        if let Some(pattern) = Pattern::parse(path, &[".png"], "numbered frames are PNG files")? {
             return Ok(Target(Goal::Sequence(sequence::Places::new(&pattern, numbers, guard)?)));
         }
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());

@@ -1,12 +1,8 @@
 //! A data texture: numbers in four channels, and their exact or rounded forms. Zero is zero in each of them.
 
-use std::io::Cursor;
-
-use image::{ExtendedColorType, ImageEncoder, codecs::openexr::OpenExrEncoder};
-
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Grid;
-use crate::export::still;
+use crate::export::{floats, still};
 use crate::layers::parts::bundle::{Channel, ChannelNote, Texture, TextureNote};
 
 /// How many bits a number takes.
@@ -60,7 +56,7 @@ impl Texture {
         let bytes = match depth.largest() {
             None => {
                 let floats = self.values.cells().iter().map(|v| v.map(|v| v as f32)).collect();
-                exr(&Grid::from_cells(width, height, floats)).map_err(|e| failed(&e))?
+                floats::rgba(&Grid::from_cells(width, height, floats)).map_err(|e| failed(&e))?
             }
             Some(_) => {
                 let flat: Vec<u16> = self.values.cells().iter().flat_map(|v| encode(v, &codes)).collect();
@@ -128,15 +124,6 @@ impl Code {
 
 fn encode(values: &[f64; 4], codes: &[Code; 4]) -> [u16; 4] {
     std::array::from_fn(|i| codes[i].encode(values[i]))
-}
-
-/// Floats in four channels as an OpenEXR file.
-pub fn exr(values: &Grid<[f32; 4]>) -> image::ImageResult<Vec<u8>> {
-    let mut bytes = Cursor::new(Vec::new());
-    let (width, height) = (values.width() as u32, values.height() as u32);
-    let raw: &[u8] = bytemuck::cast_slice(values.cells());
-    OpenExrEncoder::new(&mut bytes).write_image(raw, width, height, ExtendedColorType::Rgba32F)?;
-    Ok(bytes.into_inner())
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
-use crate::export::still;
+use crate::export::{floats, still};
 use crate::files::draft::DraftFolder;
 use crate::files::outputs::FolderPlace;
 use crate::layers::KINDS;
@@ -127,7 +127,7 @@ impl Folder<'_> {
             return Ok(None);
         }
         let file = format!("{name}.{}", PICTURES[1]);
-        let bytes = data::exr(colors).map_err(|e| Error::at(&file, e))?;
+        let bytes = floats::rgba(colors).map_err(|e| Error::at(&file, e))?;
         self.put(file.clone(), &bytes)?;
         Ok(Some(FloatNote { file }))
     }

@@ -7,8 +7,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::texture::place;
-use super::{ReadySurface, Slot, StillSurface};
+use super::{ReadySurface, Slot, StillSurface, place};
 use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;

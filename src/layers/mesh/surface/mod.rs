@@ -97,3 +97,9 @@ pub trait StillSurface: Sync {
     /// Its color at a place, before light falls on it: linear light, premultiplied.
     fn color(&self, uv: DVec2) -> Rgba;
 }
+
+/// The place of texture coordinates in a picture of this width and height, in pixels: v = 0 is its bottom edge.
+pub fn place(uv: DVec2, (width, height): (usize, usize)) -> (f64, f64) {
+    let (u, v) = (uv.x - uv.x.floor(), uv.y - uv.y.floor());
+    (u * width as f64, (1.0 - v) * height as f64)
+}

@@ -6,7 +6,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ReadySurface, Slot, StillSurface};
+use super::{ReadySurface, Slot, StillSurface, place};
 use crate::base::picture::Picture;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
@@ -71,12 +71,6 @@ impl StillSurface for Still<'_> {
         let (x, y) = place(uv, (self.0.width(), self.0.height()));
         self.0.read_repeated(x, y)
     }
-}
-
-/// The place of texture coordinates in a picture of this width and height, in pixels: v = 0 is its bottom edge.
-pub fn place(uv: DVec2, (width, height): (usize, usize)) -> (f64, f64) {
-    let (u, v) = (uv.x - uv.x.floor(), uv.y - uv.y.floor());
-    (u * width as f64, (1.0 - v) * height as f64)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! `plica render`: frames to numbered files, to one animation, or to another program.
 
+mod pass;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -44,6 +46,9 @@ pub struct Args {
     /// Scale finished frames; a 0 keeps the ratio
     #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     size: Option<String>,
+    /// Render what frames are made from, to .exr files (or .png, to look at); NAME:LAYER is that of one layer alone
+    #[arg(long, value_name = "NAME")]
+    pass: Option<String>,
     /// N x N samples per pixel: smooth edges of folds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     samples: u32,
@@ -64,9 +69,10 @@ pub struct Args {
 
 fn outputs_help() -> String {
     format!(
-        "Outputs:\n{}\n  -         y4m or rgba for another program, by --format\n\nWhat they keep:\n{}\n\n{LINE}",
+        "Outputs:\n{}\n  -         y4m or rgba for another program, by --format\n\nWhat they keep:\n{}\n\nPasses:\n{}\n\n{LINE}",
         table(),
-        kept()
+        kept(),
+        crate::render::passes::table()
     )
 }
 
@@ -81,6 +87,10 @@ type Numbered = (u64, u64);
 
 /// Renders the frames.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    let light = args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    if args.pass.is_some() || light {
+        return pass::run(&args, context);
+    }
     let begun = Instant::now();
     let read = Unloaded::read(&args.scene, &args.options, context)?;
     let timeline = read.document.scene().timeline.clone();

@@ -1,0 +1,111 @@
+//! Files numbered by a pattern such as `%04d.png`.
+
+use std::path::{Path, PathBuf};
+
+use crate::base::error::{Error, Result};
+
+/// A file name with one frame number in it.
+#[derive(Debug, PartialEq)]
+pub struct Pattern {
+    folder: PathBuf,
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Pattern {
+    /// The pattern in the file name of `path`: `%d`, or `%04d` for at least four digits; `%%` is a `%`. `None` if the
+    /// name has no `%`.
+    ///
+    /// # Errors
+    /// The name holds more than one number, something else after a `%`, or does not end in one of `endings` (for
+    /// frames that are `what`).
+    pub fn parse(path: &Path, endings: &[&str], what: &str) -> Result<Option<Self>> {
+        let wrong = |what: &str| Error::Usage(format!("{}: {what} (as in frame-%04d.png)", path.display()));
+        let name = path.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
+        let (mut texts, mut digits) = (vec![String::new()], None);
+        let mut rest = name.chars();
+        while let Some(c) = rest.next() {
+            let last = texts.len() - 1;
+            if c != '%' {
+                texts[last].push(c);
+                continue;
+            }
+            let mut spec = String::new();
+            for c in rest.by_ref() {
+                spec.push(c);
+                if !c.is_ascii_digit() {
+                    break;
+                }
+            }
+            match spec.strip_suffix('d') {
+                _ if spec == "%" => texts[last].push('%'),
+                Some(_) if digits.is_some() => return Err(wrong("the name holds two frame numbers")),
+                Some(width) => {
+                    digits = Some(width.parse().unwrap_or(0).clamp(1, 20));
+                    texts.push(String::new());
+                }
+                None => return Err(wrong(&format!("\"%{spec}\" is no frame number"))),
+            }
+        }
+        let Some(digits) = digits else { return Ok(None) };
+        let [before, after] = <[String; 2]>::try_from(texts).unwrap_or_default();
+        if !endings.iter().any(|ending| after.to_lowercase().ends_with(ending)) {
+            return Err(wrong(&format!("{what} and end in {}", endings.join(" or "))));
+        }
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Ok(Some(Pattern { folder: folder.to_path_buf(), before, digits, after }))
+    }
+
+    /// The folder of the files.
+    ///
+    /// # Errors
+    /// It does not exist.
+    pub fn folder(&self) -> Result<&Path> {
+        let missing = || Error::at(self.folder.display(), "the folder is not there").cure("make it first");
+        if self.folder.is_dir() { Ok(&self.folder) } else { Err(missing()) }
+    }
+
+    /// The name of the file with this number.
+    pub fn name(&self, number: u64) -> String {
+        format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(path: &str) -> Result<Option<Pattern>> {
+        Pattern::parse(Path::new(path), &[".png", ".exr"], "frames are pictures")
+    }
+
+    #[test]
+    fn patterns() {
+        for (path, number, name) in [
+            ("%04d.png", 7, "0007.png"),
+            ("out/a-%d.PNG", 12, "a-12.PNG"),
+            ("100%%-%3d.png", 5, "100%-005.png"),
+            ("%02d.png", 12345, "12345.png"),
+            ("depth-%d.exr", 3, "depth-3.exr"),
+        ] {
+            assert_eq!(parse(path).unwrap().unwrap().name(number), name);
+        }
+        assert_eq!(parse("a.gif").unwrap(), None);
+        assert_eq!(parse("100%%.png").unwrap(), None);
+    }
+
+    #[test]
+    fn wrong_patterns_say_what_is_wrong() {
+        for (path, what) in [
+            ("%04x.png", "\"%04x\" is no frame number"),
+            ("%.png", "\"%.\" is no frame number"),
+            ("%d-%d.png", "two frame numbers"),
+            ("%04d.gif", "frames are pictures and end in .png or .exr"),
+            ("50%", "\"%\" is no frame number"),
+        ] {
+            let error = parse(path).unwrap_err().to_string();
+            assert!(error.contains(what), "{path}: {error}");
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! `plica render --pass`: what frames are made from, to OpenEXR files or, to look at, PNG files.
+
+use std::time::Instant;
+
+use super::{Args, Numbered, frame_bytes, numbered};
+use crate::base::error::{Error, Result};
+use crate::base::pixels::Linear;
+use crate::export::animation::range;
+use crate::export::passes::Files;
+use crate::files::outputs;
+use crate::layers::parts::pass::COLOR;
+use crate::ops::Context;
+use crate::ops::opened::Unloaded;
+use crate::render::passes::{Asked, view};
+use crate::render::{self, Synth, cpu};
+
+/// Renders the pass that `args` ask for, or the finished light if they only name OpenEXR files.
+pub fn run(args: &Args, context: &mut Context) -> Result<()> {
+    let begun = Instant::now();
+    for (given, what) in [
+        (args.size.is_some(), "--size"),
+        (args.gpu, "--gpu"),
+        (args.format.is_some(), "--format"),
+        (args.matrix.is_some(), "--matrix"),
+        (args.skip_existing, "--skip-existing"),
+    ] {
+        if given {
+            return Err(Error::Usage(format!("{what} is not for passes: they have the numbers of each pixel")));
+        }
+    }
+    let read = Unloaded::read(&args.scene, &args.options, context)?;
+    let scene = read.document.scene().clone();
+    let asked = Asked::parse(args.pass.as_deref().unwrap_or(COLOR.name), &scene);
+    let asked = asked.map_err(|what| Error::Usage(format!("--pass: {what}")))?;
+    let frames = match &args.frames {
+        Some(text) => range::parse(text, scene.timeline.frames())?,
+        None => (0..scene.timeline.frames()).collect(),
+    };
+    let todo: Vec<Numbered> = numbered(args, &frames);
+    let mut guard = args.replacing.guard(&args.scene, &scene, context);
+    let files = Files::new(&args.output, &todo.iter().map(|(_, number)| *number).collect::<Vec<_>>(), &mut guard)?;
+    context.say_all(&guard.notes());
+    let opened = read.load(context)?;
+    let size = render::frame_size(&scene, &opened.materials);
+    let each_way = if *asked.pass == COLOR { args.samples } else { 1 };
+    let band = size.0 * size.1;
+    let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
+    let samples = if each_way == 1 { vec![opened.synth()?] } else { opened.samples(each_way)? };
+    let samples: Vec<Synth> = samples.iter().map(|synth| asked.of(synth)).collect();
+    for (i, &(frame, number)) in todo.iter().enumerate() {
+        context.check_cancelled()?;
+        context.messages.step("frame", i as u64, todo.len() as u64);
+        let time = scene.timeline.time_of(frame);
+        let picture: Linear = match samples.as_slice() {
+            [synth] => asked.picture(synth, time),
+            samples => cpu::mean(samples, time),
+        };
+        files.write(number, &picture, *asked.pass == COLOR, || view(asked.pass, &picture))?;
+    }
+    context.messages.step("frame", todo.len() as u64, todo.len() as u64);
+    let what = match todo.len() {
+        1 => args.output.display().to_string(),
+        n => format!("{}, {n} frames", args.output.display()),
+    };
+    context.done(&what, outputs::size(files.paths()), begun);
+    Ok(())
+}

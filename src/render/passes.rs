@@ -1,0 +1,151 @@
+//! What frames are made from, as pictures of numbers: depth, normals, which layer and which triangle.
+
+use std::fmt::Write;
+
+use rayon::prelude::*;
+
+use super::stage::{Group, Stage};
+use super::{Synth, cpu};
+use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
+use crate::base::problem::{nearest, quoted};
+use crate::layers::KINDS;
+use crate::layers::parts::moment::Columns;
+use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass};
+use crate::layers::ready::Still;
+use crate::scene::Scene;
+
+/// A pass of a scene, or of one of its layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// The pass.
+    pub pass: &'static Pass,
+    /// The only layer, by its index; `None` for all of them.
+    pub layer: Option<usize>,
+}
+
+/// Every pass: those of all layers in space, and those that techniques add.
+pub fn all() -> impl Iterator<Item = &'static Pass> {
+    PASSES.into_iter().chain(KINDS.iter().flat_map(|kind| kind.passes))
+}
+
+/// The table of passes, a line each.
+pub fn table() -> String {
+    let widest = all().map(|pass| pass.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for pass in all() {
+        let _ = writeln!(text, "  {:widest$}  {}", pass.name, pass.help); // text takes everything
+    }
+    text.trim_end().to_owned()
+}
+
+impl Asked {
+    /// The pass that `NAME` or `NAME:LAYER` asks for.
+    ///
+    /// # Errors
+    /// There is no such pass or layer; in words.
+    pub fn parse(text: &str, scene: &Scene) -> Result<Asked, String> {
+        let (name, layer) = text.split_once(':').map_or((text, None), |(name, layer)| (name, Some(layer)));
+        let pass = all().find(|pass| pass.name == name);
+        let pass = pass.ok_or_else(|| format!("there is no pass {}; there are:\n{}", quoted(name), table()))?;
+        let index = |layer: &str| {
+            let names = || scene.layers.iter().map(|layer| layer.technique().name());
+            let unknown = || {
+                let hint = nearest(layer, names()).unwrap_or_default();
+                format!("there is no layer {} ({hint})", quoted(layer))
+            };
+            names().position(|name| name == layer).ok_or_else(unknown)
+        };
+        Ok(Asked { pass, layer: layer.map(index).transpose()? })
+    }
+
+    /// The synthesis that is to be shown for it.
+    pub fn of(&self, synth: &Synth) -> Synth {
+        match self.layer {
+            Some(layer) => Synth { stage: Stage::only(&synth.stage, layer).into(), ..synth.clone() },
+            None => synth.clone(),
+        }
+    }
+
+    /// The whole pass at a scene time.
+    pub fn picture(&self, synth: &Synth, time: f64) -> Linear {
+        if *self.pass == COLOR {
+            return cpu::linear(&self.of(synth), time);
+        }
+        lines(self.pass, &self.of(synth), time, Columns::All, &(0..synth.size.1).collect::<Vec<_>>())
+    }
+
+    /// The pixels of these columns and rows (ascending, within the frame); no others are computed.
+    pub fn lattice(&self, synth: &Synth, time: f64, columns: &[usize], rows: &[usize]) -> Linear {
+        if *self.pass == COLOR {
+            return cpu::lattice(&self.of(synth), time, columns, rows);
+        }
+        lines(self.pass, &self.of(synth), time, Columns::Some(columns), rows)
+    }
+}
+
+/// These rows of a pass, other than color: of the topmost group that covers a pixel, its nearest surface.
+fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]) -> Linear {
+    let width = match columns {
+        Columns::All => synth.size.0,
+        Columns::Some(columns) => columns.len(),
+    };
+    let moment = synth.moment(time);
+    let stills: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
+    let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
+    let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
+    lines.for_each(|(out, &y)| {
+        for group in &synth.stage.groups {
+            let Group::World(layers) = group else { continue };
+            let mut depth = vec![f64::INFINITY; width];
+            let mut own = vec![[0.0; 4]; width];
+            for &layer in layers {
+                let before = depth.clone();
+                stills[layer].pass(pass, y, columns, &mut depth, &mut own);
+                if *pass == OBJECT {
+                    let number = (layer + 1) as f32;
+                    let nearer = own.iter_mut().zip(before).zip(&depth).filter(|((_, before), now)| *now < before);
+                    nearer.for_each(|((cell, _), _)| *cell = [number, number, number, 1.0]);
+                }
+            }
+            let covered = out.iter_mut().zip(own).zip(depth).filter(|(_, depth)| depth.is_finite());
+            covered.for_each(|((cell, own), _)| *cell = own);
+        }
+    });
+    picture
+}
+
+/// The numbers of a pass as colors to look at.
+pub fn view(pass: &Pass, picture: &Linear) -> Frame {
+    let cells = picture.cells().par_iter().map(|cell| color(pass, *cell)).collect();
+    Grid::from_cells(picture.width(), picture.height(), cells)
+}
+
+fn color(pass: &Pass, cell: Rgba) -> [u8; 4] {
+    let [x, y, z, covered] = cell;
+    let code = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
+    match pass.holds {
+        Holds::Light => encode(cell),
+        _ if covered == 0.0 => [0; 4],
+        Holds::Vector if *pass == pass::UV => {
+            let [r, g, _] = hue(z as u32);
+            [code(x.rem_euclid(1.0)), code(y.rem_euclid(1.0)), r / 2 + g / 2, 255]
+        }
+        Holds::Vector => [code(x * 0.5 + 0.5), code(y * 0.5 + 0.5), code(z * 0.5 + 0.5), 255],
+        Holds::Number if *pass == OBJECT => {
+            let [r, g, b] = hue(x as u32);
+            [r, g, b, 255]
+        }
+        // What is near is bright, whatever the scale of the scene.
+        Holds::Number => {
+            let near = code(1.0 / (1.0 + x.max(0.0)));
+            [near, near, near, 255]
+        }
+    }
+}
+
+/// A color that tells a number from its neighbors.
+fn hue(number: u32) -> [u8; 3] {
+    let mixed = number.wrapping_mul(0x9E37_79B1).rotate_left(15).wrapping_mul(0x85EB_CA77);
+    let [_, r, g, b] = mixed.to_be_bytes();
+    [r | 0x40, g | 0x40, b | 0x40]
+}
