@@ -144,8 +144,35 @@ pub(super) struct Surface {
 }
 
 #[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
 pub(super) struct TextureInfo {
     pub(super) index: usize,
+    /// Which texture coordinates it is laid by.
+    #[serde(default)]
+    pub(super) tex_coord: u32,
+    #[serde(default)]
+    pub(super) extensions: Option<InfoExtensions>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct InfoExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(super) transform: Option<serde::de::IgnoredAny>,
+}
+
+impl Material {
+    /// The texture of its base color.
+    pub(super) fn base_color(&self) -> Option<&TextureInfo> {
+        self.pbr_metallic_roughness.as_ref()?.base_color_texture.as_ref()
+    }
+}
+
+impl TextureInfo {
+    /// Whether it is laid otherwise than by the first texture coordinates as they are.
+    pub(super) fn is_moved(&self) -> bool {
+        self.tex_coord > 0 || self.extensions.as_ref().is_some_and(|extensions| extensions.transform.is_some())
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]

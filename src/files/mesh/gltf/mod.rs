@@ -16,7 +16,7 @@ mod source;
 pub(super) use pictures::{embedded, named, parts};
 pub(super) use source::With;
 
-use document::{Node, Primitive};
+use document::{Material, Node, Primitive, TextureInfo};
 use source::Source;
 
 /// The lists and the triangles of a file, and what in it could not be honored.
@@ -82,7 +82,7 @@ struct Piece<'a> {
 /// The triangles of the scene in the order of its nodes, and what in it could not be honored.
 fn pieces<'a>(source: &'a Source, nodes: Vec<(&'a Node, DAffine3)>) -> Result<(Vec<Piece<'a>>, Vec<String>)> {
     let mut pieces = Vec::new();
-    let (mut others, mut posed) = (false, false);
+    let (mut others, mut posed, mut moved) = (false, false, false);
     for (node, transform) in nodes {
         let Some(mesh) = node.mesh else { continue };
         let mesh = source.get(&source.document.meshes, mesh, "mesh")?;
@@ -98,6 +98,8 @@ fn pieces<'a>(source: &'a Source, nodes: Vec<(&'a Node, DAffine3)>) -> Result<(V
                     continue;
                 }
             };
+            let material = primitive.material.and_then(|material| source.document.materials.get(material));
+            moved |= material.and_then(Material::base_color).is_some_and(TextureInfo::is_moved);
             let count = source.accessor::<3>(positions)?.count;
             let indices = primitive.indices.map(|indices| source.accessor::<1>(indices)).transpose()?;
             let corners = indices.map_or(count, |indices| indices.count);
@@ -106,6 +108,7 @@ fn pieces<'a>(source: &'a Source, nodes: Vec<(&'a Node, DAffine3)>) -> Result<(V
     }
     let notes = [
         (others, "its points and lines are not drawn"),
+        (moved, "a texture of it is moved, or laid by other coordinates than the first, which is not applied"),
         (posed, "its bones and morph targets are not applied: it is shown as it is stored"),
     ];
     Ok((pieces, notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect()))

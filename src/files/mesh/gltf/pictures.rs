@@ -48,8 +48,7 @@ fn outside<'a>(uri: &'a Option<Text>) -> Option<&'a str> {
 fn base_color(source: &Source, material: Option<usize>) -> Result<Option<usize>> {
     let Some(material) = material else { return Ok(None) };
     let material = source.get(&source.document.materials, material, "material")?;
-    let info = material.pbr_metallic_roughness.as_ref().and_then(|surface| surface.base_color_texture.as_ref());
-    let Some(info) = info else { return Ok(None) };
+    let Some(info) = material.base_color() else { return Ok(None) };
     let texture = source.get(&source.document.textures, info.index, "texture")?;
     let webp = texture.extensions.as_ref().and_then(|extensions| extensions.webp.as_ref());
     Ok(texture.source.or(webp.map(|webp| webp.source)))

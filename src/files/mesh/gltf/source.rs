@@ -158,7 +158,7 @@ fn chunks<'a>(bytes: &'a [u8], place: &str) -> Result<(&'a [u8], Option<&'a [u8]
         let contents = bytes.get(at + 8..)?.get(..number(at)? as usize)?;
         Some((kind, contents))
     };
-    let (kind, json) = chunk(12).filter(|_| bytes.len() >= whole).ok_or_else(short)?;
+    let (kind, json) = chunk(12).ok_or_else(short)?;
     if kind != b"JSON" {
         return Err(Error::at(place, "is not a glTF file: it does not begin with its JSON").cure("export it again"));
     }

@@ -188,6 +188,16 @@ fn triangles_come_as_lists_strips_and_fans() {
     let posed = json!({ "attributes": { "POSITION": 0 }, "targets": [{ "POSITION": 0 }] });
     let bare = json!({ "attributes": { "NORMAL": 1 } });
     let add = |primitive| ("/meshes/0/primitives/-", primitive);
+    let laid = |info: Value| json!([{ "pbrMetallicRoughness": { "baseColorTexture": info } }]);
+    for (info, told) in [
+        (json!({ "index": 0 }), 0),
+        (json!({ "index": 0, "extensions": { "OTHER": {} } }), 0),
+        (json!({ "index": 0, "texCoord": 1 }), 1),
+        (json!({ "index": 0, "extensions": { "KHR_texture_transform": {} } }), 1),
+    ] {
+        let of = ("/meshes/0/primitives/0/material", json!(0));
+        assert_eq!(changed(&[("/materials", laid(info)), of]).unwrap().1.len(), told);
+    }
     let (mesh, notes) = changed(&[add(lines), add(posed), add(bare), ("/nodes/0/skin", json!(0))]).unwrap();
     assert_eq!((mesh.triangles.len(), mesh.without_uv), (3, Some(2)));
     assert_eq!(

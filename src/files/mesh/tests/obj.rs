@@ -51,6 +51,7 @@ fn lines_are_read_as_people_and_programs_write_them() {
         format!("# from C:\\models\\\n{SQUARE}# f 4 3 2\nf 1 2 3 4 # five 5\n"),
         format!("o a b\ng\ns off\nmtllib a.mtl\nusemtl \u{e9}\nfoo nan\n{SQUARE}vp 0.5\nf 1 2 3 4\n"),
         format!("f 1 2 3 4\n{SQUARE}"),
+        format!("{SQUARE}f -4 -3 -2 -1\nv 5 5 5\nv 6 6 6\n"),
         "v 0 0 0 1.0\nv 1e0 .0 +0 0.1 0.2 0.3\nv 1. 1 -0 nan\nv 0 10E-1 0\nf 1 2 3 4\n".to_owned(),
     ] {
         assert_eq!(read("a.obj", text.as_bytes()).as_ref(), Ok(&plain), "{text}");
