@@ -97,7 +97,7 @@ fn a_copy_is_written_where_it_is_asked_for_and_nowhere_else() {
         ("w cat.plica.json", "cat.plica.json is saved", true, false, true),
         ("w! link.json\nq!", "is the scene itself", false, false, false),
         ("w! sub\nq!", "is not a regular file", false, false, false),
-        ("q! now\nq!", "q! takes nothing after it, not \"now\"", false, false, false),
+        ("q! now\nq!", "q! takes no argument, not \"now\"", false, false, false),
     ] {
         let folder = folder();
         let at = |name: &str| folder.path().join(name);
@@ -194,7 +194,7 @@ fn nothing_is_changed_while_unsaved_edits_wait_for_an_answer() {
     run(folder.path(), &[], "set title=precious\n");
     for (arguments, lines, told) in [
         (&[][..], "set title=x\nw\n", "line 1: 1 unsaved change was left behind: :recovery keep"),
-        (&["--script", "script"], "", "1 unsaved change was left behind, and the script is not run"),
+        (&["--script", "script"], "", "1 unsaved change was left behind, so the script is not run"),
     ] {
         std::fs::write(folder.path().join("script"), "set title=x\nw\n").unwrap();
         let output = run(folder.path(), arguments, lines);
@@ -227,6 +227,6 @@ fn a_scene_that_is_only_read_is_not_changed() {
     let folder = folder();
     let output = run(folder.path(), &["--read-only"], "set title=x\nget title\nw\n");
     let complained = text(&output.stderr);
-    assert!(complained.contains("line 1: ") && complained.contains("reading only"), "{complained}");
+    assert!(complained.contains("line 1: ") && complained.contains("read-only"), "{complained}");
     assert_eq!((output.status.code(), saved(folder.path()).as_str()), (Some(1), SCENE));
 }

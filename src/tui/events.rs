@@ -1,4 +1,4 @@
-//! What comes in and what goes out: types only.
+//! What comes into the editor and what it asks for: types only.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,41 +15,41 @@ pub enum Event {
     Key(String),
     /// A line of a script.
     Line(String),
-    /// A line of the line mode, none at the end of the input; lines.rs takes it before it comes here.
+    /// A line of the line mode, `None` at the end of the input. Handled in lines.rs, never by `update`.
     Typed(Option<String>),
     /// The lines that the one being typed could become.
     Completed(Vec<String>),
     /// Text pasted by the terminal.
     Paste(String),
-    /// The terminal has another size.
+    /// The terminal has been resized.
     Resize(u16, u16),
     /// This much time has passed while playing, in seconds.
     Tick(f64),
-    /// A synthesis has ended: what it made and how long it took, or what kept it.
+    /// A synthesis has ended: what it made, or why it failed.
     Synthesised(Result<Synthesis, String>),
     /// A synthesis has begun.
     Synthesising,
     /// What a pixel does.
     Probed(Arc<Probed>),
-    /// A picture is there.
+    /// The worker has made a picture.
     Picture(Arc<TerminalPicture>),
-    /// Long work has got on.
+    /// Long work has made progress.
     Progress(String),
-    /// Long work has ended; what it said last.
+    /// Long work has ended, with its last message.
     Done(Result<String, String>),
     /// A save has ended.
     Saved(Result<String, String>),
     /// A window or a script says something, or windows come and go.
     Window(editor::Event),
-    /// A thread beside the editor had a fault of its own.
+    /// A background thread has panicked.
     Fault(String),
     /// The log of the session cannot be written.
     Unlogged(String),
     /// Files of the scene have changed on the disk.
     FilesChanged(Vec<PathBuf>),
-    /// The system asks for an end, or the terminal has gone away.
+    /// The system asks the editor to end, or the terminal has gone away.
     End,
-    /// The shell's Ctrl-Z came from outside.
+    /// A stop signal (as from Ctrl-Z) was sent from outside.
     Stop,
     /// A click, in cells of the terminal.
     Click(u16, u16),
@@ -63,11 +63,11 @@ pub struct Synthesis {
     pub ms: f64,
     /// The longest vector of every field, by its pointer.
     pub longest: Vec<(String, f64)>,
-    /// What of its pictures could not be followed, or is odd about them.
+    /// A warning about the scene's pictures.
     pub warning: Option<String>,
 }
 
-/// A change of the document, as the windows want it.
+/// A change of the document, as it is sent to windows.
 #[derive(Clone, Debug)]
 pub struct Change {
     /// The document after it.
@@ -78,20 +78,20 @@ pub struct Change {
     pub edit: Edit,
 }
 
-/// Something to be done outside.
+/// Something that the editor asks to be done outside.
 #[derive(Clone, Debug)]
 pub enum Effect {
     /// The document has changed: show it everywhere.
     Publish(Box<Change>),
     /// The time or the selection has changed.
     Show,
-    /// The time has passed, or a window has changed it: the windows know.
+    /// The time has passed, or a window has changed it: windows need no message for that.
     Pass,
-    /// Write the document; to the scene's own file where no other is given.
+    /// Write the document, to the scene's own file unless another is given.
     Save {
         /// Another file.
         to: Option<PathBuf>,
-        /// Whether another program's version may be lost.
+        /// Whether another program's version may be overwritten.
         overwrite: bool,
         /// Whether to leave once it is safe.
         leave: bool,
@@ -100,17 +100,17 @@ pub enum Effect {
     Write(PathBuf, String),
     /// Run the lines of a file.
     Source(PathBuf),
-    /// Read the person's own keys anew.
+    /// Read the person's own keys again.
     Keymap,
     /// Open another scene.
     Open(PathBuf),
-    /// Open this scene to edit it, although somebody may do so elsewhere.
+    /// Open this scene for editing, although somebody may be editing it elsewhere.
     TakeOver,
     /// Begin the tutor, on a scene of its own.
     Tutor,
     /// Load the pictures again.
     Reload,
-    /// The pixel that these arguments of `plica probe` are about was asked for: its read-out is open where there is a screen.
+    /// Probe a pixel, with these arguments of `plica probe`. On a screen the read-out shows the answer already.
     Probe(Vec<String>),
     /// Run a subcommand of the command line with these arguments.
     Run(Vec<String>),
@@ -120,18 +120,18 @@ pub enum Effect {
         name: String,
         /// What has been typed of it.
         path: String,
-        /// The folder it is relative to; the present one where none is given.
+        /// The folder that the path is relative to; `None` for the present one.
         beside: Option<PathBuf>,
     },
     /// Hand a text to the terminal's clipboard.
     Copy(String),
     /// End long work.
     Cancel,
-    /// Open the preview window, or give it a command of its table.
+    /// Open the preview window, or give it a command.
     View(Option<String>),
     /// Open a picture in another program.
     EditImage(PathBuf),
-    /// Draw everything anew.
+    /// Draw the whole screen again.
     Redraw,
     /// Stop the process as Ctrl-Z does in a shell.
     Suspend,

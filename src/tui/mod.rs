@@ -1,6 +1,6 @@
 //! The terminal editor, in rungs: each folder names only what stands above it in this list (tests/house.rs holds that).
-//! State is a value and `update` a function (commands/update.rs); drawing changes nothing (panes/view.rs); one table of keys
-//! and one of commands (keys/table.rs, commands/); whatever is slow or outside happens in outside/.
+//! The state is a value and `update` a function of it (commands/update.rs); drawing changes nothing (panes/view.rs). There is
+//! one table of keys and one of commands (keys/table.rs, commands/). Whatever is slow or touches the system is in outside/.
 
 mod commands;
 mod document;

@@ -43,7 +43,7 @@ fn a_second_editor_is_told_who_edits_and_follows() {
     second.press("\r");
     second.wait_for("  RO");
     second.press("/speed\r+");
-    second.wait_for("reading only");
+    second.wait_for("read-only");
     first.press("/speed\r+:w\r");
     first.wait_for("is saved");
     second.wait_for("the file was saved");
@@ -67,7 +67,7 @@ fn another_program_changes_the_file_and_nothing_is_lost() {
     editor.wait_for("  *");
     let text = std::fs::read_to_string(&scene).unwrap();
     std::fs::write(&scene, text.replace("\"all\"", "\"whole\"")).unwrap();
-    editor.wait_for("its changes are here");
+    editor.wait_for("its changes are merged");
     let mut theirs = read(&scene);
     theirs["layers"][0]["zones"][0]["speed"] = json!(7);
     std::fs::write(&scene, theirs.to_string()).unwrap();

@@ -20,20 +20,25 @@ use crate::tui::text::said::{quoted, unquoted};
 pub const COMMANDS: &[Command] = &[
     command("enter", "[clear]", "Edit the cell, or go into the node", enter),
     command("put", "EXPRESSION", "Put a value into the cell, or into every selected row", put).change(),
-    command("commit", "[next]", "Take the value being typed", commit).inside(),
+    command("commit", "[next]", "Enter the value being typed", commit).inside(),
     command("digit", "BY", "Step the digit under the cursor", digit).inside().counted(),
     command(
         "choice",
         "next|previous|to LETTER|take",
-        "Move in the list of choices, also to the next word that begins so, or take one",
+        "Move in the list of choices, also to the next word that begins with a letter, or take one",
         choice,
     )
     .inside()
     .counted_with(&["next", "previous", "to"]),
     command("choose", "WORD", "Take a word of the list of choices", choose).answer(),
     command("step", "BY", "Step the number by the step", step).change().counted(),
-    command("step-size", "smaller|larger|POWER", "Change the step tenfold", step_size)
-        .counted_with(&["smaller", "larger"]),
+    command(
+        "step-size",
+        "smaller|larger|POWER",
+        "Make the step ten times smaller or larger, or a power of ten",
+        step_size,
+    )
+    .counted_with(&["smaller", "larger"]),
 ];
 
 pub fn current(state: &State) -> Option<(Row, Cell)> {
@@ -49,7 +54,7 @@ fn enter(state: &mut State, call: &Call) -> Done {
         state.scene.writable()?;
         return add_here(state, 1);
     }
-    // The kind of an item with an inside of its own stands for the item; its form has the kind again.
+    // On the kind of an item that has nodes inside, go into the item; its kind can be changed in its form.
     let into = row.item && state.cursor.column == 0 && row.cells.iter().any(Cell::is_node);
     if cell.is_node() || into {
         state.show(if into { row.pointer } else { cell.pointer });
@@ -68,8 +73,8 @@ fn enter(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Gives the cell under the cursor, and the like ones of the selection, what the text says: a value, an expression over
-/// the row, or one of the words that the cell takes.
+/// Sets the cell under the cursor, and the corresponding ones of the selection, to what the text means: a value, an
+/// expression over the row, or one of the words that the cell can have.
 fn put(state: &mut State, call: &Call) -> Done {
     let text = unquoted(call.text);
     let (row, cell) = current(state).ok_or("there is nothing to put it into: o adds an item")?;
@@ -90,12 +95,12 @@ fn put(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Whether a value is typed into the cell; otherwise it is chosen, or has an inside of its own.
+/// Whether the value of the cell is typed. Otherwise it is chosen from a list, or the cell is a node.
 fn is_typed(cell: &Cell) -> bool {
     cell.is_number() || matches!(cell.field.kind, Kind::Text)
 }
 
-/// Takes the entry. Where it cannot be taken it stays as it was typed.
+/// Enters what was typed. If that is refused, the entry stays open.
 fn commit(state: &mut State, call: &Call) -> Done {
     let Mode::Entry(typed) = &state.typing.mode else { return Ok(()) };
     let text = quoted(typed.text.value());
@@ -122,7 +127,7 @@ fn choice(state: &mut State, call: &Call) -> Done {
         "previous" => choice.step(-call.times()),
         "take" => match (choice.taken().map(str::to_owned), &choice.then) {
             (Some(word), Then::Answer(_)) => {
-                // Elsewhere, where a log is run again, nothing of the kind has happened.
+                // Only a comment goes into the log: when it is run again, the question is not asked.
                 let choice = choice.clone();
                 state.typing.mode = Mode::Normal;
                 state.memory.recorder.remark(&format!("{}: {word}", choice.title));
@@ -148,12 +153,12 @@ fn choice(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// The whole number that a command is told.
+/// The argument of a command as a whole number.
 pub fn number(call: &Call, name: &str) -> Result<i64, String> {
     call.text.parse().map_err(|_| unknown(call, &format!("{name} takes a whole number")))
 }
 
-/// What a command takes, and what it was told instead.
+/// A message on what a command takes, and what it was given instead.
 fn unknown(call: &Call, takes: &str) -> String {
     format!("{takes}, not {}", problem::quoted(call.text))
 }
@@ -168,7 +173,7 @@ fn choose(state: &mut State, call: &Call) -> Done {
     take(state, call, choice, &word)
 }
 
-/// The word, where the list has it.
+/// The word, if it is in the list.
 fn word_of(choice: &Choice, word: &str) -> Result<String, String> {
     let words = choice.options.iter().map(|(word, _)| word.as_str());
     if words.clone().any(|one| one == word) {
@@ -203,12 +208,12 @@ fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
     Ok(())
 }
 
-/// Steps every selected number from its own value.
+/// Steps each selected number.
 fn step(state: &mut State, call: &Call) -> Done {
     let by = number(call, "step")?.saturating_mul(call.times());
     let (_, cell) = current(state).ok_or("there is nothing to step here")?;
     if !cell.is_number() {
-        return Err(format!("{} is no number: only numbers step (Enter opens it)", cell.field.name));
+        return Err(format!("{} is not a number: only numbers step (Enter opens it)", cell.field.name));
     }
     let unit = ten_to(state.typing.step);
     let edit = entry::each(state, |_, cell, _| {

@@ -1,5 +1,5 @@
-//! What a command is, and the one function that runs a line. What is not in the table but on the command line of `plica`
-//! (render, synth, ...) runs as there, with the same arguments.
+//! What a command is, and the function that runs a line. Subcommands of the command line that are not in the table (render,
+//! synth, ...) run with the same arguments as there.
 
 use std::path::PathBuf;
 
@@ -11,45 +11,47 @@ use crate::tui::state::State;
 use crate::tui::state::recorder::{Ended, Recorded};
 use crate::tui::text::said::{Said, one_of, words};
 
-/// How a command ends: what to say where it could not be done.
+/// The result of a command: why it could not be done.
 pub type Done = Result<(), String>;
 
-/// What a command is given.
+/// The arguments of a command.
 pub struct Call<'a> {
-    /// What stands after its name.
+    /// The text after its name.
     pub text: &'a str,
-    /// The count typed before its key.
+    /// The count, if one was given.
     pub count: Option<usize>,
     /// All commands.
     pub table: &'static Table,
 }
 
-/// Counts go so far: to any row that a scene may have.
+/// The largest count; more than the rows that a scene may have.
 const MOST_COUNT: usize = 1_000_000;
 
 impl Call<'_> {
-    /// The path that it is given, as words of a command line are: double quotes keep spaces, `~` is the home folder.
+    /// Its argument as a path. Double quotes keep spaces, `~` is the home folder.
     ///
     /// # Errors
-    /// It is given more than one, or a program to run.
+    /// It is more than one path, or a program to run (`!`).
     pub fn path(&self) -> Result<Option<PathBuf>, String> {
         match words(self.text)?.as_slice() {
             [] => Ok(None),
             [one] if one.is_empty() => Err("a path is empty".into()),
             [first, ..] if self.text.starts_with('!') => {
-                Err(format!("programs are not run from here; a file of that name is ./{first}"))
+                Err(format!("programs are not run from here; for a file of that name write ./{first}"))
             }
             [one] => Ok(Some(paths::typed(one))),
-            several => Err(format!("one path is taken, not {}; in double quotes it may have spaces", several.len())),
+            several => {
+                Err(format!("one path is needed, not {}; a path with spaces needs double quotes", several.len()))
+            }
         }
     }
 
-    /// The count, 1 where none was typed.
+    /// The count, 1 if none was given.
     pub fn times(&self) -> i64 {
         self.count.unwrap_or(1) as i64
     }
 
-    /// The steps of a command that goes so far; no way is longer.
+    /// An iterator over the count, for commands that repeat a step; at most 1000.
     pub fn steps(&self) -> std::ops::Range<usize> {
         0..self.count.unwrap_or(1).min(1000)
     }
@@ -57,24 +59,24 @@ impl Call<'_> {
     /// The count of a command that makes something each time.
     ///
     /// # Errors
-    /// It is more than anybody means.
+    /// It is too large.
     pub fn times_of(&self, name: &str) -> Result<usize, String> {
-        /// Keys never wait for long.
+        /// So many that a key never has to wait long.
         const MOST: usize = 10_000;
         let times = self.count.unwrap_or(1);
-        if times > MOST { Err(format!("{name} goes {MOST} times at most, not {times}")) } else { Ok(times) }
+        if times > MOST { Err(format!("{name} repeats {MOST} times at most, not {times}")) } else { Ok(times) }
     }
 
-    /// Runs another line, as a part of this one.
+    /// Runs another line as a part of this one.
     ///
     /// # Errors
-    /// What to say where it could not be done.
+    /// Why it could not be done.
     pub fn obey(&self, state: &mut State, line: &str) -> Done {
         self.table.obey(state, line, None)
     }
 }
 
-/// One command.
+/// A command.
 pub struct Command {
     /// Its name, as typed after `:`.
     pub name: &'static str,
@@ -84,40 +86,40 @@ pub struct Command {
     pub help: &'static str,
     /// What the recorder notes of it: in the log of the session, in macros, for `.`.
     pub recorded: Recorded,
-    /// Whether it takes a count.
+    /// When it takes a count.
     pub counts: Counts,
-    /// Does it.
+    /// Runs it.
     pub run: fn(&mut State, &Call) -> Done,
 }
 
-/// Where a command does something with a count: repeats itself, or goes so far. Elsewhere a count is refused.
+/// When a command takes a count; otherwise a count is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counts {
-    /// Nowhere.
+    /// Never.
     Never,
-    /// Whatever it is told.
+    /// With any arguments.
     Always,
-    /// Where its text begins with one of these words; an empty one stands for no text.
+    /// If its argument begins with one of these words; an empty word means no argument.
     With(&'static [&'static str]),
 }
 
 impl Command {
-    /// One that changes the scene, which `.` repeats.
+    /// Marks it as one that changes the scene, which `.` repeats.
     pub const fn change(self) -> Command {
         Command { recorded: Recorded::Change, ..self }
     }
 
-    /// One that takes a count.
+    /// Makes it take a count.
     pub const fn counted(self) -> Command {
         Command { counts: Counts::Always, ..self }
     }
 
-    /// One that takes a count with these words.
+    /// Makes it take a count with these words.
     pub const fn counted_with(self, words: &'static [&'static str]) -> Command {
         Command { counts: Counts::With(words), ..self }
     }
 
-    /// The words that may stand after its name, where there are no others, and whether it can do without.
+    /// The words that it takes as an argument, and whether the argument is optional. `None` if it takes other arguments.
     pub fn words(&self) -> Option<(Vec<&'static str>, bool)> {
         let inside = self.args.strip_prefix('[').and_then(|args| args.strip_suffix(']'));
         let words: Vec<&str> = inside.unwrap_or(self.args).split('|').filter(|word| !word.is_empty()).collect();
@@ -125,7 +127,7 @@ impl Command {
         words.iter().all(plain).then(|| (words, inside.is_some() || self.args.is_empty()))
     }
 
-    /// Refuses what the table says that the command does not take: another word, a count.
+    /// Refuses words and counts that the command does not take according to the table.
     fn takes(&self, said: &Said) -> Done {
         if let Some((words, optional)) = self.words()
             && !words.contains(&said.text)
@@ -133,7 +135,7 @@ impl Command {
         {
             let found = if said.text.is_empty() { "nothing".into() } else { problem::quoted(said.text) };
             return Err(match words.as_slice() {
-                [] => format!("{} takes nothing after it, not {found}", self.name),
+                [] => format!("{} takes no argument, not {found}", self.name),
                 words => format!("{} takes {}, not {found}", self.name, one_of(words)),
             });
         }
@@ -149,29 +151,29 @@ impl Command {
         }
     }
 
-    /// Whether it would change the scene.
+    /// Whether it would change the scene with these arguments.
     fn edits(&self, said: &Said) -> bool {
         // `place next` and `place previous` only go to points.
         self.recorded == Recorded::Change && !matches!(said.text, "next" | "previous")
     }
 
-    /// One that answers a list of choices.
+    /// Marks it as one that answers a list of choices.
     pub const fn answer(self) -> Command {
         Command { recorded: Recorded::Answer, ..self }
     }
 
-    /// One that plays lines, which are kept in its place.
+    /// Marks it as one that plays lines, which are recorded in its place.
     pub const fn played(self) -> Command {
         Command { recorded: Recorded::Played, ..self }
     }
 
-    /// One of which only the lines are kept that it runs itself, if any: it types, asks, or only shows.
+    /// Marks it as one that types, asks or only shows something: only lines that it runs itself are recorded.
     pub const fn inside(self) -> Command {
         Command { recorded: Recorded::Inside, ..self }
     }
 }
 
-/// A command of which the line is kept; [`Command::change`] and [`Command::inside`] say otherwise.
+/// A command whose line is recorded, and which takes no count. The methods of [`Command`] change that.
 pub const fn command(
     name: &'static str,
     args: &'static str,
@@ -181,7 +183,7 @@ pub const fn command(
     Command { name, args, help, recorded: Recorded::Line, counts: Counts::Never, run }
 }
 
-/// Other names of commands: as vim has them, and as they were called before.
+/// Other names of commands: vim's, and earlier ones.
 const ALIASES: &[(&str, &str)] = &[
     ("edit", "e"),
     ("edit!", "e!"),
@@ -204,7 +206,7 @@ const ALIASES: &[(&str, &str)] = &[
     ("xit", "wq"),
 ];
 
-/// All commands together: what finds them by name and runs lines of them.
+/// All commands. Finds them by name and runs lines.
 pub struct Table(pub &'static [&'static [Command]]);
 
 impl Table {
@@ -213,7 +215,7 @@ impl Table {
         self.0.iter().copied().flatten()
     }
 
-    /// The command of this name, or of this other name.
+    /// The command with this name or this other name.
     pub fn find(&self, name: &str) -> Option<&'static Command> {
         let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
         self.all().find(|command| command.name == name)
@@ -230,13 +232,13 @@ impl Table {
         command.is_some_and(|command| matches!(command.name, "q" | "q!" | "w" | "w!" | "wq"))
     }
 
-    /// The subcommands of the command line that have a use in the editor.
+    /// The subcommands of the command line that are useful in the editor.
     pub fn subcommands(&self) -> impl Iterator<Item = String> {
         const OUTSIDE: &[&str] = &["demo", "new", "edit", "tutor", "attach", "completions", "man"];
         ops::names().filter(|name| !OUTSIDE.contains(&name.as_str()) && self.find(name).is_none())
     }
 
-    /// That there is no such command, and what may have been meant.
+    /// A message that there is no such command, with what may have been meant.
     pub fn unknown(&self, name: &str) -> String {
         let names = self.names();
         let near = problem::nearest(name, names.iter().map(String::as_str));
@@ -244,7 +246,7 @@ impl Table {
         format!("there is no command {} ({near})", problem::quoted(name))
     }
 
-    /// The names of all commands, those of the command line included, in order.
+    /// The names of all commands and subcommands, in order.
     pub fn names(&self) -> Vec<String> {
         let own = self.all().map(|command| command.name.to_string());
         let mut names: Vec<String> = own.chain(self.subcommands()).collect();
@@ -253,24 +255,24 @@ impl Table {
         names
     }
 
-    /// Runs a line, and says where it could not be done.
+    /// Runs a line, and shows why it could not be done.
     pub fn run(&'static self, state: &mut State, line: &str, count: Option<usize>) {
         if let Err(why) = self.obey(state, line, count) {
             state.complain(why);
         }
     }
 
-    /// Runs a line `[COUNT] NAME [ARGS]`: keys, what is typed after `:`, scripts, macros and windows all come here.
+    /// Runs a line `[COUNT] NAME [ARGS]`. Keys, what is typed after `:`, scripts, macros and windows all come here.
     ///
     /// # Errors
-    /// What to say where it could not be done.
+    /// Why it could not be done.
     pub fn obey(&'static self, state: &mut State, line: &str, count: Option<usize>) -> Done {
         let said = Said::parse(line, count);
         if said.name.is_empty() {
             return Ok(());
         }
         if let Some(count) = said.count.filter(|&count| count > MOST_COUNT) {
-            return Err(format!("a count goes to {MOST_COUNT}, not {count}"));
+            return Err(format!("a count is at most {MOST_COUNT}, not {count}"));
         }
         #[cfg(test)]
         crate::tui::tests::coverage::ran(said.name);
@@ -280,7 +282,7 @@ impl Table {
         state.memory.recorder.begin(recorded);
         let done = match command {
             Some(command) => command.takes(&said).and_then(|()| {
-                // Nothing is typed or chosen that would be refused at its end.
+                // Refuse at once, not after something was typed or chosen.
                 if command.edits(&said) {
                     state.scene.writable()?;
                 }
@@ -289,7 +291,7 @@ impl Table {
             None => self.subcommand(state, &said),
         };
         let asks = state.typing.mode.asks() && !asked;
-        // Only a run of steps joins into one step of undo, whatever was looked at meanwhile.
+        // Only successive `step`s join into one step of undo; lines that are not recorded may come in between.
         if done.is_ok() && !matches!(recorded, Recorded::Inside | Recorded::Played) && !asks && said.name != "step" {
             state.scene.close_step();
         }
@@ -304,7 +306,7 @@ impl Table {
         done
     }
 
-    /// Asks for a subcommand of the command line, with the same arguments.
+    /// Requests a subcommand of the command line, with the same arguments.
     fn subcommand(&self, state: &mut State, said: &Said) -> Done {
         let name = said.name;
         if !ops::names().any(|known| known == name) {

@@ -1,10 +1,10 @@
-//! What the line being typed could become.
+//! Completion of the command line.
 
 use super::command::Table;
 use crate::scene::{address, field};
 use crate::tui::state::State;
 
-/// Commands that take the path of a file, and whether it is meant relative to the scene.
+/// Commands that take the path of a file, and whether it is relative to the scene.
 const PATHS: &[(&str, bool)] = &[
     ("add", true),
     ("e", false),
@@ -16,15 +16,15 @@ const PATHS: &[(&str, bool)] = &[
     ("wq", false),
 ];
 
-/// The command, the path typed so far (without the quote that it may begin with) and whether it is relative to the scene,
-/// where `typed` asks for a file.
+/// The command, the path typed so far (without an opening quote) and whether it is relative to the scene. `None` if `typed`
+/// is no command that takes a path.
 pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
     let (name, path) = typed.split_once(' ')?;
     let path = path.strip_prefix('"').unwrap_or(path);
     PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
 }
 
-/// The lines that `typed` could become: command names, paths of the scene after `set`.
+/// The lines that `typed` can be completed to: names of commands, and paths of the scene after `set` and `get`.
 pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
     match typed.split_once(' ') {
         None => table.names().into_iter().filter(|name| name.starts_with(typed)).collect(),
@@ -35,7 +35,7 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
     }
 }
 
-/// The paths of the scene that go on from `typed`, one name further.
+/// The paths of the scene that continue `typed` by one name.
 fn paths(state: &State, typed: &str) -> Vec<String> {
     if typed.contains('=') {
         return Vec::new();
@@ -48,7 +48,7 @@ fn paths(state: &State, typed: &str) -> Vec<String> {
     };
     let holder = pointer.as_deref().map(|pointer| address::address(document, pointer)).unwrap_or_default();
     let children = pointer.map(|pointer| field::children(document, &pointer)).unwrap_or_default();
-    // As the address spells it: a name with a space in quotes.
+    // The name as an address spells it, with quotes if it has spaces.
     let name = |child: field::Child| {
         let whole = address::address(document, &child.pointer);
         whole.strip_prefix(holder.as_str()).unwrap_or(&whole).trim_start_matches('.').to_owned()

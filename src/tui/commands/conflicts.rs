@@ -1,5 +1,5 @@
-//! What happens to a scene outside the editor, and what is asked about it: unsaved edits of a session that did not end
-//! well, somebody else who edits the scene, another program that writes its file.
+//! Conflicts about a scene: unsaved edits that a session left behind, somebody else who is editing the scene, another program
+//! that has changed its file.
 
 use crate::tui::document::choice::About;
 use crate::tui::state::outside::{about_recovery, few, question};
@@ -14,15 +14,15 @@ use crate::tui::document::choice::Choice;
 use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};
 
-/// Where both changed the file and nothing was decided.
+/// In the status line while a conflict with another program is not decided.
 const UNDECIDED: &str = "file differs";
 
 pub const COMMANDS: &[Command] = &[
-    command("merge", "[mine|theirs]", "Take in what another program wrote to the file", merge),
-    command("recovery", "[keep|drop]", "Answer about unsaved edits that were left behind, or ask again", recovery),
+    command("merge", "[mine|theirs]", "Merge what another program wrote to the file", merge),
+    command("recovery", "[keep|drop]", "Take or leave unsaved edits that were left behind, or ask again", recovery),
 ];
 
-/// Does what was chosen; `asked` comes again where something is to be looked at first.
+/// Does what was chosen. After looking at a difference, the question `asked` comes again.
 pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Done {
     match (about, word) {
         (About::Holder, "quit") => state.ask(Effect::Quit),
@@ -44,7 +44,7 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
     Ok(())
 }
 
-/// Takes the unsaved edits that are offered, or leaves them.
+/// Takes the unsaved edits that are offered, or leaves them to undo.
 fn recover(state: &mut State, take: bool) -> Done {
     let change = state.scene.recover(take);
     change.into_iter().for_each(|change| state.changed(change));
@@ -62,7 +62,7 @@ fn recovery(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Shows lines, and then the question again.
+/// Shows lines, and after that the question again.
 fn look(state: &mut State, lines: Vec<String>, then: Choice) {
     let lines = if lines.is_empty() { vec!["there is no difference".into()] } else { lines };
     let lines = lines.iter().map(|line| plain(line)).collect();
@@ -70,7 +70,7 @@ fn look(state: &mut State, lines: Vec<String>, then: Choice) {
     state.outside.waiting = Some(then);
 }
 
-/// Another program wrote the scene or one of its pictures.
+/// Handles that another program has written the scene or one of its pictures.
 pub fn follow(state: &mut State, files: &[PathBuf]) {
     if files.iter().any(|file| file != state.scene.path()) {
         state.ask(Effect::Reload);
@@ -91,18 +91,18 @@ fn merge(state: &mut State, call: &Call) -> Done {
     };
     take_in(state, side)?;
     if state.message.is_none() && state.outside.waiting.is_none() {
-        state.say("the file is as it was left");
+        state.say("no other program has changed the file");
     }
     Ok(())
 }
 
-/// Takes the file's version in, says so, or asks.
+/// Merges the file's version into the scene, or asks what to do about a conflict.
 fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
     let (taken, change) = match state.scene.take_in(prefer) {
         Ok(taken) => taken,
         Err(error) => {
             state.outside.file = Some("file unreadable");
-            return Err(format!("what is here stays: {}", first_line(&error)));
+            return Err(format!("the file is unreadable, so the scene here stays as it is: {}", first_line(&error)));
         }
     };
     change.into_iter().for_each(|change| state.changed(change));
@@ -111,13 +111,11 @@ fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
         Taken::Nothing => {}
         Taken::Gone => {
             state.outside.file = Some("file gone");
-            state.complain("the file was taken away: :w writes it again");
+            state.complain("the file is gone: :w writes it again");
         }
-        Taken::Whole if state.scene.read_only() => state.say("the file was saved: this is what it holds now"),
-        Taken::Whole => state.say("the file was changed by another program: its version is here, u takes it back"),
-        Taken::Merged => {
-            state.say("the file was changed by another program: its changes are here beside the unsaved ones")
-        }
+        Taken::Whole if state.scene.read_only() => state.say("the file was saved: this is its present version"),
+        Taken::Whole => state.say("another program changed the file: this is its version, u brings back yours"),
+        Taken::Merged => state.say("another program changed the file: its changes are merged with the unsaved ones"),
         Taken::Asked(places) => ask_about_file(state, &places),
     }
     Ok(())
@@ -126,16 +124,16 @@ fn take_in(state: &mut State, prefer: Option<Side>) -> Done {
 fn ask_about_file(state: &mut State, places: &[String]) {
     state.outside.file = Some(UNDECIDED);
     let options = [
-        ("mine", "There, keep what is here; take in the rest"),
-        ("theirs", "There, take what the file has; keep the rest"),
+        ("mine", "Keep your version of these places; merge the rest"),
+        ("theirs", "Take the file's version of these places; keep the rest"),
         ("difference", "Look at everything that differs"),
-        ("later", "Leave it open: :merge asks again, :w waits"),
+        ("later", "Decide later: :merge asks again; :w is refused until then"),
     ];
     let title = "another program changed the same places".into();
     state.outside.waiting = Some(question(About::File, title, few(places), &options));
 }
 
-/// An error on one line.
+/// An error in one line.
 fn first_line(error: &Error) -> String {
     match error {
         Error::Scene { file, problems } => match problems.as_slice() {

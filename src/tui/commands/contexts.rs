@@ -1,9 +1,9 @@
-//! Which keys are in force.
+//! Which keys are in use.
 
 use crate::tui::keys;
 use crate::tui::state::{Mode, Pane, State, entry};
 
-/// The contexts of the key table that are in force, the innermost first.
+/// The contexts of the key table that apply, the innermost first.
 pub fn contexts(state: &State) -> Vec<&'static str> {
     if state.is_small() && !matches!(state.typing.mode, Mode::Line(_)) {
         return vec![keys::SMALL];

@@ -1,4 +1,4 @@
-//! Files, leaving, and what is outside the editor.
+//! Saving, opening, leaving, the window, and other programs.
 
 use super::command::{Call, Command, Done, command};
 use crate::base::problem::quoted;
@@ -12,7 +12,7 @@ pub const COMMANDS: &[Command] = &[
     command(
         "w!",
         "[PATH]",
-        "Save over what another program wrote, a read-only file, or what is at the path",
+        "Save, overwriting another program's changes, a read-only file, or the file at the path",
         |state, call| save(state, call, true, false),
     ),
     command("wq", "[PATH]", "Save, or save a copy at the path, and leave", |state, call| {
@@ -28,10 +28,10 @@ pub const COMMANDS: &[Command] = &[
         refuse_unsaved(state, ":e!")?;
         open(state, call)
     }),
-    command("e!", "[PATH]", "Open another scene, or take this one as its file has it", open),
+    command("e!", "[PATH]", "Open another scene, or go back to the saved version of this one", open),
     command("view", "[COMMAND]", "Open the preview window, or change what it shows", view).counted(),
     command("image", "edit [NAME]", "Open a picture of the scene in another program", image).inside(),
-    command("redraw", "", "Draw the screen anew", |state, _| {
+    command("redraw", "", "Redraw the screen", |state, _| {
         state.ask(Effect::Redraw);
         Ok(())
     })
@@ -47,7 +47,7 @@ fn refuse_unsaved(state: &State, instead: &str) -> Done {
     if state.scene.is_saved() {
         return Ok(());
     }
-    Err(format!("there are unsaved edits: :w saves them, {instead} leaves them"))
+    Err(format!("there are unsaved edits: :w saves them, {instead} gives them up"))
 }
 
 fn save(state: &mut State, call: &Call, overwrite: bool, leave: bool) -> Done {
@@ -70,7 +70,7 @@ fn open(state: &mut State, call: &Call) -> Done {
         state.ask(Effect::Open(path));
     } else if let Some(change) = state.scene.revert().map_err(|error| error.to_string())? {
         state.changed(change);
-        state.say("the scene is as its file has it; u takes it back");
+        state.say("this is the saved version; u brings back the edits");
     }
     Ok(())
 }
@@ -88,7 +88,7 @@ fn view(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// `:image edit cat`; the name may be left out where there is one picture.
+/// `:image edit cat`; the name may be left out if there is only one picture.
 fn image(state: &mut State, call: &Call) -> Done {
     let name = match call.text.split_once(' ').unwrap_or((call.text, "")) {
         ("edit", name) => name.trim(),
@@ -102,7 +102,7 @@ fn image(state: &mut State, call: &Call) -> Done {
         (name, _) => images.get(name),
     };
     let path = &image.ok_or_else(|| format!("there is no picture {name}: {}", names()))?.path;
-    // Nothing is opened that the scene may not name.
+    // Only a path that the scene is allowed to name is opened.
     paths::open(state.scene.path(), path, state.scene.options()).map_err(|error| error.to_string())?;
     let path = std::path::absolute(paths::beside(state.scene.path(), path)).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(path));

@@ -1,5 +1,5 @@
-//! A pasted table over the selected rows: the columns that it has, from the one under the cursor or by its header, take its
-//! values; the others stay.
+//! Pastes a table over the selected rows. Its columns are matched by its header, or start at the column under the cursor;
+//! other columns stay as they are.
 
 use std::collections::BTreeMap;
 
@@ -15,11 +15,15 @@ use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
 use crate::tui::state::State;
 use crate::tui::text::numbers;
 
-pub const COMMANDS: &[Command] =
-    &[command("fill", "JSON", "Give the selected rows values: a list of rows, or one row; heads may come first", fill)
-        .change()];
+pub const COMMANDS: &[Command] = &[command(
+    "fill",
+    "JSON",
+    "Set the selected rows to a list of rows, or all to one row; a header may come first",
+    fill,
+)
+.change()];
 
-/// The first row, where it has no number.
+/// The first row, if it contains no number.
 fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
     table.first().filter(|first| first.iter().all(|field| rows::number(field).is_none()))
 }
@@ -43,7 +47,7 @@ fn fill(state: &mut State, call: &Call) -> Done {
             let cell = cell(&row, header, state.cursor.column, k).map_err(|why| format!("row {i}: {why}"))?;
             cells.push((k, cell, text));
         }
-        // A direction turns the length that was given; what follows from numbers that are given counts for nothing.
+        // A direction turns the given length, so it comes last. Length and direction are ignored if x and y are given.
         cells.sort_by_key(|(_, cell, _)| cell.part == Part::Degrees);
         let given = |cell: &Cell| {
             cells.iter().any(|(_, other, _)| other.pointer == cell.pointer && matches!(other.part, Part::Number(_)))
@@ -56,11 +60,11 @@ fn fill(state: &mut State, call: &Call) -> Done {
     let edits = filled.values.into_iter().map(|(pointer, value)| Edit::set(document, &pointer, value));
     let edit = Edit::all(edits.collect::<Vec<_>>());
     state.edit(edit, false)?;
-    state.say(format!("{} pasted over", counted(count, "row")));
+    state.say(format!("pasted over {}", counted(count, "row")));
     Ok(())
 }
 
-/// The cell of a row that the `k`th column of the table is for.
+/// The cell of a row for the `k`th column of the table.
 fn cell<'a>(row: &'a Row, header: Option<&Vec<String>>, column: usize, k: usize) -> Result<&'a Cell, String> {
     match header {
         Some(heads) => {
@@ -72,14 +76,14 @@ fn cell<'a>(row: &'a Row, header: Option<&Vec<String>>, column: usize, k: usize)
     }
 }
 
-/// The values of the places that change; several cells may be of one.
+/// The new values by place, of which several cells may be parts.
 struct Filled<'a> {
     document: &'a Document,
     values: BTreeMap<String, Value>,
 }
 
 impl Filled<'_> {
-    /// Takes the text of a cell, unless it is what the cell says already.
+    /// Sets a cell to a text, unless it shows that already.
     fn put(&mut self, cell: &Cell, text: &str) -> Result<(), String> {
         let document = self.document;
         if rows::exact(document, cell) == text {

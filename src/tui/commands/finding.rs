@@ -1,4 +1,4 @@
-//! Finding: the search over names and values, marks, the jump list, the same place beside this one.
+//! Search in names and values, marks, the jump list, and going to the same place of the next item.
 
 use super::command::{Call, Command, Done, command};
 use crate::scene::schema::{Body, Place};
@@ -12,17 +12,17 @@ use crate::tui::text::plain;
 use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] = &[
-    command("search", "next|previous|TEXT", "Go to the next place of that name or value", search).counted(),
+    command("search", "next|previous|TEXT", "Go to the next place with that name or value", search).counted(),
     command("go", "PATH", "Go to the node or the field at a path; without one, to the scene", go),
     command("mark", "a..z", "Set a mark here", mark),
     command("jump-mark", "a..z", "Go to a mark", jump_mark),
-    command("jumps", "[older|newer]", "Go back and on along the jumps, or list them", jumps)
+    command("jumps", "[older|newer]", "Go back and forward along the jumps, or list them", jumps)
         .counted_with(&["older", "newer"]),
     command("sibling", "next|previous", "Go to the same place of the next zone or tool like this one", sibling)
         .counted(),
 ];
 
-/// The letter that a command is given.
+/// The letter of a mark.
 fn letter(call: &Call) -> Result<char, String> {
     let mut letters = call.text.chars();
     match (letters.next(), letters.next()) {
@@ -34,7 +34,7 @@ fn letter(call: &Call) -> Result<char, String> {
 fn mark(state: &mut State, call: &Call) -> Done {
     let (letter, spot) = (letter(call)?, state.spot());
     state.memory.finding.mark(letter, spot);
-    state.say(format!("mark {letter} is set: '{letter} comes back"));
+    state.say(format!("mark {letter} is set: '{letter} goes back to it"));
     Ok(())
 }
 
@@ -83,13 +83,13 @@ fn list_jumps(state: &mut State) -> Done {
         }
     }
     if options.is_empty() {
-        return Err("there were no jumps yet".into());
+        return Err("there are no jumps yet".into());
     }
     state.typing.mode = Mode::Choice(Choice { title: "jumps".into(), options, at: 0, then: Then::Go });
     Ok(())
 }
 
-/// A jump leaves this place.
+/// Remembers this place before a jump.
 pub fn leave(state: &mut State) {
     let spot = state.spot();
     state.memory.finding.left(spot);
@@ -102,7 +102,7 @@ fn go(state: &mut State, call: &Call) -> Done {
     };
     let before = state.spot();
     reveal(state, &pointer);
-    // Whoever names a list means its rows.
+    // For a list, go to its rows.
     if state.cursor.focus == Pane::Tree && state.sheet().table {
         state.cursor.focus = Pane::Table;
     }
@@ -112,7 +112,7 @@ fn go(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Goes to the next place whose name or value is looked for, in the order of the document, around its end.
+/// Goes to the next place that matches, in the order of the document, continuing at its other end.
 fn search(state: &mut State, call: &Call) -> Done {
     let before = state.memory.finding.sought.clone();
     match call.text {
@@ -120,13 +120,13 @@ fn search(state: &mut State, call: &Call) -> Done {
         text => state.memory.finding.sought = unquoted(text),
     }
     if state.memory.finding.sought.is_empty() {
-        return Err("nothing was searched for yet: / searches".into());
+        return Err("there was no search yet: / searches".into());
     }
     let steps = if call.text == "previous" { -call.times() } else { call.times() };
     let Some(found) = find(state, steps) else {
-        // What is refused changes nothing: n goes on with the search before.
+        // A failed search changes nothing: n repeats the one before.
         let sought = std::mem::replace(&mut state.memory.finding.sought, before);
-        return Err(format!("nothing here is called or says {sought}"));
+        return Err(format!("no name or value matches {sought}"));
     };
     leave(state);
     reveal_part(state, &found.pointer, found.part);
@@ -134,7 +134,7 @@ fn search(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// A place that was found.
+/// A match of a search.
 struct Found {
     pointer: String,
     address: String,
@@ -153,7 +153,7 @@ fn find(state: &mut State, steps: i64) -> Option<Found> {
     let count = matches.len();
     let here = here(state);
     let at = listed.iter().position(|one| one.pointer == here);
-    // The first match behind the cursor, or the last one before it.
+    // The first match after the cursor, or the last one before it.
     let after = matches.partition_point(|&(i, _)| at.is_some_and(|at| i <= at));
     let before = matches.partition_point(|&(i, _)| at.is_some_and(|at| i < at));
     let index = if steps > 0 { after as i64 + steps - 1 } else { before as i64 + steps };
@@ -172,7 +172,7 @@ fn here(state: &State) -> String {
     state.cursor.cell(&row).map_or(&row.pointer, |cell| &cell.pointer).clone()
 }
 
-/// A search is being typed: the cursor goes to what would be found.
+/// While a search is being typed, moves the cursor to the first match.
 pub fn search_typed(state: &mut State, typed: &str) {
     let Some(origin) = state.memory.finding.origin.clone() else { return };
     state.return_to_origin(&origin);
@@ -186,7 +186,7 @@ pub fn search_typed(state: &mut State, typed: &str) {
     }
 }
 
-/// The search is no longer being typed: the cursor is where it was before.
+/// When a search is no longer being typed, moves the cursor back.
 pub fn search_left(state: &mut State) {
     if let Some(origin) = state.memory.finding.origin.take() {
         state.return_to_origin(&origin);
@@ -198,8 +198,8 @@ pub fn reveal(state: &mut State, pointer: &str) {
     reveal_part(state, pointer, 0);
 }
 
-/// Shows the node or the field at `pointer`, the cursor on one of its numbers. A field of an item without a name is shown
-/// in the table of those items.
+/// Shows the node or the field at `pointer`, with the cursor on one of its numbers. Fields of unnamed items are shown in the
+/// table of these items.
 fn reveal_part(state: &mut State, at: &str, part: usize) {
     let kind = field::field(state.document(), at).map(|field| field.kind);
     let node = field::is_there(state.document(), at) && kind.is_some_and(|kind| is_node(&kind));
@@ -223,8 +223,7 @@ fn reveal_part(state: &mut State, at: &str, part: usize) {
     state.ask(Effect::Show);
 }
 
-/// The list, the row and the column where a field of one of its items stands, where the item has no name and no form of
-/// its own is needed for it.
+/// The list, the row and the column that show a field of an item, if the item has no name and its row has such a column.
 fn cell_in_table(state: &State, item: &str, at: &str, part: usize) -> Option<(String, usize, usize)> {
     let (list, index) = pointer::split(item)?;
     let index = pointer::index(&index)?;
@@ -239,7 +238,7 @@ fn column_of(row: &crate::tui::document::sheet::Row, at: &str, part: usize) -> O
     is(Part::Number(part)).or_else(|| is(Part::Whole))
 }
 
-/// Goes to the same place in the next item like the innermost one that holds the node.
+/// Goes to the same place in the next item of the same kind as the innermost item around the node.
 fn sibling(state: &mut State, call: &Call) -> Done {
     let next = call.text != "previous";
     let (mut node, row, column) = (state.cursor.node.clone(), state.cursor.row, state.cursor.column);
@@ -260,7 +259,7 @@ fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, Strin
     let json = state.document().json();
     let mut item = node;
     loop {
-        let (list, last) = pointer::split(item).ok_or("this is in no list: go to a zone or a tool")?;
+        let (list, last) = pointer::split(item).ok_or("this is not in a list: go to a zone or a tool")?;
         if let (Some(index), Some(items)) = (pointer::index(&last), json.pointer(list).and_then(|list| list.as_array()))
         {
             let tag = match Place::of(json, item).map(|place| place.shape.body()) {
@@ -278,7 +277,7 @@ fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, Strin
     }
 }
 
-/// The place, or what of it is there.
+/// The place, or its nearest ancestor that exists.
 fn nearest(state: &State, mut place: String) -> String {
     while !field::is_there(state.document(), &place) {
         place.truncate(place.rfind('/').unwrap_or(0));

@@ -1,5 +1,5 @@
-//! The help: first what is under the cursor, then the keys of this pane, then everything; all of it from the tables and
-//! from the schema.
+//! The help: what is under the cursor, then the keys of this pane, then everything else. All of it is made from the tables
+//! and the schema.
 
 use super::cells::number;
 use super::command::{Call, Command, Done, command};
@@ -14,11 +14,11 @@ use crate::tui::text::wrap::wrapped;
 use crate::tui::text::{numbers, plain};
 
 pub const COMMANDS: &[Command] = &[
-    command("help", "[COMMAND]", "Show what is under the cursor, then keys and commands", help).inside(),
+    command("help", "[COMMAND]", "Show help for what is under the cursor, then keys and commands", help).inside(),
     command("scroll", "LINES", "Scroll the pages", scroll).inside().counted(),
 ];
 
-/// Columns of the text on the pages.
+/// Width of the text, in columns.
 const WIDTH: u16 = 70;
 
 fn help(state: &mut State, call: &Call) -> Done {
@@ -55,7 +55,7 @@ fn help(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// One command: its line in the table; of what is typed into cells all that may be, of a subcommand what `--help` says.
+/// The help of one command: its line in the table; for `put` also what can be entered; for a subcommand the text of `--help`.
 fn help_of(state: &mut State, call: &Call) -> Done {
     let name = call.text.trim_start_matches(':');
     let lines: Vec<String> = match (call.table.find(name), call.table.subcommands().find(|known| known == name)) {
@@ -75,7 +75,7 @@ fn help_of(state: &mut State, call: &Call) -> Done {
         }
         (None, None) => return Err(call.table.unknown(name)),
     };
-    // What is being typed is there again once the help is closed.
+    // The entry comes back when the help is closed.
     if let Mode::Entry(entry) = &state.typing.mode {
         state.memory.entry = Some(entry.clone());
     }
@@ -83,7 +83,7 @@ fn help_of(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// The field under the cursor, in the tree the node: help, value, range, default, path, formula.
+/// Help, value, range, default, path and formula of the field under the cursor, in the tree of the node.
 fn under_cursor(state: &State) -> Vec<String> {
     let row = (state.cursor.focus != Pane::Tree).then(|| state.row()).flatten();
     let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
@@ -92,7 +92,7 @@ fn under_cursor(state: &State) -> Vec<String> {
     let Some(field) = field::field(document, &at) else { return Vec::new() };
     let name = if at.is_empty() { "scene".to_owned() } else { plain(&field.name) };
     let part = cell.filter(|cell| cell.part != Part::Whole).map(|cell| cell.head.as_str()).unwrap_or_default();
-    // Some columns carry the name of their field already.
+    // Some columns begin with the name of their field.
     let part = part.strip_prefix(&*name).unwrap_or(part).trim_start();
     let mut lines = vec![format!("-- {} --", format!("{name} {part}").trim_end())];
     lines.extend(wrapped(field.help, WIDTH));
@@ -131,7 +131,7 @@ fn value(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> String 
     format!("{}{}", numbers::exact(number), unit.map(|unit| format!(" {unit}")).unwrap_or_default())
 }
 
-/// What the innermost function, method or rule that holds the place is called, says of itself, and computes.
+/// Name, help and formula of the innermost function, method or rule around the place.
 fn formula(state: &State, at: &str) -> Option<(String, String, String)> {
     let mut at = at;
     loop {
@@ -146,23 +146,23 @@ fn formula(state: &State, at: &str) -> Option<(String, String, String)> {
     }
 }
 
-/// What may be typed into a cell.
+/// What can be typed into a cell.
 pub fn entries() -> Vec<String> {
     let functions: Vec<&str> = crate::base::expression::functions().collect();
     let rows: &[(&str, &str)] = &[
-        ("5  -18  4,5", "The value; a comma is a decimal point, except among a function's arguments"),
-        ("+=3  -=3  *=2  /=2", "Changes the old value; so do *2 and /2"),
-        ("w/2  sqrt(2)*r", "Computed, with + - * / % ^ ( ), also after ="),
-        ("v", "The old value, of each selected row its own"),
+        ("5  -18  4,5", "The value; a comma is a decimal point, except between a function's arguments"),
+        ("+=3  -=3  *=2  /=2", "Change the old value; so do *2 and /2"),
+        ("w/2  sqrt(2)*r", "Computed, with + - * / % ^ ( ); an = may come first"),
+        ("v", "The old value, for each selected row its own"),
         ("x y dx dy ...", "The other columns of the row, by their names"),
         ("r  a", "Length and direction of the row's jump vector, degrees counter-clockwise"),
         ("w  h", "Width and height of the picture"),
-        ("i  n", "The place in the selection, from 0, and how many rows are selected"),
+        ("i  n", "The row's index in the selection, from 0, and the number of selected rows"),
         ("pi", "3.14159..."),
-        ("|J|  °", "A jump without a length takes one along x; it has no direction to turn"),
+        ("|J|  °", "A length for a jump without one points along x; a direction needs a length first"),
         (
             "p, or a paste",
-            "JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list; over a selection as many rows as are selected, or one; dx and dy count before |J| and °; on a number 7,5 is one number",
+            "JSON where it fits; rows (CSV, TSV, spaces; x y dx dy or a header) into the list; over a selection as many rows as are selected, or one; dx and dy override |J| and °; on a number, 7,5 is one number",
         ),
     ];
     let named = rows.iter().map(|&(what, help)| (what, help.to_owned()));

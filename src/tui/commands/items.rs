@@ -1,4 +1,4 @@
-//! Rows and nodes as a whole: added, taken away, doubled and moved.
+//! Adds, deletes, duplicates and moves rows and nodes as a whole.
 
 use crate::scene::{Document, address};
 use crate::tui::document::pointers::item_of;
@@ -25,7 +25,7 @@ pub const COMMANDS: &[Command] = &[
     command("reorder", "down|up", "Move the row or the node among its siblings", reorder).change().counted(),
 ];
 
-/// What the node or the row under the cursor is: its pointer.
+/// The pointer of the node or the row under the cursor.
 pub fn target(state: &State) -> Result<String, String> {
     match state.cursor.focus {
         Pane::Tree => Ok(state.cursor.node.clone()),
@@ -33,8 +33,8 @@ pub fn target(state: &State) -> Result<String, String> {
     }
 }
 
-/// The nodes or rows that a command applies to as a whole, in their order: the selection, else as many as the count says
-/// from the one under the cursor on, as far as its list goes.
+/// The nodes or rows that a command applies to, in order: the selection, else as many as the count says from the cursor on,
+/// to the end of the list at most.
 pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
     let sheet = state.sheet();
     if state.cursor.focus != Pane::Tree {
@@ -43,7 +43,7 @@ pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
     let node = target(state)?;
     match (call.count, item_of(state.document(), &node).map(owned)) {
         (None | Some(1), _) => Ok(vec![node]),
-        (Some(_), None) => Err("only items of a list are counted: go to one".into()),
+        (Some(_), None) => Err("a count needs items of a list: go to one".into()),
         (Some(count), Some((list, index))) => {
             let items = state.document().json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
             Ok((index..items.min(index + count.max(1))).map(|i| pointer::join(&list, i)).collect())
@@ -51,8 +51,8 @@ pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
     }
 }
 
-/// The rows that a command applies to as a whole: the selection, else as many as the count says from the cursor on, as far
-/// as there are rows like the one under it.
+/// The rows that a command applies to: the selection, else as many as the count says from the cursor on, as far as there are
+/// rows like the one under it.
 pub fn rows(state: &State, call: &Call) -> Result<std::ops::RangeInclusive<usize>, String> {
     match call.count {
         None => Ok(state.cursor.rows()),
@@ -65,8 +65,8 @@ pub fn rows(state: &State, call: &Call) -> Result<std::ops::RangeInclusive<usize
     }
 }
 
-/// The first and the last of the rows around the cursor that are like the one under it: all rows of a table; in a form the
-/// items of one list, else fields.
+/// The first and the last of the rows around the cursor that are like the one under it: in a table all rows, in a form the
+/// items of one list, or the fields.
 pub fn alike(state: &State) -> Option<(usize, usize)> {
     let sheet = state.sheet();
     if sheet.table {
@@ -90,7 +90,7 @@ fn add(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// A picture by its file, as written relative to the scene, under the file's name.
+/// Adds the picture of a file (relative to the scene), under the file's name.
 fn add_picture(state: &mut State, path: &str) -> Done {
     let entry = (stem(path).to_owned(), value!({ "path": path }));
     let added = Edit::insert_entries(state.document(), "/images", [entry].into_iter().collect());
@@ -100,7 +100,7 @@ fn add_picture(state: &mut State, path: &str) -> Done {
     Ok(())
 }
 
-/// Adds so many items where the cursor is; what is asked for is typed or chosen then.
+/// Adds so many items at the cursor. If a path or a kind is needed, it is typed or chosen next.
 pub fn add_here(state: &mut State, times: usize) -> Done {
     let pointer = target(state).unwrap_or(state.cursor.node.clone());
     let field = field::field(state.document(), &pointer).ok_or("nothing can be added here")?;
@@ -146,7 +146,7 @@ fn ask_for_path(state: &mut State) -> Done {
     Ok(())
 }
 
-/// An optional object comes with its first field that must be written.
+/// Adds an optional object, with the one field that it must have.
 fn add_object(state: &mut State, pointer: &str) -> Done {
     let document = state.document();
     let image = document.scene().images.keys().next().cloned();
@@ -172,7 +172,7 @@ fn insert(state: &mut State, list: &str, index: usize, times: usize) -> Done {
     Ok(())
 }
 
-/// Puts the cursor on the item at `pointer`: its row where its list is shown, else its node.
+/// Puts the cursor on the item at `pointer`: on its row if its list is shown, else on its node.
 pub fn go_to(state: &mut State, pointer: &str) {
     match state.sheet().position(pointer) {
         Some(row) => state.cursor.row = row,
@@ -186,7 +186,7 @@ pub fn go_to(state: &mut State, pointer: &str) {
     state.settle();
 }
 
-/// Items go from their lists, the last first, as one edit; a field goes back to its default.
+/// Deletes items in one edit, the last first; a field goes back to its default.
 fn delete(state: &mut State, call: &Call) -> Done {
     let pointers: Vec<String> = targets(state, call)?.into_iter().rev().collect();
     let written = |pointer: &&String| !pointer.is_empty() && state.document().json().pointer(pointer).is_some();
@@ -204,7 +204,7 @@ fn delete(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// The items that an edit of whole rows applies to: their list, the first and the last.
+/// The block of items that an edit of whole rows applies to: their list, the first and the last index.
 fn block(state: &State) -> Result<(String, usize, usize), String> {
     let one = || -> Option<(String, usize, usize)> {
         let (list, index) = item_of(state.document(), &target(state).ok()?).map(owned)?;
@@ -221,7 +221,7 @@ fn block(state: &State) -> Result<(String, usize, usize), String> {
     }
 }
 
-/// Puts the cursor and the selection on the items that a block has become, `by` rows on.
+/// Moves the cursor and the selection with a block that moved by `by` rows.
 fn follow(state: &mut State, list: &str, at: usize, by: i64) {
     let moved = |row: usize| usize::try_from(row as i64 + by).unwrap_or(0);
     match state.cursor.selected_from.filter(|_| state.cursor.focus != Pane::Tree) {
@@ -234,7 +234,7 @@ fn follow(state: &mut State, list: &str, at: usize, by: i64) {
     state.settle();
 }
 
-/// Refuses what would take this much memory beside the scene, before any of it is made.
+/// Refuses to make something that takes this much memory, if that is too much.
 pub fn bearable(state: &State, bytes: u64) -> Done {
     let most = state.scene.options().limits.paste.saturating_mul(8);
     if bytes <= most {
@@ -247,7 +247,7 @@ pub fn bearable(state: &State, bytes: u64) -> Done {
     ))
 }
 
-/// The edit that adds entries to a map so many times, each time under other names; with it, the pointer of the first.
+/// The edit that adds entries to a map so many times, each time under new names; also returns the pointer of the first.
 pub fn insert_entries(
     state: &State,
     map: &str,
@@ -266,7 +266,7 @@ pub fn insert_entries(
     Ok(first_path.map(|path| (Edit::all(edits), path)))
 }
 
-/// Copies follow the last of what they are copies of, and take over the selection.
+/// Inserts copies after the originals, and moves the selection to them.
 fn duplicate(state: &mut State, call: &Call) -> Done {
     let times = call.times_of("duplicate")?;
     let path = target(state)?;
@@ -288,7 +288,7 @@ fn duplicate(state: &mut State, call: &Call) -> Done {
     let revision = state.scene.revision();
     state.edit(edit, false)?;
     if state.scene.revision() == revision {
-        return Err("copies of several of these would stand where they do: duplicate them one by one".into());
+        return Err("copies of several of these would overlap them: duplicate them one by one".into());
     }
     match state.cursor.selected_from {
         Some(_) => follow(state, &list, to + 1, (to + 1 - from) as i64),
@@ -297,14 +297,14 @@ fn duplicate(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// A block moves as far as it can; what it passes goes to its other side.
+/// Moves a block as far as possible, by moving the items that it passes to its other side.
 fn reorder(state: &mut State, call: &Call) -> Done {
     let (list, from, to) = block(state)?;
     let count = state.document().json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
     let (up, times) = (call.text == "up", call.times() as usize);
     let by = times.min(if up { from } else { count - 1 - to });
     if by == 0 {
-        return Err("it cannot go farther".into());
+        return Err("it cannot move any further".into());
     }
     let passed = (0..by).filter_map(|k| {
         let (at, onto) = if up { (from - 1 - k, to - k) } else { (to + 1 + k, from + k) };
@@ -317,7 +317,7 @@ fn reorder(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Whether nothing names what is to go; else who does. Only pictures are named.
+/// Refuses to delete a picture that is used.
 fn unused(document: &Document, path: &str) -> Done {
     let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == "/images") else { return Ok(()) };
     let users = document.scene().users_of_image(&name);
@@ -331,7 +331,7 @@ fn unused(document: &Document, path: &str) -> Done {
     }
 }
 
-/// The name of a file without its folder and its ending.
+/// The name of a file without folder and extension.
 pub fn stem(path: &str) -> &str {
     let file = path.rsplit('/').next().unwrap_or(path);
     file.split_once('.').map_or(file, |(stem, _)| stem)

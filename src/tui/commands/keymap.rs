@@ -1,4 +1,4 @@
-//! The person's own keys: shown with what is wrong in their file, and read anew.
+//! Shows the person's own keys and the mistakes in their file, and reads the file again.
 
 use super::command::{Call, Command, Done, command};
 use crate::tui::events::Effect;
@@ -7,7 +7,7 @@ use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::plain;
 
 pub const COMMANDS: &[Command] =
-    &[command("keys", "[reload]", "Show your own keys and what is wrong with them, or read them anew", keys).inside()];
+    &[command("keys", "[reload]", "Show your own keys and the mistakes in them, or read them again", keys).inside()];
 
 fn keys(state: &mut State, call: &Call) -> Done {
     match call.text {
@@ -18,7 +18,7 @@ fn keys(state: &mut State, call: &Call) -> Done {
         }
         other => return Err(format!("keys takes reload or nothing, not {other}")),
     }
-    let mut lines = vec![format!("They stand in {OWN_FILE}; docs/keymap.md tells how."), String::new()];
+    let mut lines = vec![format!("They are in {OWN_FILE}; docs/keymap.md explains how."), String::new()];
     if !state.keymap.mistakes().is_empty() {
         lines.push("-- mistakes --".into());
         lines.extend(state.keymap.mistakes().iter().map(|mistake| plain(mistake)));

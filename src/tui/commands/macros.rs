@@ -1,5 +1,4 @@
-//! Lines run again: macros, and `.` for the last change. Both are lines that the recorder kept; a line that cannot be done
-//! ends them.
+//! Runs recorded lines again: macros, and `.` for the last change. A line that cannot be done ends them.
 
 use super::command::{Call, Command, Done, command};
 use crate::tui::state::{Mode, State};
@@ -33,7 +32,7 @@ fn letter(text: &str) -> Result<char, String> {
 
 fn play(state: &mut State, call: &Call) -> Done {
     let letter = match call.text {
-        "last" => state.memory.recorder.played().ok_or("no macro was played yet: @a plays a")?,
+        "last" => state.memory.recorder.played().ok_or("no macro has been played yet: @a plays a")?,
         text => letter(text)?,
     };
     let lines = state.memory.recorder.play(letter)?;
@@ -46,7 +45,7 @@ fn play(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Runs a line of several; one that is refused leaves no list open.
+/// Runs one of several lines. If it is refused, a list that it has opened is closed.
 fn repeat(state: &mut State, call: &Call, line: &str) -> Done {
     state.memory.recorder.spend(state.scene.document())?;
     call.obey(state, line).inspect_err(|_| {
@@ -56,10 +55,10 @@ fn repeat(state: &mut State, call: &Call, line: &str) -> Done {
     })
 }
 
-/// A count takes the place of the change's own.
+/// Repeats the last change; a count replaces the change's own.
 fn again(state: &mut State, call: &Call) -> Done {
     let mut lines = state.memory.recorder.change().to_vec();
-    let last = lines.last_mut().ok_or("nothing was changed yet: . repeats the last change")?;
+    let last = lines.last_mut().ok_or("nothing has been changed yet: . repeats the last change")?;
     if call.count.is_some() {
         *last = Said { count: None, ..Said::parse(last, None) }.to_string();
     }

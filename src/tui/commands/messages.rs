@@ -1,4 +1,4 @@
-//! What was said, to be read again, and what is wrong in the scene, to be gone to.
+//! Earlier messages, and the problems of the scene.
 
 use super::command::{Call, Command, Done, command};
 use crate::base::problem::{Problem, Severity};
@@ -9,26 +9,26 @@ use crate::tui::text::plain;
 use crate::tui::text::wrap::wrapped_lines;
 
 pub const COMMANDS: &[Command] = &[
-    command("messages", "", "Show what was said before, to its end", messages).inside(),
+    command("messages", "", "Show earlier messages in full", messages).inside(),
     command("problems", "", "List what is wrong in the scene; Enter goes there", problems).inside(),
     command("problem", "[next|previous]", "Go to the next place where something is wrong", problem).counted(),
 ];
 
-/// Columns of the text on the page.
+/// Width of the text, in columns.
 const WIDTH: u16 = 70;
 
 fn messages(state: &mut State, _: &Call) -> Done {
     let lines: Vec<String> = state.memory.said.iter().flat_map(|message| wrapped_lines(&message.text, WIDTH)).collect();
     if lines.is_empty() {
-        return Err("nothing was said yet".into());
+        return Err("there are no messages yet".into());
     }
-    // The newest are looked for first.
+    // Scroll to the newest.
     let scroll = lines.len().saturating_sub(usize::from(state.size.1 / 2));
     state.typing.mode = Mode::Pages(Pages { title: "messages".into(), lines, scroll });
     Ok(())
 }
 
-/// What is wrong, a place and a message each; the place empty where it is the whole scene.
+/// The problems, each as a place and a message; the place of the whole scene is empty.
 fn found(state: &State) -> Vec<(String, String)> {
     let unseen = state.outside.problem.iter().map(|problem| (String::new(), plain(problem)));
     let warnings = state.document().warnings().iter();
@@ -55,7 +55,7 @@ fn problems(state: &mut State, _: &Call) -> Done {
     Ok(())
 }
 
-/// The places in order, as often as the count says; from the last to the first.
+/// Goes to the next problem, as often as the count says; after the last comes the first.
 fn problem(state: &mut State, call: &Call) -> Done {
     let found: Vec<_> = found(state).into_iter().filter(|(path, _)| !path.is_empty()).collect();
     let n = found.len() as i64;
@@ -76,7 +76,7 @@ fn problem(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Goes to a place, or to the nearest that holds it and is there.
+/// Goes to a place, or to its nearest ancestor that exists.
 fn go(state: &mut State, call: &Call, path: &str) -> Done {
     let mut path = path.to_owned();
     while !path.is_empty() && !crate::scene::field::is_there(state.document(), &path) {
@@ -85,7 +85,7 @@ fn go(state: &mut State, call: &Call, path: &str) -> Done {
     call.obey(state, &format!("go {path}"))
 }
 
-/// Goes to the place of a row of the list.
+/// Goes to a place of the list.
 pub fn go_to(state: &mut State, call: &Call, place: &str) -> Done {
     let path = if place == "scene" { String::new() } else { place.to_owned() };
     let path = address::resolve(state.document(), &path).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The one table of commands: what keys run and what is typed after `:`.
+//! The table of commands, which keys run and people type after `:`.
 
 use super::state::State;
 use command::{Command, Done, Table};
@@ -66,7 +66,7 @@ pub fn all() -> impl Iterator<Item = &'static Command> {
     TABLE.all()
 }
 
-/// Runs a line, and says where it could not be done.
+/// Runs a line, and shows why it could not be done.
 pub fn run(state: &mut State, line: &str, count: Option<usize>) {
     TABLE.run(state, line, count);
 }
@@ -74,7 +74,7 @@ pub fn run(state: &mut State, line: &str, count: Option<usize>) {
 /// Runs a line `[COUNT] NAME [ARGS]`.
 ///
 /// # Errors
-/// What to say where it could not be done.
+/// Why it could not be done.
 pub fn obey(state: &mut State, line: &str, count: Option<usize>) -> Done {
     TABLE.obey(state, line, count)
 }

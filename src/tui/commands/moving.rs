@@ -1,4 +1,4 @@
-//! Moving about: in the tree, in forms and tables, between panes, and by search.
+//! Moves the cursor in the tree, in forms and tables, and between panes.
 
 use super::command::{Call, Command, Done, command};
 use super::finding::leave as leave_place;
@@ -12,12 +12,12 @@ pub const COMMANDS: &[Command] = &[
     command("pane", "next|previous|tree|table|picture", "Go to another pane", pane).counted_with(&["next", "previous"]),
     command("collapse", "", "Collapse the node of the tree, else go to its parent", collapse).counted(),
     command("expand", "", "Expand the node of the tree, else edit it", expand).counted(),
-    command("up", "", "Go to the node that holds this one", up).counted(),
+    command("up", "", "Go to the parent node", up).counted(),
     command("back", "", "End the selection, else running work", back).counted(),
-    command("leave", "", "As back, and say how to leave", leave).counted(),
+    command("leave", "", "Do as back does, and say how to leave", leave).counted(),
 ];
 
-/// Rows that a page holds, about.
+/// Roughly half the rows of a pane.
 fn page(state: &State) -> i64 {
     i64::from(state.size.1.saturating_sub(8) / 2).max(1)
 }
@@ -141,7 +141,7 @@ fn up(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Ends one thing: a count, the selection, running work.
+/// Ends one thing: a count, the selection, or running work.
 fn back(state: &mut State, call: &Call) -> Done {
     if call.count.is_none() && !state.cursor.unselect() && state.outside.work.is_some() {
         state.ask(Effect::Cancel);

@@ -1,4 +1,4 @@
-//! Names: of what carries one, and of pictures, which others name.
+//! Renames items that have a name, and pictures, to which others refer by name.
 
 use super::command::{Call, Command, Done, command};
 use super::items::{go_to, target};
@@ -9,7 +9,7 @@ use crate::tui::text::line::Line;
 use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] =
-    &[command("rename", "[NAME]", "Give the node or row another name, everywhere", rename).change()];
+    &[command("rename", "[NAME]", "Rename the node or row; a picture is renamed everywhere", rename).change()];
 
 /// The pictures of a scene, by name.
 const IMAGES: &str = "/images";
@@ -29,7 +29,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
         return state.edit(edit, false);
     }
     if state.document().scene().images.contains_key(&name) {
-        return Err(format!("there is a picture {} already", quoted(&name)));
+        return Err(format!("there is already a picture {}", quoted(&name)));
     }
     let edit = Edit::rename_image(state.document(), &old, &name);
     state.edit(edit, false)?;

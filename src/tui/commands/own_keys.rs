@@ -1,9 +1,9 @@
-//! The person's own keys, read with what there is to run.
+//! Reads the person's own keys, checked against the table of commands.
 
 use super::TABLE;
 use crate::tui::keys::Keymap;
 
-/// The keymap of a file; what is wrong in it names `file`.
+/// The keymap of a file; mistakes name `file`.
 pub fn read(file: &str, text: &str) -> Keymap {
     let help = |name: &str| TABLE.find(name).map_or("", |command| command.help);
     let names = TABLE.names().into_iter().chain(TABLE.aliases().map(str::to_owned));

@@ -1,4 +1,4 @@
-//! The palette and the leader menu: what there is, to be chosen from.
+//! The palette and the leader menu.
 
 use super::command::{Call, Command, Done, command};
 use crate::tui::commands::command::Table;
@@ -38,14 +38,14 @@ fn palette(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// The list with everything in it, commands first.
+/// The palette with all commands, then all places.
 fn opened(table: &Table, state: &mut State) -> Palette {
     let document = state.document().clone();
     let places = state.memory.finding.listed(&document);
     Palette::new(actions(table, state), places)
 }
 
-/// The lines of keys that work in any pane, then the commands that take arguments or have no key.
+/// The lines of keys that work in the panes, then commands that take arguments or have no key.
 fn actions(table: &Table, state: &State) -> Vec<Action> {
     let shown = [keys::EVERYWHERE, keys::TREE, keys::TABLE, keys::PICTURE];
     let mut all: Vec<Action> = Vec::new();

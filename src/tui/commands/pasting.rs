@@ -1,5 +1,5 @@
-//! What the terminal pastes while nothing is being typed: a number into a cell, rows into a list, a value as JSON. Each
-//! becomes a line, so that a script or a macro has it too.
+//! Handles a paste of the terminal while nothing is being typed: a number into a cell, rows into a list, a value as JSON.
+//! Each becomes a line, so that scripts and macros can contain it.
 
 use serde_json::Value;
 
@@ -13,7 +13,7 @@ use crate::tui::document::rows::Target;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::numbers;
 
-/// Takes a pasted text, as one step of undo; where something is wrong with it, nothing changes.
+/// Pastes a text as one step of undo. If something is wrong with it, nothing changes.
 pub fn pasted(state: &mut State, text: &str) -> Done {
     let limits = &state.scene.options().limits;
     if text.len() as u64 > limits.paste {
@@ -21,9 +21,9 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     }
     let trimmed = text.trim();
     if trimmed.is_empty() {
-        return Err("nothing was pasted".into());
+        return Err("the paste is empty".into());
     }
-    // A table may begin with a field in quotes, JSON with a text.
+    // A quote may begin a table with a quoted field, or JSON.
     let json = trimmed.starts_with(['{', '['])
         || trimmed.starts_with('"') && serde_json::from_str::<Value>(trimmed).is_ok_and(|value| value.is_string());
     if json {
@@ -31,7 +31,7 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     }
     let in_table = state.cursor.focus == Pane::Table;
     let on_number = in_table && cells::current(state).is_some_and(|(_, cell)| cell.is_number());
-    // A comma within one number is a decimal comma, as where it is typed.
+    // A comma within one number is a decimal comma, as in an entry.
     if let (true, Some(number)) = (on_number, rows::number(trimmed)) {
         return obey(state, &format!("put {}", numbers::exact(number)), None);
     }
@@ -51,7 +51,7 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     obey(state, &format!("paste {value}"), None)
 }
 
-/// The list that takes rows: the one under the cursor, one that holds it, one inside the node.
+/// The list that takes rows: the one under the cursor, one around it, or one inside the node.
 fn target(state: &State) -> Option<Target<'_>> {
     let document = state.document();
     let here = here(state);

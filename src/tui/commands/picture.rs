@@ -1,4 +1,4 @@
-//! What of the picture is in sight and how it comes to the terminal; what one pixel does.
+//! Which part of the picture is visible, how it is sent to the terminal, and the read-out of a pixel.
 
 use kurbo::Vec2;
 
@@ -15,7 +15,12 @@ pub const COMMANDS: &[Command] = &[
     command("zoom", "in|out|fit|one", "Zoom the picture, here and in the window", zoom).counted_with(&["in", "out"]),
     command("pan", "left|right|up|down|cursor", "Show another part of the picture", pan)
         .counted_with(&["left", "right", "up", "down"]),
-    command("graphics", "[auto|kitty|iterm2|sixel|blocks|bytes N]", "Say or set how the picture is shown", graphics),
+    command(
+        "graphics",
+        "[auto|kitty|iterm2|sixel|blocks|bytes N]",
+        "Show or set how the picture is sent to the terminal",
+        graphics,
+    ),
     command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
 ];
 
@@ -33,7 +38,7 @@ fn zoom(state: &mut State, call: &Call) -> Done {
             steps.fold(state.picture.viewport.zoom, |zoom, _| viewport::zoomed(zoom.unwrap_or(fit), fit, way == "in"))
         }
     };
-    // What is under the cursor stays there.
+    // The pixel under the cursor stays in its place.
     let (cursor, scale) = (state.picture.cursor, state.picture.viewport.zoom.unwrap_or(fit));
     state.picture.viewport.center = cursor + (before.corner + before.extent() / 2.0 - cursor) * (scale / before.scale);
     picture::settle(state);
@@ -95,7 +100,7 @@ fn graphics(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Opens the read-out of the pixel under the cursor, or of X,Y, and closes it when it is open already.
+/// Opens the read-out of the pixel under the cursor, or of X,Y; closes it if it is open.
 fn probe(state: &mut State, call: &Call) -> Done {
     if call.text == "off" || (call.text.is_empty() && state.picture.probing) {
         state.picture.probing = false;

@@ -1,4 +1,4 @@
-//! The picture: its cursor, its zoom, and what the cursor places.
+//! The picture's cursor, and what it places.
 
 use kurbo::{Point, Vec2};
 
@@ -19,13 +19,13 @@ pub const COMMANDS: &[Command] = &[
     command(
         "pointer",
         "[mark|select]",
-        "Take the window's pointer into the field, else into the picture's cursor",
+        "Enter the place of the window's pointer, or move the picture's cursor there",
         pointer,
     )
     .inside(),
 ];
 
-/// An anchor is picked from this far, as a share of the picture's longer side.
+/// An anchor is picked within this distance, as a share of the picture's longer side.
 const PICK_REACH: f64 = 0.02;
 
 fn cursor(state: &mut State, call: &Call) -> Done {
@@ -79,20 +79,19 @@ fn placed(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Goes to what stands at a place of the picture: an anchor near it, else the zone.
+/// Goes to what is at a place of the picture: an anchor near it, else the zone.
 fn select(state: &mut State, call: &Call, at: Point) -> Done {
     if !matches!(state.typing.mode, Mode::Normal) {
         return Err("something is being typed or chosen: end that first (Esc)".into());
     }
     let (width, height) = state.picture.size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
-    let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("no zone is there")?;
+    let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("there is no zone")?;
     call.obey(state, &format!("go {}{}", hit.path, hit.cell))
 }
 
-/// In an entry the window's pointer gives the field's coordinate; else the picture's cursor goes there, and with it the row
-/// under the cursor where it has a place, or the end of its jump vector where the cell is one; unless the point is only
-/// marked.
+/// In an entry, types the coordinate of the window's pointer. Otherwise moves the picture's cursor there, and unless the point
+/// is only to be marked, also the point of the row under the cursor, or the end of the jump vector under it.
 fn pointer(state: &mut State, call: &Call) -> Done {
     let (x, y) = state.outside.pointer.ok_or("the window's pointer is not over the picture")?;
     if call.text == "select" {
@@ -104,7 +103,7 @@ fn pointer(state: &mut State, call: &Call) -> Done {
     call.obey(state, &format!("cursor at {x} {y}"))?;
     match (call.text, state.cursor.focus) {
         ("mark", _) => {
-            state.say(format!("marked {}, {}: in the picture (g i) a adds a point there", short(x), short(y)));
+            state.say(format!("marked {}, {}: in the picture (g i), a adds a point there", short(x), short(y)));
             Ok(())
         }
         (_, Pane::Table) => match place::jump_in_focus(state) {

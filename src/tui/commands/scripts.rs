@@ -1,4 +1,4 @@
-//! Lines that were run, as one thing: the log of the session, and scripts.
+//! The log of the session, and scripts.
 
 use super::command::{Call, Command, Done, command};
 use crate::tui::events::Effect;
@@ -27,7 +27,7 @@ fn log(state: &mut State, call: &Call) -> Done {
 }
 
 fn source(state: &mut State, call: &Call) -> Done {
-    let path = call.path()?.ok_or("source takes a FILE of lines")?;
+    let path = call.path()?.ok_or("source takes a FILE")?;
     state.ask(Effect::Source(path));
     Ok(())
 }

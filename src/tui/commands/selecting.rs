@@ -1,13 +1,17 @@
-//! Rows that an edit applies to together.
+//! Selects rows, which an edit then applies to together.
 
 use super::command::{Call, Command, Done, command};
 use super::items::rows;
 use crate::tui::state::State;
 use crate::tui::state::cursor::Selection;
 
-pub const COMMANDS: &[Command] =
-    &[command("select", "[all|again]", "Begin or end a selection of rows; take all, or the last one again", select)
-        .counted_with(&[""])];
+pub const COMMANDS: &[Command] = &[command(
+    "select",
+    "[all|again]",
+    "Begin or end a selection of rows; select all, or the last selection again",
+    select,
+)
+.counted_with(&[""])];
 
 fn select(state: &mut State, call: &Call) -> Done {
     match call.text {
@@ -35,14 +39,14 @@ fn all(state: &mut State) -> Done {
     };
     let first = (0..=state.cursor.row).rev().take_while(|&row| within(row)).last();
     let last = (state.cursor.row..sheet.len()).take_while(|&row| within(row)).last();
-    // The cursor stays: its row and column say what an edit is about.
+    // The cursor stays, because it says which column is edited.
     (state.cursor.selected_from, state.cursor.selected_to) = (first, last);
     Ok(())
 }
 
 fn again(state: &mut State) -> Done {
     let Selection { node, from, to } =
-        state.cursor.last_selection.clone().ok_or("nothing was selected yet: v begins")?;
+        state.cursor.last_selection.clone().ok_or("nothing has been selected yet: v begins a selection")?;
     state.show(node);
     (state.cursor.selected_from, state.cursor.selected_to, state.cursor.row) = (Some(from), None, to);
     state.settle();

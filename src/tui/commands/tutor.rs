@@ -1,4 +1,4 @@
-//! The tutor: from lesson to lesson.
+//! Goes from lesson to lesson of the tutor.
 
 use super::command::{Call, Command, Done, command};
 use crate::tui::events::Effect;
@@ -19,12 +19,12 @@ fn tutor(state: &mut State, call: &Call) -> Done {
         }
         ("quit", Some(_)) => {
             state.tutor = None;
-            state.say("the tutor has gone; :tutor begins it anew");
+            state.say("the tutor is closed; :tutor begins again");
         }
         ("next", Some(tutor)) => go(state, (tutor.at + 1).min(LESSONS.len() - 1), true),
         ("back", Some(tutor)) => go(state, tutor.at.saturating_sub(1), false),
-        ("next" | "back" | "quit", None) => return Err("the tutor is not here: :tutor begins it".into()),
-        ("", Some(_)) => return Err("the tutor is here: it takes next, back or quit".into()),
+        ("next" | "back" | "quit", None) => return Err("the tutor is not running: :tutor begins it".into()),
+        ("", Some(_)) => return Err("the tutor is running: tutor takes next, back or quit".into()),
         _ => return Err("tutor takes next, back or quit".into()),
     }
     Ok(())
@@ -37,14 +37,14 @@ fn go(state: &mut State, at: usize, armed: bool) {
     }
 }
 
-/// Long work has ended well; `work` is what the status line said of it.
+/// Notes that long work has succeeded; `work` is its text in the status line.
 pub fn ended(state: &mut State, work: &str) {
     if let Some(tutor) = &mut state.tutor {
         tutor.ended.push(work.to_owned());
     }
 }
 
-/// Goes on where the lesson is done.
+/// Goes on to the next lesson if this one is done.
 pub fn follow(state: &mut State) {
     let Some(tutor) = &state.tutor else { return };
     let (at, armed, done) = (tutor.at, tutor.armed, (lesson(tutor).done)(state));

@@ -1,4 +1,4 @@
-//! Typing: the command line, texts, and the pages of the help.
+//! Typing into the command line, entries and the palette.
 
 use crate::tui::commands::completing;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::tui::text::line::Line;
 use crate::tui::text::said::{quoted, unquoted};
 
 pub const COMMANDS: &[Command] = &[
-    command("line", "[/|:TEXT]", "Type a command, one that begins so, or with / a search", |state, call| {
+    command("line", "[/|:TEXT]", "Type a command, also with a given beginning; with /, a search", |state, call| {
         let mut begun = call.text.chars();
         let mut line = Line::new(begun.next().unwrap_or(':'));
         state.memory.finding.origin = (line.kind == '/').then(|| state.origin());
@@ -26,7 +26,7 @@ pub const COMMANDS: &[Command] = &[
     command("type", "TEXT", "Type text where something is typed", type_text).inside(),
     command("run", "", "Run the line being typed", run_typed).inside(),
     command("complete", "", "Complete the line being typed", complete).inside(),
-    command("recall", "older|newer", "Recall a line typed before", recall).inside(),
+    command("recall", "older|newer", "Recall an earlier line", recall).inside(),
     command(
         "text",
         "left|right|start|end|word-left|word-right|rub|delete|rub-word|delete-word|clear",
@@ -34,8 +34,8 @@ pub const COMMANDS: &[Command] = &[
         text,
     )
     .inside(),
-    command("cancel", "", "Leave what is being done as it was", |state, call| {
-        // The first thing that Esc ends is a count.
+    command("cancel", "", "Cancel what is being typed or chosen", |state, call| {
+        // Esc ends a count first.
         if call.count.is_some() {
             return Ok(());
         }
@@ -48,7 +48,7 @@ pub const COMMANDS: &[Command] = &[
     .counted(),
 ];
 
-/// Quotes, as JSON has them, keep spaces at the ends.
+/// Types text. JSON quotes keep spaces at its ends.
 fn type_text(state: &mut State, call: &Call) -> Done {
     let typed = unquoted(call.text);
     match &mut state.typing.mode {
@@ -67,7 +67,7 @@ fn type_text(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// While a search is being typed the cursor goes along.
+/// Moves the cursor along while a search is being typed.
 fn seek(state: &mut State) {
     if let Mode::Line(line) = &state.typing.mode
         && line.kind == '/'
@@ -122,7 +122,7 @@ fn text(state: &mut State, call: &Call) -> Done {
     let changed = match &mut state.typing.mode {
         Mode::Entry(entry) => entry.text.change(call.text),
         Mode::Line(line) => {
-            // Rubbing out an empty line leaves it, as in vim.
+            // Backspace in an empty line leaves it, as in vim.
             if call.text == "rub" && line.text.value().is_empty() {
                 state.typing.mode = Mode::Normal;
                 search_left(state);

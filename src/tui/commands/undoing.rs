@@ -1,4 +1,4 @@
-//! Undo and redo: by steps and by time, said in words; and the list of the steps.
+//! Undo and redo by steps and by time, and the list of steps.
 
 use crate::tui::text::plain;
 use std::time::Duration;
@@ -20,29 +20,29 @@ pub const COMMANDS: &[Command] = &[
     command(
         "earlier",
         "STEPS|30s|3m|2h|1d",
-        "Go back in time, through all branches: by states, or to the scene as it was so long ago",
+        "Go back in time, through all branches: by a number of states, or to the scene as it was so long ago",
         |state, call| travel(state, call, UNDO, OpenScene::earlier),
     )
     .counted_with(&[""]),
     command(
         "later",
         "STEPS|30s|3m|2h|1d",
-        "Go on in time, through all branches: by states, or by so long a time",
+        "Go forward in time, through all branches: by a number of states, or by a time",
         |state, call| travel(state, call, REDO, OpenScene::later),
     )
     .counted_with(&[""]),
     command("history", "", "List what can be undone and redone, and the other branches", history).inside(),
 ];
 
-/// The most steps that are listed each way.
+/// The most steps that are listed in each direction.
 const MOST_TOLD: usize = 500;
 
-/// A way through the history.
+/// A direction in the history.
 #[derive(Clone, Copy)]
 struct Way {
     back: bool,
     step: fn(&mut OpenScene) -> Option<Change>,
-    /// What the step does that is so far away, in words; the next one is 1 away.
+    /// A step in words, by its distance; 1 is the next one.
     told: fn(&OpenScene, usize) -> Option<String>,
     done: &'static str,
     nothing: &'static str,
@@ -68,7 +68,7 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
     state.scene.writable()?;
     let times = match call.text {
         "" => call.times(),
-        text => text.parse().ok().filter(|&n: &i64| n > 0).ok_or_else(|| format!("{text} is no number of steps"))?,
+        text => text.parse().ok().filter(|&n: &i64| n > 0).ok_or_else(|| format!("{text} is not a number of steps"))?,
     };
     let mut count = 0;
     let mut words = None;
@@ -87,7 +87,7 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
     Ok(())
 }
 
-/// By states in the order in which they came to be, or by time.
+/// Goes by states in the order in which they were made, or by time.
 fn travel(
     state: &mut State,
     call: &Call,
@@ -99,7 +99,7 @@ fn travel(
         let times = if call.text.is_empty() { call.times() } else { call.text.parse().unwrap_or(i64::MAX) };
         return by_states(state, usize::try_from(times).unwrap_or(1), way);
     }
-    let time = duration(call.text).ok_or_else(|| format!("{} is no time: 30s, 3m, 2h or 1d", call.text))?;
+    let time = duration(call.text).ok_or_else(|| format!("{} is not a time: write 30s, 3m, 2h or 1d", call.text))?;
     let (count, change) = by(&mut state.scene, time);
     let change = change.ok_or_else(|| format!("{} within {}", way.nothing, call.text))?;
     state.changed(change);
@@ -116,7 +116,7 @@ fn by_states(state: &mut State, times: usize, way: Way) -> Done {
         return Err(way.nothing.into());
     }
     let route = history.route(to).ok_or(way.nothing)?;
-    // Where it stays within the branch it is what `undo` and `redo` do, and is said so.
+    // Within the branch it is the same as undo or redo, with the same message.
     let straight = match (way.back, route.back, route.on.len()) {
         (true, back, 0) => Some(back),
         (false, 0, on) => history.undone().map(|(state, _)| state).take(on).eq(route.on).then_some(on),
@@ -133,12 +133,13 @@ fn by_states(state: &mut State, times: usize, way: Way) -> Done {
     Ok(())
 }
 
-/// To a state by its number.
+/// Goes to a state by its number.
 fn go_to(state: &mut State, number: &str) -> Done {
     state.scene.writable()?;
     let newest = state.scene.history().newest();
     let to = number.parse().ok().filter(|to| *to <= newest);
-    let to = to.ok_or_else(|| format!("#{number} is no state: there are #0 to #{newest} (:history lists them)"))?;
+    let to =
+        to.ok_or_else(|| format!("there is no state #{number}: there are #0 to #{newest} (:history lists them)"))?;
     if let Some(change) = state.scene.go_to(to) {
         state.changed(change);
     }
@@ -146,7 +147,7 @@ fn go_to(state: &mut State, number: &str) -> Done {
     Ok(())
 }
 
-/// Says which state this is.
+/// Shows which state this is.
 fn say_state(state: &mut State) {
     let history = state.scene.history();
     let (here, newest) = (history.state(), history.newest());
@@ -154,7 +155,7 @@ fn say_state(state: &mut State) {
     state.say(plain(&format!("at #{here} of {newest}: {words}")));
 }
 
-/// `30s`, `3m`, `2h`, `1d`.
+/// Parses `30s`, `3m`, `2h` or `1d`.
 fn duration(text: &str) -> Option<Duration> {
     let unit = match text.chars().last()? {
         's' => 1,
@@ -167,8 +168,8 @@ fn duration(text: &str) -> Option<Duration> {
     Some(Duration::from_secs(number.checked_mul(unit)?))
 }
 
-/// What can be redone, the present, what can be undone: the numbers are what `:redo` and `:undo` take; then the steps of
-/// other branches. `#` numbers name the states in the order in which they came to be.
+/// Lists what can be redone, the present, and what can be undone, with the numbers that `:redo` and `:undo` take; then the
+/// steps of other branches. `#` numbers are the states in the order in which they were made.
 fn history(state: &mut State, _: &Call) -> Done {
     let history = state.scene.history();
     let saved = history.saved();
@@ -185,7 +186,7 @@ fn history(state: &mut State, _: &Call) -> Done {
     let scroll = lines.len().saturating_sub(3);
     lines.push(here.into());
     let behind = history.told(MOST_TOLD).into_iter().zip(history.done()).zip(1..);
-    // A row is about the state that its step led to; `:undo N` leads to the one below it.
+    // A row shows the state that its step led to; `:undo N` leads to the one below it.
     lines.extend(behind.map(|((words, (state, step)), n)| line(format!("undo {n}"), state, ago(step.time_ms), &words)));
     if history.depth().0 <= MOST_TOLD {
         lines.push(line(String::new(), 0, String::new(), "the beginning"));

@@ -1,4 +1,4 @@
-//! `update` takes an event, changes the state and gives effects, for others to perform.
+//! `update` handles an event: it changes the state and returns the effects that others perform.
 
 use crate::tui::commands::contexts::contexts;
 use crate::tui::commands::pasting;
@@ -17,7 +17,7 @@ use crate::tui::keys::Found;
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, Pane, State};
 
-/// Takes an event and gives what is to be done outside.
+/// Handles an event, and returns what is to be done outside.
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
     match event {
         Event::Key(key) => press(state, &key),
@@ -56,8 +56,8 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Fault(fault) => state.complain(fault),
         Event::Unlogged(why) => {
             state.memory.recorder.set_place(None);
-            // A line that is running is not to blame.
-            state.say(format!("the log of this session is not kept: {why}"));
+            // Only `say`: the line that is running did not fail.
+            state.say(format!("the log of this session cannot be written: {why}"));
         }
         Event::FilesChanged(files) => conflicts::follow(state, &files),
         Event::End => state.ask(Effect::Quit),
@@ -68,19 +68,19 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
     state.effects.drain(..).collect()
 }
 
-/// Takes what windows and scripts say.
+/// Handles messages of windows and scripts.
 fn hear(state: &mut State, said: editor::Event) {
     match said {
         editor::Event::Said(ToEditor::Pointer { x, y }) => state.outside.pointer = Some((x, y)),
         editor::Event::Said(ToEditor::Transport(transport)) => state.follow(transport),
         editor::Event::Said(ToEditor::Command(name)) => run_of_window(state, &name),
         editor::Event::Edit(asked) => answer(state, asked),
-        // The runner asks for the status after every event.
+        // The loop on a screen asks for the status after every event.
         editor::Event::Status | editor::Event::Said(_) => {}
     }
 }
 
-/// Takes what a synthesis has made, or why it made nothing.
+/// Handles the result of a synthesis.
 fn synthesised(state: &mut State, result: Result<Synthesis, String>) {
     state.picture.synthesising = false;
     match result {
@@ -106,10 +106,10 @@ fn answer(state: &mut State, asked: Asked) {
     }
 }
 
-/// Says how something ended: in the line, or in pages of its own where it is longer.
+/// Shows the result of work, in the line or, if it has several lines, in pages.
 fn report(state: &mut State, result: Result<String, String>) {
     match result {
-        // Nobody who is typing is interrupted: `:messages` has it then.
+        // While something is being typed no pages open; `:messages` has all lines.
         Ok(text) if text.trim_end().contains('\n') && matches!(state.typing.mode, Mode::Normal | Mode::Pages(_)) => {
             let lines = text.lines().map(plain).collect();
             state.typing.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
@@ -119,14 +119,14 @@ fn report(state: &mut State, result: Result<String, String>) {
     }
 }
 
-/// Pasted text is typed where something is typed, if it is one line.
+/// Handles a paste. If something is being typed, the text is typed into it, if it is one line.
 fn paste(state: &mut State, text: &str) {
     state.typing.pressed.clear();
     state.typing.count = None;
     if state.is_small() && !matches!(state.typing.mode, Mode::Line(_)) {
         return state.complain(TOO_SMALL);
     }
-    // Terminals send the ends of lines as the Enter key does.
+    // Terminals send line ends as the Enter key does.
     let text = &text.replace("\r\n", "\n").replace('\r', "\n");
     match &state.typing.mode {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => type_pasted(state, text),
@@ -135,7 +135,7 @@ fn paste(state: &mut State, text: &str) {
                 state.complain(why);
             }
         }
-        _ => state.complain("end this first (Esc): pasted rows go into lists, and text into what is being typed"),
+        _ => state.complain("close this first (Esc): rows are pasted into lists, text into what is being typed"),
     }
 }
 
@@ -154,7 +154,7 @@ fn type_text(state: &mut State, text: &str) {
     commands::run(state, &format!("type {}", quoted(text)), None);
 }
 
-/// A click goes to the pane under it, and in the tree to the row.
+/// Goes to the pane that was clicked, and in the tree to the row.
 fn click(state: &mut State, x: u16, y: u16) {
     if !matches!(state.typing.mode, Mode::Normal) || state.is_small() {
         return;
@@ -177,7 +177,7 @@ fn click(state: &mut State, x: u16, y: u16) {
     commands::run(state, &format!("pane {name}"), None);
 }
 
-/// Said where the terminal is too small for a key.
+/// The message if the terminal is too small for a key.
 const TOO_SMALL: &str = ":q leaves, :wq saves and leaves";
 
 fn press(state: &mut State, key: &str) {
@@ -186,7 +186,7 @@ fn press(state: &mut State, key: &str) {
     if let (true, Some(digit)) =
         (counting, key.parse::<usize>().ok().filter(|&d| d < 10 && (d > 0 || state.typing.count.is_some())))
     {
-        // One that is too large is refused with the key that it is for.
+        // A count that is too large is refused by its command.
         state.typing.count = Some(state.typing.count.unwrap_or(0).saturating_mul(10).saturating_add(digit));
         return;
     }
@@ -204,7 +204,7 @@ fn press(state: &mut State, key: &str) {
             state.typing.count = None;
             match after_escape(key) {
                 Some(after) => {
-                    // An Esc after the first key of several only ends those.
+                    // After the first key of a sequence, Esc only ends the sequence.
                     if pressed == key {
                         press(state, "Esc");
                     }
@@ -216,7 +216,7 @@ fn press(state: &mut State, key: &str) {
     }
 }
 
-/// The key that was pressed right after Esc: terminals send the two as they send one key with Alt.
+/// The key that was pressed right after Esc, because terminals send these two like one key with Alt.
 fn after_escape(key: &str) -> Option<String> {
     match key.strip_prefix("Ctrl-Alt-") {
         Some(plain) => Some(format!("Ctrl-{plain}")),
@@ -224,7 +224,7 @@ fn after_escape(key: &str) -> Option<String> {
     }
 }
 
-/// A key without a binding: typed where something is typed, else said to mean nothing.
+/// Handles a key without a binding: it is typed if something is being typed, else there is a message.
 fn unbound(state: &mut State, key: &str, pressed: &str) {
     let typed = if key == "Space" { " " } else { key };
     let one = typed.chars().count() == 1;
@@ -237,7 +237,7 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
     }
 }
 
-/// Runs a command that a window asks for: only marking a point is the editor's.
+/// Runs a command of a window; others than these two are not the editor's.
 fn run_of_window(state: &mut State, name: &str) {
     match name {
         "mark-point" => commands::run(state, "pointer mark", None),

@@ -1,4 +1,4 @@
-//! Values by their paths.
+//! Sets and shows values by their paths.
 
 use crate::tui::text::plain;
 
@@ -10,10 +10,10 @@ use crate::tui::state::{State, first};
 
 pub const COMMANDS: &[Command] = &[
     command("set", "PATH=VALUE ...", "Set values by their paths", set).change(),
-    command("get", "PATH", "Say the value at a path", get).inside(),
+    command("get", "PATH", "Show the value at a path", get).inside(),
 ];
 
-/// As `plica set` does, with as many settings as the line has.
+/// Sets values as `plica set` does, one or more.
 fn set(state: &mut State, call: &Call) -> Done {
     let settings = set::settings(state.document(), call.text);
     if settings.is_empty() {
@@ -21,7 +21,7 @@ fn set(state: &mut State, call: &Call) -> Done {
     }
     let scene = state.scene.path().to_owned();
     let (edit, lost) = set::edit(state.document(), &settings, &scene).map_err(|error| match error {
-        // The scene is the one that is open: its name says nothing.
+        // The name of the open scene would add nothing.
         Error::Scene { problems, .. } => first(&problems),
         other => other.to_string(),
     })?;

@@ -1,4 +1,4 @@
-//! Yank and paste: a node or rows as JSON, rows as CSV, and both back to where they fit.
+//! Yanks a node or rows as JSON, or rows as CSV, and pastes them where they fit.
 
 use crate::tui::commands::items::stem;
 use crate::tui::document::pointers::{is_item, item_of, upward};
@@ -32,7 +32,7 @@ fn yank(state: &mut State, call: &Call) -> Done {
             let (sheet, rows) = table(state, call)?;
             let pointers: Vec<String> = rows.clone().filter_map(|i| sheet.pointer(i)).collect();
             let text = rows::write(state.document(), &sheet, rows.clone());
-            // Here they are pasted as they are, with what a table has no column for.
+            // `p` pastes the whole items, including fields without a column.
             state.memory.yanked = Some(values(state, &pointers));
             (text, format!("{} as CSV", counted(rows.count(), "row")))
         }
@@ -48,7 +48,7 @@ fn yank(state: &mut State, call: &Call) -> Done {
         let size = text.len().div_ceil(1000);
         let most = MOST_BYTES / 1000;
         state.complain(format!(
-            "{said}: {size} kB are too much for the terminal's clipboard ({most} kB); p pastes it here"
+            "{said} yanked, but {size} kB are too much for the terminal's clipboard ({most} kB); p pastes it here"
         ));
         return Ok(());
     }
@@ -57,17 +57,17 @@ fn yank(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// That so many rows are neither one nor as many as are selected.
+/// The message if the number of rows is neither one nor that of the selection.
 pub fn too_many(rows: usize, selected: usize) -> String {
     format!("{} over {selected} selected: paste one or {selected}, or end the selection (Esc)", counted(rows, "row"))
 }
 
-/// So many of a thing, in words.
+/// A number with a noun.
 pub fn counted(count: usize, name: &str) -> String {
     if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
 }
 
-/// The rows that are yanked as CSV: those of the selection, or all of the list in focus.
+/// The rows that are yanked as CSV: the selected ones, or in the tree all rows of the list.
 fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<usize>), String> {
     let sheet = state.sheet();
     let rows = match state.cursor.focus {
@@ -75,12 +75,12 @@ fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<
         _ => 0..=call.count.unwrap_or(usize::MAX).clamp(1, sheet.len().max(1)) - 1,
     };
     if sheet.is_empty() || !sheet.table && !rows.clone().all(|i| sheet.row(i).is_some_and(|row| row.item)) {
-        return Err("rows of a list are yanked as CSV; y yanks this as JSON".into());
+        return Err("only rows of a list are yanked as CSV; y yanks this as JSON".into());
     }
     Ok((sheet, rows))
 }
 
-/// What `y` takes, and what it is called.
+/// What `y` yanks, and its name for the message.
 fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
     let several = call.count.is_some() || state.cursor.focus == Pane::Table && state.cursor.selected_from.is_some();
     let pointers = if several { targets(state, call)? } else { Vec::new() };
@@ -103,7 +103,7 @@ fn there(state: &State, pointer: &str) -> Option<Value> {
     field::value(state.document(), pointer).filter(|value| !value.is_null())
 }
 
-/// What stands in several rows: a list of items, else an object by their names.
+/// The values of several rows: as a list if they are items, else as an object by their names.
 fn values(state: &State, rows: &[String]) -> Yanked {
     let mut values = rows.iter().filter_map(|path| Some((pointer::split(path)?.1, there(state, path)?)));
     let value = match rows {
@@ -121,7 +121,7 @@ fn in_map(document: &Document, path: &str) -> bool {
 
 fn paste(state: &mut State, call: &Call) -> Done {
     let yanked = match call.text {
-        "" => state.memory.yanked.clone().ok_or("nothing was yanked yet: y yanks")?,
+        "" => state.memory.yanked.clone().ok_or("nothing has been yanked yet: y yanks")?,
         text => {
             let value = json::parse(text).map_err(|problem| format!("what was pasted is not JSON: {problem}"))?;
             Yanked { value, name: None }
@@ -135,7 +135,7 @@ fn paste(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Pastes over what is selected: the cell of every row, or the rows themselves, by one item or as many as they are.
+/// Pastes over the selection: into the cell of each row, or over the rows, one value for all or one for each.
 fn over_selection(state: &mut State, value: &Value, call: &Call) -> Done {
     let count = rows_of(state, call)?.count();
     let (document, sheet) = (state.document(), state.sheet());
@@ -162,12 +162,12 @@ fn over_selection(state: &mut State, value: &Value, call: &Call) -> Done {
     };
     let edit = edit.ok_or_else(|| format!("{}; {count} rows are selected", refusal(state, value)))?;
     state.edit(edit, false)?;
-    state.say(format!("{} pasted over", counted(count, "row")));
+    state.say(format!("pasted over {}", counted(count, "row")));
     Ok(())
 }
 
-/// Pastes a value where it fits: over the cell, after the item under the cursor or one that holds it, into a list, or over
-/// a field; the first of these that gives a valid scene is taken. Into a list the value is pasted `times` times.
+/// Pastes a value where it fits: over the cell, after the item under the cursor or one around it, into a list, or over a
+/// field. The first of these that gives a valid scene is used. Into a list the value is pasted `times` times.
 fn paste_value(state: &mut State, yanked: &Yanked, times: usize) -> Done {
     let mut why = None;
     for fit in fits(state) {
@@ -207,28 +207,28 @@ pub fn here(state: &State) -> String {
     }
 }
 
-/// A way in which a value fits: the edit, where its first part comes to stand, how many parts it has.
+/// A way in which a value fits: the edit, the place of its first part, and the number of its parts.
 struct Way {
     edit: Edit,
     pointer: String,
     count: usize,
 }
 
-/// Where a value may fit.
+/// A place where a value may fit.
 enum Fit {
-    /// The cell under the cursor and its like.
+    /// The cell under the cursor, and the corresponding ones of the selection.
     Cells,
     /// A list, before the item at an index.
     List(String, usize),
     /// A map.
     Map(String),
-    /// A place, instead of what stands there.
+    /// A place, replacing its value.
     Over(String),
     /// The fields of the form that is shown.
     Fields,
 }
 
-/// The places where a value may fit, the likeliest first: from the cursor outward, then inward.
+/// The places where a value may fit, the most likely first: from the cursor outward, then inward.
 fn fits(state: &State) -> Vec<Fit> {
     let document = state.document();
     let mut fits = vec![Fit::Cells];
@@ -245,7 +245,7 @@ fn fits(state: &State) -> Vec<Fit> {
         fits.extend(item.map(|(list, index)| Fit::List(list.to_owned(), index + 1)));
         let Some(field) = field::field(document, path) else { continue };
         into(&mut fits, path, &field);
-        // Rows of a list of fixed length, as a matrix is, have no room for another.
+        // A list of fixed length, such as a matrix, has no room for another row.
         let loose = matches!(field.kind, Kind::Numbers(_)) || item.is_none() && !in_map(document, path);
         fits.extend(loose.then(|| Fit::Over(path.to_owned())));
     }
@@ -256,7 +256,7 @@ fn fits(state: &State) -> Vec<Fit> {
     fits
 }
 
-/// How a value fits there so many times; `None` if it does not.
+/// How a value fits there, pasted so many times; `None` if it does not.
 fn way(state: &State, yanked: &Yanked, fit: &Fit, times: usize) -> Result<Option<Way>, String> {
     let (document, value) = (state.document(), &yanked.value);
     Ok(match fit {
@@ -271,7 +271,7 @@ fn way(state: &State, yanked: &Yanked, fit: &Fit, times: usize) -> Result<Option
     })
 }
 
-/// A number over a number, a text over a text: in every selected row, as if it were typed.
+/// A number over a number, a text over a text, in every selected row, as if it were typed.
 fn over_cells(state: &State, value: &Value) -> Option<Way> {
     let row = state.row()?;
     let cell = state.cursor.cell(&row).filter(|_| state.cursor.focus == Pane::Table)?;
@@ -289,7 +289,7 @@ fn into_list(document: &Document, list: &str, index: usize, value: &Value, times
     let fits = |value: &Value| misfit(document, &item, value).is_none();
     let items = match value {
         value if fits(value) => vec![value.clone()],
-        // The others are checked with the scene.
+        // The others are checked together with the scene.
         Value::Array(items) if items.first().is_some_and(fits) => items.clone(),
         _ => return None,
     };
@@ -299,7 +299,7 @@ fn into_list(document: &Document, list: &str, index: usize, value: &Value, times
     Some(Way { edit, pointer, count })
 }
 
-/// A value as one entry of a map, under the name it had or that of its file; or an object of such entries.
+/// A value as one entry of a map, under its old name or that of its file; or an object of such entries.
 fn into_map(state: &State, map: &str, yanked: &Yanked, times: usize) -> Result<Option<Way>, String> {
     let document = state.document();
     let fits = |value: &Value| misfit(document, &pointer::join(map, "new"), value).is_none();
@@ -317,7 +317,7 @@ fn into_map(state: &State, map: &str, yanked: &Yanked, times: usize) -> Result<O
     Ok(inserted.map(|(edit, pointer)| Way { edit, pointer, count }))
 }
 
-/// An object whose every key is a field of the form.
+/// An object whose keys are all fields of the form.
 fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
     let object = value.as_object().filter(|object| !object.is_empty())?;
     let known = field::children(document, form);
@@ -331,7 +331,7 @@ fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
     Some(Way { edit, pointer: form.to_owned(), count: object.len() })
 }
 
-/// Why nothing takes the value: what the place under the cursor wants.
+/// Why the value fits nowhere: what would be needed at the cursor.
 fn refusal(state: &State, value: &Value) -> String {
     let document = state.document();
     let here = here(state);

@@ -5,40 +5,40 @@ use crate::scene::Document;
 use crate::scene::field::{self, Kind};
 use crate::tui::text::plain;
 
-/// A list to choose from.
+/// A list to choose from, and what the choice is for.
 #[derive(Clone, Debug)]
 pub struct Choice {
     /// What is chosen.
     pub title: String,
-    /// What there is: a word, and a line of help.
+    /// The words that can be chosen, each with a line of help.
     pub options: Vec<(String, String)>,
-    /// The one under the cursor.
+    /// The index of the word under the cursor.
     pub at: usize,
-    /// What happens with the word.
+    /// What is done with the chosen word.
     pub then: Then,
 }
 
-/// What happens with the word that was chosen.
+/// What is done with the chosen word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Then {
-    /// These places take it.
+    /// It becomes the value of these places.
     Set(Vec<String>),
-    /// The tagged object here becomes one of that kind.
+    /// The tagged object here becomes one of the chosen kind.
     Become(String),
-    /// The place of that address is gone to.
+    /// The cursor goes to the chosen address.
     Go,
-    /// A question is answered.
+    /// It answers a question.
     Answer(Question),
 }
 
 impl Choice {
-    /// Moves the cursor as far as the list goes.
+    /// Moves the cursor, stopping at the ends of the list.
     pub fn step(&mut self, by: i64) {
         let last = self.options.len().saturating_sub(1) as i64;
         self.at = (self.at as i64).saturating_add(by).clamp(0, last) as usize;
     }
 
-    /// Moves the cursor to the next word that begins with a letter, after the last from the first on; false if none does.
+    /// Moves the cursor to the next word that begins with a letter, continuing at the top; false if there is none.
     pub fn seek(&mut self, letter: char) -> bool {
         let begins = |i: &usize| self.options[*i].0.to_lowercase().starts_with(letter.to_ascii_lowercase());
         let found = (self.at + 1..self.options.len()).chain(0..=self.at).find(|i| *i < self.options.len() && begins(i));
@@ -52,7 +52,7 @@ impl Choice {
     }
 }
 
-/// The words that a cell takes; `None` if it is typed.
+/// The words that a cell can have; none if its value is typed.
 pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
     match kind {
         Kind::Choice(all) | Kind::Tagged { variants: all, .. } => {
@@ -71,7 +71,7 @@ pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
     }
 }
 
-/// The list for a cell, the cursor on what it has; `None` if it is typed.
+/// The list for a cell, with the cursor on its present word; `None` if its value is typed.
 pub fn of_cell(document: &Document, cell: &Cell, others: Vec<String>) -> Option<Choice> {
     let options = options(document, &cell.field.kind);
     let at = options.iter().position(|(word, _)| *word == cell.text).unwrap_or(0);
@@ -88,7 +88,7 @@ pub fn of_cell(document: &Document, cell: &Cell, others: Vec<String>) -> Option<
 pub struct Question {
     /// What it is about.
     pub about: About,
-    /// What is to be known, a line each.
+    /// What one has to know for the answer, in lines.
     pub text: Vec<String>,
 }
 
@@ -97,8 +97,8 @@ pub struct Question {
 pub enum About {
     /// Unsaved edits that a session left behind.
     Recovery,
-    /// Somebody else edits the scene.
+    /// Somebody else is editing the scene.
     Holder,
-    /// Another program changed in the file what was changed here too.
+    /// Another program has changed the same places in the file that were changed here.
     File,
 }

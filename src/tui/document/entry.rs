@@ -13,7 +13,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Begins with the cell's value, all of its decimals; or from nothing.
+    /// Starts with the cell's value, with all of its decimals, or empty if `clear`.
     pub fn new(document: &Document, cell: &Cell, clear: bool) -> Self {
         let text = match cell.number(document) {
             _ if clear => String::new(),

@@ -17,8 +17,8 @@ use crate::scene::merge::Side;
 use crate::scene::{Document, Edit, History};
 use crate::tui::events::Change;
 
-/// What is said where the scene may only be looked at.
-const READ_ONLY: &str = "the scene is open for reading only: :w PATH saves a copy of it";
+/// Why an edit is refused if the scene is read-only.
+const READ_ONLY: &str = "the scene is open read-only: :w PATH saves a copy of it";
 
 /// A scene that is open.
 pub struct OpenScene {
@@ -30,10 +30,10 @@ pub struct OpenScene {
 }
 
 impl OpenScene {
-    /// Opens a scene; or a picture, whose scene lies beside it and is made where it is not there.
+    /// Opens a scene; or, given a picture, the scene beside it, which is made if it is missing.
     ///
     /// # Errors
-    /// The scene or the picture cannot be read, or somebody else edits the scene.
+    /// The scene or the picture cannot be read, or somebody else is editing the scene.
     pub fn open(path: &Path, mode: Mode, options: &files::Options) -> Result<OpenScene> {
         let read_only = mode == Mode::ReadOnly;
         let (scene, made) =
@@ -58,12 +58,12 @@ impl OpenScene {
         &self.options
     }
 
-    /// Whether the scene may only be looked at.
+    /// Whether the scene is open read-only.
     pub fn read_only(&self) -> bool {
         self.read_only
     }
 
-    /// How many changes there were.
+    /// How many changes have been made.
     pub fn revision(&self) -> u64 {
         self.session.history().revision()
     }
@@ -73,25 +73,25 @@ impl OpenScene {
         self.session.safety().saved
     }
 
-    /// Whether every edit is safe in the journal, as far as there is one.
+    /// Whether every edit is safe in the journal; true if there is no working journal.
     pub fn is_synced(&self) -> bool {
         let safety = self.session.safety();
         safety.journaled || !self.journaled || safety.failing.is_some()
     }
 
-    /// Tries a journal again that could not be opened; to be called now and then.
+    /// Tries again to open a journal that could not be opened. To be called now and then.
     pub fn tend(&mut self) {
         self.session.tend();
     }
 
-    /// Gives unsaved edits up: the next opening does not ask about them. Undo still has them.
+    /// Gives up unsaved edits: the next session does not ask about them. Undo still has them.
     pub fn give_up(&mut self) {
         if !self.read_only {
             self.session.give_up();
         }
     }
 
-    /// Where bytes of a damaged journal were kept aside.
+    /// Where the unreadable bytes of a damaged journal are.
     pub fn kept_aside(&self) -> Option<&Path> {
         self.session.kept_aside()
     }
@@ -101,7 +101,7 @@ impl OpenScene {
         self.session.safety().failing.filter(|_| !self.read_only)
     }
 
-    /// How long the screen may stay as it is: a mark that will go is looked after soon.
+    /// How long the screen may stay as it is. Marks that will disappear by themselves are checked soon.
     pub fn patience(&self) -> Duration {
         let patience = match (self.failing().is_some(), self.is_synced()) {
             (true, _) => 500,
@@ -111,12 +111,12 @@ impl OpenScene {
         Duration::from_millis(patience)
     }
 
-    /// What is said when the scene has been opened.
+    /// The message after the scene has been opened.
     pub fn greeting(&self, home: Option<String>) -> String {
         let name = self.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
         let made = if self.made { "made, " } else { "" };
         match self.session.kept_aside() {
-            Some(aside) => format!("{name}: the journal was damaged, what could not be read is in {}", aside.display()),
+            Some(aside) => format!("{name}: the journal was damaged; what could not be read is in {}", aside.display()),
             None => match home {
                 Some(line) => format!("at home: {line}; ? help, :tutor teaches"),
                 None if self.session.history().depth() == (0, 0) => format!("{name}: {made}? help, Space menu, :tutor"),
@@ -125,21 +125,21 @@ impl OpenScene {
         }
     }
 
-    /// Unsaved edits that a session left behind.
+    /// Unsaved edits that an earlier session left behind.
     pub fn offered(&self) -> Option<&Recovery> {
         self.session.recovery()
     }
 
-    /// Who edits the scene, so that here it may only be looked at.
+    /// Who else is editing the scene, so that it is read-only here.
     pub fn held_by(&self) -> Option<&Holder> {
         self.session.held_by()
     }
 
-    /// Refuses what would change the scene where it may only be looked at, or while unsaved edits of before wait for an
-    /// answer.
+    /// Refuses to change the scene if it is read-only, or while it is not decided what becomes of unsaved edits of an earlier
+    /// session.
     ///
     /// # Errors
-    /// Says so.
+    /// Says which of the two.
     pub fn writable(&self) -> std::result::Result<(), String> {
         if self.read_only {
             return Err(READ_ONLY.into());
@@ -147,13 +147,13 @@ impl OpenScene {
         match self.offered() {
             None => Ok(()),
             Some(offer) => Err(format!(
-                "{} left behind: :recovery keep takes them, :recovery drop leaves them (undo has them then)",
+                "{} left behind: :recovery keep takes them, :recovery drop leaves them to undo",
                 offer.in_words()
             )),
         }
     }
 
-    /// Takes the unsaved edits that are offered, or leaves them; undo still gives them.
+    /// Takes the unsaved edits that are offered, or leaves them, so that only undo has them.
     pub fn recover(&mut self, take: bool) -> Option<Change> {
         let before = self.document().clone();
         if take {
@@ -165,10 +165,10 @@ impl OpenScene {
         (!edit.is_empty()).then(|| Change { document: self.document().clone(), revision: self.revision(), edit })
     }
 
-    /// Applies an edit; one of a held key joins the one before it. `None` if it changes nothing.
+    /// Applies an edit. If `held`, it joins the edit before it into one step of undo. `None` if it changes nothing.
     ///
     /// # Errors
-    /// What would be wrong in the scene.
+    /// The problems that the scene would have.
     pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Change>, Vec<Problem>> {
         self.writable().map_err(|why| vec![Problem::error("", why)])?;
         let applied = self.session.apply(edit, held)?;
@@ -179,20 +179,20 @@ impl OpenScene {
         Change { document: self.document().clone(), revision: applied.revision, edit: applied.edit }
     }
 
-    /// Takes the last step back; `None` if there is none.
+    /// Undoes the last step; `None` if there is none.
     pub fn undo(&mut self) -> Option<Change> {
         let applied = self.session.undo()?;
         Some(self.change(applied))
     }
 
-    /// Does the last undone step again; `None` if there is none.
+    /// Redoes the last undone step; `None` if there is none.
     pub fn redo(&mut self) -> Option<Change> {
         let applied = self.session.redo()?;
         Some(self.change(applied))
     }
 
-    /// Back to the scene as it was so long before now; before the present state where that is not the newest one. With it,
-    /// how many steps that is.
+    /// Goes back to the scene as it was so long ago, counted from now, or from the time of the present state if that is not
+    /// the newest. Also returns how many steps that was.
     pub fn earlier(&mut self, time: Duration) -> (usize, Option<Change>) {
         let history = self.session.history();
         let now = if history.state() == history.newest() { files::now_ms() } else { history.time_ms() };
@@ -200,14 +200,14 @@ impl OpenScene {
         self.travelled(all)
     }
 
-    /// On by so long a time from the present state. With it, how many steps that is.
+    /// Goes forward by so long from the time of the present state. Also returns how many steps that was.
     pub fn later(&mut self, time: Duration) -> (usize, Option<Change>) {
         let time = self.session.history().time_ms().saturating_add(millis(time));
         let all = self.session.travel(|history| history.later(time));
         self.travelled(all)
     }
 
-    /// Goes to a state of the history, in whatever branch it is.
+    /// Goes to a state of the history, in any branch.
     pub fn go_to(&mut self, state: usize) -> Option<Change> {
         let all = self.session.travel(|history| history.go_to(state));
         self.travelled(all).1
@@ -229,16 +229,16 @@ impl OpenScene {
         text::ago(files::now_ms().saturating_sub(time_ms))
     }
 
-    /// Ends a held key.
+    /// Ends a step of undo: the next edit does not join it.
     pub fn close_step(&mut self) {
         self.session.close_step();
     }
 
-    /// Saves; a copy at `to` where that is another file. What is there is overwritten only where that is allowed, and never
-    /// what the scene reads. Gives what to say.
+    /// Saves the scene, or a copy of it if `to` is another file. Existing content is replaced only if `overwrite`, and files
+    /// that the scene reads never. Returns a message.
     ///
     /// # Errors
-    /// It is not saved then.
+    /// Why it was not saved.
     pub fn save(&mut self, to: Option<&Path>, overwrite: bool) -> Result<String> {
         if let Some(to) = to.filter(|to| !outputs::is_same(to, self.path())) {
             return self.save_copy(to, overwrite);
@@ -247,14 +247,12 @@ impl OpenScene {
             tracing::warn!("not saved: {why}");
             let way = match self.session.difference() {
                 Ok(_) => ":merge takes it in, :w! overwrites it",
-                Err(_) => "it cannot be read any more, :w! overwrites it",
+                Err(_) => "it can no longer be read; :w! overwrites it",
             };
             return Err(Error::Usage(format!("another program changed the file: {way}")));
         }
         if !overwrite && self.session.refuse_protected().is_err() {
-            return Err(Error::Usage(
-                "the file is read-only: :w! writes it all the same, :w PATH saves elsewhere".into(),
-            ));
+            return Err(Error::Usage("the file is read-only: :w! writes it anyway, :w PATH saves elsewhere".into()));
         }
         self.session.save(if overwrite { Overwrite::Yes } else { Overwrite::No })?;
         Ok(format!("{} is saved", self.path().display()))
@@ -264,7 +262,7 @@ impl OpenScene {
         let scene = self.document().scene();
         let mut guard = Guard::default();
         guard.protect(self.path(), scene);
-        // What the file names stays too: whoever leaves without saving has that again.
+        // Files that the saved scene names are protected too: without saving, it needs them again.
         let saved = files::scene::open(self.path(), &self.options).ok();
         saved.iter().for_each(|saved| guard.protect(self.path(), saved.scene()));
         guard.spare(to)?;

@@ -19,7 +19,7 @@ pub struct Palette {
     pub at: usize,
     commands: Arc<[Action]>,
     places: Arc<[Listed]>,
-    /// What matches, the best first: commands by their index, places behind them.
+    /// The indices of what matches, the best first; those of places follow those of commands.
     found: Vec<usize>,
     sought: String,
 }
@@ -41,7 +41,7 @@ pub struct Action {
 pub struct Row {
     /// What it is: command, node, field.
     pub sort: &'static str,
-    /// What is looked through.
+    /// The text that is searched.
     pub text: String,
     /// Its key.
     pub key: String,
@@ -77,13 +77,13 @@ impl Palette {
         Some(Row { sort, text: plain(&place.address), key: String::new(), line, pointer: place.pointer.clone() })
     }
 
-    /// Moves the cursor, around the ends.
+    /// Moves the cursor, wrapping around at the ends.
     pub fn step(&mut self, by: i64) {
         let count = self.found.len().max(1) as i64;
         self.at = (self.at as i64 + by).rem_euclid(count) as usize;
     }
 
-    /// The text was changed: looks again, only among what matched before where it has grown.
+    /// Searches again after the text has changed: if it has only grown, among the last matches.
     pub fn narrow(&mut self) {
         let typed = self.text.value().trim().to_owned();
         if typed == self.sought {
@@ -100,7 +100,7 @@ impl Palette {
             for &index in &self.found {
                 let mut score = |text: &str| pattern.score(Utf32Str::new(text, &mut buffer), &mut matcher);
                 let scored_one = match index.checked_sub(self.commands.len()) {
-                    // A command by its name counts for more than one by its help.
+                    // A match in the name of a command ranks above one in its help.
                     None => {
                         let Action { name, help, .. } = &self.commands[index];
                         score(name).map(|score| score + 20).or_else(|| score(&format!("{name}  {help}")))

@@ -1,5 +1,5 @@
-//! Every place of a scene in its order, by name and by value: what search and palette look through. Made once a document
-//! and only when asked for; it costs a walk over everything.
+//! All places of a scene in order, with their names and values, for the search and the palette. The list costs a walk over
+//! the whole document, so it is made only when needed, once for each document.
 
 use serde_json::Value;
 
@@ -12,17 +12,17 @@ use crate::tui::text::numbers;
 pub struct Listed {
     /// Where it is.
     pub pointer: String,
-    /// The same, as people write it.
+    /// Its address, as people write it.
     pub address: String,
-    /// Whether it has an inside of its own.
+    /// Whether it is a node.
     pub node: bool,
-    /// Its name (an item without one has none) and the word that it says, in small letters.
+    /// Its name, if it has one, and its value if that is a word; in lower case.
     words: String,
-    /// The numbers that it holds.
+    /// The numbers in its value.
     numbers: Vec<f64>,
 }
 
-/// What is looked for: a part of a name or of a word, or a number.
+/// What is searched for: a part of a name or of a word, or a number.
 #[derive(Clone, Debug)]
 pub struct Sought {
     text: String,
@@ -37,7 +37,7 @@ impl Sought {
 }
 
 impl Listed {
-    /// Whether this is looked for, and if so by which of its numbers; the first one where it is by name.
+    /// Whether the place matches, and by which of its numbers (0 for a match by name).
     pub fn matched(&self, sought: &Sought) -> Option<usize> {
         if self.words.contains(&sought.text) {
             return Some(0);

@@ -1,9 +1,9 @@
-//! Pointers of a document: what holds a place, and which item of which list it is.
+//! JSON pointers: the ancestors of a place, and the list that it is an item of.
 
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, pointer};
 
-/// Whether an item of a list stands at `path`.
+/// Whether `path` is an item of a list.
 pub fn is_item(document: &Document, path: &str) -> bool {
     item_of(document, path).is_some()
 }
@@ -15,7 +15,7 @@ pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize
     Some((list, pointer::index(&last).filter(|_| is_list)?))
 }
 
-/// `path` and all that hold it, the innermost first.
+/// `path` and its ancestors, the innermost first.
 pub fn upward(path: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(Some(path), |path| path.rsplit_once('/').map(|(holder, _)| holder))
 }

@@ -1,6 +1,6 @@
-//! A node of the scene as rows and cells, made from the schema: a list becomes a table, anything else a form, and a short
-//! list inside a form stands in it row by row. The panes draw a sheet and the commands edit its cells; neither knows a
-//! field by name, so a new parameter shows up here by itself.
+//! A node of the scene as rows and cells, made from the schema: a list becomes a table, anything else a form, and a list of
+//! unnamed items inside a form is shown in it row by row. The panes draw a sheet and the commands edit its cells; neither
+//! knows a field by name, so a new parameter appears by itself.
 
 use crate::tui::text::plain;
 use std::ops::Range;
@@ -14,21 +14,21 @@ use crate::scene::schema::{Body, Place};
 use crate::scene::{Document, pointer};
 use crate::tui::text::numbers;
 
-/// A node as rows. Each is made where it is looked at, so that a list of ten thousand is as quick as one of ten.
+/// A node as rows. A row is made only when it is needed, so that a list of ten thousand is as quick as one of ten.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Whether it is a list, its items the rows.
+    /// Whether it is a list, whose items are the rows.
     pub table: bool,
     document: Document,
     blocks: Vec<Block>,
 }
 
-/// Rows that follow one another and are made alike.
+/// Consecutive rows that are made in the same way.
 #[derive(Clone, Debug)]
 struct Block {
     /// The list whose items they are, or the one field.
     pointer: String,
-    /// How many items; none for a field.
+    /// How many items; `None` for a field.
     items: Option<usize>,
 }
 
@@ -49,18 +49,18 @@ pub struct Row {
     pub cells: Vec<Cell>,
 }
 
-/// Something that is edited by itself.
+/// A value, or a part of one, that is edited by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     /// Where its value is in the document; for a part of a list of numbers, where that list is.
     pub pointer: String,
     /// Which part of the value it is.
     pub part: Part,
-    /// Its name in the row (x, y, dx, |J|, in dx), empty where the row's own name says it.
+    /// Its name in the row (x, y, dx, |J|, in dx); empty if the row's own name is enough.
     pub head: String,
     /// What the value is.
     pub field: Arc<Field>,
-    /// What it shows.
+    /// The text that it shows.
     pub text: String,
 }
 
@@ -83,7 +83,7 @@ impl Cell {
         self.part != Part::Whole || matches!(self.field.kind, Kind::Number { .. })
     }
 
-    /// Whether it stands for something with an inside of its own.
+    /// Whether it stands for a node.
     pub fn is_node(&self) -> bool {
         is_node(&self.field.kind)
     }
@@ -99,7 +99,7 @@ impl Cell {
         }
     }
 
-    /// The pointer and the value that say `number` in the document.
+    /// The pointer and the value that give it this number in the document.
     pub fn with_number(&self, document: &Document, number: f64) -> Option<(String, Value)> {
         let json = |number: f64| match self.field.kind {
             Kind::Number { integer: true } if number == number.trunc() => Value::from(number as i64),
@@ -120,12 +120,12 @@ impl Cell {
     }
 }
 
-/// A JSON number, without a fraction where it has none.
+/// A JSON number, an integer if it is whole.
 pub fn tidy_json(number: f64) -> Value {
     if number == number.trunc() && number.abs() < 1e15 { Value::from(number as i64) } else { Value::from(number) }
 }
 
-/// Whether something of this kind has an inside of its own.
+/// Whether something of this kind is a node.
 pub fn is_node(kind: &Kind) -> bool {
     matches!(kind, Kind::Object | Kind::Tagged { .. } | Kind::List(_) | Kind::Map(_))
 }
@@ -141,7 +141,7 @@ impl Block {
 }
 
 impl Sheet {
-    /// The node at `node`; empty where there is none.
+    /// The node at `node`; empty if there is none.
     pub fn of(document: &Document, node: &str) -> Sheet {
         let place = Place::of(document.json(), node);
         let body = place.map(|place| place.shape.body());
@@ -171,7 +171,7 @@ impl Sheet {
         self.rows(index..index.checked_add(1)?).pop()
     }
 
-    /// The rows of a range, as far as they are there.
+    /// The rows of a range, as far as they exist.
     pub fn rows(&self, range: Range<usize>) -> Vec<Row> {
         let mut rows = Vec::new();
         let mut first = 0;
@@ -244,7 +244,7 @@ impl Sheet {
     }
 }
 
-/// The fields of a form, each list that is shown inside it with its items.
+/// The fields of a form, with the items of each list that is shown inside it.
 fn blocks(place: Place, node: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
     for (child, place) in field::below(place, node) {
@@ -280,7 +280,7 @@ fn form_row(child: Child, place: Place) -> Row {
     Row { pointer, label: name, field, set, item: false, cells }
 }
 
-/// A row with the cells of one more field; their heads carry the field's name where they would be there twice.
+/// Adds the cells of a field to a row. Heads that the row has already are prefixed with the field's name.
 fn joined(mut row: Vec<Cell>, mut more: Vec<Cell>) -> Vec<Cell> {
     if more.iter().any(|cell| row.iter().any(|other| other.head == cell.head)) {
         more.iter_mut().for_each(|cell| cell.head = format!("{} {}", cell.field.name, cell.head));
@@ -294,7 +294,7 @@ fn is_flat(kind: &Kind) -> bool {
     matches!(kind, Kind::Numbers(_) | Kind::Number { .. } | Kind::Object)
 }
 
-/// The cells of a field. In a table each takes the field's name as its head where it has none of its own.
+/// The cells of a field. In a table, a cell without a head of its own gets the field's name.
 fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: bool) -> Vec<Cell> {
     let value = place.value.unwrap_or(&Value::Null);
     let cell = |part, head: String, text| Cell { pointer: pointer.to_owned(), part, head, field: field.clone(), text };
@@ -303,7 +303,7 @@ fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: boo
         return vec![cell(Part::Whole, head, summary(field, value))];
     };
     let number = |i: usize| value.get(i).and_then(Value::as_f64).unwrap_or(0.0);
-    // Of the vectors of a row only one with a symbol goes without its name; handles and the like say which one they are.
+    // A vector with a symbol needs no name; handles and the like say which one they are.
     let symbol = field.symbol;
     let head = |own: &str| {
         if symbol.is_some() || !table || !is_vector(names) { own.to_owned() } else { format!("{name} {own}") }
@@ -323,12 +323,12 @@ fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: boo
     all
 }
 
-/// Whether numbers of these names are a vector, which also has a length and a direction.
+/// Whether numbers with these names are a vector, which then also has a length and a direction.
 fn is_vector(names: &[String]) -> bool {
     names == ["dx", "dy"]
 }
 
-/// Whether a field takes this number; else its range.
+/// Checks a number against the range of its field.
 pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
     let whole = matches!(field.kind, Kind::Number { integer: true });
     if whole && value != value.trunc() {
@@ -344,7 +344,7 @@ pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
     }
 }
 
-/// The range of a field, where it is worth a word: some are as wide as they are only to keep sums finite.
+/// The range of a field; `None` if it is so wide that it only keeps sums finite.
 pub fn told_range(field: &Field) -> Option<String> {
     const UNTOLD: f64 = 1e9;
     field.range.filter(|(min, max)| *min > -UNTOLD || *max < UNTOLD)?;

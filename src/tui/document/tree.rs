@@ -1,5 +1,5 @@
-//! The tree of the scene: what has an inside of its own, by name. Lists of named things (layers, zones) show as those
-//! things; other lists are leaves with a count, their items are the rows of a table.
+//! The tree of the scene: all nodes by name. Lists of named items (layers, zones) show as their items; other lists are leaves
+//! with a count, and their items are the rows of a table.
 
 use crate::tui::text::plain;
 use std::collections::BTreeSet;
@@ -19,9 +19,9 @@ pub struct TreeRow {
     pub pointer: String,
     /// Its name.
     pub label: String,
-    /// What it is or how much is in it, in a word.
+    /// A word on what it is, or how many items it has.
     pub note: String,
-    /// How deep it stands.
+    /// How deep it is in the tree.
     pub depth: usize,
     /// Whether it is collapsed; `None` if nothing is below it.
     pub collapsed: Option<bool>,
@@ -48,7 +48,7 @@ fn below(place: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<String>
     }
 }
 
-/// The items of a list of named things, each with what is below it.
+/// The items of a list of named items, each with what is below it.
 fn below_list(list: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
     for (item, place) in field::below(list, pointer) {
         let is_collapsed = collapsed.contains(&item.pointer);
@@ -69,12 +69,12 @@ fn leaf(child: Child, value: &Value, depth: usize) -> TreeRow {
     TreeRow { pointer: child.pointer, label: plain(&child.name), note, depth, collapsed: None }
 }
 
-/// Whether a value is a list of named things.
+/// Whether a value is a list of named items.
 fn named(value: &Value) -> bool {
     value.as_array().is_some_and(|items| items.first().is_some_and(|item| item.get("name").is_some()))
 }
 
-/// The row that stands for the node at `pointer`: its own, else the nearest one above it.
+/// The row for the node at `pointer`: its own, else that of its nearest ancestor.
 pub fn row_of(rows: &[TreeRow], pointer: &str) -> usize {
     let above =
         |row: &TreeRow| pointer.strip_prefix(&row.pointer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
@@ -82,7 +82,7 @@ pub fn row_of(rows: &[TreeRow], pointer: &str) -> usize {
     deepest.map_or(0, |(i, _)| i)
 }
 
-/// The node to begin with: the first thing with a name in the first layer (a zone), else the first layer, else the scene.
+/// The node that is shown first: the first named item in the first layer (a zone), else the first layer, else the scene.
 pub fn first(document: &Document) -> String {
     match document.json().pointer(FIRST_LAYER) {
         Some(_) => first_item(document).unwrap_or_else(|| FIRST_LAYER.into()),
@@ -92,7 +92,7 @@ pub fn first(document: &Document) -> String {
 
 const FIRST_LAYER: &str = "/layers/0";
 
-/// The first thing with a name in the first layer.
+/// The first named item in the first layer.
 fn first_item(document: &Document) -> Option<String> {
     let fields = document.json().pointer(FIRST_LAYER)?.as_object()?;
     let (list, _) = fields.iter().find(|(_, value)| named(value))?;
@@ -104,7 +104,7 @@ pub fn layer_of(pointer: &str) -> Option<usize> {
     pointer.strip_prefix("/layers/")?.split('/').next()?.parse().ok()
 }
 
-/// Where the cursor of the picture begins: the middle of the first thing with a name in the first layer.
+/// Where the cursor of the picture starts: the center of the first named item in the first layer.
 pub fn picture_centre(document: &Document) -> Point {
     let layer = document.scene().layers.first().zip(first_item(document));
     let middle = layer.map(|(layer, item)| layer.technique().bounds(&item[FIRST_LAYER.len()..]).center());

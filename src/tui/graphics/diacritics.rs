@@ -1,7 +1,7 @@
-//! The combining characters by which kitty's placeholders count rows and columns: a table of its protocol
-//! (rowcolumn-diacritics.txt), in its order.
+//! The combining characters that number the rows and columns of kitty's placeholders, from the protocol's table
+//! (rowcolumn-diacritics.txt).
 
-/// The character that stands for the number `n`, where there is one.
+/// The character for the number `n`; `None` if the table ends before it.
 pub fn diacritic(n: u16) -> Option<char> {
     TABLE.get(usize::from(n)).and_then(|&code| char::from_u32(code))
 }

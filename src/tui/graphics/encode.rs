@@ -1,6 +1,6 @@
-//! A frame as cells of a pane: the sequence that draws it stands in the first cell, and the others are left alone; kitty's
-//! cells are placeholders, over which text may be written. The terminal scales a reduced picture into its cells; sixels
-//! are repeated.
+//! Encodes a frame into the cells of a pane. The escape sequence that draws it is in the first cell, and ratatui skips the
+//! others; with kitty every cell has a placeholder character, so text may be written over the picture. A reduced picture is
+//! scaled up by the terminal, or, as sixels, by repeating dots.
 
 use std::fmt::Write;
 use std::num::NonZeroU16;
@@ -17,14 +17,14 @@ use super::sixel;
 use crate::base::pixels::Frame;
 use crate::export::still;
 
-/// However long its symbol is, a cell is one column wide.
+/// A cell counts as one column wide, however long its symbol is.
 const ONE: CellDiffOption = CellDiffOption::ForcedWidth(NonZeroU16::MIN);
-/// The most characters of one of kitty's sequences.
+/// The most characters in one of kitty's escape sequences.
 const CHUNK: usize = 4096;
-/// The character that stands for a cell of a picture.
+/// Kitty's placeholder character: a cell that shows part of a picture.
 const PLACEHOLDER: char = '\u{10eeee}';
 
-/// The cells of the pane where it takes pixels, and the bytes that it all takes.
+/// The cells of the pane (`None` for half-blocks), and how many bytes they take.
 pub fn encode(frame: &Frame, by: usize, wanted: &Wanted) -> (Option<Buffer>, usize) {
     let escape = match wanted.protocol {
         Protocol::Blocks => return (None, blocks(frame, by)),
@@ -40,13 +40,13 @@ pub fn encode(frame: &Frame, by: usize, wanted: &Wanted) -> (Option<Buffer>, usi
     (Some(cells), bytes)
 }
 
-/// Bytes of half-blocks, at most: two colors and a character where a cell differs from the one before.
+/// The most bytes that half-blocks take: two colors and a character for each cell that differs from the one before.
 fn blocks(frame: &Frame, by: usize) -> usize {
     const COLORS: usize = 2 * "\x1b[38;2;255;255;255m".len();
     const CHARACTER: usize = "▀".len();
     let rows = frame.cells().chunks(frame.width().max(1));
     let changes = rows.map(|row| 1 + row.windows(2).filter(|pair| pair[0] != pair[1]).count()).sum::<usize>();
-    // Two rows of dots are one of cells.
+    // Two rows of dots make one row of cells.
     (changes * COLORS / 2).max(1) * by.div_ceil(2).max(1) + frame.cells().len() * by * by / 2 * CHARACTER
 }
 
@@ -55,12 +55,12 @@ fn png(frame: &Frame) -> Vec<u8> {
     still::frame(frame).unwrap_or_default()
 }
 
-/// The number of our picture: another one for every editor in a terminal.
+/// Kitty's number of our picture, different for each editor in a terminal.
 fn number() -> u32 {
     (std::process::id() & 0x00ff_ffff).max(1)
 }
 
-/// Lets a terminal that keeps pictures forget ours.
+/// Makes a kitty terminal delete our picture.
 pub fn forget() -> String {
     format!("\x1b_Ga=d,d=I,i={},q=2\x1b\\", number())
 }
@@ -95,7 +95,7 @@ fn cleared((columns, rows): (u16, u16)) -> String {
     format!("{}\x1b[{rows}A", line.repeat(rows.into()))
 }
 
-/// In tmux's envelope, sequence by sequence.
+/// Wraps each escape sequence for tmux.
 fn enveloped(escape: &str) -> String {
     let doubled = |part: &str| format!("\x1bPtmux;{}\x1b\\", part.replace('\x1b', "\x1b\x1b"));
     escape.split_inclusive("\x1b\\").map(doubled).collect()

@@ -1,5 +1,5 @@
-//! Marks drawn into the pixels of a picture: lines with their dashes, dots of their shapes, heads of arrows, fold regions
-//! as hatching. A line is a walk of dots; that is enough at the size of a terminal.
+//! Draws marks into the pixels of a picture: lines and dashes, dots, arrowheads, hatched fold regions. Lines are not
+//! antialiased; at the size of a terminal that is good enough.
 
 use kurbo::{Point, Vec2};
 
@@ -12,11 +12,11 @@ use crate::render::part::Part;
 
 /// Length of an arrow's head, in dots.
 const HEAD: f64 = 5.0;
-/// A fold region is hatched with a line every so many dots.
+/// Distance of the lines that hatch a fold region, in dots.
 const HATCH: usize = 6;
-/// The cursor's arms, in dots from its middle: they leave the pixel itself free.
+/// Where the cursor's arms begin and end, in dots from its center: the pixel itself stays free.
 const ARM: (f64, f64) = (3.0, 9.0);
-/// Dots are this much smaller than in the window: a pane of the terminal is small.
+/// Dots are this much smaller than in the window, because a pane of the terminal is small.
 const DOTS: f64 = 0.75;
 const DARK: [u8; 4] = [0, 0, 0, 255];
 const LIGHT: [u8; 4] = [255, 255, 255, 255];
@@ -25,9 +25,9 @@ const LIGHT: [u8; 4] = [255, 255, 255, 255];
 pub struct Ink<'a> {
     /// The frame.
     pub frame: &'a mut Frame,
-    /// What it shows.
+    /// The part of the picture that it shows.
     pub part: &'a Part,
-    /// How many times it is reduced: marks are smaller by as much.
+    /// How many times the picture is reduced, and its marks with it.
     pub by: usize,
 }
 
@@ -56,13 +56,13 @@ impl Ink<'_> {
         }
     }
 
-    /// The jump vector that is being set.
+    /// Draws the jump vector that is being set.
     pub fn aim(&mut self, from: Point, to: Point) {
         let pen = Pen { color: LIGHT, wide: self.by == 1, dash: None };
         self.arrow(&pen, self.at(from), self.at(to));
     }
 
-    /// The cursor: four arms around its place, light within dark, so that they show on anything.
+    /// Draws the cursor: four arms around its place, light with a dark edge, so that they show on any picture.
     pub fn cross(&mut self, at: Point) {
         let at = self.at(at);
         let (near, far) = (self.less(ARM.0).max(1.0), self.less(ARM.1).max(3.0));
@@ -111,7 +111,7 @@ impl Ink<'_> {
         }
     }
 
-    /// A dot with a dark rim; where it is small its color alone.
+    /// Draws a dot with a dark rim; a small one has no rim.
     fn dot(&mut self, pen: &Pen, at: Point, shape: Dot, radius: f64, selected: bool) {
         let growth = if selected { f64::from(SELECTED_GROWTH) } else { 1.0 };
         let radius = self.less(radius * growth * DOTS);
@@ -129,7 +129,7 @@ impl Ink<'_> {
         }
     }
 
-    /// Slanted lines over the inside of a region.
+    /// Hatches the inside of a region.
     fn hatch(&mut self, pen: &Pen, points: &[Point]) {
         let dots = Polygon::new(points.iter().map(|&at| self.at(at)).collect());
         let every = (HATCH / self.by).max(3);
@@ -154,7 +154,7 @@ struct Pen {
     dash: Option<(f64, f64)>,
 }
 
-/// Lays a color over the dot that holds `at`; what lies beyond the picture takes it too.
+/// Blends a color over the dot at `at`, also beyond the picture.
 fn blend(frame: &mut Frame, at: Point, [r, g, b, a]: [u8; 4]) {
     let (width, height) = (frame.width(), frame.height());
     if at.x >= 0.0 && at.y >= 0.0 && at.x < width as f64 && at.y < height as f64 {

@@ -1,5 +1,5 @@
-//! The picture in the terminal: as pixels where the terminal has a protocol for them, else in half-blocks; always within a
-//! bound of bytes, so that a slow link stays usable. Everything here runs on the worker thread.
+//! The picture in the terminal: as pixels if the terminal has a protocol for them, else in half-blocks, and always within a
+//! limit of bytes, so that a slow link stays usable. Everything here runs on the worker thread.
 
 mod diacritics;
 mod encode;

@@ -1,4 +1,4 @@
-//! A picture, made to fit its bound of bytes.
+//! A picture for the terminal, reduced to fit its limit of bytes.
 
 use std::sync::Arc;
 
@@ -13,27 +13,26 @@ use crate::render::overlay::overlay;
 use crate::render::part::{self, Part};
 use crate::scene::Scene;
 
-/// A picture as it can be shown.
+/// A picture ready to be written to the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TerminalPicture {
-    /// What it was made for.
+    /// The request that it answers.
     pub wanted: Wanted,
-    /// The dots, fewer by `by` each way; transparent beyond the picture.
+    /// The dots, reduced by `by` in each direction; transparent beyond the picture.
     pub frame: Frame,
-    /// How many times fewer dots it has than the pane, to stay within the bound of bytes.
+    /// How many times fewer dots than the pane it has, in each direction, to stay within the limit of bytes.
     pub by: usize,
-    /// The cells of the pane with the picture in them, where the terminal takes pixels.
+    /// The cells of the pane with the picture in them; `None` for half-blocks.
     pub cells: Option<Buffer>,
-    /// Bytes that it takes to the terminal (of half-blocks: at most).
+    /// How many bytes are written to the terminal; for half-blocks, at most.
     pub bytes: usize,
 }
 
-/// No picture is reduced further than this, whatever the bound.
+/// No picture is reduced further than this, whatever the limit.
 const MOST_REDUCED: usize = 64;
 
 impl TerminalPicture {
-    /// The picture at `time`, reduced until it fits its bound of bytes. `before` is the picture that was shown last: its
-    /// size is the first guess.
+    /// The picture at `time`, reduced until it fits its limit of bytes. The first guess comes from `before`, the last picture.
     pub fn new(
         synth: &Synth,
         scene: &Scene,
@@ -65,7 +64,7 @@ impl TerminalPicture {
         TerminalPicture { wanted: wanted.clone(), frame, by, cells, bytes }
     }
 
-    /// The color that a place of the picture has in it; none beyond the picture, or where it was not in sight.
+    /// The color at a place of the picture; `None` if the place is beyond the picture or was not visible.
     pub fn color_at(&self, place: Point) -> Option<[u8; 3]> {
         let dot = self.wanted.part.reduced(self.by).dot_of(place);
         let within =
@@ -75,20 +74,19 @@ impl TerminalPicture {
     }
 }
 
-/// How many times a picture must be reduced, after how many bytes one like it took.
+/// How many times a picture must be reduced, judging from the bytes of the one before.
 fn guess(before: &TerminalPicture, wanted: &Wanted) -> usize {
     let (old, new) = (&before.wanted, wanted);
-    // Once playing has ended a picture becomes as sharp as it can be.
+    // After playing, start again with full sharpness.
     if (old.protocol, old.part.dots, old.bytes) != (new.protocol, new.part.dots, new.bytes) {
         return 1;
     }
     let more = (before.bytes as f64 / wanted.bytes.max(1) as f64).sqrt();
-    // Nine tenths: a picture that would just fit is not made twice.
+    // The margin of a tenth saves a second try for pictures that only just fit.
     ((before.by as f64 * more / 0.9).ceil() as usize).clamp(1, MOST_REDUCED)
 }
 
-/// Lays what is transparent on a checkerboard of the picture's pixels, as the window does; what lies beyond the picture
-/// stays transparent.
+/// Puts a checkerboard under what is transparent within the picture, as the window does.
 fn ground(frame: &mut Frame, (w, h): (usize, usize), part: &Part) {
     let width = frame.width();
     for (i, cell) in frame.cells_mut().iter_mut().enumerate().filter(|(_, cell)| cell[3] < 255) {

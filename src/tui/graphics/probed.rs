@@ -11,9 +11,9 @@ use crate::scene::Scene;
 /// What one pixel does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probed {
-    /// What was at.
+    /// Which pixel, and when.
     pub at: ProbeAt,
-    /// What it does, if its layer tells.
+    /// What it does; `None` if its layer has nothing to say.
     pub read: Option<ReadOut>,
     /// The color that the frame shows there: sRGB, straight alpha.
     pub color: [u8; 4],

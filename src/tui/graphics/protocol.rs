@@ -1,4 +1,4 @@
-//! How pictures reach the terminal, and what of one is wanted.
+//! How pictures reach the terminal, and which picture a pane wants.
 
 use kurbo::Point;
 
@@ -29,7 +29,7 @@ impl Protocol {
         ("blocks", Protocol::Blocks),
     ];
 
-    /// The protocol of that name; none for `auto`.
+    /// The protocol of that name; `None` for `auto`.
     pub fn named(name: &str) -> Option<Protocol> {
         Protocol::NAMES.iter().find(|(known, _)| *known == name).map(|(_, protocol)| *protocol)
     }
@@ -40,22 +40,22 @@ impl Protocol {
     }
 }
 
-/// What pictures the terminal takes, and what the person wants of them.
+/// How pictures are sent: what the terminal can do, and what the person has set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Graphics {
-    /// What the person wants; none: what the terminal answered.
+    /// The protocol that the person has set; `None` to use the one that was found.
     pub forced: Option<Protocol>,
-    /// What the terminal answered.
+    /// The protocol that the terminal understands, by its own answer.
     pub found: Protocol,
     /// Width and height of a cell, in pixels of the screen.
     pub cell: (u16, u16),
-    /// Whether tmux stands between, which lets sequences through in an envelope only.
+    /// Whether the editor runs in tmux, so that escape sequences must be wrapped.
     pub tmux: bool,
-    /// The most bytes a frame: while playing, and of a still picture.
+    /// The most bytes per frame: while playing, and for a still picture.
     pub bytes: (usize, usize),
 }
 
-/// The most bytes a frame, while playing and still, until `:graphics bytes` says otherwise.
+/// The most bytes per frame while playing and still, unless `:graphics bytes` has set another limit.
 const BYTES: (usize, usize) = (64_000, 256_000);
 
 impl Default for Graphics {
@@ -65,7 +65,7 @@ impl Default for Graphics {
 }
 
 impl Graphics {
-    /// The protocol in force. A picture of kitty is named by a color: there is none without colors.
+    /// The protocol in use. Kitty's placeholders name their picture by a color, so they need colors.
     pub fn protocol(&self, depth: Depth) -> Protocol {
         match self.forced.unwrap_or(self.found) {
             Protocol::Kitty if depth == Depth::None => Protocol::Blocks,
@@ -73,7 +73,7 @@ impl Graphics {
         }
     }
 
-    /// Dots of a cell, across and down.
+    /// Dots per cell, across and down.
     pub fn dots_a_cell(&self, protocol: Protocol) -> (usize, usize) {
         match protocol {
             Protocol::Blocks => (1, 2),
@@ -81,7 +81,7 @@ impl Graphics {
         }
     }
 
-    /// Dots of a pane of so many cells. Sixels come in bands of six rows: no band may hang over the pane's edge.
+    /// Dots of a pane with so many cells. Sixels come in bands of six rows, and none may hang over the pane's edge.
     pub fn dots(&self, protocol: Protocol, (columns, rows): (u16, u16)) -> (usize, usize) {
         let (width, height) = self.dots_a_cell(protocol);
         let tall = usize::from(rows) * height;
@@ -98,21 +98,21 @@ pub struct Wanted {
     pub cells: (u16, u16),
     /// How it reaches the terminal.
     pub protocol: Protocol,
-    /// Whether tmux stands between.
+    /// Whether the editor runs in tmux.
     pub tmux: bool,
     /// The most bytes.
     pub bytes: usize,
-    /// What is drawn into the pixels; half-blocks have their marks over them instead.
+    /// The marks drawn into the pixels; `None` for half-blocks, whose marks are drawn as characters.
     pub marks: Option<Marks>,
 }
 
 /// What is drawn over a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marks {
-    /// What of the overlay.
+    /// Which overlays, and what is selected.
     pub view: View,
     /// The cursor.
     pub cursor: Point,
-    /// Where a jump vector that is being set begins.
+    /// Where the jump vector that is being set begins.
     pub aim: Option<Point>,
 }

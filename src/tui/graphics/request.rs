@@ -6,25 +6,25 @@ use std::sync::Arc;
 use super::protocol::Wanted;
 use crate::scene::Scene;
 
-/// What the panes want to show.
+/// What the worker is to make for the panes.
 #[derive(Clone)]
 pub struct Request {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Its file, which its pictures are relative to.
+    /// The scene's file; its pictures are relative to it.
     pub path: PathBuf,
     /// Scene time.
     pub time: f64,
-    /// Whether files may have changed since the last time.
+    /// Whether files may have changed since the last request.
     pub fresh: bool,
-    /// The picture, where there is room for it.
+    /// The picture; `None` if there is no room for it.
     pub picture: Option<Wanted>,
-    /// The pixel whose read-out is open.
+    /// The pixel whose read-out is open, if it is.
     pub probe: Option<ProbeAt>,
 }
 
 impl PartialEq for Request {
-    /// Whether the same is to be seen.
+    /// Whether both ask for the same; `fresh` does not count.
     fn eq(&self, other: &Request) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.path == other.path
@@ -34,7 +34,7 @@ impl PartialEq for Request {
     }
 }
 
-/// A pixel that is asked about.
+/// A pixel to be probed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbeAt {
     /// The layer.

@@ -1,31 +1,31 @@
-//! What of the picture is in sight: the zoom, the middle, and how places of the picture fall on dots and cells.
+//! Which part of the picture is visible: zoom, center, and panning.
 
 use kurbo::{Point, Vec2};
 
 use crate::render::part::Part;
 
-/// The most that a pixel is enlarged, each way, in dots.
+/// The largest size of a pixel, in dots.
 const LARGEST: f64 = 64.0;
-/// The share of what is in sight that one pan goes.
+/// How far one pan goes, as a share of what is visible.
 const PAN: f64 = 0.25;
 
-/// The zoom, and what the pane is centered on.
+/// The zoom, and the center of the pane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewport {
-    /// Pixels of the picture a dot; `None` if all of it is visible.
+    /// Pixels of the picture per dot; `None` to fit all of it.
     pub zoom: Option<f64>,
-    /// The center of what is visible, as far as the picture and the cursor allow.
+    /// The center of what is visible, as far as the edges of the picture and the cursor allow.
     pub center: Point,
 }
 
-/// The scale at which all of the picture fits on so many dots.
+/// The scale at which the whole picture fits on so many dots.
 pub fn fit((width, height): (usize, usize), (across, down): (usize, usize)) -> f64 {
     let least = 1.0 / LARGEST;
     (width as f64 / across.max(1) as f64).max(height as f64 / down.max(1) as f64).max(least)
 }
 
-/// What is in sight: all of the picture in the middle, or as the zoom says, around the middle that was looked at last; the
-/// cursor always.
+/// The visible part: the whole picture, centered, or at the given zoom around the viewport's center. It always contains the
+/// cursor.
 pub fn part(viewport: &Viewport, cursor: Point, size: (usize, usize), dots: (usize, usize)) -> Part {
     let scale = viewport.zoom.unwrap_or(f64::INFINITY).min(fit(size, dots));
     let axis = |middle: f64, cursor: f64, size: usize, dots: usize| {
@@ -34,9 +34,9 @@ pub fn part(viewport: &Viewport, cursor: Point, size: (usize, usize), dots: (usi
             return (size - seen) / 2.0;
         }
         let corner = (middle - seen / 2.0).clamp(0.0, size - seen);
-        // Pixels stay whole: one is never cut in two by the edge.
+        // The edge never cuts a pixel in two.
         let corner = if scale < 1.0 { corner.round() } else { (corner / scale).round() * scale };
-        // Where less than a pixel is in sight the cursor's own comes first.
+        // If less than a pixel is visible, it is the cursor's.
         let least = cursor - seen + 0.5;
         corner.clamp(least, (cursor.max(0.5) - 0.5).max(least)).clamp(0.0, size - seen)
     };
@@ -47,7 +47,7 @@ pub fn part(viewport: &Viewport, cursor: Point, size: (usize, usize), dots: (usi
     Part { corner, scale, dots }
 }
 
-/// The next scale when zooming in (or out): a power of two, so that pixels and dots fit one another; none: all of it.
+/// The next scale when zooming in (or out): a power of two, so that dots and pixels align; `None` to fit the whole picture.
 pub fn zoomed(from: f64, fit: f64, inward: bool) -> Option<f64> {
     let mut scale = 1.0 / LARGEST;
     while scale * 2.0 < from || (!inward && scale <= from) {
@@ -56,8 +56,7 @@ pub fn zoomed(from: f64, fit: f64, inward: bool) -> Option<f64> {
     (scale < fit).then_some(scale)
 }
 
-/// Goes a quarter of what is in sight to a side, as far as the picture goes; the cursor comes along where it would be left
-/// behind.
+/// Pans by a quarter of what is visible, as far as the picture goes. The cursor moves along if it would become invisible.
 pub fn pan(viewport: &mut Viewport, cursor: &mut Point, part: &Part, (width, height): (usize, usize), way: Vec2) {
     let seen = part.extent();
     let half = seen / 2.0;
@@ -76,13 +75,13 @@ pub fn pan(viewport: &mut Viewport, cursor: &mut Point, part: &Part, (width, hei
     cursor.y = within(cursor.y, viewport.center.y, half.y);
 }
 
-/// How large the picture is shown, in words: dots a pixel, or pixels a dot.
+/// The scale in words: dots per pixel, or pixels per dot.
 pub fn words(scale: f64) -> String {
     let short = |value: f64| crate::tui::text::numbers::short((value * 10.0).round() / 10.0);
     if scale < 1.0 { format!("{}:1", short(1.0 / scale)) } else { format!("1:{}", short(scale)) }
 }
 
-/// The part of the line from `a` to `b` that lies on so many dots (Liang and Barsky).
+/// The part of the line from `a` to `b` within so many dots (Liang and Barsky).
 pub fn clipped(a: Point, b: Point, (width, height): (usize, usize)) -> Option<(Point, Point)> {
     let d = b - a;
     let (mut from, mut to) = (0.0f64, 1.0f64);

@@ -1,6 +1,6 @@
-//! The keys in force: the table, and over it what the person wrote in their own file. That file is TOML, a section a
-//! context, `"key sequence" = "line"`; an empty line takes the key away. Every mistake in it is found at once, by its line,
-//! and what is right still holds.
+//! The keys in use: the table, overridden by the person's own file. That file is TOML with a section for each context and
+//! entries `"key sequence" = "line"`; an empty line unbinds the key. All mistakes are reported at once, each with its line
+//! number, and the correct entries still apply.
 
 use crate::tui::text::plain;
 use std::borrow::Cow;
@@ -15,9 +15,9 @@ use crate::tui::text::said::Said;
 /// One key of the keymap.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
-    /// Where it means this.
+    /// The context that it works in.
     pub context: &'static str,
-    /// The key or keys, as the manual writes them.
+    /// The key or keys, spelled as in the manual.
     pub key: Cow<'static, str>,
     /// The line that it runs.
     pub command: Cow<'static, str>,
@@ -35,7 +35,7 @@ pub struct Keymap {
 }
 
 impl Default for Keymap {
-    /// The table as it is.
+    /// The table without any of the person's own keys.
     fn default() -> Self {
         let row = |row: &crate::base::keys::KeyRow| Binding {
             context: row.context,
@@ -48,7 +48,7 @@ impl Default for Keymap {
     }
 }
 
-/// A binding as it is written, at its line.
+/// A binding as written in the file, with its line number.
 struct Written {
     line: usize,
     context: &'static str,
@@ -57,20 +57,22 @@ struct Written {
 }
 
 impl Keymap {
-    /// The table with the person's own keys over it; `file` is named in what is wrong. `known` are the commands that there
-    /// are, each with its help.
+    /// The table overridden by the keys of a file. Mistakes name `file`. `known` are all commands with their help.
     pub fn with(file: &str, text: &str, known: &[(String, &'static str)]) -> Keymap {
         let mut map = Keymap::default();
         let mut mistakes = Vec::new();
         let mut written = read(text, &mut mistakes);
         written.sort_by_key(|one| one.line);
-        // First what is taken away, so that the order in the file does not matter.
+        // Unbind first, so that the order in the file does not matter.
         let (away, own): (Vec<_>, Vec<_>) = written.into_iter().partition(|one| one.command.is_empty());
         for one in away {
             let before = map.rows.len();
             map.rows.retain(|row| (row.context, &*row.key) != (one.context, one.key.as_str()));
             if map.rows.len() == before {
-                mistakes.push((one.line, format!("{} is not bound in [{}]: ? shows what is", one.key, one.context)));
+                mistakes.push((
+                    one.line,
+                    format!("{} is not bound in [{}]: ? shows the keys that are", one.key, one.context),
+                ));
             }
         }
         for one in own {
@@ -88,7 +90,7 @@ impl Keymap {
         Keymap { mistakes: vec![why], ..Keymap::default() }
     }
 
-    /// What is wrong in the person's own file.
+    /// The mistakes in the person's own file.
     pub fn mistakes(&self) -> &[String] {
         &self.mistakes
     }
@@ -98,7 +100,7 @@ impl Keymap {
         &self.rows
     }
 
-    /// Looks the keys pressed up in the contexts, the innermost first.
+    /// What the pressed keys mean in these contexts, the innermost first.
     pub fn find(&self, contexts: &[&str], pressed: &str) -> Found {
         for context in contexts {
             let mut rows = self.rows.iter().filter(|row| row.context == *context);
@@ -118,7 +120,7 @@ impl Keymap {
         row.map(|row| &*row.key)
     }
 
-    /// The keys that begin with those pressed, for the hints.
+    /// The bindings that begin with the pressed keys, for the hints.
     pub fn continuations<'a>(
         &'a self,
         contexts: &'a [&str],
@@ -136,14 +138,14 @@ impl Keymap {
         let others = || self.rows.iter().filter(|row| row.context == one.context);
         if let Some(row) = others().find(|row| begins(&row.key, &one.key)) {
             return Err(format!(
-                "{} can never be reached, for {} alone does something already: take that away with \"{}\" = \"\"",
+                "{} can never be reached, because {} alone runs something: unbind that with \"{}\" = \"\"",
                 one.key, row.key, row.key
             ));
         }
         let hidden: Vec<&str> = others().filter(|row| begins(&one.key, &row.key)).map(|row| &*row.key).collect();
         if let [first, rest @ ..] = hidden.as_slice() {
             let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
-            return Err(format!("{} would hide {first}{more}: choose another key, or take those away", one.key));
+            return Err(format!("{} would hide {first}{more}: choose another key, or unbind those", one.key));
         }
         let help = help(&one.command, known);
         self.rows.retain(|row| (row.context, &*row.key) != (one.context, one.key.as_str()));
@@ -153,14 +155,14 @@ impl Keymap {
     }
 }
 
-/// What a line does: as the table says, else as its command does.
+/// The help for a line: from the table of keys, else that of its command.
 fn help(line: &str, known: &[(String, &'static str)]) -> Cow<'static, str> {
     let row = KEYS.iter().find(|row| row.command == line).map(|row| row.help);
     let command = || known.iter().find(|(name, _)| name == line).map(|(_, help)| *help).filter(|help| !help.is_empty());
     row.or_else(command).map_or_else(|| Cow::Owned(plain(line)), Cow::Borrowed)
 }
 
-/// The bindings of a file that are written as they should be.
+/// The well-formed bindings of a file.
 fn read(text: &str, mistakes: &mut Vec<(usize, String)>) -> Vec<Written> {
     let line = |at: usize| text.bytes().take(at).filter(|&byte| byte == b'\n').count() + 1;
     let (table, errors) = DeTable::parse_recoverable(text);
@@ -176,7 +178,7 @@ fn read(text: &str, mistakes: &mut Vec<(usize, String)>) -> Vec<Written> {
                     let near = problem::nearest(name, contexts().into_iter()).unwrap_or_default();
                     format!("there is no section {}: {near}", problem::quoted(name))
                 }
-                _ => "keys stand in a section, such as [everywhere]".into(),
+                _ => "keys belong in a section, such as [everywhere]".into(),
             };
             mistakes.push((line(section.span().start), why));
             continue;
@@ -184,7 +186,7 @@ fn read(text: &str, mistakes: &mut Vec<(usize, String)>) -> Vec<Written> {
         for (key, command) in rows {
             let at = line(key.span().start);
             let DeValue::String(command) = command.get_ref() else {
-                mistakes.push((at, "what a key runs is a line in quotes: \"undo\"".into()));
+                mistakes.push((at, "a key runs a line in quotes, such as \"undo\"".into()));
                 continue;
             };
             match sequence(context, key.get_ref()) {
@@ -196,7 +198,7 @@ fn read(text: &str, mistakes: &mut Vec<(usize, String)>) -> Vec<Written> {
     written
 }
 
-/// The contexts that there are, in the order of the table.
+/// All contexts, in the order of the table.
 pub fn contexts() -> Vec<&'static str> {
     let mut all: Vec<&str> = Vec::new();
     for row in KEYS.iter() {
@@ -207,14 +209,14 @@ pub fn contexts() -> Vec<&'static str> {
     all
 }
 
-/// Whether the keys `short` are the beginning of the longer `long`.
+/// Whether the sequence `long` begins with the keys `short`.
 fn begins(short: &str, long: &str) -> bool {
     let (short, long): (Vec<_>, Vec<_>) = (short.split(' ').collect(), long.split(' ').collect());
     let same = |(a, b): (&&str, &&str)| a == b || stands_for(a, b) || stands_for(b, a);
     short.len() < long.len() && short.iter().zip(&long).all(same)
 }
 
-/// Keys with names of more than a letter.
+/// Keys whose names are longer than a letter.
 const NAMED: &[&str] = &[
     "Space",
     "Enter",
@@ -243,7 +245,7 @@ const NAMED: &[&str] = &[
     "F12",
 ];
 
-/// Keys that come as others, from some terminals or from all.
+/// Keys that some or all terminals send as other keys.
 const COME_AS: &[(&str, &str)] = &[
     ("Ctrl-h", "Backspace"),
     ("Ctrl-i", "Tab"),
@@ -254,12 +256,12 @@ const COME_AS: &[(&str, &str)] = &[
     ("PageDown", "Ctrl-d"),
 ];
 
-/// The keys of a binding, one space between them.
+/// Checks the keys of a binding and puts one space between them.
 fn sequence(context: &str, written: &str) -> Result<String, String> {
     let keys: Vec<&str> = written.split_whitespace().collect();
     let first = keys.first().ok_or("there is no key between the quotes: the space bar is Space")?;
     for (at, key) in keys.iter().enumerate() {
-        // Alone it takes every letter of its context, which only a list can spare.
+        // Alone it binds every letter of its context; only lists have none of their own.
         if !LETTERS.contains(key) || (at == 0 && context != LIST) || at + 1 < keys.len() {
             check(key)?;
         }
@@ -280,14 +282,14 @@ fn sequence(context: &str, written: &str) -> Result<String, String> {
 
 fn check(key: &str) -> Result<(), String> {
     if let Some((_, other)) = COME_AS.iter().find(|(name, _)| *name == key) {
-        return Err(format!("{key} comes from terminals as {other}: write that"));
+        return Err(format!("{key} is sent by terminals as {other}: write that"));
     }
     let control = key.strip_prefix("Ctrl-");
     let plain = control.unwrap_or(key);
     let plain = plain.strip_prefix("Alt-").unwrap_or(plain);
     let one = plain.chars().count() == 1 && !plain.contains(char::is_control);
     if one && control.is_some() && plain.contains(char::is_uppercase) {
-        return Err(format!("Ctrl-{plain} comes from terminals as Ctrl-{}: write that", plain.to_lowercase()));
+        return Err(format!("Ctrl-{plain} is sent by terminals as Ctrl-{}: write that", plain.to_lowercase()));
     }
     if one || NAMED.contains(&plain) {
         return Ok(());
@@ -345,7 +347,7 @@ mod tests {
             ("[everywhere]\n\"Y Y\" = \"undo\"\n\"Y\" = \"redo\"", 3, "would hide Y Y"),
             ("[everywhere]\n\"ctrl-x\" = \"undo\"", 2, "keys are written as"),
             ("[everywhere]\n\"Ctrl-enter\" = \"undo\"", 2, "did you mean Ctrl-Enter?"),
-            ("[everywhere]\n\"Ctrl-i\" = \"undo\"", 2, "comes from terminals as Tab"),
+            ("[everywhere]\n\"Ctrl-i\" = \"undo\"", 2, "is sent by terminals as Tab"),
             ("[everywhere]\n\"Ctrl-X\" = \"undo\"", 2, "Ctrl-x"),
             ("[everywhere]\n\" \" = \"undo\"", 2, "Space"),
             ("[everywhere]\n\"5 g\" = \"undo\"", 2, "count"),

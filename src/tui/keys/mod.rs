@@ -1,5 +1,5 @@
-//! What a key means: the rows of the one table (table.rs), with the person's own over them (keymap.rs), looked up by context
-//! from the innermost out: a pane, then everywhere.
+//! What a key means: the rows of one table (table.rs), overridden by the person's own (keymap.rs). They are looked up by
+//! context, the innermost first: a pane, then everywhere.
 
 mod keymap;
 mod names;

@@ -1,26 +1,26 @@
-//! Keys by name, and what a row of the table stands for.
+//! The names of keys, and matching pressed keys with rows of the table.
 
 use terminput::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Where the person's own keys stand.
+/// The file with the person's own keys.
 pub const OWN_FILE: &str = "$XDG_CONFIG_HOME/plica/keys.toml (else ~/.config/plica/keys.toml)";
 
-/// Stand in a row for any small and for any capital letter.
+/// Placeholders in a row for any lowercase and any uppercase letter.
 pub const LETTERS: [&str; 2] = ["{a-z}", "{A-Z}"];
 
-/// What the keys pressed so far mean.
+/// What the keys that were pressed so far mean.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Found {
-    /// This line is to be run.
+    /// They run this line.
     Line(String),
-    /// The beginning of several.
+    /// They begin one or more longer sequences.
     Prefix,
-    /// Nothing.
+    /// They mean nothing.
     Nothing,
 }
 
-/// The line that a row runs where the keys pressed are its own. A key of [`LETTERS`] at the end stands for any letter, and in
-/// the line for the one that was pressed.
+/// The line that a row runs if the pressed keys are its own. A placeholder of [`LETTERS`] at the end matches any letter; in the
+/// line it is replaced by the letter that was pressed.
 pub fn line_of(key: &str, command: &str, pressed: &str) -> Option<String> {
     if key == pressed {
         return Some(command.to_owned());
@@ -30,18 +30,18 @@ pub fn line_of(key: &str, command: &str, pressed: &str) -> Option<String> {
     stands_for(any, letter).then(|| command.replace(any, letter))
 }
 
-/// Whether a key of a row is one of [`LETTERS`] and stands for this key.
+/// Whether `any` is one of [`LETTERS`] and matches this key.
 pub fn stands_for(any: &str, key: &str) -> bool {
     let fits = |c: char| (any == LETTERS[0] && c.is_ascii_lowercase()) || (any == LETTERS[1] && c.is_ascii_uppercase());
     key.len() == 1 && key.starts_with(fits)
 }
 
-/// Whether the keys of a row go on from those pressed.
+/// Whether the keys of a row continue the pressed ones.
 pub fn continues(key: &str, pressed: &str) -> bool {
     key.strip_prefix(pressed).is_some_and(|rest| rest.starts_with(' '))
 }
 
-/// The name of a key in the table; `None` where it has none.
+/// The name of a key as the table has it; `None` if it has none.
 pub fn name(event: KeyEvent) -> Option<String> {
     let shift = event.modifiers.contains(KeyModifiers::SHIFT);
     let plain = match event.code {

@@ -1,4 +1,4 @@
-//! The one table of keys: from it come the bindings, the help, the hints after a first key, and docs/keys.md.
+//! The table of keys. The bindings, the help, the hints after a first key and docs/keys.md are made from it.
 
 use std::sync::LazyLock;
 
@@ -9,11 +9,11 @@ use crate::preview::keys as window;
 pub const EVERYWHERE: &str = "everywhere";
 /// The tree of the scene.
 pub const TREE: &str = "tree";
-/// The middle: a form or a table.
+/// The middle column: a form or a table.
 pub const TABLE: &str = "form and table";
-/// The picture with its placing cursor.
+/// The picture with its cursor.
 pub const PICTURE: &str = "picture";
-/// The picture, while the cursor sets a jump vector.
+/// The picture, while its cursor sets a jump vector.
 pub const AIM: &str = "aiming a jump vector";
 /// A list to choose from.
 pub const LIST: &str = "list of choices";
@@ -38,14 +38,14 @@ const fn row(context: &'static str, key: &'static str, command: &'static str, he
     KeyRow { context, key, command, help }
 }
 
-/// Every binding: the editor's own, and behind `z` what the window can show.
+/// Every binding: the editor's own, and after `z` those of the window's view menu.
 pub static KEYS: LazyLock<Vec<KeyRow>> = LazyLock::new(|| {
     let view = OWN.iter().position(|row| row.key == "z <").unwrap_or(OWN.len());
     let of_window = OF_WINDOW.iter().map(|[key, command, help]| row(EVERYWHERE, key, command, help));
     OWN[..view].iter().copied().chain(of_window).chain(OWN[view..].iter().copied()).collect()
 });
 
-/// The rows of the window's view menu that the editor has no command of its own for: key, line and help.
+/// The rows of the window's view menu for which the editor has no command of its own: key, line and help.
 static OF_WINDOW: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| {
     let made = |row: &KeyRow| {
         let [first, rest] = row.help.split_at(1).into();
@@ -58,10 +58,10 @@ static OF_WINDOW: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| {
 
 /// The editor's own bindings.
 const OWN: &[KeyRow] = &[
-    row(EVERYWHERE, "?", "help", "Show what is under the cursor, the keys of this pane, then all others"),
+    row(EVERYWHERE, "?", "help", "Show help for what is under the cursor, the keys of this pane, then all others"),
     row(EVERYWHERE, ":", "line", "Type a command"),
     row(EVERYWHERE, "Tab", "pane next", "Go to the next pane"),
-    row(EVERYWHERE, "Shift-Tab", "pane previous", "Go to the pane before"),
+    row(EVERYWHERE, "Shift-Tab", "pane previous", "Go to the previous pane"),
     row(EVERYWHERE, "Esc", "back", "End the selection, else running work"),
     row(EVERYWHERE, "Ctrl-c", "leave", "As Esc, and say how to leave"),
     row(EVERYWHERE, "u", "undo", "Undo"),
@@ -73,27 +73,27 @@ const OWN: &[KeyRow] = &[
     row(EVERYWHERE, "<", "step-size smaller", "Make the step ten times smaller"),
     row(EVERYWHERE, ">", "step-size larger", "Make the step ten times larger"),
     row(EVERYWHERE, "P", "play", "Play or pause"),
-    row(EVERYWHERE, "[", "frame previous", "Go a frame back"),
-    row(EVERYWHERE, "]", "frame next", "Go a frame on"),
+    row(EVERYWHERE, "[", "frame previous", "Go one frame back"),
+    row(EVERYWHERE, "]", "frame next", "Go one frame forward"),
     row(EVERYWHERE, "{", "frame first", "Go to the first frame"),
     row(EVERYWHERE, "}", "frame last", "Go to the last frame"),
-    row(EVERYWHERE, "/", "line /", "Search names and values; a number finds what is that number"),
+    row(EVERYWHERE, "/", "line /", "Search names and values; a number finds equal numbers"),
     row(EVERYWHERE, "n", "search next", "Go to the next match"),
-    row(EVERYWHERE, "N", "search previous", "Go to the match before"),
+    row(EVERYWHERE, "N", "search previous", "Go to the previous match"),
     row(EVERYWHERE, "m {a-z}", "mark {a-z}", "Set a mark here"),
     row(EVERYWHERE, "' {a-z}", "jump-mark {a-z}", "Go to a mark"),
     row(EVERYWHERE, "Ctrl-o", "jumps older", "Go back to where the last jump came from"),
-    row(EVERYWHERE, "(", "sibling previous", "Go to the same place of the zone or tool before, of the same kind"),
+    row(EVERYWHERE, "(", "sibling previous", "Go to the same place of the previous zone or tool of the same kind"),
     row(EVERYWHERE, ")", "sibling next", "Go to the same place of the next zone or tool of the same kind"),
     row(EVERYWHERE, "g g", "move first", "Go to the first row"),
-    row(EVERYWHERE, "g o", "jumps newer", "Go on along the jumps again"),
+    row(EVERYWHERE, "g o", "jumps newer", "Go forward again along the jumps"),
     row(EVERYWHERE, "G", "move last", "Go to the last row, or to the row of the count"),
-    row(EVERYWHERE, "g -", "earlier", "Go to the state before in time, in whatever branch of undo it is"),
-    row(EVERYWHERE, "g +", "later", "Go to the state after in time, in whatever branch of undo it is"),
+    row(EVERYWHERE, "g -", "earlier", "Go to the previous state in time, in whatever branch of undo it is"),
+    row(EVERYWHERE, "g +", "later", "Go to the next state in time, in whatever branch of undo it is"),
     row(EVERYWHERE, "g p", "probe", "Open or close the read-out of the pixel under the picture's cursor"),
     row(EVERYWHERE, "g d", "problem next", "Go to the next place where something is wrong"),
-    row(EVERYWHERE, "g D", "problem previous", "Go to the place before where something is wrong"),
-    row(EVERYWHERE, "g m", "messages", "Show what was said before, to its end"),
+    row(EVERYWHERE, "g D", "problem previous", "Go to the previous place where something is wrong"),
+    row(EVERYWHERE, "g m", "messages", "Show earlier messages in full"),
     row(EVERYWHERE, "g t", "pane tree", "Go to the tree"),
     row(EVERYWHERE, "g e", "pane table", "Go to the form or table"),
     row(EVERYWHERE, "g i", "pane picture", "Go to the picture"),
@@ -115,12 +115,12 @@ const OWN: &[KeyRow] = &[
     row(EVERYWHERE, "Space x", "wq", "Save and leave"),
     row(EVERYWHERE, "Space q", "q", "Leave"),
     row(EVERYWHERE, "Space v", "view", "Open the preview window"),
-    row(EVERYWHERE, "Space r", "line :render", "Begin to type :render, for an animation"),
-    row(EVERYWHERE, "Space s", "line :synth", "Begin to type :synth, for the textures"),
-    row(EVERYWHERE, "Space f", "line :field", "Begin to type :field, for plots and tables"),
+    row(EVERYWHERE, "Space r", "line :render", "Start typing :render, for an animation"),
+    row(EVERYWHERE, "Space s", "line :synth", "Start typing :synth, for the textures"),
+    row(EVERYWHERE, "Space f", "line :field", "Start typing :field, for plots and tables"),
     row(EVERYWHERE, "Space T", "tutor", "Learn the editor, step by step"),
     row(EVERYWHERE, "Space c", "problems", "List what is wrong in the scene; Enter goes there"),
-    row(EVERYWHERE, "Space m", "messages", "Show what was said before, to its end"),
+    row(EVERYWHERE, "Space m", "messages", "Show earlier messages in full"),
     row(EVERYWHERE, "Space g", "probe", "Say what the pixel under the picture's cursor does"),
     row(EVERYWHERE, "Space t", "pane tree", "Go to the tree"),
     row(EVERYWHERE, "Space e", "pane table", "Go to the form or table"),
@@ -128,11 +128,11 @@ const OWN: &[KeyRow] = &[
     row(EVERYWHERE, "Space l", "log", "Show the lines of this session"),
     row(EVERYWHERE, "Space k", "keys", "Show your own keys"),
     row(EVERYWHERE, "Space ?", "help", "Show the help"),
-    row(EVERYWHERE, "M", "pointer", "Take the window's pointer into the field, else into the picture's cursor"),
-    row(EVERYWHERE, "Ctrl-l", "redraw", "Draw the screen anew"),
+    row(EVERYWHERE, "M", "pointer", "Enter the place of the window's pointer, or move the picture's cursor there"),
+    row(EVERYWHERE, "Ctrl-l", "redraw", "Redraw the screen"),
     row(EVERYWHERE, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
-    row(SMALL, ":", "line", "Type :q, :wq or :w; nothing else is done before the terminal is larger"),
-    row(SMALL, "Ctrl-l", "redraw", "Draw the screen anew"),
+    row(SMALL, ":", "line", "Type :q, :wq or :w; nothing else works until the terminal is larger"),
+    row(SMALL, "Ctrl-l", "redraw", "Redraw the screen"),
     row(SMALL, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
     row(RECORDING, "q", "record", "End the macro"),
     row(TREE, "j", "move down", "Go down"),
@@ -147,14 +147,14 @@ const OWN: &[KeyRow] = &[
     row(TREE, "i", "pane table", "Edit the node"),
     row(TREE, "Ctrl-d", "move page-down", "Go half a page down"),
     row(TREE, "Ctrl-u", "move page-up", "Go half a page up"),
-    row(TREE, "Backspace", "up", "Go to the node that holds this one"),
+    row(TREE, "Backspace", "up", "Go to the parent node"),
     row(TREE, "o", "add", "Add an item to the list, or a node like this one"),
     row(TREE, "d", "delete", "Delete the node"),
     row(TREE, "D", "duplicate", "Duplicate the node"),
     row(TREE, "y", "yank", "Yank the node as JSON, also to the terminal's clipboard"),
     row(TREE, "Y", "yank csv", "Yank the rows of the list as CSV"),
     row(TREE, "p", "paste", "Paste what was yanked into the list, after the node or over it"),
-    row(TREE, "R", "rename", "Give the node another name"),
+    row(TREE, "R", "rename", "Rename the node"),
     row(TREE, "J", "reorder down", "Move the node down among its siblings"),
     row(TREE, "K", "reorder up", "Move the node up among its siblings"),
     row(TABLE, "j", "move down", "Go down"),
@@ -171,21 +171,21 @@ const OWN: &[KeyRow] = &[
     row(TABLE, "Ctrl-u", "move page-up", "Go half a page up"),
     row(TABLE, "Enter", "enter", "Edit the cell, or go into the node"),
     row(TABLE, "i", "enter", "Edit the cell, or go into the node"),
-    row(TABLE, "c", "enter clear", "Edit the cell from nothing"),
-    row(TABLE, "Backspace", "up", "Go to the node that holds this one"),
+    row(TABLE, "c", "enter clear", "Edit the cell, starting empty"),
+    row(TABLE, "Backspace", "up", "Go to the parent node"),
     row(TABLE, "+", "step 1", "Step the number up"),
     row(TABLE, "-", "step -1", "Step the number down"),
     row(TABLE, "v", "select", "Begin or end a selection of rows; an edit applies to all of them"),
     row(TABLE, "V", "select all", "Select all rows"),
     row(TABLE, "%", "select all", "Select all rows"),
-    row(TABLE, "g v", "select again", "Take up the last selection again"),
-    row(TABLE, "o", "add", "Add an item, or an optional node that is not there"),
+    row(TABLE, "g v", "select again", "Select again what was selected last"),
+    row(TABLE, "o", "add", "Add an item, or a missing optional node"),
     row(TABLE, "d", "delete", "Delete the row or the selection; a field goes back to its default"),
     row(TABLE, "D", "duplicate", "Duplicate the row or the selection"),
     row(TABLE, "y", "yank", "Yank the row or the selection as JSON, also to the terminal's clipboard"),
     row(TABLE, "Y", "yank csv", "Yank the row or the selection as CSV"),
     row(TABLE, "p", "paste", "Paste what was yanked after the row, into the list or over the field"),
-    row(TABLE, "R", "rename", "Give the row another name, a picture everywhere"),
+    row(TABLE, "R", "rename", "Rename the row; a picture is renamed everywhere"),
     row(TABLE, "J", "reorder down", "Move the row or the selection down"),
     row(TABLE, "K", "reorder up", "Move the row or the selection up"),
     row(PICTURE, "h", "cursor -1 0", "Move the cursor a pixel left"),
@@ -204,15 +204,15 @@ const OWN: &[KeyRow] = &[
     row(PICTURE, "r", "place move", "Move the selected point here"),
     row(PICTURE, "s", "place aim", "Set the selected point's jump vector: move, then Enter"),
     row(PICTURE, "w", "place next", "Select the next point and go there"),
-    row(PICTURE, "b", "place previous", "Select the point before and go there"),
+    row(PICTURE, "b", "place previous", "Select the previous point and go there"),
     row(PICTURE, "d", "delete", "Delete the selected point"),
     row(PICTURE, "+", "zoom in", "Zoom in"),
     row(PICTURE, "-", "zoom out", "Zoom out"),
     row(PICTURE, "0", "zoom fit", "Show the whole picture"),
     row(PICTURE, "Enter", "probe", "Open or close the read-out of the pixel under the cursor"),
-    row(AIM, "Enter", "place jump", "Let the jump vector end at the cursor"),
-    row(AIM, "Esc", "cancel", "Leave the jump vector as it was"),
-    row(AIM, "Ctrl-c", "cancel", "Leave the jump vector as it was"),
+    row(AIM, "Enter", "place jump", "End the jump vector at the cursor"),
+    row(AIM, "Esc", "cancel", "Keep the old jump vector"),
+    row(AIM, "Ctrl-c", "cancel", "Keep the old jump vector"),
     row(LIST, "j", "choice next", "Go down"),
     row(LIST, "Down", "choice next", "Go down"),
     row(LIST, "k", "choice previous", "Go up"),
@@ -221,8 +221,8 @@ const OWN: &[KeyRow] = &[
     row(LIST, "Esc", "cancel", "Take nothing"),
     row(LIST, "q", "cancel", "Take nothing"),
     row(LIST, "Ctrl-c", "cancel", "Take nothing"),
-    row(LIST, "{a-z}", "choice to {a-z}", "Go to the next word that begins so"),
-    row(LIST, "{A-Z}", "choice to {A-Z}", "The same, also for the letters of other keys"),
+    row(LIST, "{a-z}", "choice to {a-z}", "Go to the next word that begins with this letter"),
+    row(LIST, "{A-Z}", "choice to {A-Z}", "The same; use it for letters that are keys here"),
     row(PALETTE, "Down", "palette next", "Go down"),
     row(PALETTE, "Ctrl-n", "palette next", "Go down"),
     row(PALETTE, "Tab", "palette next", "Go down"),
@@ -254,18 +254,18 @@ const OWN: &[KeyRow] = &[
     row(TYPING, "Ctrl-Left", "text word-left", "Go a word left"),
     row(TYPING, "Alt-Right", "text word-right", "Go a word right"),
     row(TYPING, "Ctrl-Right", "text word-right", "Go a word right"),
-    row(TYPING, "Backspace", "text rub", "Delete the character before"),
+    row(TYPING, "Backspace", "text rub", "Delete the character before the cursor"),
     row(TYPING, "Delete", "text delete", "Delete the character under the cursor"),
-    row(TYPING, "Ctrl-w", "text rub-word", "Delete the word before"),
-    row(TYPING, "Alt-Backspace", "text rub-word", "Delete the word before"),
-    row(TYPING, "Alt-d", "text delete-word", "Delete the word after"),
+    row(TYPING, "Ctrl-w", "text rub-word", "Delete the word before the cursor"),
+    row(TYPING, "Alt-Backspace", "text rub-word", "Delete the word before the cursor"),
+    row(TYPING, "Alt-d", "text delete-word", "Delete the word after the cursor"),
     row(TYPING, "Ctrl-u", "text clear", "Delete everything"),
-    row(TYPING, "Esc", "cancel", "Leave it as it was"),
-    row(TYPING, "Ctrl-c", "cancel", "Leave it as it was"),
-    row(NUMBER, "?", "help put", "Show what an entry may be"),
-    row(NUMBER, "M", "pointer", "Take the window's pointer into the field"),
-    row(ENTRY, "Enter", "commit", "Take the value"),
-    row(ENTRY, "Tab", "commit next", "Take the value and edit the next cell"),
+    row(TYPING, "Esc", "cancel", "Cancel"),
+    row(TYPING, "Ctrl-c", "cancel", "Cancel"),
+    row(NUMBER, "?", "help put", "Show what can be entered"),
+    row(NUMBER, "M", "pointer", "Enter the coordinate of the window's pointer"),
+    row(ENTRY, "Enter", "commit", "Enter the value"),
+    row(ENTRY, "Tab", "commit next", "Enter the value and edit the next cell"),
     row(ENTRY, "Up", "digit 1", "Step the digit under the cursor up"),
     row(ENTRY, "Down", "digit -1", "Step the digit under the cursor down"),
     row(LINE, "Enter", "run", "Run the command"),

@@ -1,4 +1,4 @@
-//! The lesson that is on, in lines that fit, and the rows that it takes.
+//! Lays out the current lesson of the tutor: its lines, its keys, and how many rows it takes.
 
 use crate::tui::tutor;
 use ratatui::layout::Rect;
@@ -8,13 +8,13 @@ use crate::tui::state::State;
 use crate::tui::state::tutor::Tutor;
 use crate::tui::text::wrap::{width, wrapped};
 
-/// Columns that the lines of a lesson have at most as they are; on less they are wrapped.
+/// Lines of a lesson are at most this wide as written; on a narrower screen they are wrapped.
 const WIDE: u16 = 76;
 
-/// Rows of the text where it is not wrapped, so that nothing moves from lesson to lesson.
+/// Rows of the text if it is not wrapped, so that nothing moves from lesson to lesson.
 const ROWS: usize = 3;
 
-/// Where the keys begin.
+/// The column where the keys begin.
 pub const LABELS: u16 = 8;
 
 /// What is left of the screen for everything else.

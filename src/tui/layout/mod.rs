@@ -1,4 +1,4 @@
-//! Where everything stands on the screen: functions of its size and of the state, read by what draws and by what clicks.
+//! Where everything is on the screen: functions of its size and of the state, used for drawing and for clicks.
 
 use super::state::fits;
 use ratatui::layout::{Constraint, Layout, Margin, Position, Rect, Spacing};
@@ -8,19 +8,19 @@ use super::state::{Mode, Pane, State};
 pub mod lesson;
 pub mod picture;
 
-/// From this width on there are panes at the right.
+/// From this width on there are panes on the right.
 const WIDE: u16 = 112;
 
-/// Where the panes stand.
+/// The areas of the panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Areas {
     /// The tree of the scene.
     pub tree: Rect,
     /// The form or table.
     pub table: Rect,
-    /// What is told about the field under the cursor.
+    /// The description of the field under the cursor.
     pub detail: Rect,
-    /// The field, the position function and the picture, where there is room.
+    /// The vector field, the position functions and the picture, if there is room.
     pub right: Option<[Rect; 3]>,
     /// The status line.
     pub status: Rect,
@@ -28,12 +28,13 @@ pub struct Areas {
     pub line: Rect,
 }
 
-/// Rows of what is told about a field, and of the read-out of a pixel that takes its place, with their frames.
+/// Rows of the description of a field, with its frame.
 const DETAIL: u16 = 5;
 
+/// Rows of the read-out of a pixel, which replaces the description.
 const PROBE: u16 = 9;
 
-/// The areas of a screen, with the read-out of a pixel or without.
+/// The areas of a screen, with or without the read-out of a pixel.
 pub fn areas(screen: Rect, probing: bool) -> Areas {
     let [body, status, line] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
@@ -52,17 +53,17 @@ pub fn areas(screen: Rect, probing: bool) -> Areas {
     Areas { tree, table, detail, right, status, line }
 }
 
-/// The screen without the lesson below.
+/// The screen without the lesson at its bottom.
 pub fn screen(state: &State) -> Rect {
     lesson::above(state, Rect::new(0, 0, state.size.0, state.size.1))
 }
 
-/// Whether the picture stands in the middle, for want of room at the right.
+/// Whether the picture is in the middle column, because there is no room on the right.
 pub fn picture_in_middle(state: &State, areas: &Areas) -> bool {
     areas.right.is_none() && (state.cursor.focus == Pane::Picture || matches!(state.typing.mode, Mode::Aim))
 }
 
-/// The pane that a place of the screen belongs to, as it is drawn, of those that can have the focus.
+/// The pane at a place of the screen, of those that can have the focus.
 pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
     let areas = areas(screen(state), state.picture.probing);
     let in_middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
@@ -71,12 +72,12 @@ pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
     panes.into_iter().find(|(_, area)| area.is_some_and(|area| area.contains(at))).map(|(pane, _)| pane)
 }
 
-/// The middle column, as far as the read-out leaves it.
+/// The middle column without the read-out.
 pub fn middle(state: &State, areas: &Areas) -> Rect {
     if state.picture.probing { areas.table } else { areas.table.union(areas.detail) }
 }
 
-/// The inside of the picture's pane, where it is on the screen.
+/// The inside of the picture's pane; `None` if it is not on the screen.
 pub fn picture_area(state: &State) -> Option<Rect> {
     if !fits(state.size) {
         return None;
@@ -86,7 +87,7 @@ pub fn picture_area(state: &State) -> Option<Rect> {
     areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
 }
 
-/// The first of `count` rows that is shown in `height` lines, so that row `at` stands in the middle where it can.
+/// The first of `count` rows to show in `height` lines, so that row `at` is in the middle if possible.
 pub fn first_row(at: usize, count: usize, height: u16) -> usize {
     let height = usize::from(height);
     at.saturating_sub(height / 2).min(count.saturating_sub(height))

@@ -1,5 +1,4 @@
-//! What the panes see of the picture: which part they want from the worker, as a function of the state, and what it has
-//! answered. The runner asks whenever this is something else than it asked for last.
+//! What the panes want from the worker, as a function of the state. The worker is asked whenever that changes.
 
 use crate::tui::graphics::request::{ProbeAt, Request};
 use crate::tui::layout;
@@ -12,14 +11,14 @@ use crate::tui::document::tree;
 use crate::tui::graphics::{Marks, Protocol, Wanted, viewport};
 use crate::tui::state::{Mode, State, place};
 
-/// What the panes want now.
+/// What the panes want from the worker now.
 pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
     let path = state.scene.path().to_owned();
     Request { scene, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
 }
 
-/// The pixel under the cursor, where its read-out is open.
+/// The pixel under the cursor, if its read-out is open.
 pub fn probe_at(state: &State) -> Option<ProbeAt> {
     let at = state.picture.cursor;
     let pixel = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
@@ -27,7 +26,7 @@ pub fn probe_at(state: &State) -> Option<ProbeAt> {
     state.picture.probing.then_some(ProbeAt { layer, pixel, time: state.play.time })
 }
 
-/// The protocol in force.
+/// The protocol in use.
 pub fn protocol(state: &State) -> Protocol {
     state.picture.graphics.protocol(state.depth)
 }
@@ -39,14 +38,14 @@ pub fn part(state: &State) -> Option<Part> {
     Some(viewport::part(&state.picture.viewport, state.picture.cursor, state.picture.size?, dots))
 }
 
-/// Remembers what is in sight, so that the picture only moves when the cursor would leave it.
+/// Remembers what is visible, so that the picture only moves when the cursor would leave it.
 pub fn settle(state: &mut State) {
     if let Some(part) = part(state) {
         state.picture.viewport.center = part.corner + part.extent() / 2.0;
     }
 }
 
-/// What is drawn over the picture, and how the selection stands out.
+/// Which overlays are drawn over the picture, and what is selected.
 pub fn overlays(state: &State) -> View {
     let selection = Some(state.focused());
     let of_document = overlay::overlays().filter(|overlay| overlay.when == When::Document);
@@ -73,7 +72,7 @@ fn wanted(state: &State) -> Option<Wanted> {
     })
 }
 
-/// The place of the cursor on its pane, in cells from its corner.
+/// Where the cursor is in the pane, in cells from its corner.
 pub fn cursor_cell(state: &State, part: &Part) -> Point {
     let (across, down) = state.picture.graphics.dots_a_cell(protocol(state));
     let dot = part.dot_of(state.picture.cursor);

@@ -1,5 +1,5 @@
-//! What pictures the terminal takes: asked once, before anything else reads its answers. First what every terminal
-//! answers and late answers do no harm to; only one that has answered is asked for kitty's protocol.
+//! Asks the terminal once, before anything else reads its input, which graphics protocol it understands. The first question
+//! is one that every terminal answers and whose late answers do no harm; only then it is asked for kitty's protocol.
 
 use std::io::{Write, stdin, stdout};
 use std::time::{Duration, Instant};
@@ -11,17 +11,17 @@ use super::input::{Piece, Pieces};
 use crate::base::system;
 use crate::tui::graphics::{Graphics, Protocol};
 
-/// How long a terminal has to answer at all; further away it has longer.
+/// How long a terminal has to answer, here and on a remote machine.
 const HERE: Duration = Duration::from_millis(400);
 const FAR: Duration = Duration::from_millis(1500);
-/// What kind of terminal it is, the size of a cell, and a report that all give and that therefore ends the answers.
+/// Asks for the kind of terminal, the size of a cell, and a report that every terminal sends, which ends the answers.
 const KIND: &str = "\x1b[c\x1b[16t\x1b[5n";
-/// Whether it takes a picture of one pixel, without keeping it.
+/// Asks whether it would take a picture of one pixel, by kitty's protocol.
 const KITTY: &str = "\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[5n";
-/// Terminals with iTerm2's images, by what they call themselves.
+/// Terminals that understand iTerm2's images, by the names that they report.
 const ITERM2: [&str; 4] = ["iTerm", "WezTerm", "mintty", "rio"];
 
-/// What the terminal takes, and what was typed and pasted meanwhile. What has only begun of that stays in `pieces`.
+/// What the terminal understands, and what was typed and pasted meanwhile. Incomplete input stays in `pieces`.
 pub fn ask(
     forced: Option<Protocol>,
     pieces: &mut Pieces,
@@ -57,39 +57,39 @@ pub fn ask(
     (graphics, answers.typed)
 }
 
-/// The size of a cell in pixels, where the system knows it.
+/// The size of a cell in pixels, if the system knows it.
 pub fn cell() -> Option<(u16, u16)> {
     let size = terminal::window_size().ok()?;
     let cell = (size.width.checked_div(size.columns)?, size.height.checked_div(size.rows)?);
     (cell.0 > 0 && cell.1 > 0).then_some(cell)
 }
 
-/// Whether a control sequence is an answer to one of the questions: no key and no click ends so.
+/// Whether a control sequence is an answer to one of the questions. No key and no click ends in the same way.
 fn is_answer(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1b[") && matches!(bytes.last(), Some(b'c' | b't' | b'n'))
 }
 
-/// Terminals that say they know kitty's protocol and do not draw its placeholders.
+/// Terminals that claim kitty's protocol but do not draw its placeholders.
 fn takes_half_of_kitty(get: impl Fn(&str) -> Option<String>) -> bool {
     ["WEZTERM_EXECUTABLE", "KONSOLE_VERSION"].iter().any(|name| get(name).is_some())
 }
 
-/// What came back.
+/// What the terminal has sent.
 #[derive(Debug, Default, PartialEq)]
 struct Answers {
-    /// Control sequences, without their first escape.
+    /// Its answers: control sequences without the first escape.
     sequences: Vec<String>,
-    /// What was typed between them.
+    /// What was typed in between.
     typed: Vec<Piece>,
-    /// Whether the last answer to the question is there.
+    /// Whether the last answer has arrived.
     complete: bool,
 }
 
 impl Answers {
-    /// Asks, and listens until the last answer is there.
+    /// Asks, and waits for the last answer.
     fn wait_for(&mut self, question: &str, patience: Duration, pieces: &mut Pieces) {
         let mut out = stdout();
-        // Whoever cannot be asked does not answer.
+        // If the question cannot be written, there is no answer to wait for.
         let asked = out.write_all(question.as_bytes()).and_then(|()| out.flush());
         let end = Instant::now() + patience;
         self.complete = false;
@@ -102,7 +102,7 @@ impl Answers {
         }
     }
 
-    /// Takes the pieces that are whole.
+    /// Takes the complete pieces.
     fn take(&mut self, pieces: &mut Pieces, now: Instant) {
         while let Some(piece) = pieces.take(now) {
             let sequence = match &piece {
@@ -123,7 +123,7 @@ impl Answers {
         self.sequences.iter().any(|one| one == answer)
     }
 
-    /// Device attributes with a 4 among them.
+    /// Whether the device attributes contain a 4, for sixels.
     fn sixel(&self) -> bool {
         let attributes = |one: &String| one.strip_prefix("[?")?.strip_suffix('c').map(str::to_owned);
         self.sequences.iter().filter_map(attributes).any(|list| list.split(';').skip(1).any(|one| one == "4"))

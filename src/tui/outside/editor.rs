@@ -1,5 +1,5 @@
-//! The editor at work: the state with all that it has outside. Loops take it and hand it events: on a screen (screen.rs), for
-//! a script (script.rs), line by line (lines.rs).
+//! The running editor: its state, and the terminal, threads, files and windows around it. One of three loops feeds it events:
+//! on a screen (screen.rs), for a script (script.rs), or line by line (lines.rs).
 
 use super::options::Options;
 use super::scripts::Scripts;
@@ -25,48 +25,48 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-/// An editor at work.
+/// A running editor.
 pub struct Editor {
     /// How it was opened.
     pub(super) options: Options,
-    /// What is shown and changed.
+    /// The state.
     pub(super) state: State,
     /// The terminal; `None` if only a script is run.
     pub(super) screen: Option<terminal::Screen>,
-    /// Where events come in.
+    /// Threads send their events here.
     pub(super) sender: mpsc::Sender<Event>,
     /// The thread that synthesises.
     pub(super) worker: Worker,
-    /// The subcommand that runs.
+    /// The subcommand that is running.
     pub(super) job: Option<Job>,
     /// The windows.
     pub(super) preview: Preview,
-    /// What was last told of the window.
+    /// The last message about the window.
     pub(super) window_told: String,
-    /// The files of the scene; `None` if they cannot be watched.
+    /// Watches the files of the scene; `None` if they cannot be watched.
     pub(super) watch: Option<Watch>,
-    /// The scripts that run.
+    /// The scripts that are running.
     pub(super) scripts: Scripts,
     /// The log of the session; `None` if there is no folder for it.
     pub(super) log: Option<Log>,
-    /// What the panes have asked the worker for.
+    /// Limits how often the worker is asked for pictures.
     pub(super) throttle: Throttle,
-    /// Whether it ends.
+    /// Whether the editor is about to end.
     pub(super) leaving: bool,
-    /// Whether a signal ends it.
+    /// Whether a signal has ended it.
     pub(super) interrupted: bool,
-    /// When the drawing began that the terminal has not read yet.
+    /// When the drawing began that the terminal has not fully read yet.
     pub(super) drawn: Option<Instant>,
 }
 
-/// How long a terminal has to read what is left, before the editor leaves it.
+/// How long the terminal has to read the rest of the output when the editor ends.
 const LAST_LOOK: Duration = Duration::from_millis(500);
 
-/// How long lines are run before the screen and the keys have their turn.
+/// How long scripts run before the screen and the keys have their turn.
 const TURN: Duration = Duration::from_millis(20);
 
 impl Editor {
-    /// Opens it.
+    /// Starts the editor.
     ///
     /// # Errors
     /// The terminal cannot be asked for its size, or the first script cannot be read.
@@ -89,7 +89,7 @@ impl Editor {
         let worker = Worker::start(options.files.clone(), sender.clone());
         let preview = listen(&scene, &options.files, sender.clone());
         let changed = sender.clone();
-        // Without it changes from outside are met at the next save.
+        // Without a watch, changes from outside are noticed when saving.
         let watch = Watch::new(move |files| drop(changed.send(Event::FilesChanged(files))));
         let watch = watch.inspect_err(|error| tracing::warn!("{error}")).ok();
         let log = begin_log(&scene, size, sender.clone());
@@ -129,7 +129,7 @@ impl Editor {
         Ok(editor)
     }
 
-    /// Begins the lessons; what they write without a path lies beside their scene.
+    /// Begins the lessons. The tutor's folder becomes the current one, so that its output is beside its scene.
     pub fn begin_tutor(&mut self) {
         let Some(folder) = self.options.tutor.clone() else { return };
         if let Err(error) = std::env::set_current_dir(&folder) {
@@ -138,17 +138,17 @@ impl Editor {
         self.state.tutor = Some(Tutor::begin());
     }
 
-    /// What is done once for every scene that is opened.
+    /// What is done once for each scene that is opened.
     pub fn begin(&mut self) {
         self.state.picture.size = picture_size(&self.state);
         let greeting = self.state.scene.greeting(editor::way_home(self.state.scene.path()));
         self.state.say(greeting);
         self.watch_files();
-        // Windows learn what is selected before the first key.
+        // Tell windows the selection before the first key.
         self.perform(Effect::Show);
     }
 
-    /// Watches the scene and all that it names.
+    /// Watches the scene and all files that it names.
     pub fn watch_files(&mut self) {
         let Some(watch) = &mut self.watch else { return };
         let path = self.state.scene.path();
@@ -159,15 +159,15 @@ impl Editor {
         }
     }
 
-    /// How it ended.
+    /// Whether a signal has ended it.
     ///
     /// # Errors
-    /// By a signal.
+    /// It was interrupted.
     pub fn ended(&self) -> Result<()> {
         if self.interrupted { Err(Error::Interrupted) } else { Ok(()) }
     }
 
-    /// Brings everything to the disk.
+    /// Ends work and writes everything to disk.
     pub fn end(&mut self) {
         self.state.scene.tend();
         self.state.scene.flush();
@@ -175,17 +175,17 @@ impl Editor {
         self.log = None;
     }
 
-    /// Gives the terminal a moment to read what is left for it.
+    /// Gives the terminal a moment to read the rest of the output.
     pub fn drain(&mut self) {
         self.screen.iter_mut().for_each(|screen| pace::drain(screen.backend_mut(), LAST_LOOK));
     }
 
-    /// Takes an event, and does what it asks for.
+    /// Handles an event and performs its effects.
     pub fn take(&mut self, event: Event) {
         match &event {
-            // The terminal may have lost cells though it is as large again as what was drawn last.
+            // Cells may be lost even if the terminal has its old size again.
             Event::Resize(..) => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
-            // What is typed counts by the size that there is now: the signal of a new one may be on its way yet.
+            // Keys are judged by the present size, of which the signal may not have arrived yet.
             Event::Key(_) | Event::Paste(_) if self.screen.is_some() => {
                 self.state.size = terminal::size().unwrap_or(self.state.size);
             }
@@ -207,7 +207,7 @@ impl Editor {
     /// Begins the script of a file.
     ///
     /// # Errors
-    /// It cannot be read, or scripts run one another without an end.
+    /// It cannot be read, or scripts run one another endlessly.
     pub fn source(&mut self, path: &Path) -> Result<()> {
         let text = lines::read(path)?;
         self.scripts.begin(&path.display().to_string(), &text)
@@ -216,7 +216,7 @@ impl Editor {
     /// Runs a line as if it was typed.
     ///
     /// # Errors
-    /// What was said where it could not be done.
+    /// Why it could not be done.
     pub fn obey(&mut self, line: String) -> std::result::Result<(), String> {
         self.take(Event::Line(line));
         self.refused()
@@ -229,8 +229,8 @@ impl Editor {
         }
     }
 
-    /// Runs the next line of the scripts; the work that the one before began is waited for. A mistake ends all of them.
-    /// False where there is nothing to run now.
+    /// Runs the next line of the scripts, unless the long work of the last line is still running. A mistake ends all scripts.
+    /// False if there is nothing to run now.
     ///
     /// # Errors
     /// FILE:LINE and the mistake.
@@ -253,7 +253,7 @@ impl Editor {
         Ok(true)
     }
 
-    /// Runs the scripts for a short while; says where there is a mistake.
+    /// Runs the scripts for a short while, and shows a mistake with its place.
     pub fn run_scripts(&mut self) {
         let begun = Instant::now();
         while begun.elapsed() < TURN {
@@ -265,7 +265,7 @@ impl Editor {
         }
     }
 
-    /// What the last line said, which is forgotten by it.
+    /// Takes the messages of the last line.
     pub fn said(&mut self) -> Vec<String> {
         let pages = match std::mem::replace(&mut self.state.typing.mode, Mode::Normal) {
             Mode::Pages(pages) => pages.lines,
@@ -281,7 +281,7 @@ impl Editor {
     }
 }
 
-/// Listens for windows of the scene; what they say comes as events.
+/// Listens for windows of the scene; their messages arrive as events.
 pub fn listen(scene: &OpenScene, options: &files::Options, sender: mpsc::Sender<Event>) -> Preview {
     let preview = Preview::start(scene.path(), scene.document(), scene.revision(), move |said| {
         // Nobody listens once the editor has left.
@@ -290,7 +290,7 @@ pub fn listen(scene: &OpenScene, options: &files::Options, sender: mpsc::Sender<
     preview.with_options(options)
 }
 
-/// The log of this session; it tells the editor where it cannot be written.
+/// Begins the log of this session. If it cannot be written, the editor gets an event.
 fn begin_log(scene: &OpenScene, (width, height): (u16, u16), sender: mpsc::Sender<Event>) -> Option<Log> {
     let header = vec![
         format!("plica {}", env!("CARGO_PKG_VERSION")),

@@ -1,4 +1,4 @@
-//! What `update` asks for, done: the editor's hands in files, threads, window and terminal.
+//! Performs the effects that `update` asks for: on files, threads, the window and the terminal.
 
 use crate::tui::commands::own_keys;
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::tui::state::State;
 use crate::tui::text::said;
 
 impl Editor {
-    /// Does one.
+    /// Performs an effect.
     pub fn perform(&mut self, effect: Effect) {
         match effect {
             Effect::Publish(change) => {
@@ -59,13 +59,13 @@ impl Editor {
             }
             Effect::Copy(text) => match &mut self.screen {
                 Some(screen) => terminal::copy(screen, &text),
-                // Without a screen there is no clipboard to hand it to.
+                // Without a screen there is no clipboard.
                 None => text.lines().for_each(terminal::print),
             },
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::EditImage(path) => self.edit_image(&path),
             Effect::View(None) => {
-                // Why there is none is told each time it is asked for.
+                // If there is no window, say why each time it is asked for.
                 self.window_told.clear();
                 self.preview.open_window();
             }
@@ -76,12 +76,12 @@ impl Editor {
         }
     }
 
-    /// Saves the scene, to another file if one is given, and leaves once it is safe.
+    /// Saves the scene, to another file if one is given, and then leaves if asked to.
     fn save(&mut self, to: Option<&Path>, overwrite: bool, leave: bool) {
         let result = self.state.scene.save(to, overwrite);
         self.leaving = leave && result.is_ok();
         if self.leaving {
-            // The copy has the edits: the scene itself is left as its file has it.
+            // The copy has the edits, and the scene's own file stays as it is.
             self.state.scene.give_up();
         }
         self.take(Event::Saved(result.map_err(|error| error.to_string())));
@@ -93,7 +93,7 @@ impl Editor {
         self.take(Event::Saved(written.map_err(|error| error.to_string())));
     }
 
-    /// Opens a picture in another program. What the desktop opens may be run: only what is a picture is handed to it.
+    /// Opens a picture in another program. Only if it is a picture: a desktop may run other files instead of opening them.
     fn edit_image(&mut self, path: &Path) {
         let opened = picture::size(path, &self.options.files.limits).map_err(|error| error.to_string());
         match opened.and_then(|_| image_editor::open(path)) {
@@ -102,7 +102,7 @@ impl Editor {
         }
     }
 
-    /// Reads the person's own keys, and says what is wrong in them.
+    /// Reads the person's own keys, and shows the mistakes in them.
     pub fn load_keys(&mut self) {
         let path = folders::config().map(|folder| folder.join("keys.toml")).filter(|path| path.exists());
         let Some(path) = path else { return self.state.keymap = Keymap::default() };
@@ -117,14 +117,14 @@ impl Editor {
         }
     }
 
-    /// Opens another scene in the place of this one; says why where it cannot, and false.
+    /// Opens another scene in place of this one; on failure shows why, and returns false.
     fn open(&mut self, path: &Path, mode: Mode) -> bool {
         match OpenScene::open(path, mode, &self.options.files) {
             Ok(scene) => {
-                // Whoever opens another scene with unsaved edits here was asked.
+                // The command has refused already if there were unsaved edits to be kept.
                 self.state.scene.give_up();
                 let window = self.preview.has_window();
-                // First, for it may be the same scene, and a scene has one editor.
+                // Close first: it may be the same scene, and a scene has only one editor.
                 self.preview.close();
                 self.preview = listen(&scene, &self.options.files, self.sender.clone());
                 if window {
@@ -145,7 +145,7 @@ impl Editor {
         }
     }
 
-    /// Begins the tutor on a scene of its own; the present folder becomes that scene's, so that what is written lies there.
+    /// Begins the tutor on a scene of its own.
     fn learn(&mut self) {
         match Options::tutor() {
             Ok(options) => {
@@ -158,10 +158,10 @@ impl Editor {
         }
     }
 
-    /// Runs a subcommand on the scene that is open, as it is now.
+    /// Starts a subcommand on the open scene as it is now.
     fn start(&mut self, words: &[String]) {
         if self.state.outside.work.is_some() {
-            return self.state.complain("something runs already: Esc ends it");
+            return self.state.complain("something is running already: Esc ends it");
         }
         let path = self.state.scene.path().to_owned();
         let words: Vec<String> = words.iter().map(|word| at_home(word)).collect();
@@ -179,7 +179,7 @@ impl Editor {
         }
     }
 
-    /// Gives the terminal back, stops as Ctrl-Z does, and comes back with a fresh screen.
+    /// Restores the terminal, stops the process as Ctrl-Z does, and sets up the screen again afterwards.
     fn suspend(&mut self) {
         if self.screen.is_none() {
             return signals::default_action(Signal::Stop);
@@ -194,7 +194,7 @@ impl Editor {
     }
 }
 
-/// A word of a command line as a shell would give it: a `~` that begins it, or the value of an option, is the home folder.
+/// Replaces a leading `~` of an argument, or of the value of an option, by the home folder, as a shell does.
 fn at_home(word: &str) -> String {
     let typed = |path: &str| paths::typed(path).to_string_lossy().into_owned();
     match word.split_once('=') {

@@ -1,5 +1,5 @@
-//! Opens a picture of the scene in another program: the person's choice, else GIMP, else what the desktop takes for it. What
-//! is saved there shows by itself, since every picture is watched.
+//! Opens a picture of the scene in another program: the person's choice, else GIMP, else the desktop's default. The editor
+//! watches every picture, so what is saved there appears by itself.
 
 use std::io::ErrorKind;
 use std::os::unix::process::CommandExt;
@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 
 use crate::preview::editor::has_display;
 
-/// The variable that names the program, with arguments where it needs any.
+/// The environment variable that names the program, with arguments if needed.
 const VARIABLE: &str = "PLICA_IMAGE_EDITOR";
 
-/// Starts the program and returns at once; says which it was, or why there is none.
+/// Starts the program and returns at once with a message: which program it was, or why there is none.
 pub fn open(picture: &Path) -> Result<String, String> {
     open_with(&std::env::var(VARIABLE).unwrap_or_default(), has_display(), picture)
 }
@@ -19,7 +19,7 @@ pub fn open(picture: &Path) -> Result<String, String> {
 fn open_with(chosen: &str, display: bool, picture: &Path) -> Result<String, String> {
     let chosen: Vec<&str> = chosen.split_whitespace().collect();
     if chosen.is_empty() && !display {
-        return Err(format!("no display here to edit a picture on; {VARIABLE} names a program that needs none"));
+        return Err(format!("no display here to edit a picture on; {VARIABLE} can name a program that needs none"));
     }
     let table: &[&[&str]] = if chosen.is_empty() { &[&["gimp"], &["xdg-open"]] } else { &[&chosen] };
     for words in table {
@@ -30,15 +30,15 @@ fn open_with(chosen: &str, display: bool, picture: &Path) -> Result<String, Stri
         }
     }
     let names: Vec<&str> = table.iter().map(|words| words[0]).collect();
-    Err(format!("there is no {} here; {VARIABLE} names another program", names.join(" and no ")))
+    Err(format!("there is no {} here; {VARIABLE} can name another program", names.join(" and no ")))
 }
 
-/// In a group of its own: what the terminal does to the editor's is not meant for it.
+/// Starts it in a process group of its own, so that signals from the terminal do not reach it.
 fn start(words: &[&str], picture: &Path) -> std::io::Result<()> {
     let mut command = Command::new(words[0]);
     command.args(&words[1..]).arg(picture).process_group(0);
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
-    // How it ends is between it and the person.
+    // Only reaps the process: how it ends does not matter here.
     std::thread::spawn(move || drop(child.wait()));
     Ok(())
 }

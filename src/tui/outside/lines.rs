@@ -1,6 +1,6 @@
-//! The line mode, for a terminal that draws nothing (TERM=dumb) or none at all: the lines that are typed after `:` come
-//! from standard input, answers go to standard output as plain text, mistakes to standard error with the number of the
-//! line. The same commands, run in the same way; long work runs in the foreground.
+//! The line mode, for a terminal that cannot draw (TERM=dumb) or without a terminal. The commands that are otherwise typed
+//! after `:` come from standard input; answers go to standard output as plain text, mistakes to standard error with the
+//! number of the line. Long work runs in the foreground.
 
 use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
@@ -17,40 +17,40 @@ use crate::tui::document::choice::{Choice, Then};
 use crate::tui::events::Event;
 use crate::tui::state::{Mode, Pane, State};
 
-/// A line may be this long, in bytes.
+/// The most bytes of a line.
 const LONGEST: u64 = 1 << 20;
-/// Progress is told this often.
+/// How often progress is printed.
 const TELL_EVERY: Duration = Duration::from_secs(1);
 /// How long to wait for an event before looking again.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What has come of the lines so far.
+/// How the lines went so far.
 #[derive(Default)]
 struct Session {
     interactive: bool,
     /// How many lines were read.
     number: usize,
     failed: usize,
-    /// Whether the end of the input was met once with unsaved edits.
+    /// Whether the input has ended once while there were unsaved edits.
     warned: bool,
-    /// What becomes of unsaved edits that the input ended with.
+    /// What happens to unsaved edits at the end of the input.
     left: Option<String>,
-    /// Why edits reach no journal, as last told.
+    /// The last message on why edits do not reach the journal.
     failing: Option<String>,
-    /// What was told of the work that runs, and when.
+    /// The last progress that was printed, and when.
     told: Option<(String, Instant)>,
 }
 
 impl Editor {
-    /// Runs the lines of standard input until one leaves, or they end.
+    /// Runs the lines of standard input until one leaves, or until they end.
     ///
     /// # Errors
-    /// Lines that failed, where nobody was there to see it.
+    /// Some lines failed, and no person was there to see it.
     pub fn run_lines(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         let interactive = terminal::is_interactive();
         let mut session = Session { interactive, ..Session::default() };
         if let Some(aside) = self.state.scene.kept_aside() {
-            let what = "the journal was damaged, what could not be read is in";
+            let what = "the journal was damaged; what could not be read is in";
             terminal::remark(&format!("{what} {}", plain(&aside.display().to_string())));
         }
         if interactive {
@@ -84,7 +84,7 @@ impl Editor {
         self.ended().and(session.result())
     }
 
-    /// Takes a line of the input; none at its end.
+    /// Handles a line of the input; `None` at its end.
     fn typed(&mut self, line: Option<String>, session: &mut Session) {
         let Some(line) = line else { return self.input_ended(session) };
         session.number += 1;
@@ -106,7 +106,7 @@ impl Editor {
                 }
                 let before = place(&self.state);
                 self.take(Event::Line(line.to_owned()));
-                // Without a screen nothing else shows where the cursor has gone.
+                // Without a screen nothing else shows where the cursor is now.
                 let here = place(&self.state);
                 if session.interactive && self.state.message.is_none() && here != before {
                     self.state.say(here);
@@ -116,7 +116,7 @@ impl Editor {
         self.answer(session);
     }
 
-    /// The input has ended: that leaves, but a person with unsaved edits is asked to say it twice.
+    /// Leaves at the end of the input; a person with unsaved edits has to end it twice.
     fn input_ended(&mut self, session: &mut Session) {
         let unsaved = !self.state.scene.is_saved();
         if unsaved && session.interactive && !session.warned {
@@ -127,7 +127,7 @@ impl Editor {
         self.leaving = true;
     }
 
-    /// Prints what there is to say.
+    /// Prints the messages of the last line.
     fn answer(&mut self, session: &mut Session) {
         let bad = self.state.message.as_ref().is_some_and(|message| message.bad);
         if bad {
@@ -147,7 +147,7 @@ impl Editor {
 }
 
 impl Session {
-    /// Shows what is asked, and that a line may be typed.
+    /// Prints the open question and the prompt.
     fn prompt(&self, state: &State) {
         if let Mode::Choice(choice) = &state.typing.mode {
             let lines = question(choice);
@@ -165,7 +165,7 @@ impl Session {
         }
     }
 
-    /// Tells how long work gets on, now and then.
+    /// Prints the progress of long work now and then.
     fn tell(&mut self, work: Option<&str>) {
         let Some(work) = work else {
             self.told = None;
@@ -178,7 +178,7 @@ impl Session {
         }
     }
 
-    /// Says when edits reach no journal, and when they do again.
+    /// Says when edits stop reaching the journal, and when they reach it again.
     fn see_journal(&mut self, failing: Option<String>) {
         if failing != self.failing {
             match &failing {
@@ -210,7 +210,7 @@ impl Session {
     }
 }
 
-/// Where the cursor is, and what stands there.
+/// The address under the cursor, and the value there.
 fn place(state: &State) -> String {
     let row = (state.cursor.focus != Pane::Tree).then(|| state.row()).flatten();
     let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
@@ -239,7 +239,7 @@ fn help() -> Vec<String> {
     commands.chain(ops).collect()
 }
 
-/// Reads one line on a thread of its own.
+/// Reads one line, on a thread of its own.
 fn read_line(sender: mpsc::Sender<Event>) {
     std::thread::spawn(move || {
         let mut bytes = Vec::new();

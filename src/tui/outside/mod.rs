@@ -1,4 +1,4 @@
-//! Outside: terminal, threads, files and windows.
+//! What is outside the editor's state: terminal, threads, files and windows.
 
 pub mod ask;
 pub mod editor;

@@ -15,7 +15,7 @@ use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
 
-/// A scene that is open on a screen in memory. Nothing happens outside: no synthesis, no window.
+/// A scene that is open on a screen in memory, without synthesis and windows.
 pub struct Offscreen {
     state: State,
     terminal: Terminal<TestBackend>,
@@ -25,7 +25,7 @@ impl Offscreen {
     /// Opens the scene at `path` on a screen of `width` x `height` cells.
     ///
     /// # Errors
-    /// The scene cannot be read, or somebody else edits it.
+    /// The scene cannot be read, or somebody else is editing it.
     pub fn open(path: &Path, (width, height): (u16, u16)) -> Result<Offscreen> {
         let scene = OpenScene::open(path, Mode::Edit, &files::Options::default())?;
         let terminal =
@@ -33,16 +33,16 @@ impl Offscreen {
         Ok(Offscreen { state: State::new(scene, (width, height), Depth::True), terminal })
     }
 
-    /// Presses a key, by its name in the table, and draws the screen that it leads to.
+    /// Presses a key, by its name in the table, and draws the screen.
     ///
     /// # Errors
-    /// It cannot be drawn.
+    /// The screen cannot be drawn.
     pub fn press(&mut self, key: &str) -> Result<()> {
         self.take(key);
         self.draw()
     }
 
-    /// Takes a key without drawing: the changes of the scene that windows are told.
+    /// Presses a key without drawing; returns the changes of the scene that are sent to windows.
     pub fn take(&mut self, key: &str) -> Vec<Change> {
         let effects = update(&mut self.state, Event::Key(key.to_owned()));
         let change = |effect| if let Effect::Publish(change) = effect { Some(*change) } else { None };
@@ -52,13 +52,13 @@ impl Offscreen {
     /// Draws the screen.
     ///
     /// # Errors
-    /// It cannot be drawn.
+    /// The screen cannot be drawn.
     pub fn draw(&mut self) -> Result<()> {
         let Offscreen { state, terminal } = self;
         terminal.draw(|frame| view::draw(frame, state)).map(drop).map_err(|error| Error::at("the screen", error))
     }
 
-    /// What the screen shows, a line a row.
+    /// The text on the screen, one line per row.
     pub fn text(&self) -> String {
         let buffer = self.terminal.backend().buffer();
         let rows = buffer.content().chunks(usize::from(buffer.area.width).max(1));

@@ -10,19 +10,19 @@ use std::path::PathBuf;
 
 /// How the editor is opened.
 pub struct Options {
-    /// A scene, or a picture whose scene lies beside it.
+    /// A scene, or a picture with a scene beside it.
     pub path: PathBuf,
-    /// Whether to open the preview window where there is a display.
+    /// Whether to open the preview window, if there is a display.
     pub window: bool,
-    /// Whether the scene may only be looked at.
+    /// Whether to open the scene read-only.
     pub read_only: bool,
-    /// Whether unsaved edits that a session left behind are taken; none: that is asked.
+    /// Whether to take unsaved edits that a session left behind; `None` to ask.
     pub keep_recovery: Option<bool>,
-    /// The lines that are run at first.
+    /// The script that is run first.
     pub script: Option<PathBuf>,
-    /// The folder of the tutor, where it is to begin.
+    /// The folder of the tutor, if it is to begin.
     pub tutor: Option<PathBuf>,
-    /// How the picture is shown; none: as the terminal answers.
+    /// The graphics protocol; `None` to ask the terminal.
     pub graphics: Option<Protocol>,
     /// How files are read.
     pub files: files::Options,
@@ -36,7 +36,7 @@ impl Options {
         Options { path, window: true, read_only: false, keep_recovery, script, graphics, tutor, files }
     }
 
-    /// How a scene is opened: where somebody else edits it, the person is asked, if there is one.
+    /// How the scene is opened. If somebody else is editing it, the person is asked; without a person, that is an error.
     pub fn mode(&self) -> Mode {
         match (self.read_only, terminal::is_interactive()) {
             (true, _) => Mode::ReadOnly,
@@ -48,7 +48,7 @@ impl Options {
     /// The tutor, on a scene of its own in a new folder.
     ///
     /// # Errors
-    /// The folder cannot be made, or there is no terminal that shows the lessons.
+    /// The folder cannot be made, or the terminal cannot show the lessons.
     pub fn tutor() -> Result<Options> {
         if !terminal::is_there() {
             return Err(
@@ -60,7 +60,7 @@ impl Options {
         Ok(Options { tutor: Some(folder), ..Options::new(path) })
     }
 
-    /// As the command line says.
+    /// Applies the options of the command line.
     ///
     /// # Errors
     /// A wrong limit.

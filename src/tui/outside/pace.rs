@@ -1,6 +1,6 @@
-//! The way to the terminal. What was drawn waits here for as long as the terminal does not read (a frozen link, Ctrl-S), so
-//! that the editor goes on meanwhile: keys count, and the journal has them. Nothing more is drawn until all of it is gone;
-//! then the screen goes from what it shows to what is so.
+//! Writes to the terminal without blocking. While the terminal does not read (a frozen link, Ctrl-S), output waits here, and
+//! the editor goes on: keys still work, and the journal records them. Nothing more is drawn until all of it is written; then
+//! the screen is updated to the present state.
 
 use std::io::{self, ErrorKind, Write, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,23 +8,23 @@ use std::time::{Duration, Instant};
 
 use crate::base::system;
 
-/// Whether the terminal has something left to read.
+/// Whether output is waiting for the terminal.
 static BEHIND: AtomicBool = AtomicBool::new(false);
 
-/// Whether the terminal has not read yet all that was drawn.
+/// Whether the terminal has not yet read all that was drawn.
 pub fn is_behind() -> bool {
     BEHIND.load(Ordering::Relaxed)
 }
 
-/// Writes to the terminal without ever waiting for it.
+/// A writer to the terminal that never waits for it.
 pub struct Pace {
-    /// The terminal, opened so that writes do not wait; `None` where that cannot be, and they do.
+    /// The terminal, opened for writing without blocking; `None` if that is not possible, and writes block.
     terminal: Option<Box<dyn Write + Send>>,
     waiting: Vec<u8>,
 }
 
 impl Pace {
-    /// The way to the terminal at standard output.
+    /// Writes to the terminal at standard output.
     pub fn new() -> Pace {
         let terminal = system::open_terminal(stdout()).ok();
         Pace { terminal: terminal.map(|terminal| Box::new(terminal) as Box<dyn Write + Send>), waiting: Vec::new() }
@@ -65,7 +65,7 @@ impl Write for Pace {
     }
 }
 
-/// Gives the terminal this long to read what is left.
+/// Gives the terminal this long to read the rest of the output.
 pub fn drain(screen: &mut impl Write, most: Duration) {
     let begun = Instant::now();
     // A terminal that has gone away reads nothing more.

@@ -1,4 +1,4 @@
-//! Runs the editor: chooses its loop, gives the terminal back whatever happens, and ends on signals.
+//! Runs the editor: chooses its loop, restores the terminal whatever happens, and ends on signals.
 
 use crate::base::system::signals;
 use crate::tui::outside::editor::Editor;
@@ -13,10 +13,10 @@ use crate::base::system::signals::{Answer, Signal};
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Event;
 
-/// How long the editor has to end by itself once the system asks for it.
+/// How long the editor has to end by itself after a signal.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// Opens the scene, edits it until the person leaves, and gives the terminal back.
+/// Opens the scene, edits it until the person leaves, and restores the terminal.
 ///
 /// # Errors
 /// The scene cannot be opened, or there is no terminal.
@@ -34,7 +34,7 @@ pub fn run(options: Options) -> Result<()> {
     // Nobody listens once the editor has left.
     terminal::on_panic(move |fault| drop(faults.send(Event::Fault(fault))));
     let screen = terminal::enter()?;
-    // A panic in a loop over all cores comes back to this thread without a word of its own.
+    // A panic in a parallel loop reaches this thread without having printed a message.
     let result = fault::caught(|| {
         Editor::new(options, scene, Some(screen), sender).and_then(|editor| editor.run_on_screen(&events))
     });
@@ -47,12 +47,12 @@ pub fn run(options: Options) -> Result<()> {
     Ok(())
 }
 
-/// The signal thread asks the editor to end, and ends the process where that takes too long: a terminal that went away
-/// can hold a write for ever. Where a person types `lines`, Ctrl-C comes as a signal and ends only what runs.
+/// Starts the thread that handles signals. It asks the editor to end, and ends the process if that takes too long: a write to
+/// a terminal that went away may block forever. In the line mode Ctrl-C arrives as a signal, and ends only long work.
 fn end_on_signals(sender: mpsc::Sender<Event>, lines: bool) -> Result<signals::Registration> {
     let handler = move |signal| match signal {
         Signal::Interrupt if lines => {
-            // Where nobody listens any more the editor is leaving already.
+            // If nobody listens any more, the editor is leaving already.
             let _ = sender.send(Event::Line("leave".into()));
             Answer::Done
         }

@@ -14,11 +14,11 @@ use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-/// How often a terminal that does not read is looked at.
+/// How often to check whether a terminal that did not read does so again.
 const BEHIND: Duration = Duration::from_millis(20);
 
 impl Editor {
-    /// Edits until the person leaves; gives the folder of the tutor, where it was there.
+    /// Edits until the person leaves; returns the folder of the tutor, if it was open.
     ///
     /// # Errors
     /// The terminal cannot be drawn on, or a signal ended it.
@@ -60,7 +60,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Waits for an event and takes all that are there, so that many cost one drawing.
+    /// Waits for an event and handles all that have arrived, so that many of them cost only one drawing.
     fn wait(&mut self, events: &mpsc::Receiver<Event>, watch: &mut Stopwatch) {
         let script_goes_on = !self.scripts.is_empty() && self.state.outside.work.is_none();
         let patience = match self.state.play.playing {
@@ -82,16 +82,16 @@ impl Editor {
         }
     }
 
-    /// The status line says how the window is doing; why there is none is told once, where there is room for it.
+    /// Updates the window's state in the status line. If there is no window, a message says why, once.
     fn see_window(&mut self) {
         let seen = match self.preview.status() {
-            // Windows belong to whoever edits the scene.
+            // Windows belong to the editor that edits the scene.
             _ if self.state.scene.held_by().is_some() => String::new(),
             Status::Off => String::new(),
             status => format!("window: {status}"),
         };
         if seen != self.window_told {
-            // What was said of a window that is off does not outlive it.
+            // Remove the last message about the window, which is outdated.
             self.state.message.take_if(|message| message.text == self.window_told);
             self.window_told.clone_from(&seen);
             let off = matches!(self.preview.status(), Status::OffBecause(_));

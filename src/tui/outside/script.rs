@@ -1,5 +1,4 @@
-//! Scripts: files of lines that the editor runs one after the other, as if they were typed after `:`. They run between
-//! events, so that keys never wait for a long one; a mistake in it ends it. Without a screen they are all there is.
+//! The loop of the editor that only runs scripts, without a screen.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -13,7 +12,7 @@ use crate::tui::events::Event;
 const PATIENCE: Duration = Duration::from_secs(1);
 
 impl Editor {
-    /// Runs the scripts without a screen; what lines say is printed.
+    /// Runs the scripts and prints the messages of their lines.
     ///
     /// # Errors
     /// The first mistake.
@@ -35,10 +34,10 @@ impl Editor {
         }
     }
 
-    /// A script does not run on a scene of which nobody has said what it is.
+    /// Refuses to run while it is not decided what becomes of unsaved edits of an earlier session.
     fn refuse_undecided(&self) -> Result<()> {
         let Some(offer) = self.state.scene.offered() else { return Ok(()) };
-        let what = format!("{} left behind, and the script is not run", offer.in_words());
+        let what = format!("{} left behind, so the script is not run", offer.in_words());
         Err(Error::at(self.state.scene.path().display(), what)
             .cure("--after-recovery keep takes them, drop leaves them; plica edit shows them"))
     }

@@ -1,16 +1,16 @@
 //! Scripts: files of lines that the editor runs one after the other, as if they were typed after `:`. They run between
-//! events, so that keys never wait for a long one; a mistake in one ends it.
+//! events, so that keys never wait for a long script. A mistake ends them.
 
 use crate::base::error::{Error, Result};
 
-/// Scripts that run scripts, at most.
+/// How deep scripts may run scripts.
 const DEEPEST: usize = 16;
 
-/// The scripts that run, the innermost last.
+/// The scripts that are running, the innermost last.
 #[derive(Debug, Default)]
 pub struct Scripts {
     running: Vec<Script>,
-    /// The line whose work still runs.
+    /// The place of the line whose long work is still running.
     pub waits: Option<String>,
 }
 
@@ -22,10 +22,10 @@ struct Script {
 }
 
 impl Scripts {
-    /// Begins a script; what runs now goes on after it.
+    /// Begins a script; the one that is running continues after it.
     ///
     /// # Errors
-    /// Where scripts run one another without an end.
+    /// Scripts run one another endlessly.
     pub fn begin(&mut self, file: &str, text: &str) -> Result<()> {
         if self.running.len() >= DEEPEST {
             let what = format!("there are {DEEPEST} scripts inside one another already");
@@ -35,7 +35,7 @@ impl Scripts {
         Ok(())
     }
 
-    /// The next line, and its place as FILE:LINE. Comments (`#`) and blank lines are none.
+    /// The next line, and its place as FILE:LINE. Comments (`#`) and blank lines are skipped.
     pub fn next(&mut self) -> Option<(String, String)> {
         while let Some(script) = self.running.last_mut() {
             while let Some(line) = script.lines.get(script.next) {

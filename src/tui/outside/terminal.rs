@@ -1,5 +1,5 @@
-//! The terminal itself: every mode that the editor sets, and the one function that undoes all of them, used by the normal
-//! exit, errors, panics and signals alike.
+//! The terminal: all modes that the editor sets, and the function that undoes them, which is used by the normal exit, errors,
+//! panics and signals.
 
 use crate::tui::text::plain;
 use std::io::{IsTerminal, Write, stderr, stdin, stdout};
@@ -18,27 +18,27 @@ use crate::tui::text::clipboard::{Through, sequence};
 /// The terminal that the editor draws on.
 pub type Screen = Terminal<CrosstermBackend<Pace>>;
 
-/// Whether any mode is set; only then is there something to undo.
+/// Whether modes are set, so that there is something to undo.
 static SET: AtomicBool = AtomicBool::new(false);
 
-/// Whether there is a terminal that a screen can be drawn on.
+/// Whether there is a terminal that can draw a screen.
 pub fn is_there() -> bool {
     stdin().is_terminal() && stdout().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// Prints a line where there is no screen.
+/// Prints a line to standard output. Only without a screen.
 pub fn print(line: &str) {
-    // Where nobody reads it there is nothing more to do.
+    // If nobody reads it, there is nothing to do.
     let _ = writeln!(stdout(), "{}", plain(line));
 }
 
-/// Says a line to the person, beside what is printed.
+/// Prints a line to standard error.
 pub fn remark(line: &str) {
     // As above.
     let _ = writeln!(stderr(), "plica: {}", plain(line));
 }
 
-/// Sets every mode and gives the screen.
+/// Sets all modes and returns the screen.
 pub fn enter() -> Result<Screen> {
     let failed = |e: std::io::Error| Error::at("the terminal", e).cure("`plica edit` needs an interactive terminal");
     terminal::enable_raw_mode().map_err(failed)?;
@@ -57,18 +57,18 @@ pub fn size() -> Option<(u16, u16)> {
     terminal::size().ok()
 }
 
-/// Draws all of the screen anew the next time. Ratatui's own `clear` asks the terminal for its cursor, and takes keys while
-/// it waits for the answer; a resize asks nothing.
+/// Makes the next drawing redraw the whole screen. Ratatui's own `clear` asks the terminal for its cursor and swallows keys
+/// while it waits for the answer; a resize asks nothing.
 pub fn forget(screen: &mut Screen) -> std::io::Result<()> {
     let size = screen.size()?;
     screen.resize(Rect::from((Position::ORIGIN, size)))
 }
 
-/// Undoes every mode, shows the cursor and gives the screen back. May be called at any time, from any thread, twice.
+/// Undoes all modes, shows the cursor and leaves the alternate screen. May be called at any time, from any thread, repeatedly.
 pub fn restore() {
     if SET.swap(false, Ordering::SeqCst) {
         if is_behind() {
-            // It does not read, and whoever writes would wait for it: its keys are as they were, at least.
+            // The terminal does not read, so writing would block. At least its keys work as before.
             let _ = terminal::disable_raw_mode();
             return;
         }
@@ -87,16 +87,16 @@ pub fn restore() {
     }
 }
 
-/// Hands a text to the clipboard of the terminal, where it takes one.
+/// Copies a text to the clipboard of the terminal, if it allows that.
 pub fn copy(screen: &mut Screen, text: &str) {
     let through = Through::of(|name| std::env::var(name).ok());
     let out = screen.backend_mut();
-    // A terminal that has gone away is met at the next drawing.
+    // A terminal that has gone away is noticed at the next drawing.
     let _ = out.write_all(sequence(text, through).as_bytes()).and_then(|()| Write::flush(out));
 }
 
-/// Makes a panic of this thread, which ends the process, restore the terminal before its message is printed. One of any
-/// other thread goes to the log, and is `told`: the screen stays the editor's.
+/// Restores the terminal before the message of a panic of this thread, which ends the process, is printed. A panic of any
+/// other thread is logged and passed to `told`, and the screen stays.
 pub fn on_panic(told: impl Fn(String) + Send + Sync + 'static) {
     let (print, main) = (std::panic::take_hook(), std::thread::current().id());
     std::panic::set_hook(Box::new(move |panic| {
@@ -110,7 +110,7 @@ pub fn on_panic(told: impl Fn(String) + Send + Sync + 'static) {
     }));
 }
 
-/// Whether a person types the lines.
+/// Whether a person types the input.
 pub fn is_interactive() -> bool {
     stdin().is_terminal() && stdout().is_terminal()
 }

@@ -1,4 +1,4 @@
-//! When the worker may be asked for the next picture.
+//! Limits how often the worker is asked for pictures.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -8,9 +8,8 @@ use crate::tui::graphics::request::Request;
 use crate::tui::layout::picture::request;
 use crate::tui::state::State;
 
-/// What was asked of the worker, and when it may be asked for the next picture. Writing a picture to a slow link takes
-/// time, in which keys would wait: after it the link is left to them for twice as long. Pictures in between are dropped,
-/// never queued.
+/// What was asked of the worker, and when it may be asked for the next picture. Keys have to wait while a picture is written
+/// to a slow link, so after it the link stays free for twice as long. Pictures in between are dropped, never queued.
 #[derive(Default)]
 pub struct Throttle {
     asked: Option<Request>,
@@ -18,11 +17,11 @@ pub struct Throttle {
     free: Option<Instant>,
 }
 
-/// However slow the link, a picture comes as often as this.
+/// The longest pause between two pictures, however slow the link.
 const LONGEST: Duration = Duration::from_secs(5);
 
 impl Throttle {
-    /// What to ask the worker for now: something new, and a picture only where the link is free for one.
+    /// What to ask the worker for now; `None` if nothing has changed. It includes a picture only if the link is free.
     pub fn request(&mut self, state: &State) -> Option<Request> {
         let mut request = request(state);
         if self.asked.as_ref() == Some(&request) {
@@ -39,7 +38,7 @@ impl Throttle {
         Some(request)
     }
 
-    /// A screen has been written, and it took so long.
+    /// Notes that writing a screen took so long.
     pub fn wrote(&mut self, state: &State, took: Duration) {
         let shown = state.picture.latest.as_ref();
         if self.written.as_ref().map(Arc::as_ptr) != shown.map(Arc::as_ptr) {
@@ -48,7 +47,7 @@ impl Throttle {
         }
     }
 
-    /// How long to wait for events: `otherwise`, or until a picture may be asked for that is wanted by then.
+    /// How long to wait for events: `otherwise`, or until the next picture may be asked for.
     pub fn patience(&self, otherwise: Duration) -> Duration {
         let left = self.left();
         if left.is_zero() { otherwise } else { left.min(otherwise) }

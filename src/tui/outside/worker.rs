@@ -1,5 +1,5 @@
-//! Threads beside the editor: one synthesises the scene and makes its frames, always for the newest request; one runs a
-//! subcommand. Neither ever keeps a key waiting; what they find out comes back as events.
+//! Background threads: one synthesises the scene and makes pictures, always for the newest request; another runs a subcommand.
+//! Keys never wait for them; their results arrive as events.
 
 use crate::tui::graphics::probed;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,20 +19,20 @@ use crate::tui::graphics::TerminalPicture;
 use crate::tui::graphics::probed::Probed;
 use crate::tui::graphics::request::Request;
 
-/// The thread that synthesises.
+/// The thread that synthesises and makes pictures.
 pub struct Worker {
     slot: Arc<(Mutex<Option<Request>>, Condvar)>,
     running: Running,
 }
 
-/// The synthesis that runs: its scene, when it began, and how to stop it.
+/// The running synthesis: its scene, when it began, and how to stop it.
 type Running = Arc<Mutex<Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>>>;
 
-/// A synthesis that has taken this long is given up for a newer one; quicker ones end, so that a held key shows its way.
+/// A synthesis that has taken this long is cancelled for a newer one. Quicker ones finish, so that a held key shows steps.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 impl Worker {
-    /// Starts it.
+    /// Starts the thread.
     pub fn start(options: files::Options, events: mpsc::Sender<Event>) -> Worker {
         let slot = Arc::new((Mutex::new(None), Condvar::new()));
         let running = Running::default();
@@ -44,7 +44,7 @@ impl Worker {
                     Ok(true) => {}
                     Ok(false) => return,
                     Err(fault) => {
-                        // What it kept may be half made: it begins anew.
+                        // Its state may be incomplete, so start again with an empty one.
                         studio = Studio::new(studio.options, studio.running);
                         if events.send(Event::Synthesised(Err(fault))).is_err() {
                             return;
@@ -56,7 +56,7 @@ impl Worker {
         Worker { slot, running }
     }
 
-    /// Asks for this; what was asked for before and not begun yet is forgotten.
+    /// Sends a request. It replaces an earlier one that has not begun yet.
     pub fn ask(&self, request: Request) {
         if let Some((scene, begun, stop)) = &*self.running.lock().unwrap_or_else(PoisonError::into_inner)
             && begun.elapsed() >= PATIENCE
@@ -86,7 +86,7 @@ struct Made {
     materials: Materials,
 }
 
-/// What the thread keeps from one request to the next.
+/// The state of the thread between requests.
 struct Studio {
     options: files::Options,
     cache: files::materials::Cache,
@@ -102,7 +102,7 @@ impl Studio {
         studio
     }
 
-    /// Serves a request; false where nobody listens any more.
+    /// Serves a request; false if nobody listens any more.
     fn serve(&mut self, request: &Request, events: &mpsc::Sender<Event>) -> bool {
         #[cfg(test)]
         assert_ne!(request.path, std::path::Path::new("a fault"), "what a test asked for");
@@ -115,7 +115,7 @@ impl Studio {
             let result = self.synthesise(request, stop.clone());
             self.run(None);
             if stop.load(Ordering::Relaxed) && result.is_err() {
-                // What stopped it waits to be served.
+                // A newer request has stopped it, and is served next.
                 return true;
             }
             let ms = begun.elapsed().as_secs_f64() * 1000.0;
@@ -149,7 +149,7 @@ impl Studio {
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
         let previous = self.made.as_ref().map(|made| &*made.synth);
         let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
-            // A picture that could not be read says more than that it is not there.
+            // Why a picture could not be read says more than that it is missing.
             problems.first().unwrap_or(&problem).to_string()
         })?;
         let synth = Arc::new(synth);
@@ -162,17 +162,17 @@ impl Studio {
     }
 }
 
-/// How long a subcommand has to end with the editor.
+/// How long a subcommand has to end when the editor ends.
 const LAST: Duration = Duration::from_millis(400);
 
-/// A subcommand that runs.
+/// A running subcommand.
 pub struct Job {
     cancel: Arc<AtomicBool>,
     thread: std::thread::JoinHandle<()>,
 }
 
 impl Job {
-    /// Runs `command`, whose words were `words`; says how it gets on and how it ended.
+    /// Runs `command`, and sends its progress and its result as events.
     pub fn start(command: ops::Command, name: String, open: Option<ops::Open>, events: mpsc::Sender<Event>) -> Job {
         let cancel = Arc::new(AtomicBool::new(false));
         let shared = cancel.clone();
@@ -202,8 +202,8 @@ impl Job {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// Asks it to end and waits until it has, so that nothing half-written is left. What does not end (a FIFO that nobody
-    /// reads) is left to itself after a while.
+    /// Asks it to end and waits for it, so that nothing half-written is left. If it does not end (a FIFO that nobody reads), it
+    /// is abandoned after a while.
     pub fn end(self) {
         self.cancel();
         let asked = Instant::now();
@@ -217,8 +217,8 @@ impl Job {
     }
 }
 
-/// What a subcommand that went well comes to. What it printed is read in pages; what it only said is one line, how it ended
-/// before what it warned of.
+/// The message of a subcommand that has succeeded. Output becomes pages; otherwise it is one line with the last message
+/// first, then warnings.
 fn answer(name: &str, printed: &str, said: &str) -> String {
     if !printed.trim().is_empty() {
         return format!("{printed}{said}");
@@ -230,7 +230,7 @@ fn answer(name: &str, printed: &str, said: &str) -> String {
     }
 }
 
-/// What a subcommand prints, kept in memory.
+/// Output of a subcommand, in memory.
 #[derive(Clone, Default)]
 struct Buffer(Arc<Mutex<Vec<u8>>>);
 
@@ -261,7 +261,7 @@ struct Messages {
     shown: Option<Instant>,
 }
 
-/// Work in progress as a line: what, how far, a bar, the share, and how long the rest will take.
+/// Progress as a line: what, how far, a bar, the share, and how long the rest will take.
 fn progress(name: &str, what: &str, (done, total): (u64, u64), spent: Duration) -> String {
     const CELLS: u64 = 8;
     let of = |whole: u64| done.min(total) * whole / total.max(1);
@@ -273,7 +273,7 @@ fn progress(name: &str, what: &str, (done, total): (u64, u64), spent: Duration) 
 impl ops::Progress for Messages {
     fn say(&mut self, line: &str) {
         use std::io::Write;
-        // A buffer in memory takes everything.
+        // Writing to memory cannot fail.
         let _ = writeln!(self.said, "{line}");
     }
 

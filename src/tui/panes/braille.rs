@@ -1,4 +1,4 @@
-//! Dots, eight a cell, each cell in the style of the dot that was set last.
+//! Dots in braille characters, eight per cell. A cell has the style of the dot that was set last.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -13,12 +13,12 @@ pub struct Braille {
 }
 
 impl Braille {
-    /// None set, on so many cells.
+    /// An empty grid of so many cells.
     pub fn new(width: usize, height: usize) -> Self {
         Braille { width, cells: vec![(0, Style::new()); width * height] }
     }
 
-    /// Sets one; beyond the grid nothing happens.
+    /// Sets a dot; dots beyond the grid are ignored.
     pub fn set(&mut self, x: usize, y: usize, style: Style) {
         const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
         if let (true, Some(cell)) = (x / 2 < self.width, self.cells.get_mut(y / 4 * self.width + x / 2)) {

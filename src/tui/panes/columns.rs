@@ -1,31 +1,32 @@
-//! Where the cells of a form or a table stand. Like rows share their columns; where those do not all fit, whole ones are
-//! left out, the first of a table never: half a number reads as another one.
+//! Lays out the cells of a form or a table. Rows with the same cells share their columns. Columns that do not fit are left
+//! out as a whole, because half a number reads as another number; the first column of a table always stays.
 
 use crate::scene::field::Kind;
 use crate::tui::document::sheet::{Cell, Row};
 use crate::tui::text::numbers;
 use crate::tui::text::wrap::{clipped, width};
 
-/// Columns between two cells; where some are left out a mark stands between them.
+/// Columns between two cells, with room for the mark that says that cells are left out.
 pub const GAP: i32 = 2;
 
-/// Where a cell stands in its row, right of the label.
+/// Where a cell is in its row, right of the label.
 pub struct Placed<'a> {
     pub cell: &'a Cell,
-    /// Where its own name begins, where it is shown.
+    /// Where its name begins; `None` if that is not shown.
     pub head: Option<i32>,
-    /// Where it begins, with its name.
+    /// Where it begins, including its name.
     start: i32,
-    /// Where its text begins, and the text.
+    /// Where its text begins.
     pub at: i32,
+    /// The text.
     pub text: String,
     /// Where its column ends.
     pub end: i32,
 }
 
-/// How wide the columns are: of the rows with the same cells, together.
+/// The widths of the columns, for each group of rows with the same cells.
 pub struct Columns<'a> {
-    /// The names over the table: those of its longest row; none over a form.
+    /// The names above the table: those of its longest row; none above a form.
     pub heads: Vec<&'a str>,
     table: bool,
     room: i32,
@@ -47,19 +48,19 @@ impl<'a> Columns<'a> {
                 *widest = i32::from(width(&text(cell, row, room))).max(*widest);
             }
         }
-        // The first of the longest, so that equal ones do not change places.
+        // The first of the longest, so that the names stay the same while scrolling.
         let longest = groups.iter().rev().max_by_key(|(group, _)| group.len()).filter(|_| table);
         Columns { heads: longest.map(|(group, _)| group.clone()).unwrap_or_default(), table, room, groups }
     }
 
-    /// Lays the cells of a row out: in the columns of all rows like it, each with its name where no heading says it.
+    /// Lays out the cells of a row in the columns of its group, each with its name unless that is above the table.
     pub fn lay(&self, row: &'a Row) -> Vec<Placed<'a>> {
         let heads = || row.cells.iter().map(|cell| cell.head.as_str());
         let group = self.groups.iter().filter(|_| row.item).find(|(group, _)| heads().eq(group.iter().copied()));
         let under_heads = row.item && heads().eq(self.heads.iter().copied());
         let mut x = 0;
         let place = |(c, cell): (usize, &'a Cell)| {
-            // What an item is says itself.
+            // The kind of an item needs no name.
             let says_itself = c == 0 && matches!(cell.field.kind, Kind::Choice(_));
             let text = text(cell, row, self.room);
             let own = i32::from(width(&text));
@@ -78,7 +79,7 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// What a cell shows in a row of so much room: where there are others beside it, a text takes no more than half of it.
+/// What a cell shows in a row of this width: a text beside other cells takes at most half of it.
 fn text(cell: &Cell, row: &Row, room: i32) -> String {
     let room = usize::try_from(room).unwrap_or(0);
     match cell.is_number() {
@@ -88,7 +89,7 @@ fn text(cell: &Cell, row: &Row, room: i32) -> String {
     }
 }
 
-/// Which cells of a row are in sight, and how far they are moved to the left.
+/// Which cells of a row are visible, and how far they are moved to the left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VisibleCells {
     /// Whether the first cell stays where it is.
@@ -101,19 +102,19 @@ pub struct VisibleCells {
 }
 
 impl VisibleCells {
-    /// What is in sight of a row whose cell `focus` is to be.
+    /// The visible cells of a row, with the cell `focus` among them.
     pub fn of(row: &[Placed], item: bool, focus: usize, room: i32) -> VisibleCells {
         let frozen = item && focus > 0 && row.len() > 1;
         let least = usize::from(frozen);
         let focus = focus.min(row.len().saturating_sub(1));
         let from = (least..=focus).map(|first| VisibleCells::from(row, frozen, first, room));
-        from.into_iter().find(|sight| sight.end > focus).unwrap_or_else(|| {
-            let sight = VisibleCells::from(row, frozen, focus, room);
-            VisibleCells { end: sight.end.max((focus + 1).min(row.len())), ..sight }
+        from.into_iter().find(|visible| visible.end > focus).unwrap_or_else(|| {
+            let visible = VisibleCells::from(row, frozen, focus, room);
+            VisibleCells { end: visible.end.max((focus + 1).min(row.len())), ..visible }
         })
     }
 
-    /// What is in sight of a row beside one with other columns, of which `first` is the first.
+    /// The visible cells of a row that is shown below one with other columns.
     pub fn beside(row: &[Placed], item: bool, other: VisibleCells, room: i32) -> VisibleCells {
         let frozen = other.frozen && item && row.len() > 1;
         let first = if other.first <= usize::from(other.frozen) { usize::from(frozen) } else { other.first };
@@ -130,14 +131,14 @@ impl VisibleCells {
         VisibleCells { frozen, first, end, shift }
     }
 
-    /// The cells in sight with the places they have.
+    /// The visible cells: index, place, and how far it is moved.
     pub fn cells<'r, 'a>(self, row: &'r [Placed<'a>]) -> impl Iterator<Item = (usize, &'r Placed<'a>, i32)> {
         let stays = row.iter().take(usize::from(self.frozen && self.first > 0)).map(|placed| (0, placed, 0));
         let others = row.iter().enumerate().take(self.end).skip(self.first);
         stays.chain(others.map(move |(i, placed)| (i, placed, self.shift)))
     }
 
-    /// Where a mark says that cells are left out on the left.
+    /// Where the mark for cells that are left out on the left belongs; `None` if there are none.
     pub fn before(self, row: &[Placed]) -> Option<i32> {
         let scrolled = self.first > usize::from(self.frozen);
         scrolled.then(|| if self.frozen { row[0].end + 1 } else { 0 })

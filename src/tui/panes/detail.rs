@@ -1,4 +1,4 @@
-//! Under the form: what the schema says about the cell under the cursor, and what the entry in it comes to.
+//! Below the form: what the schema says about the cell under the cursor, and the value of what is being typed into it.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -13,7 +13,7 @@ use crate::tui::state::{State, entry};
 use crate::tui::text::wrap::wrapped;
 use crate::tui::text::{color, numbers};
 
-/// Draws it: name, value, unit and range; help; the value of the entry.
+/// Draws name, value, unit and range; help; the value of the entry.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some(row) = state.row() else { return };
     let Some(cell) = state.cursor.cell(&row) else { return };
@@ -43,7 +43,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// What is told about a cell: about the word it has, where it is one of several.
+/// The help for a cell: if it is a choice, for its present word.
 fn help(cell: &Cell) -> &'static str {
     let all = match &cell.field.kind {
         Kind::Choice(all) | Kind::Tagged { variants: all, .. } => all.as_slice(),

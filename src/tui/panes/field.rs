@@ -1,6 +1,5 @@
-//! The vector field of the zone that is shown, as arrows: direction by glyph and color, length by the weight of the glyph
-//! and brightness, with a legend and the exact value under the picture's cursor. It shows what the worker synthesised last
-//! and evaluates nothing itself.
+//! The vector field of the zone that is shown, as arrows. Glyph and color are the direction, weight and brightness the
+//! length; below them are a legend and the exact value under the picture's cursor. It shows the worker's last synthesis.
 
 use kurbo::Vec2;
 use ratatui::buffer::Buffer;
@@ -17,9 +16,9 @@ use crate::tui::text::color;
 use crate::tui::text::color::Depth;
 use crate::tui::text::numbers::{polar, short};
 
-/// Shorter than this share of the longest, a vector is a dot.
+/// Vectors shorter than this share of the longest are dots.
 const NOTHING: f64 = 0.02;
-/// From this share of the longest on, an arrow is a long one.
+/// Vectors of at least this share of the longest have long arrows.
 const LONG: f64 = 0.5;
 
 /// Draws the arrows, and below them the legend and the value under the cursor.
@@ -34,7 +33,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let rows = area.height - 2;
-    // An arrow every second column: a cell is about twice as high as it is wide.
+    // An arrow in every second column, because a cell is about twice as high as wide.
     let across = area.width / 2;
     let step = (width as f64 / f64::from(across)).max(height as f64 / f64::from(rows));
     for (x, y) in (0..rows).flat_map(|y| (0..across).map(move |x| (x, y))) {
@@ -50,7 +49,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     write(buffer, area, 0, rows + 1, &under_cursor(state, &field), Style::new());
 }
 
-/// How long arrows are, how far they are apart, and what an underline says.
+/// The legend: how long and how far apart the arrows are.
 fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer: &mut Buffer) {
     let half = short((longest * LONG * 100.0).round() / 100.0);
     let step = short((step * 10.0).round() / 10.0);
@@ -71,7 +70,7 @@ fn under_cursor(state: &State, field: &VectorField) -> String {
     format!("at {x},{y}: {}, {} px  {} px {}°", short(jump.x), short(jump.y), short(length), short(degrees))
 }
 
-/// The field of the thing that is shown, and its longest vector.
+/// The vector field of what is shown, and the length of its longest vector.
 fn field(state: &State) -> Option<(VectorField<'_>, f64)> {
     let item = item_of(&state.cursor.node)?;
     let layer = tree::layer_of(item)?;
@@ -82,7 +81,7 @@ fn field(state: &State) -> Option<(VectorField<'_>, f64)> {
     Some((field, longest.map_or(0.0, |(_, longest)| *longest)))
 }
 
-/// One arrow: a dot where there is next to nothing, a double one where it is long; its color is its direction.
+/// One arrow: a dot for a very short vector, a double arrow for a long one, in the color of its direction.
 fn glyph(depth: Depth, jump: Vec2, longest: f64) -> (&'static str, Style) {
     let (length, degrees) = polar(jump);
     let share = if longest > 0.0 { length / longest } else { 0.0 };
@@ -102,7 +101,8 @@ fn double(arrow: &'static str) -> &'static str {
     PAIRS.iter().find(|(single, _)| *single == arrow).map_or(arrow, |(_, double)| double)
 }
 
-/// The color of a direction: of a wheel of even lightness, which is read on light and on dark; one of six of the 16.
+/// The color of a direction: from a color wheel of even lightness, which is visible on light and dark backgrounds; with 16
+/// colors, one of six.
 fn hue(depth: Depth, turns: f64) -> Style {
     const SIX: [Color; 6] = [Color::Red, Color::Yellow, Color::Green, Color::Cyan, Color::Blue, Color::Magenta];
     match depth {

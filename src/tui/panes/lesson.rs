@@ -1,4 +1,4 @@
-//! The lesson that is on, below everything else: always in sight, also on the least terminal.
+//! The lesson of the tutor, below everything else. It is always visible, even on the smallest terminal.
 
 use crate::tui::layout::lesson;
 use crate::tui::layout::lesson::LABELS;

@@ -1,5 +1,5 @@
-//! The last line: what is being typed after `:` or `/`, else what was said last. A message that is longer than the line
-//! takes as many rows as it needs, over the panes, until the next key.
+//! The last line: what is being typed after `:` or `/`, else the message. A message that is longer than the line covers the
+//! panes with as many rows as it needs, until the next key.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;

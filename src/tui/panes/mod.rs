@@ -1,4 +1,4 @@
-//! The panes: each draws one part of the state into its area and says where the real cursor stands, if it is there.
+//! The panes. Each draws one part of the state into its area, and returns the place of the terminal's cursor if it is there.
 
 use crate::tui::text::plain;
 use crate::tui::text::wrap::{clipped, width};
@@ -27,8 +27,8 @@ pub mod table;
 pub mod tree;
 pub mod view;
 
-/// Writes `text` at column `x` of a row of `area`, which may lie left of it or beyond; gives the column after it. What does
-/// not fit ends with a mark.
+/// Writes `text` at column `x` of a row of `area`, which may be left of it or beyond, and clips it. Returns the column after
+/// the text.
 pub fn write(buffer: &mut Buffer, area: Rect, x: i32, y: u16, text: &str, style: Style) -> i32 {
     let end = x + i32::from(width(text));
     if y >= area.height || x >= i32::from(area.width) || end <= 0 {
@@ -41,7 +41,7 @@ pub fn write(buffer: &mut Buffer, area: Rect, x: i32, y: u16, text: &str, style:
     end
 }
 
-/// Writes a text that is being typed so that its cursor is in sight, with marks where it goes on; gives the cursor.
+/// Writes a text that is being typed so that its cursor is visible, with marks where it is cut; returns the cursor's place.
 pub fn typed(buffer: &mut Buffer, area: Rect, text: &Text, style: Style) -> Position {
     let shown = plain(text.value());
     let (column, room) = (text.column(), usize::from(area.width));
@@ -66,7 +66,7 @@ pub fn typed(buffer: &mut Buffer, area: Rect, text: &Text, style: Style) -> Posi
     Position::new(area.x + column.saturating_sub(hidden) as u16, area.y)
 }
 
-/// The arrow for the direction of a vector, one of eight.
+/// The nearest of eight arrows for the direction of a vector.
 pub fn arrow(vector: kurbo::Vec2) -> &'static str {
     const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
     ARROWS[(polar(vector).1 / 45.0).round().rem_euclid(8.0) as usize]

@@ -14,10 +14,10 @@ use crate::tui::state::State;
 use crate::tui::text::color;
 use crate::tui::text::wrap::{clipped, width};
 
-/// Columns of what a row is.
+/// Width of the column that says what a row is.
 const SORT: i32 = 9;
 
-/// Draws it; the cursor is in what is typed.
+/// Draws the palette; the cursor is in what is typed.
 pub fn draw(state: &State, palette: &Palette, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = format!("palette: {} found (Enter takes, Esc closes)", palette.len());
     let area = window(screen, (screen.width - 8).min(110), (screen.height - 4).min(30), &title, buffer);
@@ -59,7 +59,7 @@ fn draw_row(state: &State, palette: &Palette, row: &Row, here: bool, area: Rect,
     write(buffer, area, room.max(0), y, &end, color::faint());
 }
 
-/// What a field or a node says, in a word.
+/// The value of a field or a node, in short.
 fn value(state: &State, pointer: &str) -> String {
     let place = field::field(state.document(), pointer).zip(field::value(state.document(), pointer));
     let text = place.map(|(field, value)| sheet::summary(&field, &value)).unwrap_or_default();

@@ -1,5 +1,5 @@
-//! The picture: as pixels where the terminal takes them, else in half-blocks, two dots a cell, with outlines, regions,
-//! anchors and the placing cursor over them. Without colors each cell is a shade.
+//! The picture: as pixels if the terminal takes them, else in half-blocks (two dots per cell) under outlines, regions, anchors
+//! and the cursor. Without colors each cell is a character of some darkness.
 
 use crate::tui::layout;
 use kurbo::{Point, Vec2};
@@ -18,7 +18,7 @@ use crate::tui::text::color;
 use crate::tui::text::color::Depth;
 use crate::tui::text::numbers::short;
 
-/// The cursor's coordinates, how large the picture is shown, and how it comes to the terminal.
+/// The title: the cursor's coordinates, the scale, and the protocol.
 pub fn title(state: &State) -> String {
     let at = state.picture.cursor;
     let part = picture::part(state);
@@ -29,7 +29,7 @@ pub fn title(state: &State) -> String {
     format!("picture  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
 
-/// Draws it; the real cursor is on the placing cursor where the picture has the focus.
+/// Draws the picture; the terminal's cursor is on the picture's cursor if the picture has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let Some(part) = picture::part(state).filter(|_| area.width > 0 && area.height > 0) else {
         write(buffer, area, 1, 0, "no picture yet", color::faint());
@@ -49,15 +49,15 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     (state.cursor.focus == Pane::Picture).then_some(cursor)
 }
 
-/// The cells of the picture in a pane of this size, where the terminal takes pixels.
+/// The cells with the picture as pixels, if there are such cells for a pane of this size.
 fn pixels(state: &State, area: Rect) -> Option<&Buffer> {
     let shown = state.picture.latest.as_ref()?;
     let fits = shown.wanted.cells == (area.width, area.height) && shown.wanted.protocol == picture::protocol(state);
     shown.cells.as_ref().filter(|_| fits)
 }
 
-/// Where something was drawn over the pixels, half-blocks take their place: a picture that is sent whole would be painted
-/// over it. Kitty's cells are characters like others and stay.
+/// Replaces the pixels by half-blocks if something was drawn over them, because a picture that is sent as a whole would hide
+/// it. Kitty's placeholders are characters like others and can stay.
 pub fn give_way(state: &State, buffer: &mut Buffer) {
     let Some(area) = layout::picture_area(state).filter(|_| picture::protocol(state) != Protocol::Kitty) else {
         return;
@@ -78,7 +78,7 @@ pub fn give_way(state: &State, buffer: &mut Buffer) {
 }
 
 fn draw_blocks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
-    // In half-blocks, whatever the dots of the terminal are.
+    // In half-blocks, whatever the protocol in use.
     let scale = part.scale * part.dots.0 as f64 / f64::from(area.width);
     let part = Part { scale, dots: (area.width.into(), usize::from(area.height) * 2), ..*part };
     if let Some(shown) = &state.picture.latest {
@@ -90,7 +90,7 @@ fn draw_blocks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     write(buffer, area, x as i32, half.div_euclid(2).max(0) as u16, "┼", style);
 }
 
-/// The column and the half-row of a place in the picture.
+/// The column and the half row of a place in the picture.
 fn cell(part: &Part, at: Point) -> (i64, i64) {
     let dot = part.dot_of(at);
     let whole = |v: f64| v.floor().clamp(-1e9, 1e9) as i64;
@@ -128,7 +128,7 @@ fn both(upper: Option<[u8; 3]>, lower: Option<[u8; 3]>) -> [u8; 3] {
     }
 }
 
-/// Outlines, regions, curves, anchors and their jumps, the selected ones on top.
+/// Draws outlines, regions, curves, anchors and their jumps, the selected ones on top.
 fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     let synth = state.picture.synth.as_deref();
     let mut marks = overlay::overlay(state.document().scene(), synth, &picture::overlays(state));
@@ -148,7 +148,7 @@ fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Bu
     let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
     let glyph = mark.look.stroke;
     match &mark.shape {
-        Shape::Cell(..) => {} // asked for by nobody here: a cell of the terminal is too large for it
+        Shape::Cell(..) => {} // never requested here: a cell of the terminal is too large for it
         Shape::Line { points, closed } => {
             let last = points.last().filter(|_| *closed);
             let from = last.into_iter().chain(points);
@@ -178,7 +178,7 @@ fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Bu
     }
 }
 
-/// Writes a glyph over the picture, on the color that is there.
+/// Writes a glyph over the picture, keeping the color behind it.
 fn put(buffer: &mut Buffer, area: Rect, x: i64, half: i64, glyph: &str, style: Style) {
     let y = half.div_euclid(2);
     if (0..i64::from(area.width)).contains(&x) && (0..i64::from(area.height)).contains(&y) {
@@ -190,7 +190,7 @@ fn put(buffer: &mut Buffer, area: Rect, x: i64, half: i64, glyph: &str, style: S
     }
 }
 
-/// Every half-block that a line meets.
+/// Calls `put` for every half-block on a line.
 fn line(from: Point, to: Point, part: &Part, mut each: impl FnMut(i64, i64)) {
     let Some((a, b)) = viewport::clipped(part.dot_of(from), part.dot_of(to), part.dots) else { return };
     let steps = (b - a).hypot2().sqrt().ceil().max(1.0);

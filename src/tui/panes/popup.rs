@@ -1,4 +1,4 @@
-//! What lies over the panes: lists to choose from, pages of text, hints after the first key of several.
+//! What covers the panes: lists to choose from, pages of text, hints after the first key of several.
 
 use crate::tui::commands::contexts::contexts;
 use crate::tui::panes::window;
@@ -15,7 +15,7 @@ use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::color;
 use crate::tui::text::wrap::{width, wrapped_lines};
 
-/// Draws what there is; the cursor is in the list.
+/// Draws what is open; returns the place of the cursor.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
     match &state.typing.mode {
         Mode::Choice(choice) => Some(draw_choice(choice, screen, buffer)),
@@ -38,7 +38,7 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     let above = text.lines().map(width).max().unwrap_or(0).max(width(&title));
     let wide = (words + help + 6).max(above + 4).clamp(30, screen.width - 8);
     let text = wrapped_lines(&text, wide - 4);
-    // What is cut is told below the list, for the row under the cursor.
+    // Help that does not fit is shown in full below the list, for the row under the cursor.
     let room = wide.saturating_sub(words + 6);
     let told = choice.options.iter().map(|(_, help)| width(help)).filter(|&help| help > room);
     let longest = told.max().map_or(0, |help| help.div_ceil((wide - 4).max(1)) + 2);
@@ -68,7 +68,7 @@ fn draw_choice(choice: &Choice, screen: Rect, buffer: &mut Buffer) -> Position {
     Position::new(area.x + 1, area.y + (choice.at - first) as u16)
 }
 
-/// The beginning of a text that does not fit, with a mark.
+/// A text cut to this width, with an ellipsis.
 fn shortened(text: &str, room: u16) -> String {
     if width(text) <= room {
         return text.to_owned();
@@ -83,7 +83,7 @@ fn shortened(text: &str, room: u16) -> String {
     short + "…"
 }
 
-/// What is left of an area below its first rows.
+/// An area without its first rows.
 fn below(area: Rect, rows: u16) -> Rect {
     let rows = rows.min(area.height);
     Rect { y: area.y + rows, height: area.height - rows, ..area }
@@ -103,11 +103,11 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     area.as_position()
 }
 
-/// What the menus of the first keys are called.
+/// The names of the menus behind first keys.
 const MENUS: &[(&str, &str)] =
     &[("Space", "leader"), ("g", "go"), ("z", "view"), ("m", "set a mark"), ("'", "go to a mark")];
 
-/// The keys that may follow, above the status line; in as many columns as they need.
+/// Draws the keys that may follow, above the status line, in as many columns as they need.
 fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {
     let contexts = contexts(state);
     let rest = |key: &str| key.strip_prefix(&state.typing.pressed).unwrap_or(key).trim().to_owned();

@@ -1,5 +1,5 @@
-//! The position functions of all zones of the layer on one time axis: s over the timeline in braille, each zone with a
-//! letter and an ANSI color of its own, the selected one bold and on top, the present marked.
+//! The position functions of all zones of a layer on one time axis: s over t in braille. Each zone has a letter and a color;
+//! the selected one is bold and on top; the present time is marked.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -16,10 +16,10 @@ use crate::tui::text::color;
 use crate::tui::text::numbers::short;
 use crate::tui::text::wrap::width;
 
-/// The colors of zones, over and over; letters tell what colors repeat.
+/// The colors of the zones. If they repeat, letters tell the zones apart.
 const COLORS: [Color; 6] = [Color::Cyan, Color::Yellow, Color::Magenta, Color::Green, Color::Blue, Color::Red];
 
-/// A curve of one thing in the layer.
+/// The curve of one item of the layer.
 struct Curve<'a> {
     name: String,
     letter: char,
@@ -28,7 +28,7 @@ struct Curve<'a> {
     style: Style,
 }
 
-/// Draws it: the range of s at the left, curves, the axis of time, and the legend; with few rows the places alone.
+/// Draws the range of s on the left, the curves, the time axis and the legend; with few rows, only the legend.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let curves = curves(state);
     if curves.is_empty() {
@@ -39,7 +39,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         draw_legend(&curves, state.play.time, true, area, buffer);
         return;
     }
-    // The axis where there is room for it.
+    // The axis, if there is room for it.
     let axis = u16::from(area.height >= 5);
     let plot = Rect { height: area.height - 1 - axis, ..area };
     draw_curves(&curves, state.play.time, plot, buffer);
@@ -49,7 +49,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     draw_legend(&curves, state.play.time, false, Rect { y: area.bottom() - 1, height: 1, ..area }, buffer);
 }
 
-/// The curves of the layer that is shown, the first where none is; the selected one last, so that it lies on top.
+/// The curves of the layer that is shown (else of the first), the selected one last, so that it is drawn on top.
 fn curves<'a>(state: &'a State) -> Vec<Curve<'a>> {
     let index = tree::layer_of(&state.cursor.node).unwrap_or(0);
     let scene = state.document().scene();
@@ -74,7 +74,7 @@ fn curves<'a>(state: &'a State) -> Vec<Curve<'a>> {
 
 fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     let columns = usize::from(area.width) * 2;
-    // Just before the end: at the end itself a function that is repeated begins anew.
+    // Stop just before the end: there a repeating function starts again.
     let time_at = |x: f64| (x / (columns - 1) as f64).min(1.0 - 1e-9);
     let values = |curve: &Curve| -> Vec<f64> { (0..columns).map(|x| (curve.of.value)(time_at(x as f64))).collect() };
     let all: Vec<Vec<f64>> = curves.iter().map(values).collect();
@@ -91,7 +91,7 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
     for (curve, values) in curves.iter().zip(&all) {
         for (x, pair) in values.windows(2).enumerate() {
             let (from, to) = (row(pair[0]), row(pair[1]));
-            // A jump in s is left open; a steep stretch is drawn through.
+            // A gap at a jump of s, a line where it is only steep.
             if from.abs_diff(to) * 3 < dots * 2 {
                 (from.min(to)..=from.max(to)).for_each(|y| braille.set(x + 1, y, curve.style));
             }
@@ -104,19 +104,19 @@ fn draw_curves(curves: &[Curve], time: f64, area: Rect, buffer: &mut Buffer) {
         write(buffer, area, now, y, "┊", color::faint());
     });
     for (i, (curve, values)) in curves.iter().zip(&all).enumerate() {
-        // Letters on the curve, each zone's elsewhere.
+        // Letters on the curves, each at another time.
         let at = (i + 1) * columns / (curves.len() + 1);
         write(buffer, area, (at / 2) as i32, (row(values[at]) / 4) as u16, &curve.letter.to_string(), curve.style);
         let glyph = if curve.selected { "●" } else { "○" };
         write(buffer, area, now, (row((curve.of.value)(time)) / 4) as u16, glyph, curve.style);
     }
-    // Last, so that nothing lies over a digit.
+    // Last, so that nothing is drawn over a digit.
     let label = Style::reset().patch(color::faint());
     write(buffer, area, 0, 0, &short(high), label);
     write(buffer, area, 0, area.height - 1, &short(low), label);
 }
 
-/// What a curve comes to on both sides of each place where it jumps: the columns miss its ends there.
+/// The values of a curve on both sides of its jumps, which may lie between two columns.
 fn ends(of: &readout::Curve, values: &[f64], time_at: &impl Fn(f64) -> f64) -> Vec<f64> {
     const JUMP: f64 = 0.25;
     let jumps = values.windows(2).enumerate().filter(|(_, pair)| (pair[0] - pair[1]).abs() > JUMP);
@@ -136,7 +136,7 @@ fn now(time: f64, area: Rect) -> i32 {
     (time.clamp(0.0, 1.0) * f64::from(area.width - 1)).round() as i32
 }
 
-/// The axis of time: 0 at the left, 1 at the right, t where it is.
+/// Draws the time axis: 0 on the left, 1 on the right, t in its place.
 fn draw_axis(time: f64, area: Rect, buffer: &mut Buffer) {
     let text = format!("t {}", short(time));
     let most = i32::from(area.width) - i32::from(width(&text)) - 2;
@@ -146,7 +146,7 @@ fn draw_axis(time: f64, area: Rect, buffer: &mut Buffer) {
     write(buffer, area, at, 0, &text, color::faint());
 }
 
-/// Letters and names, the selected zone first with its s; where there is no room for curves, the s of each.
+/// Draws letters and names, the selected zone first with its s. If there is no room for curves, every zone has its s.
 fn draw_legend(curves: &[Curve], time: f64, alone: bool, area: Rect, buffer: &mut Buffer) {
     let (mut x, mut y) = (0, 0);
     for curve in curves.iter().rev().take_while(|curve| curve.selected).chain(curves.iter().filter(|c| !c.selected)) {

@@ -1,4 +1,5 @@
-//! The read-out of one pixel: what it belongs to, its vectors, its path from 0 to 1 with what is on it, what it reads. It follows the cursor and the time; while the worker looks, the last answer stands there, faint.
+//! The read-out of one pixel: what it belongs to, its vectors, its path from 0 to 1 with the points on it, and what it reads.
+//! It follows the cursor and the time. Until the worker answers, the previous answer is shown, faint.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -51,7 +52,7 @@ fn joined(parts: impl Iterator<Item = String>) -> String {
     parts.collect::<Vec<_>>().join("   ")
 }
 
-/// What the pixel belongs to, where an entry says so.
+/// What the pixel belongs to, if an entry says so.
 fn of(entry: &Entry) -> Option<Option<&String>> {
     match &entry.value {
         Value::Of(name) => Some(name.as_ref()),
@@ -91,7 +92,7 @@ fn list(entry: &Entry) -> Option<String> {
     }
 }
 
-/// The numbers, those first that are places on the path, and the time.
+/// The numbers, first those that are places on the path, and the time.
 fn numbers<'a>(entries: impl Iterator<Item = &'a Entry>, axis: Option<&Axis>, time: f64) -> String {
     let points = axis.map_or(&[] as &[_], |axis| &axis.points);
     let number = |entry: &Entry| match entry.value {
@@ -108,8 +109,8 @@ fn shows(probed: &Probed) -> String {
     format!("shows #{} alpha {a}", hex(&[r, g, b]))
 }
 
-/// The path from 0 to 1: a thick line in its open stretches, a broken one in the others, a bar at every tick; below it the
-/// points, at the edge where they lie beyond it.
+/// Draws the path from 0 to 1: a solid line where it is open, a broken one elsewhere, a bar at every tick. Below are the
+/// points; those beyond the path are at its ends.
 fn draw_path(axis: &Axis, area: Rect, style: Style, buffer: &mut Buffer) {
     const POINTS: [&str; 2] = ["●", "◆"];
     let cells = i32::from(area.width) - 4;
@@ -133,7 +134,7 @@ fn draw_path(axis: &Axis, area: Rect, style: Style, buffer: &mut Buffer) {
         write(buffer, area, cell(first).min(cells - 1), 1, &names.join("="), style);
         write(buffer, area, cell(first), 0, POINTS[0], style.patch(color::strong()));
     } else {
-        // The first last: it lies over the others.
+        // In reverse, so that the first is drawn over the others.
         for (i, &(name, at)) in axis.points.iter().enumerate().rev() {
             write(buffer, area, cell(at), 0, POINTS[i % POINTS.len()], style.patch(color::strong()));
             write(buffer, area, cell(at), 1, name, style);

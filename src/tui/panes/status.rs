@@ -1,4 +1,4 @@
-//! The status line: mode, place, what is not saved, time, the last synthesis, the window, the step.
+//! The status line: mode, place, unsaved edits, time, synthesis, window, step.
 
 use crate::tui::text::plain;
 use ratatui::buffer::Buffer;
@@ -19,7 +19,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let bar = Style::new().add_modifier(Modifier::REVERSED);
     buffer.set_style(area, bar);
     let (mode, marks, right) = (mode(state), marks(state), right(state));
-    // A long name gives way: what is not saved, the time and the step are seen first.
+    // A long name is clipped, because the rest of the line matters more.
     let others = width(&format!(" {mode}  {marks}  {right} "));
     let room = area.width.saturating_sub(others).max(LEAST_NAME);
     let left = format!(" {mode}  {}{marks}", clipped(&place(state), room.into()));
@@ -28,7 +28,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     write(buffer, area, x, 0, &right, bar);
 }
 
-/// Columns that a name has at least.
+/// The least width of the name.
 const LEAST_NAME: u16 = 12;
 
 /// Three letters for what the keys do.
@@ -47,7 +47,7 @@ fn mode(state: &State) -> &'static str {
     }
 }
 
-/// The layer that is shown, and the thing with a name in it.
+/// The layer that is shown, and the named item in it.
 fn place(state: &State) -> String {
     let Some((layer, _)) = inside(state, &state.cursor.node) else { return "scene".into() };
     let item = item_of(&state.cursor.node).and_then(|item| layer.item_name(inside(state, item)?.1));
@@ -79,7 +79,7 @@ fn right(state: &State) -> String {
         parts.push(format!("{}-", state.typing.pressed));
     }
     if let Some(work) = &state.outside.work {
-        // What it is about to say counts more than what stands still meanwhile.
+        // Its progress matters more than what does not change meanwhile.
         parts.push(format!("{}  Esc cancels", plain(work)));
         return parts.join("  ");
     }
@@ -102,7 +102,7 @@ fn right(state: &State) -> String {
     parts.join("  ")
 }
 
-/// What changes over time in the thing that is shown, now: its symbol and value.
+/// The present value of what changes over time in the item that is shown, with its symbol.
 fn now(state: &State) -> Option<(&'static str, f64)> {
     let item = item_of(&state.cursor.node)?;
     let (layer, path) = inside(state, item)?;

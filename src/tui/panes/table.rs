@@ -1,5 +1,5 @@
-//! The middle: a node as a form or as a table. In a table the cells of like rows stand in columns under their names;
-//! elsewhere each number stands beside its name.
+//! The middle column: a node as a form or as a table. In a table, cells are in columns below their names; in a form each
+//! number is beside its name.
 
 use crate::tui::text::plain;
 use std::ops::Range;
@@ -23,7 +23,7 @@ pub fn title(state: &State) -> String {
     plain(if address.is_empty() { "scene" } else { &address })
 }
 
-/// Draws it; the cursor is on the focused cell, or on the entry in it.
+/// Draws the node; the cursor is on the focused cell, or in what is typed into it.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let sheet = state.sheet();
     if sheet.is_empty() {
@@ -80,7 +80,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     }
 }
 
-/// Which cells of each row are in sight: like rows show the same ones, and the row under the cursor its cell.
+/// Which cells of each row are visible: rows with the same cells show the same ones, and the cell under the cursor is visible.
 fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i32) -> Vec<VisibleCells> {
     let Some(own) = rows.get(at) else { return vec![VisibleCells::default(); rows.len()] };
     let here = VisibleCells::of(&laid[at], own.item, state.cursor.column, room);
@@ -88,31 +88,31 @@ fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i3
         let heads = |row: &Row| row.cells.iter().map(|cell| cell.head.clone()).collect::<Vec<_>>();
         row.item == own.item && heads(row) == heads(own)
     };
-    let sight = |(i, row): (usize, &Row)| match row {
+    let visible = |(i, row): (usize, &Row)| match row {
         _ if i == at => here,
         row if row.item && like(row) => here,
         row if row.item => VisibleCells::beside(&laid[i], true, here, room),
         _ => VisibleCells::of(&laid[i], false, 0, room),
     };
-    rows.iter().enumerate().map(sight).collect()
+    rows.iter().enumerate().map(visible).collect()
 }
 
-/// What a cell shows in what is left of the row: all of it, else less with a mark that says so.
+/// The text of a cell as far as it fits into the rest of the row.
 fn text(placed: &Placed, room: i32) -> String {
     let room = usize::try_from(room).unwrap_or(0);
     if placed.cell.is_number() { numbers::fitted(&placed.text, room) } else { clipped(&placed.text, room) }
 }
 
-/// Marks where cells are left out; gives where the last one in sight ends.
-fn draw_marks(row: &[Placed], sight: VisibleCells, cells: Rect, y: u16, buffer: &mut Buffer) -> i32 {
-    if let Some(x) = sight.before(row) {
+/// Marks where cells are left out; returns where the last visible cell ends.
+fn draw_marks(row: &[Placed], visible: VisibleCells, cells: Rect, y: u16, buffer: &mut Buffer) -> i32 {
+    if let Some(x) = visible.before(row) {
         write(buffer, cells, x, y, "<", color::faint());
     }
-    if sight.goes_on(row) {
+    if visible.goes_on(row) {
         write(buffer, cells, i32::from(cells.width) - 1, y, ">", color::faint());
         return i32::from(cells.width);
     }
-    sight.cells(row).last().map_or(0, |(_, placed, shift)| placed.end - shift)
+    visible.cells(row).last().map_or(0, |(_, placed, shift)| placed.end - shift)
 }
 
 fn style(row: &Row, here: bool, selected: bool) -> Style {
@@ -124,7 +124,7 @@ fn style(row: &Row, here: bool, selected: bool) -> Style {
     }
 }
 
-/// A row's label and its indent: items inside a form stand under the name of their list.
+/// A row's label and its indent: items inside a form are indented below the name of their list.
 fn label(row: &Row) -> (String, i32) {
     (plain(&row.label), if row.item { 1 } else { 0 })
 }
@@ -143,21 +143,21 @@ fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], sights: &[VisibleCells], cel
     let Some(at) = laid.iter().position(under) else { return };
     draw_marks(&laid[at], sights[at], cells, 0, buffer);
     for (c, placed, shift) in sights[at].cells(&laid[at]) {
-        // Names stand over the ends of numbers and over the beginnings of words.
+        // Names are right-aligned above numbers and left-aligned above words.
         let number = placed.cell.is_number();
         let edge = if number { placed.end - i32::from(width(heads[c])) } else { placed.at };
         write(buffer, cells, edge - shift, 0, heads[c], color::strong());
     }
 }
 
-/// The rows whose columns are laid out together: those in sight and their neighbours up to round numbers, so that
-/// columns keep their places while the table scrolls.
+/// The rows whose columns are laid out together: the visible ones and some around them, up to round numbers, so that the
+/// columns stay in place while the table scrolls.
 fn neighbours(first: usize, height: u16) -> Range<usize> {
     const ROUND: usize = 64;
     first / ROUND * ROUND..(first + usize::from(height)).next_multiple_of(ROUND)
 }
 
-/// What the entry comes to stands beside it, where the row leaves room; under the table it stands in full.
+/// The value of the entry, beside it if there is room; it is always shown in full below the table.
 fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
     let (text, style) = match entry::hint(state) {
         Some(Ok(values)) => (values, color::faint()),
@@ -169,7 +169,7 @@ fn draw_hint(state: &State, x: i32, y: u16, cells: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// The entry stands where its cell does, and moves left where it would not fit. Gives the cursor and the column after it.
+/// Draws the entry at the place of its cell, further left if it would not fit. Returns the cursor and the column after it.
 fn draw_entry(text: &crate::tui::text::input::Text, at: Position, cells: Rect, buffer: &mut Buffer) -> (Position, i32) {
     let wide = width(&plain(text.value())).max(8) + 1;
     let x = at.x.min((cells.x + cells.width).saturating_sub(wide)).max(cells.x);

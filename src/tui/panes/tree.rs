@@ -11,7 +11,7 @@ use crate::tui::state::{Pane, State};
 use crate::tui::text::color;
 use crate::tui::text::wrap::{clipped, width};
 
-/// Draws it; the cursor is on the node that is shown, where the tree has the focus.
+/// Draws the tree; the cursor is on the node that is shown, if the tree has the focus.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let rows = tree::rows(state.document(), &state.cursor.collapsed);
     let at = tree::row_of(&rows, &state.cursor.node);
@@ -27,7 +27,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         };
         let indent = (row.depth as i32 * 2).min(i32::from(area.width) / 2);
         let x = write(buffer, area, indent, y, mark, Style::new());
-        // A count is seen whole; a name gives way to it, and words to a name.
+        // A count is always shown whole. It clips the name, and the name clips other notes.
         let count = if row.note.starts_with('(') { i32::from(width(&row.note)) + 1 } else { 0 };
         let label = clipped(&row.label, (i32::from(area.width) - x - count).max(0) as usize);
         let end = write(buffer, area, x, y, &label, style);

@@ -1,4 +1,4 @@
-//! The screen: where the panes stand, at every size from 60 x 20 on. Draws the state and changes nothing.
+//! Draws the screen, at every size from 60 x 20 on. Drawing changes nothing.
 
 use crate::tui::layout;
 use crate::tui::layout::{areas, middle, picture_in_middle};
@@ -77,7 +77,7 @@ fn bordered(frame: &mut Frame, area: Rect, title: Line) -> Rect {
     inner
 }
 
-/// What stands there instead, and below it the line in which `:q` is typed.
+/// Draws what is shown on a terminal that is too small, with the line in which `:q` can be typed.
 fn too_small(frame: &mut Frame, state: &State, screen: Rect) {
     let text = format!("Plica needs {} x {}\nthis is {} x {}", LEAST.0, LEAST.1, screen.width, screen.height);
     let middle = Rect { y: screen.y + screen.height.saturating_sub(3) / 2, height: screen.height.min(2), ..screen };

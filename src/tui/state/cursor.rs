@@ -32,7 +32,7 @@ pub struct Selection {
 pub struct Cursor {
     /// The pane that takes the keys.
     pub focus: Pane,
-    /// Pointer of the node in the middle.
+    /// Pointer of the node that is shown in the middle column.
     pub node: String,
     /// Nodes of the tree that are collapsed.
     pub collapsed: BTreeSet<String>,
@@ -49,7 +49,7 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    /// In the tree, on a node.
+    /// The cursor in the tree, on a node.
     pub fn new(node: String) -> Cursor {
         Cursor {
             focus: Pane::Tree,
@@ -84,7 +84,7 @@ impl Cursor {
         row.cells.get(self.column)
     }
 
-    /// Goes back to a row and a cell that are there.
+    /// Moves the cursor and the selection back to rows and a cell that exist.
     pub fn settle(&mut self, sheet: &Sheet) {
         let last = sheet.len().saturating_sub(1);
         self.row = self.row.min(last);
@@ -93,7 +93,7 @@ impl Cursor {
         self.selected_to = self.selected_to.map(|row| row.min(last)).filter(|_| self.selected_from.is_some());
     }
 
-    /// Expands what holds the node at `pointer` in the tree.
+    /// Expands the ancestors of the node at `pointer` in the tree.
     pub fn expand_to(&mut self, pointer: &str) {
         let holds = |node: &str| pointer.strip_prefix(node).is_some_and(|rest| rest.starts_with('/'));
         self.collapsed.retain(|node| !holds(node));

@@ -1,5 +1,5 @@
-//! A value being typed into a cell. The raw text is kept until it is taken; what it says is computed over the columns of
-//! the row, once for every selected row, and all of it is one edit.
+//! What a text typed into a cell means: an expression over the columns of the row, evaluated for each selected row. All
+//! values are set in one edit.
 
 use crate::base::expression;
 use crate::tui::document::entry::Entry;
@@ -15,7 +15,8 @@ use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
 use crate::tui::text::input::Text;
 use crate::tui::text::numbers;
 
-/// The cells that an edit of the cell under the cursor applies to, with their rows: the like ones of every selected row.
+/// The cells that an edit applies to, with their rows: in each selected row the one that corresponds to the cell under the
+/// cursor.
 pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
     let document = state.document();
     let Some(row) = sheet.row(state.cursor.row) else { return Vec::new() };
@@ -26,12 +27,12 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
     let inner = model.pointer.strip_prefix(&row.pointer).unwrap_or_default();
     let of_row = |i: usize| {
         let pointer = sheet.pointer(i)?;
-        // An item of the same kind has the same cells: it need not be made to be known.
+        // Items of the same kind have the same cells, so the row need not be made.
         let alike = list.is_some_and(|list| pointer.rsplit_once('/').is_some_and(|(own, _)| own == list))
             && kind_of(document, &row.field, &pointer) == kind_of(document, &row.field, &row.pointer);
         let cell = match alike {
             true => Cell { pointer: pointer + inner, ..model.clone() },
-            // Elsewhere the column may have another place; in a form all that has no name of its own is alike.
+            // In other rows the column may be at another place; in a form, cells without a head correspond.
             false if model.head.is_empty() => sheet.row(i)?.cells.get(state.cursor.column).filter(like)?.clone(),
             false => sheet.row(i)?.cells.iter().find(like)?.clone(),
         };
@@ -46,7 +47,7 @@ fn sheet_head(state: &State) -> String {
     head.filter(|head| !head.is_empty()).unwrap_or_else(|| "that".into())
 }
 
-/// How many of the selected rows have the column under the cursor, where some have not.
+/// A message that says how many of the selected rows have the column under the cursor; `None` if all have it.
 pub fn skipped(state: &State) -> Option<String> {
     let all = state.cursor.rows().count();
     let some = cells(state, &state.sheet()).len();
@@ -54,13 +55,13 @@ pub fn skipped(state: &State) -> Option<String> {
     (some < all).then(|| format!("{some} of {all} rows have {head}"))
 }
 
-/// The word that says what kind of item stands at a place; `None` if there are no kinds.
+/// The kind of the item at a place; `None` if there are no kinds.
 fn kind_of<'a>(document: &'a Document, field: &Field, pointer: &str) -> Option<&'a str> {
     let Kind::Tagged { tag, .. } = field.kind else { return None };
     document.json().pointer(pointer)?.get(tag)?.as_str()
 }
 
-/// The edit that `text` says for the cell under the cursor and the like ones of the selection.
+/// The edit that sets the cell under the cursor, and the corresponding ones of the selection, to what `text` means.
 pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
     let sheet = state.sheet();
     if of_number(state) {
@@ -70,8 +71,8 @@ pub fn edit(state: &State, text: &str) -> Result<Edit, String> {
     Ok(Edit::all(cells.map(|(_, cell)| Edit::set(state.document(), &cell.pointer, Value::from(text)))))
 }
 
-/// The edit that gives every number of the selection its value, told from its row, its cell and its place among them.
-/// Vectors without a length stay as they are where others are turned.
+/// The edit that sets every number of the selection to a value computed from its row, its cell and its index among them.
+/// When vectors are turned, those without a length stay as they are.
 pub fn each(
     state: &State,
     value: impl Fn(usize, &Cell, (usize, usize)) -> Result<f64, String>,
@@ -86,8 +87,8 @@ pub fn each(
     Ok(Edit::all(edits.collect::<Result<Vec<_>, _>>()?))
 }
 
-/// What the entry under way comes to, or what is wrong with it: the values of the first rows of the selection. `None` if
-/// no number is being typed.
+/// The values that the text being typed has in the first selected rows, or what is wrong with it. `None` if no number is
+/// being typed.
 pub fn hint(state: &State) -> Option<Result<String, String>> {
     const SHOWN: usize = 3;
     let Mode::Entry(Entry { text }) = &state.typing.mode else { return None };
@@ -114,7 +115,7 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
     Some(shown)
 }
 
-/// What `text` comes to for one cell, the `i`th of `n`.
+/// The value of `text` for one cell, the `i`th of `n`.
 fn evaluate(
     state: &State,
     sheet: &Sheet,
@@ -123,7 +124,7 @@ fn evaluate(
     (i, n): (usize, usize),
     text: &str,
 ) -> Result<f64, String> {
-    // Plain numbers and changes by them name nothing.
+    // Without letters no variable can occur, so the row is not needed.
     let row = text.contains(char::is_alphabetic).then(|| sheet.row(row)).flatten();
     let known = variables(state, sheet, row.as_ref(), cell, (i, n));
     let known: Vec<(&str, f64)> = known.iter().map(|(name, value)| (name.as_str(), *value)).collect();
@@ -141,7 +142,7 @@ fn variables(
     let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
     let others = if row.is_none_or(|row| row.item) { Vec::new() } else { sheet.fields() };
     for row in row.into_iter().chain(&others) {
-        // Of several vectors the one that is edited gives its dx, dy, r and a.
+        // If a row has several vectors, dx, dy, r and a are those of the one that is edited.
         let (own, others): (Vec<&Cell>, Vec<&Cell>) = row.cells.iter().partition(|one| one.pointer == cell.pointer);
         for cell in own.into_iter().chain(others).filter(|cell| cell.is_number()) {
             let name = match cell.part {
@@ -163,7 +164,7 @@ fn variables(
     known
 }
 
-/// The edit that gives a cell this number; refused where it is out of the field's range.
+/// The edit that sets a cell to this number; refused if that is out of the field's range.
 fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
     in_range(&cell.field, cell.part, value)?;
     if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
@@ -183,10 +184,10 @@ pub fn of_number(state: &State) -> bool {
     state.row().is_some_and(|row| state.cursor.cell(&row).is_some_and(Cell::is_number))
 }
 
-/// Types the coordinate of `at` that the field takes; a jump's is that from its point to there.
+/// Types the coordinate of `at` that belongs into the field; for a jump, the distance from its point.
 ///
 /// # Errors
-/// The field takes none.
+/// The field is not a coordinate.
 pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
     let row = state.row();
     let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
@@ -199,7 +200,7 @@ pub fn offer(state: &mut State, at: Point) -> Result<(), String> {
         "y" => at.y,
         "dx" => at.x - from.x,
         "dy" => at.y - from.y,
-        _ => return Err(format!("the window's pointer is at {x}, {y}: this field takes no coordinate")),
+        _ => return Err(format!("the window's pointer is at {x}, {y}: this field is not a coordinate")),
     };
     if let Mode::Entry(entry) = &mut state.typing.mode {
         entry.text = Text::new(numbers::exact(numbers::tidy(value)), true);

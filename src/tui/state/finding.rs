@@ -1,5 +1,4 @@
-//! Where the person has been and what was looked for: marks, the jump list, the search. Places go along with the items
-//! that they stand on.
+//! Marks, the jump list and the search. Remembered places follow their items through edits.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,26 +9,26 @@ use crate::tui::document::places;
 use crate::tui::document::places::Listed;
 use crate::tui::events::Change;
 
-/// So many places are kept in the jump list.
+/// The most places in the jump list.
 const MOST_JUMPS: usize = 100;
 
-/// A place of the cursor.
+/// A place of the cursor that can be returned to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spot {
     /// The pane that had the focus.
     pub focus: Pane,
-    /// The node in the middle.
+    /// The node that was shown.
     pub node: String,
     /// The row under the cursor, by its pointer.
     pub row: String,
-    /// The cell of the row.
+    /// The index of the cell in the row.
     pub column: usize,
 }
 
-/// Where the cursor was when a search began, to be brought back as if nothing had happened.
+/// Where the cursor was when a search began, so that cancelling it changes nothing.
 #[derive(Clone, Debug)]
 pub struct Origin {
-    /// The place, which may go along with edits made meanwhile.
+    /// The place.
     pub spot: Spot,
     /// The cursor with its selection and the collapsed nodes.
     pub cursor: Cursor,
@@ -59,7 +58,7 @@ impl Finding {
         self.marks.get(&name)
     }
 
-    /// A jump leaves a place, to which older jumps lead back.
+    /// Remembers the place that a jump leaves.
     pub fn left(&mut self, spot: Spot) {
         if self.older.last() != Some(&spot) {
             self.older.push(spot);
@@ -70,7 +69,7 @@ impl Finding {
         self.newer.clear();
     }
 
-    /// The place that an older (or newer) jump left, from `here`; none at the end.
+    /// The place that an older (or newer) jump left, from `here`; `None` at the end.
     pub fn back(&mut self, older: bool, here: Spot) -> Option<Spot> {
         let (from, to) = match older {
             true => (&mut self.older, &mut self.newer),
@@ -83,12 +82,12 @@ impl Finding {
         Some(spot)
     }
 
-    /// The places that jumps have left, by pointer, the latest first.
+    /// The pointers of the places that jumps have left, the latest first.
     pub fn jumps(&self) -> impl Iterator<Item = &str> {
         self.older.iter().rev().map(|spot| spot.row.as_str())
     }
 
-    /// The scene has changed: places go along with their items; those of items that are gone stay with their lists.
+    /// After an edit: places follow their items; those of deleted items stay at the list.
     pub fn follow(&mut self, change: &Change) {
         self.older.iter_mut().chain(&mut self.newer).chain(self.marks.values_mut()).for_each(|spot| {
             spot.node = followed(&spot.node, change);
@@ -96,7 +95,7 @@ impl Finding {
         });
     }
 
-    /// Every place of the scene.
+    /// All places of the scene.
     pub fn listed(&mut self, document: &Document) -> Arc<[Listed]> {
         let known = self.listed.as_ref().filter(|(of, _)| Arc::ptr_eq(of.scene(), document.scene()));
         if let Some((_, listed)) = known {

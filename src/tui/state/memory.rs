@@ -1,4 +1,4 @@
-//! What is remembered of what was done and said before.
+//! What the editor remembers: messages, lines, yanked values, marks.
 
 use std::collections::VecDeque;
 
@@ -8,21 +8,21 @@ use super::finding::Finding;
 use super::recorder::Recorder;
 use crate::tui::document::entry::Entry;
 
-/// Messages that are remembered.
+/// The most messages that are remembered.
 const MOST_SAID: usize = 200;
 
-/// What is remembered of what was done and said before.
+/// What the editor remembers of what was done and said before.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
-    /// What was said, the newest last.
+    /// Messages, the newest last.
     pub said: VecDeque<Message>,
     /// Lines typed after `:`, the newest last.
     pub lines: Vec<String>,
-    /// Who listens to the lines that are run.
+    /// The log, macros and the last change.
     pub recorder: Recorder,
     /// What was yanked last.
     pub yanked: Option<Yanked>,
-    /// What was being typed when the help was opened over it.
+    /// The entry that was being typed when the help was opened over it.
     pub entry: Option<Entry>,
     /// Marks, the jump list and the search.
     pub finding: Finding,
@@ -38,12 +38,12 @@ impl Memory {
     }
 }
 
-/// A line for the person.
+/// A message to the person.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
-    /// What is said.
+    /// Its text.
     pub text: String,
-    /// Whether something could not be done.
+    /// Whether it says that something could not be done.
     pub bad: bool,
 }
 
@@ -52,6 +52,6 @@ pub struct Message {
 pub struct Yanked {
     /// A value, or several as a list.
     pub value: Value,
-    /// The name that it had in a map.
+    /// Its name, if it was an entry of a map.
     pub name: Option<String>,
 }

@@ -37,13 +37,13 @@ use crate::layers::timeline::Timeline;
 use crate::preview::Transport;
 use crate::scene::{Document, Edit, address, field};
 
-/// The least terminal that the editor draws on: a split of a window, less the lines that a multiplexer takes.
+/// The smallest terminal that the editor draws on: a split window, less the lines that a multiplexer takes.
 pub const LEAST: (u16, u16) = (60, 20);
 
-/// The terminal that is meant where there is none.
+/// The size that is assumed if there is no terminal.
 pub const USUAL: (u16, u16) = (80, 24);
 
-/// Whether the editor draws on a terminal of this size; on a smaller one nothing can be edited, for nothing is seen of it.
+/// Whether the editor draws on a terminal of this size. On a smaller one nothing can be edited, because nobody would see it.
 pub fn fits((width, height): (u16, u16)) -> bool {
     width >= LEAST.0 && height >= LEAST.1
 }
@@ -54,9 +54,9 @@ pub struct State {
     pub scene: OpenScene,
     /// Width and height of the terminal.
     pub size: (u16, u16),
-    /// What the terminal shows of colors.
+    /// How many colors the terminal shows.
     pub depth: Depth,
-    /// The keys in force.
+    /// The keys in use.
     pub keymap: Keymap,
     /// Where the cursor is, and which rows are selected.
     pub cursor: Cursor,
@@ -68,18 +68,18 @@ pub struct State {
     pub play: Play,
     /// What is known of the file, the window and long work.
     pub outside: Outside,
-    /// What was done and said before.
+    /// What is remembered of what was done and said before.
     pub memory: Memory,
-    /// The lesson that is on.
+    /// The lesson of the tutor, if it runs.
     pub tutor: Option<Tutor>,
-    /// One line for the person.
+    /// The message that is shown.
     pub message: Option<Message>,
-    /// What is still to happen outside.
+    /// What is to be done outside, in order.
     pub effects: VecDeque<Effect>,
 }
 
 impl State {
-    /// The editor as it opens: the tree has the focus, the first zone is shown.
+    /// The editor right after opening a scene: the tree has the focus, the first zone is shown.
     pub fn new(scene: OpenScene, size: (u16, u16), depth: Depth) -> Self {
         let mut state = State {
             size,
@@ -105,7 +105,7 @@ impl State {
         self.scene.document()
     }
 
-    /// The node in the middle, as rows.
+    /// The node in the middle column, as rows.
     pub fn sheet(&self) -> Sheet {
         Sheet::of(self.document(), &self.cursor.node)
     }
@@ -115,17 +115,17 @@ impl State {
         self.sheet().row(self.cursor.row)
     }
 
-    /// The pointer of the row under the cursor, else of the node.
+    /// The pointer of the row under the cursor; of the node if it has no rows.
     pub fn focused(&self) -> String {
         self.sheet().pointer(self.cursor.row).unwrap_or_else(|| self.cursor.node.clone())
     }
 
-    /// Says something.
+    /// Shows a message.
     pub fn say(&mut self, text: impl Into<String>) {
         self.tell(Message { text: text.into(), bad: false });
     }
 
-    /// Says that something could not be done.
+    /// Shows a message that something could not be done.
     pub fn complain(&mut self, text: impl Into<String>) {
         self.tell(Message { text: text.into(), bad: true });
     }
@@ -136,19 +136,19 @@ impl State {
         self.message = Some(message);
     }
 
-    /// Asks the question that waits, once nothing else is going on.
+    /// Asks the waiting question, once nothing else is going on.
     pub fn ask_waiting(&mut self) {
         if matches!(self.typing.mode, Mode::Normal) {
             self.typing.mode = self.outside.waiting.take().map_or(Mode::Normal, Mode::Choice);
         }
     }
 
-    /// Asks for something outside.
+    /// Requests something to be done outside.
     pub fn ask(&mut self, effect: Effect) {
         self.effects.push_back(effect);
     }
 
-    /// Applies an edit. One of a held key joins the one before it into one step of undo.
+    /// Applies an edit. If `held`, it joins the edit before it into one step of undo.
     pub fn edit(&mut self, edit: Edit, held: bool) -> Result<(), String> {
         if edit.is_empty() {
             return Ok(());
@@ -159,20 +159,20 @@ impl State {
         Ok(())
     }
 
-    /// Why an edit is refused, its place as people write it.
+    /// Why an edit is refused, with its place as people write it.
     fn refusal(&self, problems: Vec<Problem>) -> String {
         let told = |problem: Problem| Problem { path: address::told(self.document(), &problem.path), ..problem };
         first(&problems.into_iter().map(told).collect::<Vec<_>>())
     }
 
-    /// Goes on from a document that has changed.
+    /// Adapts to a change of the document, and passes it on.
     pub fn changed(&mut self, change: Change) {
         self.memory.finding.follow(&change);
         self.settle();
         self.ask(Effect::Publish(Box::new(change)));
     }
 
-    /// Shows another node, its first row under the cursor.
+    /// Shows another node, with the cursor on its first row.
     pub fn show(&mut self, node: impl Into<String>) {
         let node = node.into();
         if node != self.cursor.node {
@@ -182,7 +182,7 @@ impl State {
         }
     }
 
-    /// Brings the cursor back to something that is there, after the scene has changed.
+    /// Moves the cursor to something that exists, after the scene has changed.
     pub fn settle(&mut self) {
         while !self.cursor.node.is_empty() && !field::is_there(self.document(), &self.cursor.node) {
             let parent = self.cursor.node.rsplit_once('/').map_or("", |(parent, _)| parent).to_string();
@@ -192,22 +192,22 @@ impl State {
         self.cursor.settle(&sheet);
     }
 
-    /// Whether the terminal is too small to draw on, so that nobody sees what is edited.
+    /// Whether the terminal is too small to draw on.
     pub fn is_small(&self) -> bool {
         !fits(self.size)
     }
 
-    /// How long the animation is, and in what frames.
+    /// The duration and the frames of the animation.
     pub fn timeline(&self) -> &Timeline {
         &self.document().scene().timeline
     }
 
-    /// How the animation runs, as windows are told.
+    /// The state of the animation as it is sent to windows.
     pub fn transport(&self) -> Transport {
         self.play.transport(self.timeline())
     }
 
-    /// Plays or stands as a window does.
+    /// Plays or pauses as a window does.
     pub fn follow(&mut self, transport: Transport) {
         let timeline = &self.scene.document().scene().timeline;
         if self.play.follow(transport, timeline) {

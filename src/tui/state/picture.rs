@@ -1,4 +1,4 @@
-//! The picture: which part of it shows, and what the threads have made of the scene.
+//! The picture: which part of it is visible, and what the worker has made of the scene.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::tui::graphics::probed::Probed;
 use crate::tui::graphics::viewport::Viewport;
 use crate::tui::graphics::{Graphics, TerminalPicture};
 
-/// The picture and its read-out; what the threads have made is old while they work on.
+/// The picture and its read-out. What the worker has made is outdated while it works on a newer scene.
 #[derive(Clone)]
 pub struct Picture {
     /// The cursor, in pixels of the picture; on the center of a pixel unless a number has set it.
@@ -18,26 +18,26 @@ pub struct Picture {
     pub viewport: Viewport,
     /// Width and height of the picture, once known.
     pub size: Option<(usize, usize)>,
-    /// What pictures the terminal takes.
+    /// How pictures are sent to the terminal.
     pub graphics: Graphics,
     /// The picture that the worker made last.
     pub latest: Option<Arc<TerminalPicture>>,
     /// Whether the read-out of the pixel under the cursor is open.
     pub probing: bool,
-    /// What the worker said about a pixel last.
+    /// The last answer of the worker about a pixel.
     pub probed: Option<Arc<Probed>>,
-    /// Whether the worker synthesises.
+    /// Whether the worker is synthesising.
     pub synthesising: bool,
-    /// What a frame needs.
+    /// The last synthesis.
     pub synth: Option<Arc<Synth>>,
-    /// How long the last synthesis took.
+    /// How long the last synthesis took, in milliseconds.
     pub synth_ms: Option<f64>,
     /// The longest vector of every field, by its pointer.
     pub longest: Vec<(String, f64)>,
 }
 
 impl Picture {
-    /// Nothing made yet, the cursor at a place, all of the picture visible.
+    /// With the cursor at a place, the whole picture visible, and nothing made yet.
     pub fn new(cursor: Point) -> Picture {
         Picture {
             cursor,

@@ -1,5 +1,4 @@
-//! Placing on the picture by keyboard: a cursor with coordinates, and what it can set. What has a place, and which list
-//! takes points, is read from the schema.
+//! Placing things on the picture with its cursor. What has a place, and which lists take points, is read from the schema.
 
 use crate::tui::document::pointers::upward;
 use kurbo::{Point, Vec2};
@@ -21,13 +20,13 @@ fn read(document: &Document, pointer: &str) -> Option<Point> {
     Some(Point::new(value.get(0)?.as_f64()?, value.get(1)?.as_f64()?))
 }
 
-/// Where the place of a thing is written: one pair, or x and y by themselves.
+/// Where the place of something is written: as a pair, or as separate x and y.
 enum Place {
     Pair(String),
     Apart(String),
 }
 
-/// The place of the thing at `pointer` itself; `None` if it has none.
+/// The place of what is at `pointer`; `None` if it has none.
 fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
     let field = field::field(document, pointer)?;
     if is_pair(&field, ["x", "y"]) {
@@ -54,26 +53,26 @@ fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
     }
 }
 
-/// The thing in focus that has a place: the row, or what holds it.
+/// What has the focus and a place: the row, or one of its ancestors.
 fn placed(state: &State) -> Option<(String, Place, Point)> {
     let focused = state.focused();
     let document = state.document();
     upward(&focused).find_map(|pointer| place(document, pointer).map(|(place, at)| (pointer.to_string(), place, at)))
 }
 
-/// Moves the thing in focus to the cursor.
+/// Moves what has the focus to the cursor.
 pub fn move_here(state: &State) -> Result<Edit, String> {
     let (_, place, _) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     Ok(move_to(state.document(), &place, state.picture.cursor))
 }
 
-/// JSON pointer of the cell in focus.
+/// The pointer of the cell under the cursor.
 fn cell(state: &State) -> Option<String> {
     let row = state.row()?;
     state.cursor.cell(&row).map(|cell| cell.pointer.clone())
 }
 
-/// The jump vector of the thing in focus whose cell that is, for the cursor to be its end.
+/// The jump vector that would end at the picture's cursor, if the cell in focus is a jump vector.
 pub fn jump_in_focus(state: &State) -> Option<Vec2> {
     let (pointer, _, at) = placed(state)?;
     let cell = cell(state)?;
@@ -82,7 +81,7 @@ pub fn jump_in_focus(state: &State) -> Option<Vec2> {
     is_jump.then(|| state.picture.cursor - at)
 }
 
-/// Lets the jump vector (or the dragged place) of the thing in focus end at the cursor.
+/// Makes the jump vector (or the dragged place) of what has the focus end at the cursor.
 pub fn aim_here(state: &State) -> Result<Edit, String> {
     let document = state.document();
     let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
@@ -102,7 +101,7 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
     Ok(Edit::set(document, &target.pointer, Value::from(value)))
 }
 
-/// Adds a point at the cursor to the list in focus; with it, the pointer of the point.
+/// Adds a point at the cursor to the list in focus; also returns the pointer of the point.
 pub fn add_here(state: &State) -> Result<(Edit, String), String> {
     let document = state.document();
     let focused = state.focused();
@@ -138,7 +137,7 @@ fn add_to(document: &Document, list: &str, index: usize, at: Point) -> Option<(E
     Some((Edit::all([edit, move_to(&with, &place, at)]), pointer))
 }
 
-/// The next (1) or previous (-1) row that has a place: its number and the place.
+/// The next (1) or previous (-1) row that has a place: its index and the place.
 pub fn next_point(state: &State, by: i64) -> Option<(usize, Point)> {
     let sheet = state.sheet();
     let n = sheet.len() as i64;
@@ -148,7 +147,7 @@ pub fn next_point(state: &State, by: i64) -> Option<(usize, Point)> {
     })
 }
 
-/// The place of the thing in focus, for the marks on the picture.
+/// The place of what has the focus, for the marks on the picture.
 pub fn selected(state: &State) -> Option<Point> {
     placed(state).map(|(_, _, at)| at)
 }

@@ -6,17 +6,17 @@ use std::time::Instant;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::preview::Transport;
 
-/// What keys and windows may set the speed to, in seconds of the scene a second.
+/// The speeds that keys step through, in seconds of the scene per second.
 pub const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
 
-/// The time of the scene, and whether it runs.
+/// The time of the scene, and whether it is playing.
 #[derive(Clone, Debug)]
 pub struct Play {
     /// Scene time, in [0, 1].
     pub time: f64,
-    /// Whether the animation runs.
+    /// Whether the animation is playing.
     pub playing: bool,
-    /// Seconds of the scene a second.
+    /// Seconds of the scene per second.
     pub speed: f64,
 }
 
@@ -26,24 +26,24 @@ impl Default for Play {
     }
 }
 
-/// What has become of a running animation.
+/// What the passing of time has done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passed {
-    /// It stands still.
+    /// The animation is paused.
     Nothing,
-    /// It runs on.
+    /// It plays on.
     On,
-    /// It plays once, and has come to its end.
+    /// It plays once, and has reached its end.
     End,
 }
 
 impl Play {
-    /// How the animation runs, as windows are told.
+    /// The state of the animation as it is sent to windows.
     pub fn transport(&self, timeline: &Timeline) -> Transport {
         Transport { playing: self.playing, time: self.time * timeline.duration, speed: self.speed }
     }
 
-    /// Plays or stands as a window does; false if what it says is no time.
+    /// Plays or pauses as a window does; false if its numbers are not finite.
     pub fn follow(&mut self, Transport { playing, time, speed }: Transport, timeline: &Timeline) -> bool {
         let time = if timeline.duration > 0.0 { time / timeline.duration } else { 0.0 };
         let usable = time.is_finite() && speed.is_finite();
@@ -54,7 +54,7 @@ impl Play {
         usable
     }
 
-    /// Runs on by so many seconds, if it plays.
+    /// Lets so many seconds pass, if the animation is playing.
     pub fn pass(&mut self, seconds: f64, timeline: &Timeline) -> Passed {
         if !self.playing || timeline.duration <= 0.0 {
             return Passed::Nothing;
@@ -73,12 +73,12 @@ impl Play {
     }
 }
 
-/// Measures the time that passes while the animation runs, and none of the time before it was started.
+/// Measures the time that passes while the animation is playing.
 #[derive(Debug, Default)]
 pub struct Stopwatch(Option<Instant>);
 
 impl Stopwatch {
-    /// Seconds since it was asked last, 0 where the animation stood then.
+    /// Seconds since the last call; 0 if the animation was paused then.
     pub fn lap(&mut self, playing: bool, now: Instant) -> f64 {
         let passed = self.0.map_or(0.0, |last| (now - last).as_secs_f64());
         self.0 = playing.then_some(now);

@@ -1,6 +1,6 @@
-//! What was run: every line that the editor runs goes through `commands::obey`, which reports it here. The
-//! log of the session keeps all of them, so that they lead to the same scene again; a macro keeps what the person asked for;
-//! `.` keeps the last change. Typing, choosing and the help are not kept, but what came of them is: `put *1.1`.
+//! Records the lines that are run: every one goes through `commands::obey`, which reports it here. The log of the session has
+//! all of them, so that running it again leads to the same scene; a macro has what the person asked for; `.` repeats the last
+//! change. Typing, choosing and the help are not recorded, but their result is: `put *1.1`.
 
 use crate::tui::text::plain;
 use std::collections::BTreeMap;
@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 
 use crate::scene::{Document, json};
 
-/// Macros that play macros, at most.
+/// How deep macros may play macros.
 const DEEPEST: usize = 50;
-/// Lines that one key plays, at most: keys never wait for long.
+/// The most lines that one key may play, so that keys never wait for long.
 const MOST_PLAYED: usize = if cfg!(test) { 300 } else { 10_000 };
 
-/// Bytes of scenes that the lines of one key change, at most, in sum: on a large scene each line takes longer.
+/// The most bytes of scenes that the lines of one key may change, in total: on a large scene each line takes longer.
 const MOST_CHANGED: u64 = 16 << 30;
 
-/// How much the lines that one key plays have done.
+/// Limits what the lines played by one key do.
 #[derive(Clone, Debug, Default)]
 pub struct WorkLimit {
     lines: usize,
@@ -24,10 +24,10 @@ pub struct WorkLimit {
 }
 
 impl WorkLimit {
-    /// A line is about to change `document`.
+    /// Counts a line that is about to change `document`.
     ///
     /// # Errors
-    /// There were too many.
+    /// It would be one too many.
     pub fn spend(&mut self, document: &Document) -> Result<(), String> {
         if self.lines == MOST_PLAYED || self.bytes > MOST_CHANGED {
             return Err(format!("stopped after {} lines", self.lines));
@@ -43,13 +43,13 @@ impl WorkLimit {
 pub enum Recorded {
     /// Its line.
     Line,
-    /// Its line, which `.` repeats where it changed the scene.
+    /// Its line, which `.` repeats if it changed the scene.
     Change,
-    /// Its line together with the one that asked: it answers a list of choices.
+    /// Its line together with the one that opened the list of choices, which this one answers.
     Answer,
-    /// Only the lines that it runs itself, if any: typing, asking, the help.
+    /// Only the lines that it runs itself, if any. For typing, choosing and the help.
     Inside,
-    /// The lines that it runs; in a macro its own line.
+    /// The lines that it runs; but in a macro its own line.
     Played,
 }
 
@@ -59,24 +59,24 @@ pub struct Ended<'a> {
     pub line: String,
     /// What the recorder notes of its command.
     pub recorded: Recorded,
-    /// What was said where it could not be done.
+    /// Why it could not be done.
     pub refused: Option<&'a str>,
-    /// Whether it began to ask for something: an entry or a list of choices is open, which was not before.
+    /// Whether it opened an entry, a command line or a list of choices.
     pub asks: bool,
-    /// Whether the scene is another one.
+    /// Whether it changed the scene.
     pub changed: bool,
 }
 
-/// Who listens to the lines.
+/// The log, macros and the last change.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
-    /// The log of the session: lines as a script has them, refused ones as comments.
+    /// The log of the session: lines as in a script, with refused ones as comments.
     log: Vec<String>,
-    /// How much of it was handed out to be written.
+    /// How many of its lines were handed out to be written.
     written: usize,
-    /// The file that it is written to.
+    /// The file that the log is written to.
     place: Option<PathBuf>,
-    /// The line that began to ask, until it is answered.
+    /// The line that opened an entry or a list, until it is answered.
     asked: Option<String>,
     /// The lines that `.` runs.
     change: Vec<String>,
@@ -86,10 +86,11 @@ pub struct Recorder {
     recording: Option<(char, Vec<String>)>,
     /// The macro played last.
     played: Option<char>,
-    /// Commands running now that play other lines, and how many lines they have played.
+    /// How many running commands play other lines.
     playing: usize,
+    /// What these lines have done so far.
     spent: WorkLimit,
-    /// Commands running now of which the line is recorded: what they run is part of them.
+    /// How many running commands have their own line recorded: the lines that they run are part of it.
     within: usize,
 }
 
@@ -138,7 +139,7 @@ impl Recorder {
         }
     }
 
-    /// A macro keeps what was asked for, not what that plays.
+    /// A macro has the lines that were asked for, not those that they play.
     fn keep_in_macro(&mut self, lines: &[String]) {
         if let (Some((_, kept)), 0) = (&mut self.recording, self.playing) {
             kept.extend_from_slice(lines);
@@ -171,7 +172,7 @@ impl Recorder {
     /// The lines of a macro, to be played now.
     ///
     /// # Errors
-    /// There is no such macro, or macros play one another without an end.
+    /// There is no such macro, or macros play one another endlessly.
     pub fn play(&mut self, letter: char) -> Result<Vec<String>, String> {
         let lines = self.macros.get(&letter);
         let lines = lines.ok_or_else(|| format!("there is no macro {letter}: q{letter} records one"))?;
@@ -182,10 +183,10 @@ impl Recorder {
         Ok(lines.clone())
     }
 
-    /// A line is about to be played.
+    /// Counts a line that is about to be played.
     ///
     /// # Errors
-    /// There were too many.
+    /// It would be one too many.
     pub fn spend(&mut self, document: &Document) -> Result<(), String> {
         self.spent.spend(document)
     }
@@ -195,7 +196,7 @@ impl Recorder {
         &self.change
     }
 
-    /// A remark for whoever reads the log.
+    /// Adds a comment to the log.
     pub fn remark(&mut self, text: &str) {
         self.log.push(format!("# {}", plain(text)));
     }
@@ -205,7 +206,7 @@ impl Recorder {
         &self.log
     }
 
-    /// The lines that were added since this was asked last.
+    /// The lines that were added since the last call.
     pub fn unwritten(&mut self) -> &[String] {
         let from = std::mem::replace(&mut self.written, self.log.len());
         &self.log[from..]
@@ -216,7 +217,7 @@ impl Recorder {
         self.place.as_deref()
     }
 
-    /// The log is written to this file, or to none any more.
+    /// Sets the file that the log is written to.
     pub fn set_place(&mut self, place: Option<PathBuf>) {
         self.place = place;
     }

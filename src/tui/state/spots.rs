@@ -12,7 +12,7 @@ impl State {
         Spot { focus: cursor.focus, node: cursor.node.clone(), row: self.focused(), column: cursor.column }
     }
 
-    /// Brings the cursor back to a place, or as near to it as there is one.
+    /// Moves the cursor back to a place, or as near as possible.
     pub fn return_to(&mut self, spot: &Spot) {
         self.cursor.expand_to(&spot.node);
         self.show(spot.node.clone());
@@ -24,15 +24,15 @@ impl State {
         self.ask(Effect::Show);
     }
 
-    /// Where the cursor is, to be gone back to as if nothing had been.
+    /// Where the cursor is, with all that a search may change.
     pub fn origin(&self) -> Origin {
         Origin { spot: self.spot(), cursor: self.cursor.clone() }
     }
 
-    /// Goes back there.
+    /// Undoes what a search has changed.
     pub fn return_to_origin(&mut self, origin: &Origin) {
         self.return_to(&origin.spot);
-        // The scene may have changed since: the cursor itself is where it can be.
+        // The scene may have changed since then, so the place stays as `return_to` found it.
         let Cursor { focus, node, row, column, .. } = self.cursor.clone();
         self.cursor = Cursor { focus, node, row, column, ..origin.cursor.clone() };
     }

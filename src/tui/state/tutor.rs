@@ -1,13 +1,13 @@
 //! How far the tutor is.
 
-/// The lesson that is on.
+/// The current lesson.
 #[derive(Clone, Debug)]
 pub struct Tutor {
-    /// Which one, from 0.
+    /// Its index.
     pub at: usize,
-    /// Whether it is over once it is done: not while one that was done before is looked at again.
+    /// Whether the next lesson follows once this one is done. Not at once if it is looked at again after it was done.
     pub armed: bool,
-    /// Long work that ended well since then.
+    /// Long work that has succeeded since the lesson began.
     pub ended: Vec<String>,
 }
 
@@ -17,7 +17,7 @@ impl Tutor {
         Tutor { at: 0, armed: true, ended: Vec::new() }
     }
 
-    /// Whether long work of this name ended well since the lesson began.
+    /// Whether long work of this name has succeeded since the lesson began.
     pub fn has_ended(&self, name: &str) -> bool {
         self.ended.iter().any(|work| work.starts_with(name))
     }

@@ -8,7 +8,7 @@ use crate::tui::text::line::Line;
 /// What the next key means.
 #[derive(Debug)]
 pub struct Typing {
-    /// What is going on.
+    /// The mode.
     pub mode: Mode,
     /// The count typed so far.
     pub count: Option<usize>,
@@ -24,10 +24,10 @@ impl Default for Typing {
     }
 }
 
-/// What is going on.
+/// The mode.
 #[derive(Clone, Debug)]
 pub enum Mode {
-    /// Keys are commands.
+    /// Keys run commands.
     Normal,
     /// A value is being typed into a cell.
     Entry(Entry),
@@ -37,23 +37,23 @@ pub enum Mode {
     Choice(Choice),
     /// A text is shown: the help, or what a command printed.
     Pages(Pages),
-    /// Something is looked for among everything that can be run or gone to.
+    /// The palette is open.
     Palette(Palette),
     /// The picture's cursor sets a jump vector.
     Aim,
 }
 
 impl Mode {
-    /// Whether something is being typed or chosen: a line that answers follows.
+    /// Whether something is being typed or chosen, so that a line with the answer will follow.
     pub fn asks(&self) -> bool {
         matches!(self, Mode::Entry(_) | Mode::Choice(_) | Mode::Line(_))
     }
 }
 
-/// A text that is longer than a line.
+/// A text of several lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pages {
-    /// What it is.
+    /// Its title.
     pub title: String,
     /// Its lines.
     pub lines: Vec<String>,

@@ -113,7 +113,7 @@ fn a_second_editor_is_told_and_looks_on() {
     for keys in ["/ \"speed\" Enter +", "u", "Ctrl-r", ": \"set title=x\" Enter", ": \"w\" Enter", "g t d"] {
         press(&mut second, keys);
         let message = second.message.clone().unwrap();
-        assert!(message.bad && message.text.contains("reading only"), "{keys}: {message:?}");
+        assert!(message.bad && message.text.contains("read-only"), "{keys}: {message:?}");
     }
     press(&mut first, "/ \"speed\" Enter +");
     save(&mut first, "w").unwrap();
@@ -184,7 +184,7 @@ fn a_file_that_is_gone_or_broken_leaves_the_last_good_state() {
     std::fs::write(&place.scene, "{ half").unwrap();
     update(&mut state, Event::FilesChanged(vec![place.scene.clone()]));
     let message = state.message.clone().unwrap();
-    assert!(message.bad && message.text.starts_with("what is here stays"), "{message:?}");
+    assert!(message.bad && message.text.contains("the scene here stays"), "{message:?}");
     assert_eq!(state.outside.file, Some("file unreadable"));
     let refused = save(&mut state, "w").unwrap_err();
     assert!(refused.contains(":w!") && !refused.contains(":merge"), "somebody may be mending it: {refused}");

@@ -188,9 +188,9 @@ pub fn counts_of_rows_are_one_step_of_undo() {
     for (keys, part) in [
         (motion("y 2 p"), "2 rows pasted"),
         (motion("v j 2 d"), "the selection says which rows"),
-        (motion("l 9 9 9 9 9 9 9 9 +"), "a count goes to 1000000, not 99999999"),
-        (motion(&format!("l {} j", "9 ".repeat(30))), "a count goes to 1000000, not"),
-        ("/ \"outline\" Enter 2 d".into(), "only items of a list are counted"),
+        (motion("l 9 9 9 9 9 9 9 9 +"), "a count is at most 1000000, not 99999999"),
+        (motion(&format!("l {} j", "9 ".repeat(30))), "a count is at most 1000000, not"),
+        ("/ \"outline\" Enter 2 d".into(), "a count needs items of a list"),
         ("/ \"fold\" Enter 2 o".into(), "several at a time"),
         ("3 ?".into(), "help takes no count"),
         ("3 : q".into(), "line takes no count"),
@@ -296,7 +296,7 @@ fn a_scene_that_is_only_looked_at_refuses_at_the_first_key() {
         let mut state = open();
         press(&mut state, keys);
         assert!(matches!(state.typing.mode, Mode::Normal), "{keys}");
-        assert!(said(&state).1.contains("for reading only"), "{keys}: {:?}", said(&state));
+        assert!(said(&state).1.contains("open read-only"), "{keys}: {:?}", said(&state));
     }
     let mut state = open();
     press(&mut state, "/ \"motion\" Enter Enter g i w");

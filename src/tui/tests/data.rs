@@ -58,7 +58,7 @@ pub fn what_is_yanked_is_pasted_where_it_fits() {
 #[test]
 fn what_does_not_fit_says_why_and_changes_nothing() {
     for (keys, part) in [
-        ("p", "nothing was yanked"),
+        ("p", "nothing has been yanked"),
         ("/ \"interpolation\" Enter y / \"points\" Enter Enter p", "expected a list of 2 numbers"),
         ("/ \"position\" Enter y / \"images\" Enter Enter p", "does not fit"),
         (": \"yank xml\" Enter", "json or csv"),
@@ -199,7 +199,7 @@ fn a_mistake_in_pasted_rows_names_its_place_and_nothing_changes() {
         ("１ ２", "line 1: \"１\" is neither a number nor a column: a row takes x y dx dy"),
         ("1，2", "line 1: \"1，2\" is neither a number nor a column"),
         ("{\"tool\":", "not JSON"),
-        ("", "nothing was pasted"),
+        ("", "the paste is empty"),
     ] {
         let mut state = state();
         press(&mut state, super::MOTION);
@@ -305,10 +305,10 @@ pub fn undo_says_what_it_undid() {
         ("/ \"radius\" Enter + u k j + g - g +", "at #2 of 2: left eye · radius 60 → 61"),
         ("/ \"radius\" Enter + u k j + 2 g -", "undone: left eye · radius 60 → 61"),
         ("/ \"radius\" Enter + u k j + : \"undo #1\" Enter", "at #1 of 2: left eye · radius 60 → 61"),
-        (": \"undo #1\" Enter", "#1 is no state: there are #0 to #0"),
+        (": \"undo #1\" Enter", "there is no state #1: there are #0 to #0"),
         ("g +", "nothing to redo"),
-        (": \"undo x\" Enter", "x is no number of steps"),
-        (": \"earlier 3w\" Enter", "3w is no time"),
+        (": \"undo x\" Enter", "x is not a number of steps"),
+        (": \"earlier 3w\" Enter", "3w is not a time"),
         (": \"later 3m\" Enter", "nothing to redo within 3m"),
     ] {
         let mut state = state();
@@ -411,7 +411,7 @@ pub fn pictures_and_names_come_and_go() {
     ]);
     for (keys, words) in [
         (format!("{images} d"), "cat is used by layers.face.image: choose another"),
-        (format!("{images} D : \"rename cat\" Enter"), "there is a picture \"cat\" already"),
+        (format!("{images} D : \"rename cat\" Enter"), "there is already a picture \"cat\""),
         (motion("R"), "this has no name"),
     ] {
         let mut state = state();

@@ -65,7 +65,7 @@ fn names_and_values_are_found() {
         ("/ \"EYE\" Enter", &zone("/name"), "2 of 2"),
         ("/ \"eye\" Enter n", &eye, "1 of 2"),
         ("/ \"sine\" Enter", &zone("/position/function"), "1 of 1"),
-        ("/ \"nothing like it\" Enter", &eye, "nothing here is called or says nothing like it"),
+        ("/ \"nothing like it\" Enter", &eye, "no name or value matches nothing like it"),
         ("/ \"mou\"", "/layers/0/zones/1", ""),
         ("/ \"mou\" Esc", &eye, ""),
         ("/ \"mou\" Backspace Backspace Backspace Backspace", &eye, ""),

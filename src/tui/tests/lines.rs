@@ -89,7 +89,7 @@ fn a_command_that_takes_nothing_says_so_where_it_is_given_something() {
     for line in names.iter().map(|command| format!("{} x y", command.name)).chain(["quit! now".into()]) {
         let mut state = state();
         let refused = obey(&mut state, &line, None).unwrap_err();
-        assert!(refused.contains(" takes nothing after it, not \""), "{line}: {refused}");
+        assert!(refused.contains(" takes no argument, not \""), "{line}: {refused}");
         assert!(state.effects.is_empty() && state.scene.revision() == 0, "{line}");
     }
 }
@@ -98,7 +98,7 @@ fn a_command_that_takes_nothing_says_so_where_it_is_given_something() {
 fn a_path_is_one_word_or_in_quotes_and_no_program() {
     for name in ["w", "w!", "wq", "e", "e!", "log", "source", "add"] {
         for (path, refusal) in [
-            ("a b", "one path is taken, not 2"),
+            ("a b", "one path is needed, not 2"),
             ("!cat", "programs are not run from here"),
             ("\"a", "a \" is not closed"),
             ("\"\"", "a path is empty"),
@@ -132,7 +132,7 @@ fn the_log_is_short_and_says_what_was_meant() {
         ("/ \"method\" Enter i j Enter", &["search method", "enter", "choose modified-shepard-random"]),
         ("/ \"method\" Enter i j Esc", &["search method"]),
         ("? j q Ctrl-l", &[]),
-        ("/ \"nowhere\" Enter", &["# search nowhere: nothing here is called or says nowhere"]),
+        ("/ \"nowhere\" Enter", &["# search nowhere: no name or value matches nowhere"]),
         (": \"render -o a.gif\" Enter", &["render -o a.gif"]),
     ] {
         let mut state = state();

@@ -110,7 +110,7 @@ fn what_is_no_number_does_not_step() {
         let mut state = state();
         press(&mut state, &keys);
         let message = state.message.clone().unwrap();
-        assert!(message.bad && message.text.contains("is no number"), "{keys}: {message:?}");
+        assert!(message.bad && message.text.contains("is not a number"), "{keys}: {message:?}");
         assert!(state.scene.is_saved(), "{keys}");
     }
 }

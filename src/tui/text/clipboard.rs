@@ -1,25 +1,25 @@
-//! What was yanked, and how it gets to the clipboard of the terminal in front of the person: by the escape sequence OSC 52,
-//! written only, which works through ssh, tmux and screen where they let it.
+//! Copies text to the clipboard of the terminal in front of the person, with the escape sequence OSC 52. That works through
+//! ssh, and through tmux and screen if they allow it. The clipboard is never read.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// The longest text that terminals are asked to keep, in bytes.
+/// The longest text that is sent to a terminal's clipboard, in bytes.
 pub const MOST_BYTES: usize = 100_000;
 
-/// What stands between the editor and the terminal, and wants sequences wrapped.
+/// A multiplexer between the editor and the terminal, which needs escape sequences wrapped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Through {
     /// Nothing.
     Plain,
-    /// tmux: what it passes through only where `allow-passthrough` is on, it takes itself where `set-clipboard` is.
+    /// tmux, which handles the sequence itself if `set-clipboard` is on, and passes it through if `allow-passthrough` is.
     Tmux,
-    /// GNU screen, which bears only short strings.
+    /// GNU screen, which accepts only short strings.
     Screen,
 }
 
 impl Through {
-    /// As the environment says.
+    /// As the environment variables say.
     pub fn of(get: impl Fn(&str) -> Option<String>) -> Through {
         let set = |name| get(name).is_some_and(|value| !value.is_empty());
         match (set("TMUX"), set("STY")) {
@@ -30,7 +30,7 @@ impl Through {
     }
 }
 
-/// The bytes that hand `text` to the terminal's clipboard.
+/// The escape sequence that puts `text` on the terminal's clipboard.
 pub fn sequence(text: &str, through: Through) -> String {
     let plain = format!("\x1b]52;c;{}\x07", STANDARD.encode(text));
     match through {

@@ -1,24 +1,24 @@
-//! What the terminal can show: true color, 256, 16 colors or none at all, and pictures reduced to each of them. Roles
-//! have names, so that a light background and NO_COLOR are matters of this file alone.
+//! The colors of the terminal: 24 bits, 256, 16 or none, and the nearest color in each of them. Styles are named by their
+//! role, so that only this file deals with light backgrounds and NO_COLOR.
 
 use ratatui::style::{Color, Modifier, Style};
 
 /// How many colors the terminal shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Depth {
-    /// None: pictures become shades of characters.
+    /// No colors: pictures are drawn as characters of different darkness.
     None,
     /// The 16 ANSI colors.
     #[default]
     Ansi,
-    /// The 256 of xterm.
+    /// The 256 colors of xterm.
     Indexed,
-    /// 24 bits.
+    /// 24-bit colors.
     True,
 }
 
 impl Depth {
-    /// As the environment says: NO_COLOR, COLORTERM, TERM.
+    /// As the environment variables NO_COLOR, COLORTERM and TERM say.
     pub fn of_environment(get: impl Fn(&str) -> Option<String>) -> Depth {
         let is = |name: &str, part: &str| get(name).is_some_and(|value| value.contains(part));
         if get("NO_COLOR").is_some_and(|value| !value.is_empty()) || get("TERM").is_some_and(|term| term == "dumb") {
@@ -32,7 +32,7 @@ impl Depth {
         }
     }
 
-    /// The nearest color that the terminal has; `None` where it has none.
+    /// The nearest color that the terminal has; `None` if it shows no colors.
     pub fn color(self, [r, g, b]: [u8; 3]) -> Option<Color> {
         match self {
             Depth::None => None,
@@ -42,13 +42,13 @@ impl Depth {
         }
     }
 
-    /// `style` with a foreground, where there are colors.
+    /// `style` with a foreground, if the terminal shows colors.
     pub fn ink(self, style: Style, color: Color) -> Style {
         if self == Depth::None { style } else { style.fg(color) }
     }
 }
 
-/// The style of what has the focus: never told by color alone.
+/// The style of what has the focus; it does not depend on colors.
 pub fn focus() -> Style {
     Style::new().add_modifier(Modifier::REVERSED)
 }
@@ -63,10 +63,10 @@ pub fn strong() -> Style {
     Style::new().add_modifier(Modifier::BOLD)
 }
 
-/// Shades from dark to light, for terminals without colors.
+/// Characters from dark to light, for terminals without colors.
 const SHADES: [char; 10] = [' ', '.', ':', '-', '=', '+', '*', '#', '%', '@'];
 
-/// The shade of a color.
+/// The character for a color.
 pub fn shade(color: [u8; 3]) -> char {
     SHADES[luminance(color) as usize * (SHADES.len() - 1) / 255]
 }

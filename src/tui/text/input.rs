@@ -1,5 +1,5 @@
-//! A line of text under the cursor, as entries, `:` and `/` need it: what is typed, where the cursor is. Kept apart from
-//! any meaning, so that one table of keys serves all three.
+//! A line of text with a cursor, for entries, `:` and `/`. It knows nothing of what the text means, so that one table of keys
+//! serves all three.
 
 use tui_input::{Input, InputRequest};
 
@@ -9,12 +9,12 @@ use crate::base::maths;
 #[derive(Clone, Debug, Default)]
 pub struct Text {
     input: Input,
-    /// The text was there before; the first character typed takes its place.
+    /// Whether the first character typed replaces the text.
     fresh: bool,
 }
 
 impl Text {
-    /// Starts from `text`, the cursor behind it. Where `fresh`, the first character typed replaces all of it.
+    /// Starts with `text`, the cursor after it. If `fresh`, the first character typed replaces it.
     pub fn new(text: impl Into<String>, fresh: bool) -> Self {
         Text { input: Input::new(text.into()), fresh }
     }
@@ -55,7 +55,7 @@ impl Text {
         self.input = Input::new(text).with_cursor(cursor);
     }
 
-    /// One of the edits that the key table names (`text left`, ...); false where it is not known.
+    /// Does one of the edits that the key table names (`text left`, ...); false if there is no such edit.
     pub fn change(&mut self, what: &str) -> bool {
         let request = match what {
             "left" => InputRequest::GoToPrevChar,
@@ -76,9 +76,8 @@ impl Text {
         true
     }
 
-    /// Steps the digit under (or just before) the cursor by `steps`, carrying as arithmetic does; the cursor stays on its
-    /// place value, and a decimal comma or a true minus sign what it is. False where the text is not a plain number with a
-    /// digit there.
+    /// Steps the digit under (or just before) the cursor by `steps`, carrying into the others. The cursor stays on its place
+    /// value; a decimal comma or a true minus sign is kept. False if the text is not a plain number with a digit there.
     pub fn step_digit(&mut self, steps: i64) -> bool {
         let (comma, minus) = (self.value().contains(','), self.value().contains('−'));
         let text = self.value().replace(',', ".").replace('−', "-");
@@ -105,7 +104,7 @@ fn digit_at(text: &str, cursor: usize) -> Option<(usize, i32)> {
     let point = text.find('.').unwrap_or(text.len());
     let decimals = text.len().saturating_sub(point + 1);
     let mut at = cursor.min(text.len() - 1);
-    // A sign stands for the first digit, the point for the ones.
+    // On the sign the first digit steps, on the point the ones.
     if at == 0 && "+-".contains(&text[..1]) {
         at = 1.min(text.len() - 1);
     }

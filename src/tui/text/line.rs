@@ -9,9 +9,9 @@ pub struct Line {
     pub kind: char,
     /// What has been typed.
     pub text: Text,
-    /// How far back in the history it is, and what was typed before going there.
+    /// How far back in the history the line is, and what was typed before.
     recalled: Option<(usize, String)>,
-    /// What the last completion offered, and which of it is shown.
+    /// What the last completion offered, and which of these is shown.
     offered: Option<(Vec<String>, usize)>,
 }
 
@@ -21,17 +21,17 @@ impl Line {
         Line { kind, text: Text::default(), recalled: None, offered: None }
     }
 
-    /// A command begun.
+    /// A command line that begins with `text`.
     pub fn with(text: &str) -> Self {
         Line { text: Text::new(text, false), ..Line::new(':') }
     }
 
-    /// What the completion offers, and which of it is shown.
+    /// What the completion offers, and which of these is shown.
     pub fn offered(&self) -> Option<(&[String], usize)> {
         self.offered.as_ref().map(|(all, at)| (all.as_slice(), *at))
     }
 
-    /// Forgets completion and history: something was typed.
+    /// Forgets the completion and the place in the history, because something was typed.
     pub fn typed(&mut self) {
         self.offered = None;
         self.recalled = None;
@@ -46,7 +46,7 @@ impl Line {
         self.recalled = Some((back, typed));
     }
 
-    /// Shows the next of `candidates` for the line, or of those offered before.
+    /// Shows the next of the `candidates` for the line, or of those already offered.
     pub fn complete(&mut self, candidates: impl FnOnce(&str) -> Vec<String>) {
         let (all, at) = match self.offered.take() {
             Some((all, at)) if !all.is_empty() => {

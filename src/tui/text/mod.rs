@@ -1,4 +1,4 @@
-//! Text: numbers, colors, lines being typed; nothing of a scene.
+//! Text: numbers, colors, lines being typed. Nothing here knows of a scene.
 
 pub mod clipboard;
 pub mod color;

@@ -1,8 +1,8 @@
-//! Text that is shown as it is: nothing in it commands the terminal.
+//! Makes text safe to show: nothing in it can control the terminal.
 
-/// `text` without anything that could command a terminal: control characters become their pictures, direction marks and
-/// the like a replacement character. Joiners stay in words whose script has them; between signs, which terminals join or
-/// do not, they go, so that each sign takes its own columns everywhere.
+/// `text` without anything that could control a terminal: control characters become their pictures (U+2400), direction marks
+/// and the like a replacement character. Joiners stay in words whose script has them. Between emoji they are removed: some
+/// terminals join these and some do not, and the width of the text must not depend on that.
 pub fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut after = text.chars();
@@ -10,7 +10,7 @@ pub fn plain(text: &str) -> String {
         let before = plain.chars().next_back();
         let next = after.clone().next();
         let word = |c: Option<char>| c.is_some_and(|c| !c.is_ascii() && c.is_alphabetic());
-        // Vowel signs and the like belong to the letter before.
+        // Vowel signs and the like belong to the letter before them.
         let marked = before.is_some_and(|c| matches!(c, '\u{900}'..='\u{dff}'));
         match c {
             '\u{200c}' | '\u{200d}' if (word(before) || marked) && word(next) => plain.push(c),
@@ -28,7 +28,7 @@ pub fn plain(text: &str) -> String {
     plain
 }
 
-/// Whether a character is one of those that are joined to one sign: emoji and what changes them.
+/// Whether a character is an emoji or modifies one: joiners combine these into one.
 fn is_sign(c: char) -> bool {
     matches!(c, '\u{2190}'..='\u{2bff}' | '\u{fe0f}' | '\u{1f000}'..='\u{1faff}')
 }

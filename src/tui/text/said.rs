@@ -1,19 +1,19 @@
-//! A line as it is said: `[COUNT] NAME [ARGS]`. Keys run such lines, people type them after `:`, scripts, macros and the log
-//! hold them.
+//! The syntax of a line: `[COUNT] NAME [ARGS]`. Keys run such lines, people type them after `:`, and scripts, macros and the
+//! log consist of them.
 
 /// The parts of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said<'a> {
-    /// How often, or which one.
+    /// The count: how often, or which one.
     pub count: Option<usize>,
-    /// The command; empty where there is none.
+    /// The name of the command; empty for an empty line.
     pub name: &'a str,
-    /// What stands after it.
+    /// What follows the name.
     pub text: &'a str,
 }
 
 impl<'a> Said<'a> {
-    /// Takes a line apart; a count typed before its key counts as well. A number alone is the row to go to, as in vim.
+    /// Parses a line. A count typed before its key multiplies the line's own. A number alone goes to that row, as in vim.
     pub fn parse(line: &'a str, typed: Option<usize>) -> Said<'a> {
         let (first, rest) = split(line);
         let count = first.parse::<usize>().ok();
@@ -35,24 +35,24 @@ impl std::fmt::Display for Said<'_> {
     }
 }
 
-/// The first word, and what stands after it.
+/// The first word, and what follows it.
 fn split(line: &str) -> (&str, &str) {
     let line = line.trim();
     line.split_once(' ').map_or((line, ""), |(word, rest)| (word, rest.trim_start()))
 }
 
-/// A text as it stands in a line: in quotes, as JSON has them, where it would not be read back as it is.
+/// A text as an argument of a line: quoted as in JSON if it would otherwise be read back differently.
 pub fn quoted(text: &str) -> String {
     let bare = !text.is_empty() && !text.starts_with('"') && text.trim() == text && !text.contains(char::is_control);
     if bare { text.to_owned() } else { serde_json::Value::from(text).to_string() }
 }
 
-/// The text that [`quoted`] was made of; one without quotes is itself.
+/// Reverses [`quoted`].
 pub fn unquoted(text: &str) -> String {
     serde_json::from_str(text).ok().filter(|_| text.starts_with('"')).unwrap_or_else(|| text.to_owned())
 }
 
-/// The words of a line; double quotes keep spaces, and within them a backslash keeps a quote and itself.
+/// The words of a line. Double quotes keep spaces; inside them a backslash escapes a quote or itself.
 pub fn words(line: &str) -> Result<Vec<String>, String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -84,7 +84,7 @@ pub fn one_of(words: &[&str]) -> String {
     }
 }
 
-/// The line that is read as this one word.
+/// A text quoted so that [`words`] reads it as one word.
 pub fn one_word(word: &str) -> String {
     let bare = !word.is_empty() && !word.contains([' ', '"']) && !word.starts_with('!');
     if bare { word.to_owned() } else { format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\"")) }

@@ -1,4 +1,4 @@
-//! Text in so many columns: how wide it is, cut with a mark, in lines at words.
+//! Fits text into columns: measures, clips and wraps it.
 
 use ratatui::text::Span;
 
@@ -9,7 +9,7 @@ pub fn width(text: &str) -> u16 {
     Span::raw(text).width().min(usize::from(u16::MAX)) as u16
 }
 
-/// `text` in so many columns: whole, else what is left of it before a mark. No number is cut in two.
+/// `text` clipped to `room` columns, with an ellipsis if it does not fit. A number is left out rather than cut in two.
 pub fn clipped(text: &str, room: usize) -> String {
     if usize::from(width(text)) <= room {
         return text.to_owned();
@@ -26,7 +26,7 @@ pub fn clipped(text: &str, room: usize) -> String {
     let part_of_number = |c: char| c.is_ascii_digit() || ".,-+".contains(c);
     if text[kept.len()..].starts_with(part_of_number) {
         let number = kept.trim_end_matches(part_of_number).len();
-        // Digits of a word, as in `kodak04`, are no number.
+        // Digits of a word, as in `kodak04`, are not a number.
         if kept[number..].contains(|c: char| c.is_ascii_digit()) && !kept[..number].ends_with(char::is_alphabetic) {
             kept.truncate(number);
         }
@@ -34,7 +34,7 @@ pub fn clipped(text: &str, room: usize) -> String {
     if room > 0 { kept + "…" } else { kept }
 }
 
-/// `text` in lines that fit.
+/// `text` wrapped at words; a word that is wider than `room` keeps a line of its own.
 pub fn wrapped(text: &str, room: u16) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {
@@ -51,7 +51,7 @@ pub fn wrapped(text: &str, room: u16) -> Vec<String> {
     lines
 }
 
-/// A text of several lines in lines that fit: at words, and where one is longer than a line inside it. None is empty.
+/// A text of several lines, wrapped at words, and within a word that is wider than `room`. Empty lines are dropped.
 pub fn wrapped_lines(text: &str, room: u16) -> Vec<String> {
     let room = room.max(1);
     let mut lines = Vec::new();

@@ -1,4 +1,4 @@
-//! The lessons as a table. Keys are named by what they run, so that a lesson never shows a key that does something else.
+//! The table of lessons. Keys are given by the commands that they run, so that a lesson never shows the wrong key.
 
 use serde_json::Value;
 
@@ -10,11 +10,11 @@ use crate::tui::state::{Mode, Pane, State};
 pub struct Lesson {
     /// What it is about.
     pub title: &'static str,
-    /// What is said, a line each of at most 76 characters, three at most.
+    /// The text: at most three lines of at most 76 characters.
     pub text: &'static [&'static str],
-    /// What to press, from where the lesson before has ended.
+    /// What to press, starting from where the previous lesson ended.
     pub keys: &'static [Press],
-    /// Whether it was done.
+    /// Whether the state shows that it was done.
     pub done: fn(&State) -> bool,
 }
 
@@ -28,7 +28,7 @@ pub enum Press {
 }
 
 impl Press {
-    /// As it is shown: a key by its name, a text in quotes; what no key does is typed as a command.
+    /// How it is shown: a key by its name, a text in quotes; a command that no key runs as typed after `:`.
     pub fn label(self, keymap: &Keymap) -> String {
         match self {
             Key(context, command) => match keymap.key_of(context, command) {
@@ -42,7 +42,7 @@ impl Press {
 
 use Press::{Key, Text};
 
-/// The zone that all of it is about, by its name: one before it goes away on the way.
+/// The zone that the lessons are about. By name, because a zone before it is deleted on the way.
 const ZONE: &str = "lid";
 
 /// All of them, in order.
@@ -50,8 +50,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "the tree",
         text: &[
-            "A cat's eye: its lid, and its opening. The scene is the tree on the left; a",
-            "search finds its way. A curve along the lower lid has jumps: go into them.",
+            "A cat's eye: its lid, and its opening. The tree on the left is the scene; a",
+            "search goes to a place. A curve along the lower lid has jumps: go into them.",
         ],
         keys: &[
             Key(TREE, "move down"),
@@ -65,9 +65,9 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "a jump",
         text: &[
-            "Along the curve, from 0 to 1, dx and dy say how far away each pixel is read",
-            "in the end. y grows down: with -19 in dy it is read from 19 px above, so the",
-            "lid is seen to come down. The middle has no jump yet: give it one.",
+            "Along the curve, from 0 to 1, dx and dy say from how far a pixel is read in",
+            "the end. y grows downward: with -19 in dy it is read from 19 px above: the",
+            "lid comes down. The middle has no jump yet: give it one.",
         ],
         keys: &[
             Key(TABLE, "move down"),
@@ -83,7 +83,7 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "arithmetic",
         text: &[
-            "An entry may compute: *2 doubles the old value, +=3 adds to it, w/2 is half",
+            "An entry can compute: *2 doubles the old value, +=3 adds to it, w/2 is half",
             "the width of the picture. Double the jump.",
         ],
         keys: &[Key(TABLE, "enter"), Text("*2"), Key(ENTRY, "commit")],
@@ -100,14 +100,17 @@ pub const LESSONS: &[Lesson] = &[
     },
     Lesson {
         title: "undo",
-        text: &["Everything can be undone, without end, also after saving and coming back.", "Take the step back."],
+        text: &[
+            "Everything can be undone, as far back as you like, even after saving and",
+            "coming back. Take the step back.",
+        ],
         keys: &[Key(EVERYWHERE, "undo")],
         done: |state| rise(state).get(2) == Some(&-38.0),
     },
     Lesson {
         title: "many rows at once",
         text: &[
-            "Select all rows: an edit then applies to each, from its own value.",
+            "Select all rows: an edit then applies to each of them, from its own value.",
             "Double all jumps, so that the eye will close, and end the selection.",
         ],
         keys: &[
@@ -123,7 +126,7 @@ pub const LESSONS: &[Lesson] = &[
         title: "the probe",
         text: &[
             "Why does a pixel move as it does? A command, typed after :, puts the cursor",
-            "of the picture into the eye: ask about the pixel under it.",
+            "of the picture into the eye. Ask about the pixel under it.",
         ],
         keys: &[Key(EVERYWHERE, "line"), Text("cursor at 170.5 205.5"), Key(LINE, "run"), Key(EVERYWHERE, "probe")],
         done: |state| state.picture.probing,
@@ -131,8 +134,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "in time",
         text: &[
-            "A position function says when the pixels are where along their jumps. Close",
-            "the read-out, search for the node, go in, choose cosine: there and back.",
+            "A position function says where on their jumps the pixels are at each time.",
+            "Close the read-out, find the node, go in, choose cosine: there and back.",
         ],
         keys: &[
             Key(EVERYWHERE, "probe"),
@@ -155,7 +158,7 @@ pub const LESSONS: &[Lesson] = &[
         title: "playing",
         text: &[
             "Go to the picture, play it, watch (a window shows it larger). The eyeball",
-            "comes down with the lid: that is mended next. Pause, and go on a frame.",
+            "comes down with the lid: we fix that next. Pause, and go to the next frame.",
         ],
         keys: &[
             Key(EVERYWHERE, "pane picture"),
@@ -203,8 +206,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "its region",
         text: &[
-            "It begins with a rectangle that nobody wants. Go into the regions, paste the",
-            "outline after it, and delete the rectangle.",
+            "It starts with a rectangle, which we do not need. Go into the regions, paste",
+            "the outline after it, and delete the rectangle.",
         ],
         keys: &[
             Key(EVERYWHERE, "line /"),
@@ -239,8 +242,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "finding and help",
         text: &[
-            "The palette finds every command, node and field by a few letters: look, and",
-            "leave it. All keys of the pane you are in are one key away.",
+            "The palette finds every command, node and field by a few letters. Open it,",
+            "and close it. One key shows all keys of the pane that you are in.",
         ],
         keys: &[Key(EVERYWHERE, "palette"), Key(TYPING, "cancel"), Key(EVERYWHERE, "help")],
         done: |state| matches!(state.typing.mode, Mode::Pages(_)),
@@ -248,8 +251,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "saving",
         text: &[
-            "Close the help. The * in the status line says that something is not saved;",
-            "it is not lost: each edit is in a journal. The Space menu has Save: use it.",
+            "Close the help. The * in the status line says that something is not saved.",
+            "It is not lost: each edit is in a journal. The Space menu has Save: use it.",
         ],
         keys: &[Key(HELP, "cancel"), Key(EVERYWHERE, "w")],
         done: |state| state.scene.is_saved(),
@@ -257,8 +260,8 @@ pub const LESSONS: &[Lesson] = &[
     Lesson {
         title: "an animation",
         text: &[
-            "Commands have the names and arguments of the command line, on this scene.",
-            "Render a GIF; the status line shows how far it is (.webp and .png work too).",
+            "Commands of the command line work here, with the same arguments.",
+            "Render a GIF; the status line shows the progress (.webp and .png work too).",
         ],
         keys: &[Key(EVERYWHERE, "line"), Text("render -o first.gif"), Key(LINE, "run")],
         done: |state| state.tutor.as_ref().is_some_and(|tutor| tutor.has_ended("render")),
@@ -280,7 +283,7 @@ fn zones(state: &State) -> &[Value] {
     zones.map_or(&[], Vec::as_slice)
 }
 
-/// What stands at `path` of the zone; `None` if nothing is written.
+/// The value at `path` of the zone; `None` if nothing is written there.
 fn value(state: &State, path: &str) -> Option<Value> {
     zones(state).iter().find(|zone| zone["name"] == ZONE)?.pointer(path).cloned()
 }

@@ -1,5 +1,5 @@
-//! What comes from the terminal as the editor's own events: keys by their names in the table, pastes, clicks. The bytes are
-//! read and cut here (pieces.rs), for crossterm's reader takes what has come of a sequence for all of it.
+//! Input from the terminal as events: keys by their names in the table, pastes, clicks. It is read and cut into sequences here
+//! (pieces.rs), because crossterm's reader takes the first part of a sequence for all of it.
 
 use std::io::stdin;
 use std::sync::mpsc;
@@ -14,14 +14,14 @@ use crate::tui::keys;
 mod pieces;
 pub use pieces::{Piece, Pieces};
 
-/// Reads the terminal for as long as there is one, beginning with what has come already.
+/// Reads the terminal until it is gone, starting with input that has arrived already.
 pub fn read(mut pieces: Pieces, sender: mpsc::Sender<Event>) {
-    /// Nothing happens then; some systems take no longer time.
+    /// The longest wait; some systems allow no longer one.
     const LONG: Duration = Duration::from_secs(3600);
     std::thread::spawn(move || {
         loop {
             while let Some(piece) = pieces.take(Instant::now()) {
-                // A fault is told by its panic; the keys that follow still count.
+                // The panic itself is reported; the keys that follow still work.
                 let said = fault::caught(|| event(&piece)).unwrap_or(None);
                 if said.is_some_and(|event| sender.send(event).is_err()) {
                     return;
@@ -37,7 +37,7 @@ pub fn read(mut pieces: Pieces, sender: mpsc::Sender<Event>) {
     });
 }
 
-/// Takes what there is to read; false at the end.
+/// Reads the available input; false at its end.
 pub fn feed(pieces: &mut Pieces) -> bool {
     let mut bytes = [0; 8192];
     match system::read(stdin(), &mut bytes) {
@@ -49,7 +49,7 @@ pub fn feed(pieces: &mut Pieces) -> bool {
     }
 }
 
-/// The event that a piece says; `None` if it says nothing to the editor.
+/// The event for a piece of input; `None` if it means nothing to the editor.
 pub fn event(piece: &Piece) -> Option<Event> {
     match piece {
         Piece::Paste(text) => Some(Event::Paste(text.clone())),
@@ -62,7 +62,7 @@ pub fn event(piece: &Piece) -> Option<Event> {
     }
 }
 
-/// The name of a key with Alt held, in the order that the table has.
+/// The name of a key with Alt held, with modifiers in the order of the table.
 fn alt(name: &str) -> String {
     match name.strip_prefix("Ctrl-").filter(|key| !key.is_empty()) {
         Some(key) => format!("Ctrl-Alt-{key}"),
@@ -78,7 +78,7 @@ fn said(bytes: &[u8]) -> Option<Event> {
     if bytes == b"\x1bOM" {
         return Some(Event::Key("Enter".into()));
     }
-    // Columns and rows count from 1; what says 0 is no click.
+    // Columns and rows count from 1, so 0 is not a click.
     let clicked = bytes.starts_with(b"\x1b[") && matches!(bytes.last(), Some(b'M' | b'm')) && bytes.len() != 6;
     if clicked
         && bytes[2..bytes.len() - 1].split(|&byte| byte == b';').skip(1).any(|one| one.iter().all(|&b| b == b'0'))
@@ -105,7 +105,7 @@ fn said(bytes: &[u8]) -> Option<Event> {
 mod tests {
     use super::*;
 
-    /// What bytes say that come in these parts, so long after one another.
+    /// The events for bytes that arrive in these parts, with pauses in between.
     fn said_in_parts(parts: &[&[u8]], gap: Duration) -> Vec<String> {
         let mut now = Instant::now();
         let mut pieces = Pieces::new();
@@ -130,7 +130,7 @@ mod tests {
         all
     }
 
-    /// What terminals send, and what it says.
+    /// What terminals send, and its events.
     const SENT: &[(&[u8], &[&str])] = &[
         (b"\x1b[A", &["Up"]),
         (b"\x1b[B", &["Down"]),

@@ -1,51 +1,51 @@
-//! The bytes of a terminal, cut into whole pieces: a character, an escape sequence, a paste. A slow line brings a sequence
-//! in parts, and an Esc that is taken for itself too early turns the rest of an arrow key into commands. So what has only
-//! begun is held for a while, the longer the less a person can have typed it; a paste is held until its end.
+//! Cuts the bytes of a terminal into complete pieces: a character, an escape sequence, a paste. A slow link delivers a sequence
+//! in parts, and if its Esc were taken for a key, the rest of an arrow key would run commands. So an incomplete sequence is
+//! held for a while, the longer the less likely it is that a person has typed it; a paste is held until its end.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// An Esc alone is a key after this time. Pieces of a sequence may be 80 ms apart.
+/// After this time an Esc alone is a key. Parts of a sequence may arrive 80 ms apart.
 const ESCAPE: Duration = Duration::from_millis(120);
-/// `Esc [` and its like, which a person can type, but hardly within the time above.
+/// For `Esc [` and the like, which a person can type, but hardly within the time above.
 const PAIR: Duration = Duration::from_millis(300);
-/// What nobody types.
+/// For what nobody types.
 const SEQUENCE: Duration = Duration::from_secs(1);
-/// A paste that has been silent for so long may be ended by Ctrl-c, for its end may be lost.
+/// After this silence Ctrl-c ends a paste, because its end may be lost.
 const SILENCE: Duration = Duration::from_secs(2);
-/// No sequence is longer, but for the text of an answer.
+/// The longest sequence, except for answers with text.
 const MOST_SEQUENCE: usize = 256;
 const MOST_ANSWER: usize = 64 * 1024;
-/// More of a paste is thrown away; it is refused long before.
+/// The most bytes of a paste that are held. A much smaller one is already refused later.
 const MOST_PASTE: usize = 256 << 20;
 
 const PASTE: &[u8] = b"\x1b[200~";
 const PASTED: &[u8] = b"\x1b[201~";
 
-/// A whole piece.
+/// A complete piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Piece {
-    /// A character or a sequence that one key or one movement of the mouse sends; or an answer without text.
+    /// A character, or the sequence of a key or a click; or an answer without text.
     Key(Vec<u8>),
-    /// The same after an Esc: Alt and that key, or both keys one after the other.
+    /// The same after an Esc: Alt with that key, or the two keys in a row.
     Alt(Vec<u8>),
-    /// An answer with a text, as kitty's protocol and colors have it.
+    /// An answer with text, as of kitty's protocol or about colors.
     Answer(Vec<u8>),
-    /// What was pasted.
+    /// A paste.
     Paste(String),
 }
 
-/// What the bytes that are held begin with.
+/// What the held bytes begin with.
 #[derive(Debug, PartialEq, Eq)]
 enum Shape {
     Key(usize),
-    /// An Esc before so many bytes.
+    /// An Esc before a piece of so many bytes.
     Alt(usize),
     Answer(usize),
     Paste,
-    /// So many bytes that mean nothing.
+    /// So many bytes without a meaning.
     Broken(usize),
-    /// More is to come; else after this time it is the other.
+    /// Incomplete; if nothing follows within this time, it is the second.
     Begun(Duration, Box<Shape>),
 }
 
@@ -53,19 +53,19 @@ enum Shape {
 #[derive(Debug)]
 pub struct Pieces {
     held: Vec<u8>,
-    /// What is being pasted, so far.
+    /// The paste so far.
     paste: Option<Vec<u8>>,
-    /// When the last bytes came.
+    /// When the last bytes arrived.
     last: Instant,
 }
 
 impl Pieces {
-    /// Nothing yet.
+    /// No bytes yet.
     pub fn new() -> Self {
         Pieces { held: Vec::new(), paste: None, last: Instant::now() }
     }
 
-    /// Takes bytes that came together.
+    /// Adds bytes that arrived together.
     pub fn feed(&mut self, bytes: &[u8], now: Instant) {
         let silent = now.saturating_duration_since(self.last);
         self.last = now;
@@ -80,14 +80,14 @@ impl Pieces {
         }
     }
 
-    /// Looks for the end of the paste from a byte on; what follows it is held.
+    /// Looks for the end of the paste from this byte on, and holds what follows it.
     fn end_paste(&mut self, from: usize) {
         let Some(paste) = &mut self.paste else { return };
         let end = paste[from..].windows(PASTED.len()).position(|some| some == PASTED).map(|at| from + at);
         if let Some(end) = end {
             let rest = paste.split_off(end);
             let text = std::mem::take(paste);
-            // A paste stands in the bytes held as what it was, so that pieces come in the order in which they were sent.
+            // The paste keeps its place among the held bytes, so that pieces keep the order in which they were sent.
             self.held = [PASTE, &text, &rest].concat();
             self.paste = None;
         } else if paste.len() > MOST_PASTE {
@@ -96,7 +96,7 @@ impl Pieces {
         }
     }
 
-    /// How long to wait for more before `take` gives what is held for what it is; `None` if nothing is.
+    /// How long to wait for more bytes before `take` treats the held ones as complete; `None` if there are none.
     pub fn patience(&self, now: Instant) -> Option<Duration> {
         match shape(&self.held)? {
             Shape::Begun(patience, _) => Some((self.last + patience).saturating_duration_since(now)),
@@ -104,7 +104,7 @@ impl Pieces {
         }
     }
 
-    /// The next whole piece, if there is one by now.
+    /// The next complete piece, if there is one by now.
     pub fn take(&mut self, now: Instant) -> Option<Piece> {
         loop {
             let shape = match shape(&self.held)? {
@@ -134,7 +134,7 @@ impl Pieces {
         }
     }
 
-    /// Takes the first bytes up to the end of a range, and gives the range.
+    /// Removes the bytes up to the end of a range, and returns the range.
     fn cut(&mut self, range: Range<usize>) -> Vec<u8> {
         let mut piece: Vec<u8> = self.held.drain(..range.end).collect();
         piece.drain(..range.start);
@@ -152,11 +152,11 @@ fn shape(bytes: &[u8]) -> Option<Shape> {
     let third = rest.get(1);
     Some(match rest.first() {
         None => begun(ESCAPE, Shape::Key(1)),
-        // The second begins something of its own.
+        // The second Esc begins another sequence.
         Some(0x1b) => Shape::Key(1),
         Some(b'[') => control(bytes),
         Some(b'O') => keypad(bytes),
-        // Only what an answer can begin with; else a person has typed Esc and a letter.
+        // Only if it can be the beginning of an answer; else a person has typed Esc and a letter.
         Some(b']' | b'P' | b'_') if third.is_none() => begun(PAIR, Shape::Alt(2)),
         Some(b']') if third.is_some_and(u8::is_ascii_digit) => answer(bytes),
         Some(b'P') if third.is_some_and(|c| c.is_ascii_digit() || b">!$+=?".contains(c)) => answer(bytes),
@@ -196,7 +196,7 @@ fn control(bytes: &[u8]) -> Shape {
     let body = &bytes[2..];
     match body.first() {
         None => return begun(PAIR, Shape::Alt(2)),
-        // The oldest way of telling clicks has three bytes of any kind after its final one.
+        // In the oldest protocol for clicks three arbitrary bytes follow the final one.
         Some(b'M') if body.len() < 4 => return begun(SEQUENCE, Shape::Broken(bytes.len())),
         Some(b'M') => return Shape::Key(6),
         // Function keys of the console.
@@ -208,7 +208,7 @@ fn control(bytes: &[u8]) -> Shape {
     match body.iter().position(|byte| !(0x20..=0x3f).contains(byte)) {
         Some(at) if (0x40..=0x7e).contains(&body[at]) => Shape::Key(2 + at + 1),
         Some(0) => Shape::Alt(2),
-        // Another key came into it.
+        // Another key has interrupted the sequence.
         Some(at) => Shape::Broken(2 + at),
         None if body.len() > MOST_SEQUENCE => Shape::Broken(bytes.len()),
         None => begun(SEQUENCE, Shape::Broken(bytes.len())),
@@ -227,7 +227,7 @@ fn keypad(bytes: &[u8]) -> Shape {
     }
 }
 
-/// An answer with a text, up to its terminator.
+/// An answer with text, up to its terminator.
 fn answer(bytes: &[u8]) -> Shape {
     let bell = bytes.iter().position(|&byte| byte == 0x07).filter(|_| bytes[1] == b']').map(|at| at + 1);
     let string = bytes.windows(2).position(|two| two == b"\x1b\\").map(|at| at + 2);
