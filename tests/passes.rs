@@ -120,7 +120,7 @@ fn color_is_light_that_lies_over_what_is_beneath() {
 fn what_is_no_pass_says_what_there_is() {
     let folder = folder();
     for (line, what) in [
-        ("--pass dept -o a.exr", "there is no pass \"dept\"; there are:"),
+        ("--pass dept -o a.exr", "there is no pass \"dept\" (did you mean \"depth\"?)"),
         ("--pass depth:fra -o a.exr", "there is no layer \"fra\" (did you mean \"far\"?)"),
         ("--pass depth -o a.gif", "a pass is written as .exr or, to look at, .png"),
         ("--pass depth -o a.exr", "2 frames do not fit one file"),
@@ -136,4 +136,29 @@ fn what_is_no_pass_says_what_there_is() {
         image::open(folder.path().join("n-1.png")).unwrap().to_rgba8().get_pixel(10, 16).0,
         [128, 128, 255, 255]
     );
+}
+
+#[test]
+fn a_probe_is_of_what_is_seen() {
+    let folder = folder();
+    let probed = |line: &str| {
+        let Output { status, stdout, stderr } = run(folder.path(), &format!("probe s.plica.json --json {line}"));
+        assert!(status.success(), "{line}: {}", String::from_utf8_lossy(&stderr));
+        serde_json::from_slice::<serde_json::Value>(&stdout).unwrap()
+    };
+    let near = probed("--at 20.5,12.5");
+    assert_eq!((&near["layer"], &near["front"]), (&"near".into(), &true.into()));
+    let close = |value: &serde_json::Value, expected: &[f64]| {
+        let found: Vec<f64> = value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
+            "{found:?}"
+        );
+    };
+    close(&near["depth"], &[1.5]);
+    close(&near["normal"], &[0.0, 0.0, 1.0]);
+    close(&near["position"], &[-3.5 * 1.5 / 32.0, 3.5 * 1.5 / 32.0, 0.5]);
+    let far = probed("--at 20.5,12.5 --layer far");
+    assert_eq!((&far["layer"], &far["triangle"]), (&"far".into(), &0.into()));
+    assert_eq!(probed("--at 2,2")["layer"], serde_json::Value::Null);
 }

@@ -11,7 +11,7 @@ use crate::base::text::hex;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
 use crate::layers::ready::Making;
 use crate::layers::technique::Technique;
-use crate::render::{self, stage::Stage};
+use crate::render::{self, passes, stage::Stage};
 use crate::scene::Scene;
 
 /// Show what a pixel does at a time, and why
@@ -25,7 +25,7 @@ pub struct Args {
     /// Scene time, 0 to 1
     #[arg(long, value_name = "T", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_time)]
     time: f64,
-    /// Name of the layer [default: the first]
+    /// Name of the layer [default: what is seen there of the layers in space, otherwise the first layer]
     #[arg(long, value_name = "LAYER")]
     layer: Option<String>,
     /// Print one JSON object per line
@@ -39,15 +39,19 @@ pub struct Args {
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let opened = Opened::new(&args.scene, &args.options, context)?;
     let scene = opened.document.scene();
-    let layer = find_layer(scene, args.layer.as_deref())?;
+    let asked = find_layer(scene, args.layer.as_deref())?;
+    // In space, what hides the others is meant.
+    let synth = (args.layer.is_none() && scene.camera.is_some()).then(|| opened.synth()).transpose()?;
     // Only what the pixel needs is computed, not the whole frame.
     let shown = opened.bands(1)?;
-    let own = layer.frame_of().and_then(|image| opened.materials.pictures.get(image));
+    let own = asked.frame_of().filter(|_| synth.is_none()).and_then(|image| opened.materials.pictures.get(image));
     let own = own.map(|picture| (picture.width(), picture.height()));
     let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
     let moment = Stage::of(scene).moment(args.time, size);
     let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
     for pixel in pixels {
+        let seen = synth.as_ref().and_then(|synth| passes::topmost(synth, args.time, pixel));
+        let layer = seen.and_then(|i| scene.layers.get(i)).map_or(asked, |layer| layer.technique());
         let making = Making::plain(scene.timeline.wrap, &opened.materials);
         let read = layer.probe(&making, pixel, &moment);
         let read = read.map_err(|problem| Error::at(args.scene.display(), problem))?;

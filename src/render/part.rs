@@ -3,6 +3,7 @@
 
 use kurbo::{Point, Vec2};
 
+use super::passes::{self, Asked};
 use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Linear, Rgba, encode};
 
@@ -62,6 +63,19 @@ pub fn frame(synth: &Synth, scene_time: f64, part: &Part) -> Frame {
     let dots = (0..part.dots.1).flat_map(|y| (0..part.dots.0).map(move |x| (x, y)));
     let cells = dots.map(|(x, y)| mean(&pixels, columns.of(x), rows.of(y))).collect();
     Frame::from_cells(part.dots.0, part.dots.1, cells)
+}
+
+/// As [`frame`], of a pass, to look at: each dot is the pixel in its middle, since numbers of triangles have no mean.
+pub fn pass(synth: &Synth, scene_time: f64, part: &Part, asked: &Asked) -> Frame {
+    let columns = Line::new(part.corner.x, part.scale, part.dots.0, 1, synth.size.0);
+    let rows = Line::new(part.corner.y, part.scale, part.dots.1, 1, synth.size.1);
+    let pixels = passes::view(asked.pass, &asked.lattice(synth, scene_time, &columns.pixels, &rows.pixels));
+    let at = |x: usize, y: usize| match (columns.of(x), rows.of(y)) {
+        ([Some(x)], [Some(y)]) => *pixels.get(*x, *y),
+        _ => [0; 4],
+    };
+    let dots = (0..part.dots.1).flat_map(|y| (0..part.dots.0).map(move |x| (x, y)));
+    Frame::from_cells(part.dots.0, part.dots.1, dots.map(|(x, y)| at(x, y)).collect())
 }
 
 fn mean(pixels: &Linear, columns: &[Option<usize>], rows: &[Option<usize>]) -> [u8; 4] {

@@ -46,7 +46,9 @@ impl Asked {
     pub fn parse(text: &str, scene: &Scene) -> Result<Asked, String> {
         let (name, layer) = text.split_once(':').map_or((text, None), |(name, layer)| (name, Some(layer)));
         let pass = all().find(|pass| pass.name == name);
-        let pass = pass.ok_or_else(|| format!("there is no pass {}; there are:\n{}", quoted(name), table()))?;
+        let names: Vec<&str> = all().map(|pass| pass.name).collect();
+        let known = || nearest(name, names.iter().copied()).unwrap_or_default();
+        let pass = pass.ok_or_else(|| format!("there is no pass {} ({})", quoted(name), known()))?;
         let index = |layer: &str| {
             let names = || scene.layers.iter().map(|layer| layer.technique().name());
             let unknown = || {
@@ -56,6 +58,12 @@ impl Asked {
             names().position(|name| name == layer).ok_or_else(unknown)
         };
         Ok(Asked { pass, layer: layer.map(index).transpose()? })
+    }
+
+    /// What it is, as [`Asked::parse`] reads it.
+    pub fn words(&self, scene: &Scene) -> String {
+        let layer = self.layer.and_then(|layer| scene.layers.get(layer));
+        layer.map_or(self.pass.name.to_owned(), |layer| format!("{}:{}", self.pass.name, layer.technique().name()))
     }
 
     /// The synthesis that is to be shown for it.
@@ -112,6 +120,13 @@ fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]
         }
     });
     picture
+}
+
+/// The layer in space that a pixel shows, by its index, if it shows one.
+pub fn topmost(synth: &Synth, time: f64, (x, y): (usize, usize)) -> Option<usize> {
+    let within = x < synth.size.0 && y < synth.size.1 && synth.stage.camera.is_some();
+    let number = within.then(|| lines(&OBJECT, synth, time, Columns::Some(&[x]), &[y]).get(0, 0)[0] as usize)?;
+    number.checked_sub(1)
 }
 
 /// The numbers of a pass as colors to look at.

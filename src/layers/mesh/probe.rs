@@ -21,10 +21,10 @@ pub fn probe(layer: &MeshLayer, making: &Making, (x, y): (usize, usize), moment:
 fn read_out(layer: &MeshLayer, spot: Option<Spot>) -> ReadOut {
     let entry = |key, label, value| Entry { key, label, value };
     let Some(spot) = spot else {
-        return ReadOut { entries: vec![entry("mesh", "mesh", Value::Of(None))], axis: None };
+        return ReadOut { entries: vec![entry("layer", "surface", Value::Of(None))], axis: None };
     };
     let entries = vec![
-        entry("mesh", "mesh", Value::Of(Some(layer.mesh.clone()))),
+        entry("layer", "layer", Value::Of(Some(layer.name.clone()))),
         entry("triangle", "triangle", Value::Index(spot.hit.triangle)),
         entry("position", "position", Value::Coordinates(spot.position.to_array().to_vec(), "m")),
         entry("normal", "normal", Value::Coordinates(spot.normal.to_array().to_vec(), "")),

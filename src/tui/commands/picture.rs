@@ -4,6 +4,8 @@ use kurbo::Vec2;
 
 use super::command::{Call, Command, Done, command};
 use crate::base::problem;
+use crate::layers::parts::pass::COLOR;
+use crate::render::passes::Asked;
 use crate::tui::events::Effect;
 use crate::tui::graphics::{Protocol, viewport};
 use crate::tui::layout::picture;
@@ -21,6 +23,7 @@ pub const COMMANDS: &[Command] = &[
         "Show or set how the picture is sent to the terminal",
         graphics,
     ),
+    command("pass", "[NAME[:LAYER]]", "Show what the picture is made from in place of it: depth, normal, ...", pass),
     command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
 ];
 
@@ -97,6 +100,16 @@ fn graphics(state: &mut State, call: &Call) -> Done {
         picture::protocol(state).name(),
         state.picture.graphics.found.name(),
     ));
+    Ok(())
+}
+
+/// Shows a pass in the picture's pane; without a name, or by the name color, the picture again.
+fn pass(state: &mut State, call: &Call) -> Done {
+    let asked = match call.text {
+        "" => None,
+        text => Some(Asked::parse(text, state.document().scene())?),
+    };
+    state.picture.pass = asked.filter(|asked| *asked.pass != COLOR || asked.layer.is_some());
     Ok(())
 }
 

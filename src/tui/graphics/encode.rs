@@ -133,7 +133,7 @@ mod tests {
 
     fn wanted(protocol: Protocol, tmux: bool) -> Wanted {
         let part = Part { corner: kurbo::Point::ZERO, scale: 1.0, dots: (30, 24) };
-        Wanted { part, cells: (3, 2), protocol, tmux, bytes: 100_000, marks: None }
+        Wanted { part, cells: (3, 2), protocol, tmux, bytes: 100_000, pass: None, marks: None }
     }
 
     fn first(protocol: Protocol, tmux: bool) -> String {

@@ -52,7 +52,10 @@ impl TerminalPicture {
 
     fn reduced(synth: &Synth, scene: &Scene, time: f64, wanted: &Wanted, by: usize) -> TerminalPicture {
         let part = wanted.part.reduced(by);
-        let mut frame = part::frame(synth, time, &part);
+        let mut frame = match &wanted.pass {
+            Some(pass) => part::pass(synth, time, &part, pass),
+            None => part::frame(synth, time, &part),
+        };
         ground(&mut frame, synth.size, &part);
         if let Some(marks) = &wanted.marks {
             let mut ink = ink::Ink { frame: &mut frame, part: &part, by };

@@ -3,9 +3,10 @@
 use super::request::ProbeAt;
 use crate::base::pixels::encode;
 use crate::layers::parts::materials::Materials;
+use crate::layers::parts::moment::Space;
 use crate::layers::parts::readout::ReadOut;
 use crate::layers::ready::Making;
-use crate::render::{Synth, cpu};
+use crate::render::{Synth, cpu, passes};
 use crate::scene::Scene;
 
 /// What one pixel does.
@@ -22,8 +23,12 @@ pub struct Probed {
 impl Probed {
     /// The answer, as `plica probe` has it; `None` if there is no such pixel.
     pub fn new(at: ProbeAt, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
-        let layer = scene.layers.get(at.layer)?.technique();
         let (x, y) = at.pixel;
+        let asked = scene.layers.get(at.layer)?.technique();
+        // In space, what hides the others is meant.
+        let seen = Some(asked).filter(|layer| layer.kind().space == Space::World);
+        let seen = seen.and_then(|_| scene.layers.get(passes::topmost(synth, at.time, at.pixel)?));
+        let layer = seen.map_or(asked, |layer| layer.technique());
         let moment = synth.moment(at.time);
         let read = layer.probe(&Making::plain(scene.timeline.wrap, materials), at.pixel, &moment).ok()?;
         let within = x < synth.size.0 && y < synth.size.1;

@@ -4,6 +4,7 @@ use kurbo::Point;
 
 use crate::layers::parts::marks::View;
 use crate::render::part::Part;
+use crate::render::passes::Asked;
 use crate::tui::text::color::Depth;
 
 /// How the picture reaches the terminal.
@@ -102,6 +103,8 @@ pub struct Wanted {
     pub tmux: bool,
     /// The most bytes.
     pub bytes: usize,
+    /// The pass to show in place of the frame.
+    pub pass: Option<Asked>,
     /// The marks drawn into the pixels; `None` for half-blocks, whose marks are drawn as characters.
     pub marks: Option<Marks>,
 }

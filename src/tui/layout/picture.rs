@@ -68,6 +68,7 @@ fn wanted(state: &State) -> Option<Wanted> {
         protocol,
         tmux: graphics.tmux,
         bytes: if state.play.playing { playing } else { still },
+        pass: state.picture.pass,
         marks: (protocol != Protocol::Blocks).then(marks),
     })
 }

@@ -26,7 +26,9 @@ pub fn title(state: &State) -> String {
     let fit = if state.picture.viewport.zoom.is_none() { " fit" } else { "" };
     let reduced = state.picture.latest.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
     let protocol = picture::protocol(state).name();
-    format!("picture  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
+    let pass =
+        state.picture.pass.map(|asked| format!(" {}", asked.words(state.document().scene()))).unwrap_or_default();
+    format!("picture{pass}  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
 
 /// Draws the picture; the terminal's cursor is on the picture's cursor if the picture has the focus.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use kurbo::{Point, Vec2};
 
 use crate::render::Synth;
+use crate::render::passes::Asked;
 use crate::tui::graphics::probed::Probed;
 use crate::tui::graphics::viewport::Viewport;
 use crate::tui::graphics::{Graphics, TerminalPicture};
@@ -18,6 +19,8 @@ pub struct Picture {
     pub viewport: Viewport,
     /// Width and height of the picture, once known.
     pub size: Option<(usize, usize)>,
+    /// The pass that is shown in place of the frame.
+    pub pass: Option<Asked>,
     /// How pictures are sent to the terminal.
     pub graphics: Graphics,
     /// The picture that the worker made last.
@@ -43,6 +46,7 @@ impl Picture {
             cursor,
             viewport: Viewport { zoom: None, center: cursor },
             size: None,
+            pass: None,
             graphics: Graphics::default(),
             latest: None,
             probing: false,

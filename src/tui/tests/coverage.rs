@@ -41,6 +41,7 @@ const TABLES: &[fn()] = &[
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::picture::zooming_keeps_the_cursor_and_panning_takes_it_along,
     super::picture::graphics_are_told_and_set,
+    super::picture::a_pass_is_shown_in_place_of_the_picture,
     super::picture::the_read_out_opens_follows_and_closes,
 ];
 

@@ -180,6 +180,25 @@ pub fn graphics_are_told_and_set() {
 }
 
 #[test]
+pub fn a_pass_is_shown_in_place_of_the_picture() {
+    for (keys, title, wrong) in [
+        (": \"pass depth\" Enter", "picture depth  x", None),
+        (": \"pass normal:face\" Enter", "picture normal:face  x", None),
+        (": \"pass depth\" Enter : \"pass\" Enter", "picture  x", None),
+        (": \"pass depth\" Enter : \"pass color\" Enter", "picture  x", None),
+        (": \"pass dept\" Enter", "picture  x", Some("did you mean \"depth\"?")),
+        (": \"pass uv:fce\" Enter", "picture  x", Some("did you mean \"face\"?")),
+    ] {
+        let mut state = opened((160, 48));
+        press(&mut state, keys);
+        assert!(screen(&state).contains(title), "{keys}: {}", screen(&state));
+        let said = state.message.as_ref().filter(|message| message.bad).map(|message| message.text.clone());
+        assert_eq!(said.is_some(), wrong.is_some(), "{keys}: {said:?}");
+        assert!(wrong.is_none_or(|wrong| said.unwrap_or_default().contains(wrong)), "{keys}");
+    }
+}
+
+#[test]
 fn without_colors_kitty_is_not_used() {
     let mut state = opened((160, 48));
     press(&mut state, ": \"graphics kitty\" Enter");
