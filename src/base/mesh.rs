@@ -182,7 +182,8 @@ impl Builder {
         self.share.shrink(self.bytes());
         let computed = self.chain.iter().any(|link| link.normal == NONE);
         let vertices = size_of::<Vertex>() * self.chain.len();
-        let groups = if computed { (2 * size_of::<u32>() + size_of::<DVec3>()) * self.positions.len() } else { 0 };
+        let group = size_of::<(f64, u32)>() + size_of::<u32>() + size_of::<DVec3>();
+        let groups = if computed { group * self.positions.len() } else { 0 };
         let more = self.budget.take((vertices + groups) as u64, &self.place)?;
         let normals = computed.then(|| self.computed_normals());
         let vertex = |link: &Link| Vertex {
@@ -249,13 +250,15 @@ fn angles([a, b, c]: [DVec3; 3]) -> [f64; 3] {
 /// For each position the number of its group, and how many groups there are: positions that are equal as numbers, 0 and
 /// -0 too, are one group.
 fn groups(positions: &[DVec3]) -> (Vec<u32>, usize) {
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    // Which of several equal ones comes first does not matter.
-    order.par_sort_unstable_by(|&a, &b| compare(positions[a as usize], positions[b as usize]));
+    // Most differ in x, which stands beside the index for that; which of several equal ones comes first does not matter.
+    let mut order: Vec<(f64, u32)> = positions.iter().zip(0..).map(|(position, at)| (position.x + 0.0, at)).collect();
+    order.par_sort_unstable_by(|(x, a), (y, b)| {
+        x.total_cmp(y).then_with(|| compare(positions[*a as usize], positions[*b as usize]))
+    });
     let mut groups = vec![0; positions.len()];
     let mut count = 0;
-    for (at, &position) in order.iter().enumerate() {
-        let equal = at > 0 && positions[order[at - 1] as usize] == positions[position as usize];
+    for (at, &(_, position)) in order.iter().enumerate() {
+        let equal = at > 0 && positions[order[at - 1].1 as usize] == positions[position as usize];
         count += usize::from(!equal);
         groups[position as usize] = (count - 1) as u32;
     }
