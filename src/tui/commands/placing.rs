@@ -86,7 +86,7 @@ fn select(state: &mut State, call: &Call, at: Point) -> Done {
     }
     let (width, height) = state.picture.size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
-    let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("there is no zone")?;
+    let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("there is nothing to select there")?;
     call.obey(state, &format!("go {}{}", hit.path, hit.cell))
 }
 

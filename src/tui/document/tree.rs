@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::sheet;
 use crate::scene::field::{self, Child, Kind};
-use crate::scene::schema::Place;
+use crate::scene::schema::{Body, Place, Shape};
 use crate::scene::{Document, pointer};
 
 /// A row of the tree.
@@ -97,6 +97,18 @@ fn first_item(document: &Document) -> Option<String> {
     let fields = document.json().pointer(FIRST_LAYER)?.as_object()?;
     let (list, _) = fields.iter().find(|(_, value)| named(value))?;
     Some(pointer::join(&pointer::join(FIRST_LAYER, list), 0))
+}
+
+/// The word for the named items of the layer that the node at `pointer` belongs to, as the schema has it: "zone". `None` if
+/// such a layer has no named items, or if there is no layer.
+pub fn item_word(document: &Document, pointer: &str) -> Option<&'static str> {
+    let layer = Place::of(document.json(), &format!("/layers/{}", layer_of(pointer).unwrap_or(0)))?;
+    let named = |list: Shape| match list.body() {
+        Body::List(item, ..) => item.property(None, "name").is_some(),
+        _ => false,
+    };
+    let lists = layer.shape.properties(layer.value);
+    lists.into_iter().find(|(_, shape)| named(*shape)).map(|(name, _)| name.trim_end_matches('s'))
 }
 
 /// The index of the layer that the node at `pointer` belongs to.

@@ -1,15 +1,14 @@
 //! Runs the editor: chooses its loop, restores the terminal whatever happens, and ends on signals.
 
-use crate::base::system::signals;
-use crate::tui::outside::editor::Editor;
-use crate::tui::outside::options::Options;
 use std::sync::mpsc;
 use std::time::Duration;
 
+use super::editor::Editor;
+use super::options::Options;
 use super::terminal;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
-use crate::base::system::signals::{Answer, Signal};
+use crate::base::system::signals::{self, Answer, Signal};
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Event;
 

@@ -24,8 +24,12 @@ const LONG: f64 = 0.5;
 /// Draws the arrows, and below them the legend and the value under the cursor.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some((field, longest)) = field(state) else {
-        let why = if item_of(&state.cursor.node).is_none() { "select a zone" } else { "not there yet" };
-        write(buffer, area, 1, 0, why, color::faint());
+        let why = match (item_of(&state.cursor.node), tree::item_word(state.document(), &state.cursor.node)) {
+            (Some(_), _) => "not there yet".into(),
+            (None, Some(word)) => format!("select a {word}"),
+            (None, None) => "this layer has no vector field".into(),
+        };
+        write(buffer, area, 1, 0, &why, color::faint());
         return;
     };
     let (width, height) = (field.inside.width(), field.inside.height());
@@ -65,7 +69,10 @@ fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer:
 fn under_cursor(state: &State, field: &VectorField) -> String {
     let at = state.picture.cursor;
     let (x, y) = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
-    let Some(jump) = field.at((x, y)) else { return format!("at {x},{y}: outside the zone") };
+    let Some(jump) = field.at((x, y)) else {
+        let word = tree::item_word(state.document(), &state.cursor.node).unwrap_or("field");
+        return format!("at {x},{y}: outside the {word}");
+    };
     let (length, degrees) = polar(jump);
     format!("at {x},{y}: {}, {} px  {} px {}°", short(jump.x), short(jump.y), short(length), short(degrees))
 }

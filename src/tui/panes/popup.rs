@@ -13,7 +13,7 @@ use crate::tui::document::choice::{Choice, Then};
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::color;
-use crate::tui::text::wrap::{width, wrapped_lines};
+use crate::tui::text::wrap::{hanging, width, wrapped_lines};
 
 /// Draws what is open; returns the place of the cursor.
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -93,12 +93,24 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     let title = format!("{} (j k scroll, q closes)", pages.title);
     let widest = pages.lines.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
     let wide = (widest + 6).clamp(40, screen.width - 6);
-    let tall = (pages.lines.len().min(1000) as u16 + 2).clamp(5, screen.height - 4);
-    let area = window(screen, wide, tall, &title, buffer);
-    let last = pages.lines.len().saturating_sub(usize::from(area.height));
-    for (y, line) in pages.lines.iter().skip(pages.scroll.min(last)).take(usize::from(area.height)).enumerate() {
+    let rows = |line: &String| hanging(line, wide - 3);
+    let most = usize::from(screen.height - 4);
+    let all: usize = pages.lines.iter().take(most).map(|line| rows(line).len()).sum();
+    let area = window(screen, wide, (all + 2).clamp(5, most) as u16, &title, buffer);
+    // The last page is full: as many lines from the end as have room.
+    let mut room = usize::from(area.height);
+    let fits = |line: &&String| {
+        let left = room.checked_sub(rows(line).len());
+        room = left.unwrap_or(0);
+        left.is_some()
+    };
+    let last = pages.lines.len().saturating_sub(pages.lines.iter().rev().take_while(fits).count().max(1));
+    let shown = pages.lines.iter().skip(pages.scroll.min(last)).flat_map(|line| {
         let style = if line.starts_with("--") { color::strong() } else { Style::new() };
-        write(buffer, area, 1, y as u16, line, style);
+        rows(line).into_iter().map(move |row| (row, style))
+    });
+    for (y, (row, style)) in shown.take(usize::from(area.height)).enumerate() {
+        write(buffer, area, 1, y as u16, &row, style);
     }
     area.as_position()
 }

@@ -32,7 +32,9 @@ struct Curve<'a> {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let curves = curves(state);
     if curves.is_empty() {
-        write(buffer, area, 1, 0, "the layer has no zones", color::faint());
+        let word = tree::item_word(state.document(), &state.cursor.node);
+        let why = word.map_or("nothing here moves".into(), |word| format!("the layer has no {word}s"));
+        write(buffer, area, 1, 0, &why, color::faint());
         return;
     }
     if area.width < 12 || area.height < 3 {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::support::{press, replayed, state, state_of};
+use super::support::{at, press, replayed, said_last, state, state_of};
 use super::{MOTION, check, motion, zone};
 use crate::files::session::Mode as Open;
 use crate::tui::commands::command::Counts;
@@ -15,14 +15,6 @@ use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
 use crate::tui::text::color::Depth;
-
-fn at(state: &State, pointer: &str) -> Value {
-    state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null)
-}
-
-fn said(state: &State) -> (bool, String) {
-    state.message.as_ref().map_or((false, String::new()), |message| (message.bad, message.text.clone()))
-}
 
 /// All that a count can change.
 fn everything(state: &State) -> String {
@@ -199,7 +191,7 @@ pub fn counts_of_rows_are_one_step_of_undo() {
     ] {
         let mut state = state();
         press(&mut state, &keys);
-        assert!(said(&state).1.contains(part), "{keys}: {:?}", said(&state));
+        assert!(said_last(&state).1.contains(part), "{keys}: {:?}", said_last(&state));
     }
 }
 
@@ -296,16 +288,16 @@ fn a_scene_that_is_only_looked_at_refuses_at_the_first_key() {
         let mut state = open();
         press(&mut state, keys);
         assert!(matches!(state.typing.mode, Mode::Normal), "{keys}");
-        assert!(said(&state).1.contains("open read-only"), "{keys}: {:?}", said(&state));
+        assert!(said_last(&state).1.contains("open read-only"), "{keys}: {:?}", said_last(&state));
     }
     let mut state = open();
     press(&mut state, "/ \"motion\" Enter Enter g i w");
-    assert_eq!((state.cursor.row, said(&state).0), (1, false), "points are gone to");
+    assert_eq!((state.cursor.row, said_last(&state).0), (1, false), "points are gone to");
     press(&mut state, "g t Backspace Enter");
     state.cursor.row = state.sheet().position(&zone("/outline")).unwrap();
     press(&mut state, "Enter");
     assert_eq!(state.cursor.node, zone("/outline"));
-    assert!(!said(&state).0, "nodes are gone into: {:?}", said(&state));
+    assert!(!said_last(&state).0, "nodes are gone into: {:?}", said_last(&state));
 }
 
 #[test]
@@ -318,14 +310,14 @@ fn going_to_a_list_leads_to_its_rows_and_jumps_are_listed() {
     press(&mut state, ": \"go layers.0.zones.1\" Enter");
     assert_eq!((state.cursor.node.as_str(), state.cursor.focus), ("/layers/0/zones/1", Pane::Tree));
     press(&mut state, ": \"jumps\" Enter");
-    let Mode::Choice(choice) = &state.typing.mode else { panic!("no list: {:?}", said(&state)) };
+    let Mode::Choice(choice) = &state.typing.mode else { panic!("no list: {:?}", said_last(&state)) };
     let places: Vec<&str> = choice.options.iter().map(|(place, _)| place.as_str()).collect();
     assert_eq!(places, ["layers.face.zones.\"left eye\".motion.0", "layers.face.zones.\"left eye\".name"]);
     press(&mut state, "Enter");
     assert_eq!(state.cursor.node, zone("/motion/0"));
     let mut fresh = self::state();
     press(&mut fresh, ": \"jumps\" Enter");
-    assert!(said(&fresh).1.contains("no jumps"));
+    assert!(said_last(&fresh).1.contains("no jumps"));
     assert_eq!(replayed(&state).document().json(), state.document().json());
 }
 
@@ -356,6 +348,6 @@ fn handles_are_yanked_under_their_heads_and_pasted_back() {
     assert!(
         back.contains(r#""in":[-3,4],"out":[3,-4]"#) && back.contains(r#""out":[1.5,2]"#),
         "{back}: {:?}",
-        said(&state)
+        said_last(&state)
     );
 }

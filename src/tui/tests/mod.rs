@@ -9,17 +9,19 @@ use super::tests::support::{press, replayed, state};
 mod conflicts;
 mod counts;
 pub mod coverage;
-mod data;
 pub mod finding;
 mod images;
+mod items;
 mod lines;
 mod macros;
+mod pasting;
 mod picture;
 mod screens;
 pub mod support;
 mod table;
 mod told;
 mod tutor;
+mod undoing;
 pub mod windows;
 
 /// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them. The

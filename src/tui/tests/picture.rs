@@ -11,7 +11,7 @@ use ratatui::style::Color;
 use serde_json::json;
 
 use super::screens::{STATES, changed, opened, screen, see};
-use super::support::{press, state};
+use super::support::{press, state, state_of};
 use crate::layers::parts::readout::{Entry, Value};
 use crate::tui::commands::update::update;
 use crate::tui::events::Event;
@@ -332,5 +332,21 @@ fn colors_say_nothing_by_themselves() {
                 assert!(allowed, "{name} {depth:?}: {color:?}");
             }
         }
+    }
+}
+
+#[test]
+fn panes_say_what_the_items_of_a_layer_are_called() {
+    let fill = r#"{"plica": 1, "layers": [{"kind": "fill", "name": "sky"}]}"#;
+    let empty = r#"{"plica": 1, "images": {"cat": {"path": "cat.png"}},
+        "layers": [{"kind": "picture", "name": "face", "image": "cat"}]}"#;
+    for (scene, words) in [
+        (fill, ["this layer has no vector field", "nothing here moves"]),
+        (empty, ["select a zone", "the layer has no zones"]),
+    ] {
+        let mut state = state_of(scene);
+        state.size = (160, 48);
+        let shown = screen(&state);
+        assert!(words.iter().all(|word| shown.contains(word)), "{shown}");
     }
 }

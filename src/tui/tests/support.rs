@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use serde_json::Value;
+
 use crate::preview::editor;
 use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::obey;
@@ -79,6 +81,21 @@ pub fn press(state: &mut State, keys: &str) -> Vec<Effect> {
         }
     }
     effects
+}
+
+/// Pastes a text as the terminal does.
+pub fn paste(state: &mut State, text: &str) {
+    update(state, Event::Paste(text.into()));
+}
+
+/// The value at a pointer.
+pub fn at(state: &State, pointer: &str) -> Value {
+    state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null)
+}
+
+/// The last message, and whether it says that something could not be done.
+pub fn said_last(state: &State) -> (bool, String) {
+    state.message.as_ref().map_or((false, String::new()), |message| (message.bad, message.text.clone()))
 }
 
 /// Another editor on [`SCENE`] that has run the lines of this one's log.

@@ -4,16 +4,12 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use serde_json::{Value, json};
 
-use super::support::{press, replayed, state, state_of};
+use super::support::{at, press, replayed, state, state_of};
 use super::{motion, zone};
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event};
 use crate::tui::panes::view;
-use crate::tui::state::{Mode, State};
-
-fn at(state: &State, pointer: &str) -> Value {
-    state.document().json().pointer(pointer).cloned().unwrap_or(Value::Null)
-}
+use crate::tui::state::{Mode, Pages, State};
 
 fn said(state: &State) -> String {
     state.message.as_ref().map_or(String::new(), |message| message.text.clone())
@@ -277,4 +273,22 @@ fn a_new_kind_keeps_the_shape_in_one_step() {
     assert_eq!(at(&state, &zone(&format!("/motion/{}/at", i + 2))), json!([5, 8]));
     press(&mut state, "u");
     assert_eq!(at(&state, &zone("/motion")), list);
+}
+
+#[test]
+fn pages_wrap_what_is_wider_than_the_screen() {
+    let mut state = state();
+    state.size = (60, 20);
+    let mut lines = vec!["line".to_owned(); 40];
+    lines[0] = format!("key        {} the end", "word ".repeat(12));
+    lines[39] = format!("{} the last", "word ".repeat(12));
+    state.typing.mode = Mode::Pages(Pages { title: "page".into(), lines, scroll: 0 });
+    let rows = screen(&state);
+    let (first, end) = (
+        &rows.iter().find(|row| row.contains("key  ")).unwrap(),
+        &rows.iter().find(|row| row.contains("the end")).unwrap(),
+    );
+    assert_eq!(first.find("word"), end.find("word"), "{rows:#?}");
+    press(&mut state, "G");
+    assert!(screen(&state).iter().any(|row| row.contains("the last")));
 }

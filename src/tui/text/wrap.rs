@@ -75,6 +75,21 @@ pub fn wrapped_lines(text: &str, room: u16) -> Vec<String> {
     lines
 }
 
+/// A line of a page in rows of at most `room` columns. The rows after the first are indented to the text after the first
+/// wide gap, so that what follows a key stays in its column.
+pub fn hanging(line: &str, room: u16) -> Vec<String> {
+    if width(line) <= room {
+        return vec![line.to_owned()];
+    }
+    let begin = line.len() - line.trim_start().len();
+    let gap = line[begin..].find("  ").map_or(begin, |at| line.len() - line[begin + at..].trim_start().len());
+    let indent = if width(&line[..gap]) <= room / 2 { gap } else { begin };
+    let (head, text) = line.split_at(indent);
+    let rows = wrapped_lines(text, room.saturating_sub(width(head)));
+    let blank = " ".repeat(width(head).into());
+    rows.iter().enumerate().map(|(i, row)| format!("{}{row}", if i == 0 { head } else { &blank })).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,6 +101,19 @@ mod tests {
         assert_eq!(wrapped("a-word-too-long x", 4), ["a-word-too-long", "x"]);
         assert_eq!(wrapped_lines("a-word-too-long x\n\nyes", 6), ["a-word", "-too-l", "ong", "x", "yes"]);
         assert_eq!(wrapped_lines("日本語", 4), ["日本", "語"]);
+    }
+
+    #[test]
+    fn the_rest_of_a_line_stays_in_its_column() {
+        for (line, rows) in [
+            ("a b  one two", &["a b  one two"][..]),
+            ("ab   one two three", &["ab   one two", "     three"]),
+            ("  one two three four", &["  one two", "  three four"]),
+            ("a-long-name  one two", &["a-long-name", "one two"]),
+            ("abcdefghijklmno", &["abcdefghijkl", "mno"]),
+        ] {
+            assert_eq!(hanging(line, 12), rows, "{line}");
+        }
     }
 
     #[test]

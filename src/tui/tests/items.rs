@@ -1,0 +1,85 @@
+//! Adding and renaming: lists, pictures, paths.
+
+use serde_json::{Value, json};
+
+use super::support::{press, said_last, state, state_of};
+use super::{check, motion, zone};
+use crate::scene::field::{self, Kind};
+use crate::tui::commands::update::update;
+use crate::tui::events::{Effect, Event};
+use crate::tui::state::{Mode, Pane, State};
+
+#[test]
+pub fn pictures_and_names_come_and_go() {
+    let images = "/ \"images\" Enter Enter";
+    check(&[
+        (&format!("{images} o \"art/dog.jpg\" Enter"), "/images/dog/path", json!("art/dog.jpg")),
+        (&format!("{images} o \"art/cat.jpg\" Enter"), "/images/cat 2/path", json!("art/cat.jpg")),
+        (&format!("{images} o \"dog.png\" Esc"), "/images/dog", Value::Null),
+        (&format!("{images} o \"dog.png\" Enter d"), "/images/dog", Value::Null),
+        (&format!("{images} d"), "/images/cat/path", json!("cat.png")),
+        (&format!("{images} R Ctrl-w \"tom\" Enter"), "/layers/0/image", json!("tom")),
+        (&format!("{images} D : \"rename cat\" Enter"), "/images/cat 2/path", json!("cat.png")),
+        (&format!("{images} i \"x.png\" Enter"), "/images/cat/path", json!("x.png")),
+        ("R Ctrl-u \"rename right eye\" Enter", &zone("/name"), json!("right eye")),
+        ("o", "/layers/0/zones/1/outline/kind", json!("rectangle")),
+        ("o", "/layers/0/zones/1/name", json!("zone")),
+    ]);
+    for (keys, words) in [
+        (format!("{images} d"), "cat is used by layers.face.image: choose another"),
+        (format!("{images} D : \"rename cat\" Enter"), "there is already a picture \"cat\""),
+        (motion("R"), "this has no name"),
+    ] {
+        let mut state = state();
+        press(&mut state, &keys);
+        assert!(said_last(&state).0 && said_last(&state).1.starts_with(words), "{keys}: {}", said_last(&state).1);
+    }
+}
+
+#[test]
+fn paths_are_asked_for_and_completed() {
+    let beside = |state: &State| state.scene.path().parent().map(std::path::Path::to_owned);
+    for (keys, name, path, relative) in [
+        ("/ \"images\" Enter o \"ca\" Tab", "add", "ca", true),
+        (": \"w a/\" Tab", "w", "a/", false),
+        (": \"e x\" Tab", "e", "x", false),
+    ] {
+        let mut state = state();
+        let effects = press(&mut state, keys);
+        let Some(Effect::Complete { name: asked, path: typed, beside: folder }) = effects.last() else {
+            panic!("{keys}")
+        };
+        let folder_wanted = if relative { beside(&state) } else { None };
+        assert_eq!((asked.as_str(), typed.as_str(), folder.clone()), (name, path, folder_wanted), "{keys}");
+        update(&mut state, Event::Completed(vec![format!("{name} one"), format!("{name} two")]));
+        press(&mut state, "Tab");
+        assert!(matches!(&state.typing.mode, Mode::Line(line) if line.text.value() == format!("{name} two")), "{keys}");
+    }
+}
+
+#[test]
+fn every_list_of_the_schema_can_be_added_to() {
+    let whole = state_of(include_str!("../../../tests/scenes/good/everything.json")).document().clone();
+    let mut open = vec![String::new()];
+    let mut seen = std::collections::BTreeSet::new();
+    let mut state = state_of(&whole.to_text());
+    while let Some(pointer) = open.pop() {
+        open.extend(field::children(&whole, &pointer).into_iter().map(|child| child.pointer));
+        let field = field::field(&whole, &pointer).unwrap();
+        let list = matches!(field.kind, Kind::List(_) | Kind::Map(_)) && field::is_there(&whole, &pointer);
+        if !list || !seen.insert(format!("{} {:?}", field.name, field.kind)) {
+            continue;
+        }
+        state.show(pointer.clone());
+        (state.cursor.focus, state.typing.mode) = (Pane::Table, Mode::Normal);
+        press(&mut state, "o");
+        let (bad, text) = said_last(&state);
+        let told = bad && text.contains("expected 2 items");
+        let asked = matches!(state.typing.mode, Mode::Line(_));
+        assert!(asked || told || !state.scene.is_saved() && !bad, "{pointer}: {text}");
+        while !state.scene.is_saved() {
+            press(&mut state, "u");
+        }
+    }
+    assert!(seen.len() > 10, "{seen:?}");
+}
