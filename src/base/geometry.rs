@@ -1,7 +1,7 @@
 //! Outlines as polygons: winding, crossings, distance, arc length. Curves are flattened by kurbo; everything after that
 //! is straight edges, so that a pixel's membership and the crossings of its path are decided by one rule.
 //!
-//! Coordinates are image pixels, x right, y down (folding.md, section 1).
+//! Coordinates are image pixels, x right, y down (docs/folding.md, section 1).
 
 use std::ops::Range;
 

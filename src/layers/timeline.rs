@@ -1,4 +1,4 @@
-//! Time, shared by all techniques (folding.md, section 1): the timeline of a scene and the local time of what plays on
+//! Time, shared by all techniques (docs/folding.md, section 1): the timeline of a scene and the local time of what plays on
 //! it, all in double precision.
 
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! The results of a zone's tools: anchors, in the order of folding.md section 4, and dense fields.
+//! The results of a zone's tools: anchors, in the order of docs/folding.md section 4, and dense fields.
 
 use std::sync::Arc;
 

@@ -21,7 +21,7 @@ use crate::layers::technique::{Checked, Count};
 /// In zones with more anchors than this, coincident anchors are not looked for.
 const MAX_COMPARED: f64 = 20_000.0;
 
-/// Anchors closer to each other than this are at the same place (folding.md, section 4).
+/// Anchors closer to each other than this are at the same place (docs/folding.md, section 4).
 const SAME_PX: f64 = 1e-6;
 
 /// Anchors are nearly on one line if their spread across it is less than this share of their spread along it.

@@ -1,4 +1,4 @@
-//! Folding: where along its path a sampler is active, and where it waits (folding.md, section 3).
+//! Folding: where along its path a sampler is active, and where it waits (docs/folding.md, section 3).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -57,7 +57,7 @@ impl Fold {
     }
 }
 
-/// A fold rule that works by regions (folding.md, section 3). A mask needs none: it is only a different source to read.
+/// A fold rule that works by regions (docs/folding.md, section 3). A mask needs none: it is only a different source to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Inside a region a sampler waits at the edge where it entered.

@@ -1,4 +1,4 @@
-//! Position functions: local time τ in [0, 1] to s, the place along the jump path (folding.md, section 5).
+//! Position functions: local time τ in [0, 1] to s, the place along the jump path (docs/folding.md, section 5).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,5 @@
 //! Where jump paths meet the fold regions. Along a path, membership of a region changes at the sides that the path
-//! crosses; the regions count as their union (folding.md, section 3).
+//! crosses; the regions count as their union (docs/folding.md, section 3).
 
 use kurbo::{Point, Rect, Vec2};
 

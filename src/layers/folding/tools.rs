@@ -1,4 +1,4 @@
-//! The tools of a zone's motion: what gives anchors, and what gives a dense field (folding.md, section 4).
+//! The tools of a zone's motion: what gives anchors, and what gives a dense field (docs/folding.md, section 4).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

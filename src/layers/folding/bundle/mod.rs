@@ -1,4 +1,4 @@
-//! Layers that fold as textures for other engines (folding.md, section 6): a color atlas, init and jump a zone, the
+//! Layers that fold as textures for other engines (docs/folding.md, section 6): a color atlas, init and jump a zone, the
 //! position functions, thresholds where paths need them, and what the manifest says about them.
 
 use std::any::Any;

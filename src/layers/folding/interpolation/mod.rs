@@ -1,4 +1,4 @@
-//! How anchors spread to the pixels between them (folding.md, section 4). A new method needs one variant here and one
+//! How anchors spread to the pixels between them (docs/folding.md, section 4). A new method needs one variant here and one
 //! file beside this one.
 //!
 //! Fields are evaluated in runs of neighboring pixels in a row: the outer loop is over anchors, the inner one over
