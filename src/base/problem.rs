@@ -15,6 +15,16 @@ pub enum Severity {
     Error,
 }
 
+/// What a program decides by; a person reads the message.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing is decided by it.
+    #[default]
+    Any,
+    /// A number that is too large for 64 bits of floating point.
+    TooLargeNumber,
+}
+
 /// Something wrong in a scene: where, what, and how to mend it.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Problem {
@@ -27,12 +37,15 @@ pub struct Problem {
     /// How to mend it, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
+    /// Its kind; not sent to other processes.
+    #[serde(skip)]
+    pub kind: Kind,
 }
 
 impl Problem {
     /// A problem that stops rendering.
     pub fn error(path: impl Into<String>, message: impl Into<String>) -> Self {
-        Problem { severity: Severity::Error, path: path.into(), message: message.into(), hint: None }
+        Problem { severity: Severity::Error, path: path.into(), message: message.into(), hint: None, kind: Kind::Any }
     }
 
     /// A problem that only deserves a word.

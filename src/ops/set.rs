@@ -1,4 +1,4 @@
-//! `plica set`: scripted edits, by the same patches as in the editor.
+//! `plica set`: scripted edits, all of them or none, by the same patches as in the editor.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -9,13 +9,13 @@ use serde_json::Value;
 use super::Context;
 use super::scene_options::{RecoveryOptions, SceneOptions};
 use crate::base::error::{Error, Result};
-use crate::base::problem::Problem;
+use crate::base::problem::{self, Problem};
 use crate::files::session::{Mode, Overwrite, Session, Taken};
 use crate::preview::editor::script;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, address};
 
-/// Set values in a scene, all of them or none
+/// Set values in a scene
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene
@@ -197,7 +197,7 @@ pub fn parse(setting: &str) -> Result<(&str, Value)> {
     // A number that JSON cannot hold must not become text.
     match crate::scene::json::parse(value) {
         Ok(json) => Ok((&setting[..at], json)),
-        Err(problem) if problem.message.contains("too large") => {
+        Err(problem) if problem.kind == problem::Kind::TooLargeNumber => {
             Err(Error::at(&setting[..at], format!("{value} is not a finite number")))
         }
         Err(_) => Ok((&setting[..at], Value::from(value))),

@@ -9,7 +9,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 use serde_json::{Map, Value};
 
 pub use crate::base::change::same;
-use crate::base::problem::Problem;
+use crate::base::problem::{Kind, Problem};
 
 /// How deep objects and lists may be nested.
 pub const MAX_DEPTH: usize = 64;
@@ -54,22 +54,25 @@ pub fn parse(text: &str) -> Result<Value, Problem> {
     value.and_then(|value| deserializer.end().map(|()| value)).map_err(|error| place(&error))
 }
 
-/// Messages of serde_json, and the same in plainer words.
+/// Messages of serde_json, and the same in plainer words: its `classify` does not tell them apart.
 const PLAINER: [(&str, &str); 6] = [
     ("EOF while parsing a value", "the text ends where a value was expected"),
     ("EOF while parsing an object", "the text ends within an object: a } is missing"),
     ("EOF while parsing a list", "the text ends within a list: a ] is missing"),
     ("EOF while parsing a string", "the text ends within a text: a \" is missing"),
-    ("number out of range", "the number is too large"),
+    (OUT_OF_RANGE, "the number is too large"),
     ("expected value", "expected a value: a number, a text in quotes, a list, an object"),
 ];
+
+const OUT_OF_RANGE: &str = "number out of range";
 
 fn place(error: &serde_json::Error) -> Problem {
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
     let what = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
     let plainer = PLAINER.iter().find(|(theirs, _)| *theirs == what).map_or(what, |(_, ours)| ours);
-    Problem::error("", format!("line {line}, column {column}: {plainer}"))
+    let kind = if what == OUT_OF_RANGE { Kind::TooLargeNumber } else { Kind::Any };
+    Problem { kind, ..Problem::error("", format!("line {line}, column {column}: {plainer}")) }
 }
 
 /// Reads one value at a given depth.
@@ -293,6 +296,19 @@ mod tests {
         assert!(parse(&deep(MAX_DEPTH)).is_ok());
         assert_eq!(parse(&deep(MAX_DEPTH + 1)).unwrap_err().message, "line 1, column 66: nested deeper than 64");
         assert!(parse(&deep(100_000)).is_err());
+    }
+
+    /// Fails if serde_json changes its words: then the table must follow.
+    #[test]
+    fn the_words_of_serde_json_are_known() {
+        let broken = ["", "{", "[", "\"", "[1e999]", "[x]"];
+        for ((theirs, ours), text) in PLAINER.iter().zip(broken) {
+            let error = serde_json::from_str::<Value>(text).unwrap_err().to_string();
+            assert_eq!(error.split(" at line").next(), Some(*theirs), "{text}");
+            let problem = parse(text).unwrap_err();
+            assert!(problem.message.ends_with(ours), "{text}: {problem:?}");
+            assert_eq!(problem.kind == Kind::TooLargeNumber, text == "[1e999]", "{text}");
+        }
     }
 
     #[test]
