@@ -10,6 +10,7 @@ use super::command::{Call, Command, Done, command};
 use super::yanking::{counted, too_many};
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
+use crate::tui::document::csv;
 use crate::tui::document::rows::{self, is_polar};
 use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
 use crate::tui::state::State;
@@ -25,7 +26,7 @@ pub const COMMANDS: &[Command] = &[command(
 
 /// The first row, if it contains no number.
 fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
-    table.first().filter(|first| first.iter().all(|field| rows::number(field).is_none()))
+    table.first().filter(|first| first.iter().all(|field| csv::number(field).is_none()))
 }
 
 fn fill(state: &mut State, call: &Call) -> Done {

@@ -7,8 +7,8 @@ use super::command::Done;
 use super::yanking::here;
 use super::{cells, obey};
 use crate::scene::field::{self, Kind};
+use crate::tui::document::csv;
 use crate::tui::document::pointers::{item_of, upward};
-use crate::tui::document::rows;
 use crate::tui::document::rows::Target;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::numbers;
@@ -32,15 +32,15 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     let in_table = state.cursor.focus == Pane::Table;
     let on_number = in_table && cells::current(state).is_some_and(|(_, cell)| cell.is_number());
     // A comma within one number is a decimal comma, as in an entry.
-    if let (true, Some(number)) = (on_number, rows::number(trimmed)) {
+    if let (true, Some(number)) = (on_number, csv::number(trimmed)) {
         return obey(state, &format!("put {}", numbers::exact(number)), None);
     }
     if state.cursor.selected_from.is_some() && in_table {
         let lines: Vec<&str> = trimmed.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-        let column = on_number && lines.iter().all(|line| rows::number(line).is_some());
+        let column = on_number && lines.iter().all(|line| csv::number(line).is_some());
         let rows: Vec<Vec<String>> = match column {
             true => lines.iter().map(|line| vec![(*line).to_owned()]).collect(),
-            false => rows::records(text)?.into_iter().map(|record| record.fields).collect(),
+            false => csv::records(text)?.into_iter().map(|record| record.fields).collect(),
         };
         return obey(state, &format!("fill {}", Value::from(rows)), None);
     }

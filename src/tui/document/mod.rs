@@ -1,6 +1,7 @@
 //! Views of a document: its nodes as rows and as a tree, its places, tables as text, and the open scene with its file.
 
 pub mod choice;
+pub mod csv;
 pub mod entry;
 pub mod open_scene;
 pub mod palette;
