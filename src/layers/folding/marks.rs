@@ -13,7 +13,7 @@ use crate::layers::parts::marks::{Look, Mark, Shape, View};
 
 /// The marks of a layer that need no synthesis.
 pub fn marks(layer: &PictureLayer, view: &View) -> Vec<Mark> {
-    let mut drawing = Drawing { view, marks: Vec::new() };
+    let mut drawing = Drawing::new(view);
     for (z, zone) in layer.zones.iter().enumerate() {
         drawing.zone(zone, &zone_path(z));
     }
@@ -25,13 +25,22 @@ pub fn zone_path(zone: usize) -> String {
     format!("/zones/{zone}")
 }
 
-struct Drawing<'a> {
-    view: &'a View,
-    marks: Vec<Mark>,
+/// Marks in the making.
+pub(super) struct Drawing<'a> {
+    /// What is to be shown.
+    pub view: &'a View,
+    /// What is there already.
+    pub marks: Vec<Mark>,
 }
 
-impl Drawing<'_> {
-    fn add(&mut self, look: &'static Look, path: &str, shape: Shape) {
+impl<'a> Drawing<'a> {
+    /// No marks yet.
+    pub fn new(view: &'a View) -> Self {
+        Drawing { view, marks: Vec::new() }
+    }
+
+    /// Adds a mark of what is at `path`, relative to the layer.
+    pub fn add(&mut self, look: &'static Look, path: &str, shape: Shape) {
         self.marks.push(Mark::new(look, path, shape));
     }
 

@@ -5,14 +5,14 @@ use kurbo::{Point, Vec2};
 
 use super::field::Field;
 use super::looks::{FIELD, ONION, PATH, PATHS, RESTING, SAMPLER, SAMPLERS, THRESHOLD, THRESHOLDS, WHEEL};
-use super::marks::zone_path;
+use super::marks::{Drawing, zone_path};
 use super::synth::{Synth, ZoneSynth};
-use crate::layers::parts::marks::{Look, Mark, Shape, VECTOR_COLORS, VECTORS, View, vector_color};
+use crate::layers::parts::marks::{Mark, Shape, VECTOR_COLORS, VECTORS, View, vector_color};
 
 /// The marks of a layer that need its synthesis.
 pub fn marks(synth: &Synth, view: &View) -> Vec<Mark> {
-    let mut drawing = Drawing { view, marks: Vec::new() };
-    synth.zones.iter().for_each(|zone| drawing.zone(zone, &zone_path(zone.index)));
+    let mut drawing = Drawing::new(view);
+    synth.zones.iter().for_each(|zone| drawing.pixels(zone, &zone_path(zone.index)));
     drawing.marks
 }
 
@@ -46,17 +46,8 @@ fn lattice(field: &Field, spacing: f64) -> impl Iterator<Item = Pixel> + '_ {
     })
 }
 
-struct Drawing<'a> {
-    view: &'a View,
-    marks: Vec<Mark>,
-}
-
 impl Drawing<'_> {
-    fn add(&mut self, look: &'static Look, path: &str, shape: Shape) {
-        self.marks.push(Mark::new(look, path, shape));
-    }
-
-    fn zone(&mut self, zone: &ZoneSynth, at: &str) {
+    fn pixels(&mut self, zone: &ZoneSynth, at: &str) {
         let view = self.view;
         if view.shows(WHEEL) {
             self.cells(&zone.field, at);
