@@ -9,7 +9,7 @@ use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
 use crate::render;
 
-/// Find every problem in a scene. A loop that snaps is reported too, but is no failure: it may be meant.
+/// Find every problem in a scene
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input
@@ -24,7 +24,8 @@ pub struct Args {
     reading: SceneOptions,
 }
 
-/// Prints the problems; fails if there are any (with `--lenient`, if one of them is an error).
+/// Prints the problems; fails if there are any (with `--lenient`, if one of them is an error: a loop that snaps, for one,
+/// may be meant).
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let (mut problems, loops) = problems(&args, context)?;
     let failing = problems.len();

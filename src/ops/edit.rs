@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::scene_options::{RecoveryOptions, SceneOptions};
 
-/// Edit a scene, or a picture, in the terminal.
+/// Edit a scene, or a picture, in the terminal
 #[derive(clap::Args)]
 pub struct Args {
     /// A scene, or a picture: its scene is the one beside it, which is made if missing

@@ -9,7 +9,7 @@ use crate::files;
 use crate::preview::editor::script;
 use crate::scene::{address, field};
 
-/// Print a value of a scene, or its default, as JSON
+/// Print a value of a scene
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input

@@ -38,39 +38,24 @@ mod writing;
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
+#[allow(missing_docs, reason = "the comment on its arguments is the help of a subcommand")]
 pub enum Command {
-    /// Open a built-in demo scene
     Demo(demo::Args),
-    /// Make a scene from pictures
     New(new::Args),
-    /// Edit a scene, or a picture, in the terminal
     Edit(edit::Args),
-    /// Learn the terminal editor: a first animation, step by step
     Tutor(tutor::Args),
-    /// Set values in a scene
     Set(set::Args),
-    /// Print a value of a scene
     Get(get::Args),
-    /// Find every problem in a scene
     Check(check::Args),
-    /// Show what a pixel does at a time, and why
     Probe(probe::Args),
-    /// Render frames to numbered files, an animation or a stream
     Render(render::Args),
-    /// Write a scene's textures and their manifest for other engines
     Synth(synth::Args),
-    /// Open the preview window
     #[cfg(feature = "window")]
     View(view::Args),
-    /// Serve a scene to a window on another machine (plica view ssh://... starts this)
     Attach(attach::Args),
-    /// Plot the jump vectors, or write them as a table
     Field(field::Args),
-    /// Print the JSON Schema of a scene
     Schema(schema::Args),
-    /// Print the completions for a shell
     Completions(completions::Args),
-    /// Print the manual
     Man(man::Args),
 }
 

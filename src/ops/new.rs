@@ -9,7 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::files::{self, disk, paths, picture, write};
 use crate::scene::{Document, build::unique_name};
 
-/// Make a scene from pictures, one layer each, with one zone that covers it
+/// Make a scene from pictures
 #[derive(clap::Args)]
 pub struct Args {
     /// The pictures, lowest layer first (FILE.exr#LAYER is a layer of an OpenEXR); those in other folders are copied beside the

@@ -25,7 +25,7 @@ use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
 
-/// Render frames to numbered files, an animation, a video or a stream
+/// Render frames to numbered files, an animation or a stream
 #[derive(clap::Args)]
 #[command(after_help = outputs_help())]
 pub struct Args {
