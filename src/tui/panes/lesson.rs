@@ -14,7 +14,7 @@ use crate::tui::text::color;
 use crate::tui::text::wrap::width;
 use crate::tui::tutor::lessons::LESSONS;
 
-/// Draws it.
+/// Draws the lesson.
 pub fn draw(tutor: &Tutor, keymap: &Keymap, screen: Rect, buffer: &mut Buffer) {
     let rows = lesson::rows(tutor, keymap, screen);
     let area = Rect { y: screen.bottom() - rows, height: rows, ..screen };

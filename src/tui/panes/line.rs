@@ -12,7 +12,7 @@ use crate::tui::state::{Mode, State};
 use crate::tui::text::color;
 use crate::tui::text::wrap::{width, wrapped_lines};
 
-/// Draws it; the cursor is in the line being typed.
+/// Draws the line; the cursor is in what is being typed.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if let Mode::Line(line) = &state.typing.mode {
         write(buffer, area, 0, 0, &line.kind.to_string(), Style::new());

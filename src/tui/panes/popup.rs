@@ -97,7 +97,7 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     let most = usize::from(screen.height - 4);
     let all: usize = pages.lines.iter().take(most).map(|line| rows(line).len()).sum();
     let area = window(screen, wide, (all + 2).clamp(5, most) as u16, &title, buffer);
-    // The last page is full: as many lines from the end as have room.
+    // Scrolling ends when the last lines fill the page.
     let mut room = usize::from(area.height);
     let fits = |line: &&String| {
         let left = room.checked_sub(rows(line).len());

@@ -15,7 +15,7 @@ use crate::tui::state::State;
 use crate::tui::text::color;
 use crate::tui::text::numbers::{polar, short};
 
-/// Draws it.
+/// Draws the read-out.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let Some(probed) = &state.picture.probed else {
         write(buffer, area, 0, 0, "looking ...", color::faint());

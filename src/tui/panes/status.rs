@@ -14,7 +14,7 @@ use crate::tui::state::{Mode, Pane, State};
 use crate::tui::text::numbers::short;
 use crate::tui::text::wrap::{clipped, width};
 
-/// Draws it.
+/// Draws the status line.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let bar = Style::new().add_modifier(Modifier::REVERSED);
     buffer.set_style(area, bar);

@@ -1,4 +1,4 @@
-//! What happens outside, and the questions about it: (state of the disk, keys, what is there then).
+//! Conflicts about a scene: (files on the disk, keys, the result).
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::color::Depth;
 
-/// A scene on the disk, with its journal.
+/// A scene on disk, with its journal.
 struct Place {
     _folder: tempfile::TempDir,
     scene: PathBuf,
@@ -31,7 +31,7 @@ impl Place {
         State::new(scene, (80, 24), Depth::None)
     }
 
-    /// Another program puts `new` in the place of `old`.
+    /// Replaces `old` by `new` in the file, as another program would.
     fn outside(&self, state: &mut State, old: &str, new: &str) -> Vec<Effect> {
         let text = std::fs::read_to_string(&self.scene).unwrap();
         std::fs::write(&self.scene, text.replace(old, new)).unwrap();
@@ -43,7 +43,7 @@ impl Place {
     }
 }
 
-/// What is asked: the words that answer it, and what is told.
+/// The open question: the words that answer it, and its text.
 fn asked(state: &State) -> Option<(Vec<&str>, String)> {
     let Mode::Choice(choice) = &state.typing.mode else { return None };
     let Then::Answer(question) = &choice.then else { return None };
@@ -131,7 +131,7 @@ fn a_second_editor_is_told_and_looks_on() {
 pub fn what_another_program_writes_is_taken_in_merged_or_asked_about() {
     let radius = ("\"radius\": 60", "\"radius\": 61");
     let speed = ("\"cycles\": 0.5 }", "\"cycles\": 0.5 }, \"speed\": 7");
-    // Keys before, what is written outside, keys after; the speed, the radius, whether something is asked at first.
+    // Keys before, what is written outside, keys after; then the speed, the radius, and whether a question came first.
     for (before, (old, new), after, expected, asks) in [
         ("", radius, "", (1.0, 61), false),
         ("", radius, "u", (1.0, 60), false),

@@ -1,5 +1,4 @@
-//! What stands around the name of a command: each does something with a count or refuses it, and refuses words that it does
-//! not know, by name.
+//! Counts and arguments: each command uses a count or refuses it, and refuses words that it does not know, by name.
 
 use std::collections::BTreeSet;
 
@@ -100,14 +99,14 @@ pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
             let mut state = if line.contains("problem") { state_of(super::told::TWO_PROBLEMS) } else { state() };
             press(&mut state, keys);
             for _ in 0..times {
-                // What cannot be done twice has nothing to repeat.
+                // What can be done only once has nothing to repeat.
                 let _ = obey(&mut state, line, None);
             }
             everything(&state)
         };
         let (once, twice, counted) = (run(1, line), run(2, line), run(1, &format!("2 {line}")));
         assert!(counted != once, "{keys} : {line} ignores its count");
-        // These go to a row, take so many, or keep what is in sight as round as it can be.
+        // These go to a row, take so many rows, or round what is visible.
         let uses = [
             "move first",
             "move last",
@@ -138,7 +137,7 @@ pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
             }
             Counts::Never => {}
         }
-        // The words, if they are all that there is, that take none.
+        // The words that take no count, if the command takes only words.
         let words = command.words().map_or(vec![""], |(words, _)| if words.is_empty() { vec![""] } else { words });
         let counted = |word: &&str| match command.counts {
             Counts::Always => true,

@@ -1,6 +1,5 @@
-//! Every command has a case (scene, keys, scene). To add one: write a row into a table of `check` in a file of tests, in a
-//! test function of its own or of others, and name that function in [`TABLES`]. What the tables run is seen in
-//! `obey`, so nobody writes down which command a row is about.
+//! Checks that every command has a case (scene, keys, scene). To add one, write a row into a table of `check` in a test
+//! function, and name that function in [`TABLES`]. Which commands the rows run is recorded by `obey`.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -49,7 +48,7 @@ thread_local! {
     static RAN: RefCell<BTreeSet<String>> = const { RefCell::new(BTreeSet::new()) };
 }
 
-/// A command was run, on this thread.
+/// Notes that a command was run on this thread.
 pub fn ran(name: &str) {
     RAN.with_borrow_mut(|ran| ran.insert(name.to_owned()));
 }

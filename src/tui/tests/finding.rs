@@ -19,7 +19,7 @@ fn place(state: &State) -> String {
         .map_or(row.pointer, |cell| format!("{} {}", cell.pointer, cell.head).trim().to_owned())
 }
 
-/// Keys from the opened editor, the place that they lead to, and a part of what is said there.
+/// Keys from the opened editor, the place that they lead to, and a part of the message there.
 fn leads(rows: &[(&str, &str, &str)]) {
     for (keys, expected, said) in rows {
         let mut state = state();

@@ -1,4 +1,4 @@
-//! Lines: what keys do can be said, and the log of a session leads to the same scene.
+//! Lines do what keys do, and the log of a session leads to the same scene.
 
 use crate::tui::commands::contexts::contexts;
 use serde_json::{Value, json};
@@ -47,7 +47,7 @@ pub fn nodes_are_reached_by_collapsing_and_going_up() {
         ("h d", "/layers/0/zones/0/name", json!("mouth")),
         ("h h D", "/layers/1/name", json!("face 2")),
         ("h l l i \"x\" Enter", &zone("/name"), json!("x")),
-        // As these commands were called before.
+        // The earlier names of these commands.
         (": \"fold\" Enter : \"2 open\" Enter i \"x\" Enter", &zone("/name"), json!("x")),
         (&motion("Backspace g g i \"x\" Enter"), &zone("/name"), json!("x")),
         (&motion("g i + l r"), &zone("/motion/0/at"), json!([31.5, 25.5])),
@@ -151,7 +151,7 @@ fn a_step_of_undo_is_the_same_when_the_log_is_replayed() {
     }
 }
 
-/// All that the log has to lead to.
+/// Everything that running the log again must reproduce.
 #[derive(Debug, PartialEq)]
 struct Place(String, usize, usize, Option<usize>, i32, Pane);
 
@@ -166,7 +166,7 @@ fn place(state: &State) -> Place {
     )
 }
 
-/// A key as somebody might press it who does not know any: one that means something here, or something to type.
+/// A random key: one that means something here, or something to type.
 fn any_key(state: &State, next: &mut impl FnMut(usize) -> usize) -> String {
     let typed: &[&str] = match &state.typing.mode {
         Mode::Entry(_) => &["\"7\" Enter", "\"+=3\" Enter", "\"*0.5\" Tab", "\"w/2\" Enter", "\"nonsense\" Enter"],

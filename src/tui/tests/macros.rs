@@ -1,4 +1,4 @@
-//! Macros, and `.`.
+//! Macros, and repeating the last change with `.`.
 
 use serde_json::{Value, json};
 

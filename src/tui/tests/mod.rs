@@ -24,8 +24,8 @@ mod tutor;
 mod undoing;
 pub mod windows;
 
-/// Keys from the opened editor (the tree, on the first zone), a place of the scene, and what stands there after them. The
-/// log of these keys leads to the same scene.
+/// Rows of keys from the opened editor (in the tree, on the first zone), a place of the scene, and its value after them. Also
+/// checks that the log of these keys leads to the same scene.
 fn check(rows: &[(&str, &str, Value)]) {
     for (keys, pointer, expected) in rows {
         let mut state = state();
@@ -235,7 +235,7 @@ fn escape_ends_one_thing_after_the_other() {
         };
         assert_eq!(now, expected, "after {left}");
     }
-    // Whoever presses Esc by habit and then d deletes the row, not all that holds it.
+    // Esc pressed by habit does not leave the row, so that d then deletes only the row.
     check(&[(&motion("Esc Esc d"), &zone("/motion/2/tool"), json!("scale"))]);
 }
 

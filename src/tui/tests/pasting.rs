@@ -92,7 +92,7 @@ fn every_kind_of_node_can_be_yanked_and_pasted() {
             if field::value(&whole, &child.pointer).is_none_or(|value| value.is_null()) {
                 continue;
             }
-            // One of each kind of thing in each kind of place.
+            // One place for each kind of value.
             let place: Vec<&str> = holder.split('/').filter(|token| token.parse::<usize>().is_err()).collect();
             if !seen.insert(format!("{place:?} {} {:?}", child.field.help, child.field.kind)) {
                 continue;

@@ -1,4 +1,4 @@
-//! Seeing without a window: zoom and pan, the picture in every protocol, within its bound of bytes.
+//! The picture in the terminal: zoom and pan, every protocol, the limit of bytes, the read-out of a pixel.
 
 use crate::scene::Edit;
 use crate::tui::layout;
@@ -148,7 +148,7 @@ fn what_lies_over_a_picture_is_not_painted_over() {
             let cell = found.cell(at).unwrap();
             cell.diff_option == CellDiffOption::Skip || cell.symbol().contains('\x1b')
         });
-        // Kitty's picture is sent once, with its first cell; the others give way.
+        // Kitty's picture is sent once, with its first cell; other protocols give way.
         assert_eq!(pixels.count(), usize::from(protocol == Protocol::Kitty), "{protocol:?}");
         let text: String = found.content().iter().map(|cell| cell.symbol()).collect();
         assert!(text.contains("Go to the tree"), "{protocol:?}");
@@ -297,7 +297,7 @@ fn every_zone_has_its_curve_and_few_rows_its_place() {
     assert!(text.contains("a left eye s 0.707"), "{text}");
 }
 
-/// Outside pictures and fields a screen has the same letters with and without colors, and only the terminal's own 16.
+/// Outside pictures and fields, a screen has the same text with and without colors, and only the terminal's own 16 colors.
 #[test]
 fn colors_say_nothing_by_themselves() {
     let chrome = |state: &State| {

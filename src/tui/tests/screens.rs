@@ -1,4 +1,4 @@
-//! The screens of the main states as text, held against tests/screens. PLICA_UPDATE=1 writes them anew.
+//! Compares the screens of the main states with tests/screens. PLICA_UPDATE=1 writes these files again.
 
 use crate::tui::graphics::probed;
 use std::path::Path;
@@ -53,7 +53,7 @@ pub fn opened(size: (u16, u16)) -> State {
     state
 }
 
-/// What the worker would answer to what the panes want.
+/// Answers the request of the panes as the worker would.
 pub fn see(state: &mut State) {
     let shade = |i: usize| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, 0.3, 1.0];
     let picture = Arc::new(Picture::from_cells(64, 64, (0..64 * 64).map(shade).collect()));
@@ -73,7 +73,7 @@ pub fn see(state: &mut State) {
     }
 }
 
-/// What is on the screen, the cursor's place below.
+/// The text of the screen, with the cursor's place below.
 pub fn screen(state: &State) -> String {
     let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
     terminal.draw(|frame| view::draw(frame, state)).unwrap();
@@ -88,7 +88,7 @@ pub fn screen(state: &State) -> String {
     format!("{text}cursor {} {}\n", cursor.x, cursor.y)
 }
 
-/// The screen, where it is not as it is kept under this name.
+/// The screen, if it differs from the file of this name.
 pub fn changed(name: &str, state: &State) -> Option<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens");
     let path = folder.join(format!("{name}-{}x{}.txt", state.size.0, state.size.1));

@@ -1,4 +1,4 @@
-//! What the tests of the editor share: a scene, and keys typed as the manual writes them.
+//! What the tests of the editor share: a scene, pressing keys, and looking at the result.
 
 use std::sync::LazyLock;
 
@@ -13,7 +13,7 @@ use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
 
-/// A scene with one of everything that the keys meet.
+/// A scene with one of everything that the tests need.
 pub const SCENE: &str = r#"{
   "plica": 1,
   "timeline": { "duration": 2, "fps": 10 },
@@ -40,7 +40,7 @@ pub const SCENE: &str = r#"{
   ]
 }"#;
 
-/// What a window says.
+/// A message of a window.
 pub fn said(message: ToEditor) -> Event {
     Event::Window(editor::Event::Said(message))
 }
@@ -66,7 +66,7 @@ pub fn state_of(text: &str) -> State {
     State::new(OpenScene::in_memory(&path), (80, 24), Depth::None)
 }
 
-/// Presses keys, written with spaces between them; `"text"` types text. Gives all effects.
+/// Presses keys, which are separated by spaces; `"text"` types text. Returns all effects.
 pub fn press(state: &mut State, keys: &str) -> Vec<Effect> {
     let mut effects = Vec::new();
     for (i, part) in keys.split('"').enumerate() {
@@ -98,7 +98,7 @@ pub fn said_last(state: &State) -> (bool, String) {
     state.message.as_ref().map_or((false, String::new()), |message| (message.bad, message.text.clone()))
 }
 
-/// Another editor on [`SCENE`] that has run the lines of this one's log.
+/// Another editor on [`SCENE`] that has run the log of this one.
 pub fn replayed(state: &State) -> State {
     let mut other = self::state();
     for line in state.memory.recorder.log().iter().filter(|line| !line.starts_with('#')) {

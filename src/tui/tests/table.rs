@@ -1,4 +1,4 @@
-//! Tables in little room: whole numbers, whole columns, the row that is meant in sight.
+//! Narrow tables: whole numbers, whole columns, and the row under the cursor is visible.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -8,7 +8,7 @@ use super::support::{press, state, state_of};
 use crate::tui::panes;
 use crate::tui::state::{Pane, State};
 
-/// The table alone in so many columns, line by line.
+/// The lines of the table alone, at this width.
 fn table(state: &State, width: u16) -> Vec<String> {
     let mut buffer = Buffer::empty(Rect::new(0, 0, width, 8));
     panes::table::draw(state, buffer.area, &mut buffer);
@@ -142,7 +142,7 @@ fn all_rows_are_selected_where_the_cursor_stays() {
     assert_eq!(state.message.clone().unwrap().text, "2 of 3 rows have x");
     press(&mut state, "+");
     assert_eq!(state.message.clone().unwrap().text, "2 of 3 rows have x");
-    // The cursor goes about, and all stay selected.
+    // The cursor moves, and all rows stay selected.
     press(&mut state, "k d");
     assert_eq!(state.document().json().pointer("/layers/0/zones/0/motion"), Some(&json!([])));
 }

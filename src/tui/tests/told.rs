@@ -1,4 +1,4 @@
-//! What the editor tells: messages to their end, problems, the help of a command; and what may be pasted and typed.
+//! Messages, problems, the help of a command, pages; and pasting and typing.
 
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;

@@ -1,4 +1,4 @@
-//! The tutor: every lesson is done by the keys that it names, and by nothing before them.
+//! The tutor: the keys of each lesson complete it, and not before the last of them.
 
 use super::support::press;
 use crate::files::Options;
@@ -26,7 +26,7 @@ fn begun() -> (tempfile::TempDir, State) {
     (folder, state)
 }
 
-/// Does what the runner would do, as far as the lessons look at it.
+/// Performs effects as the editor would, as far as lessons depend on them.
 fn perform(state: &mut State, effects: Vec<Effect>) {
     for effect in effects {
         match effect {
@@ -47,7 +47,7 @@ fn at(state: &State) -> usize {
     state.tutor.as_ref().map_or(0, |tutor| tutor.at)
 }
 
-/// The line of the closed lid is dark from one corner of the eye to the other, and below it nothing is.
+/// Checks that the line of the closed lid is dark from one corner of the eye to the other, with nothing below it.
 fn lid_is_closed(state: &State) {
     let scene = state.document().scene();
     let loaded = materials::load(state.scene.path(), scene, &Options::default(), &mut materials::Cache::default());
@@ -97,7 +97,7 @@ pub fn lessons_are_gone_through_by_command() {
         press(&mut state, &format!(": \"tutor {line}\" Enter"));
         assert_eq!(at(&state), expected, "{line}");
     }
-    // One that was done before stays until it is done again.
+    // A lesson that was done before stays until it is done again.
     let keys: Vec<String> = LESSONS[0].keys.iter().map(|press| press.label(&state.keymap)).collect();
     for key in keys {
         press(&mut state, &key);

@@ -1,4 +1,4 @@
-//! What the editor and its windows share: time, and the point that is marked in a window.
+//! What the editor and its windows share: the time, and the point that is marked in a window.
 
 use serde_json::json;
 

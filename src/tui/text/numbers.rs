@@ -1,5 +1,5 @@
-//! Numbers and vectors as people read them: short decimals, polar columns (length, and degrees counter-clockwise from
-//! x as on paper, so that a jump of (0, -18) points up at 90 degrees).
+//! Numbers and vectors for people: short decimals, and polar coordinates (length, and degrees counter-clockwise from x as on
+//! paper, so that a jump of (0, -18) points up at 90 degrees).
 
 use kurbo::Vec2;
 
@@ -8,13 +8,13 @@ use crate::base::{maths, text};
 /// The most decimals that a table shows; an entry shows all of them.
 const DECIMALS: usize = 3;
 
-/// `value` with at most three decimals and no needless zeros.
+/// `value` with at most three decimals and no trailing zeros.
 pub fn short(value: f64) -> String {
     text::short(value, DECIMALS)
 }
 
-/// `value` as a table shows what stands in the file: whole where three decimals say all of it, else rounded, with a mark
-/// that says so: a cell is edited, and whoever reads `0.123` would take that for what is in the file.
+/// `value` as a table shows it: exact if three decimals are enough, else rounded with a mark. Without the mark one would take
+/// `0.123` for the value in the file.
 pub fn shown(value: f64) -> String {
     const LONGEST: usize = 12;
     let text = short(value);
@@ -22,7 +22,7 @@ pub fn shown(value: f64) -> String {
     if whole(&text) && text.len() <= LONGEST {
         return text;
     }
-    // Far from 1 three decimals say nothing, or take too much room.
+    // Far from 1, three decimals show nothing or take too much room.
     let far = value != 0.0 && !(0.0005..1e9).contains(&value.abs());
     let text = if far { format!("{value:.3e}") } else { text };
     let text = text.split_once('e').map_or(text.clone(), |(digits, power)| {
@@ -31,7 +31,7 @@ pub fn shown(value: f64) -> String {
     if whole(&text) { text } else { format!("~{text}") }
 }
 
-/// `text` of a number in at most so many characters: with fewer decimals and a mark, else as a power of ten.
+/// The text of a number shortened to this many characters: with fewer decimals and a mark, else as a power of ten.
 pub fn fitted(text: &str, room: usize) -> String {
     if text.chars().count() <= room {
         return text.to_owned();
@@ -42,19 +42,19 @@ pub fn fitted(text: &str, room: usize) -> String {
     rounded.into_iter().find(|text| text.len() <= room).unwrap_or_else(|| "…".into())
 }
 
-/// `value` with all its decimals, as it is written in the file.
+/// `value` with all its decimals, as in the file.
 pub fn exact(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e15 { format!("{value:.0}") } else { value.to_string() }
 }
 
-/// Length and direction in degrees of (dx, dy); direction 0 where there is no length.
+/// Length and direction of a vector, in degrees; the direction is 0 if the length is.
 pub fn polar(vector: Vec2) -> (f64, f64) {
     let length = tidy(vector.hypot2().sqrt());
     let degrees = if length == 0.0 { 0.0 } else { tidy(maths::atan2(0.0 - vector.y, vector.x).to_degrees()) };
     (length, degrees + 0.0)
 }
 
-/// The vector of a length and a direction in degrees; quarter turns are exact.
+/// The vector with a length and a direction in degrees; quarter turns are exact.
 pub fn cartesian(length: f64, degrees: f64) -> Vec2 {
     let turn = degrees.rem_euclid(360.0);
     let (x, y) = match turn {
@@ -67,7 +67,7 @@ pub fn cartesian(length: f64, degrees: f64) -> Vec2 {
     Vec2::new(tidy(length * x), tidy(length * y))
 }
 
-/// `vector` with another length in its own direction; along x where it has none.
+/// `vector` with another length in the same direction; along x if it has no direction.
 pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
     let (old, _) = polar(vector);
     if old == 0.0 {
@@ -77,7 +77,7 @@ pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
     }
 }
 
-/// A number computed by the editor, without the last noise of floating point.
+/// Rounds away the floating-point noise of a computed number.
 pub fn tidy(value: f64) -> f64 {
     let rounded = (value * 1e9).round() / 1e9;
     if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
