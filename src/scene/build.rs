@@ -8,6 +8,7 @@ use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
 use super::{Document, field, pointer, shape};
 use crate::layers::KINDS;
+use crate::layers::parts::materials::List;
 use crate::layers::space::camera;
 use crate::layers::technique::{Kind, Starts, Technique, Turned};
 
@@ -71,11 +72,17 @@ impl Edit {
         (from < items.len() && index < items.len()).then(|| (Edit::moved(path, &to), to))
     }
 
-    /// Renames an image of the scene, everywhere.
-    pub fn rename_image(document: &Document, from: &str, to: &str) -> Edit {
-        let named = document.scene().users_of_image(from).map(|path| Edit::replace(&path, to.into()));
-        let images = |name| pointer::join("/images", name);
-        Edit::all(std::iter::once(Edit::moved(&images(from), &images(to))).chain(named))
+    /// Renames an image or a mesh of the scene, everywhere.
+    pub fn rename(document: &Document, list: List, from: &str, to: &str) -> Edit {
+        let named = document.scene().users_of(list, from).map(|path| Edit::replace(&path, to.into()));
+        let at = |name| pointer::join(&format!("/{}", list.words().0), name);
+        Edit::all(std::iter::once(Edit::moved(&at(from), &at(to))).chain(named))
+    }
+
+    /// Writes the optional object at `path` with only the fields that it must have. `None` if there is no such place.
+    pub fn begin(document: &Document, path: &str) -> Option<Edit> {
+        let place = Place::of(document.json(), path)?;
+        Some(write(document, path, Fresh::at(document, path).value(place.shape)))
     }
 }
 

@@ -81,9 +81,9 @@ impl Scene {
         })
     }
 
-    /// Pointers to where layers name the image `name`.
-    pub fn users_of_image<'a>(&'a self, name: &'a str) -> impl Iterator<Item = String> + 'a {
-        self.uses().filter(move |used| used.of == Of::Name(List::Images, name)).map(|used| used.at)
+    /// Pointers to where layers name what is called `name` in a list of the scene.
+    pub fn users_of<'a>(&'a self, list: List, name: &'a str) -> impl Iterator<Item = String> + 'a {
+        self.uses().filter(move |used| used.of == Of::Name(list, name)).map(|used| used.at)
     }
 }
 

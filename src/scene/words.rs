@@ -221,6 +221,7 @@ mod tests {
 
     use super::super::{Document, address};
     use super::*;
+    use crate::layers::parts::materials::List;
 
     fn squint() -> Document {
         Document::parse(include_str!("../../tests/scenes/good/squint.plica.json")).unwrap()
@@ -255,7 +256,7 @@ mod tests {
                 "left eye · motion 0 moved to place 2",
             ),
             (Edit::default(), "nothing"),
-            (Edit::rename_image(&document, "cat", "dog"), "scene · images cat renamed to dog (and 1 more)"),
+            (Edit::rename(&document, List::Images, "cat", "dog"), "scene · images cat renamed to dog (and 1 more)"),
         ] {
             assert_eq!(in_short(document.json(), &edit), expected);
         }

@@ -43,6 +43,14 @@ pub enum List {
 }
 
 impl List {
+    /// The list, and the name in it, that a pointer of the scene leads to; `None` for other places, and for layers, which
+    /// are in a list by their order.
+    pub fn entry(pointer: &str) -> Option<(List, String)> {
+        let (list, name) = pointer.strip_prefix('/')?.split_once('/').filter(|(_, name)| !name.contains('/'))?;
+        let list = [List::Images, List::Meshes].into_iter().find(|known| known.words().0 == list)?;
+        Some((list, name.replace("~1", "/").replace("~0", "~")))
+    }
+
     /// Its name in the document, and what an item of it is.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {

@@ -1,5 +1,6 @@
 //! Edits: what they do, their inverses, and that every tag, list and field can be edited.
 
+use crate::layers::parts::materials::List;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -157,10 +158,13 @@ fn items_are_duplicated_moved_and_taken_away() {
 }
 
 #[test]
-fn an_image_is_renamed_everywhere() {
-    let renamed = there_and_back(&everything(), &Edit::rename_image(&everything(), "cat", "dog/1")).unwrap();
+fn images_and_meshes_are_renamed_everywhere() {
+    let renamed = there_and_back(&everything(), &Edit::rename(&everything(), List::Images, "cat", "dog/1")).unwrap();
     assert!(!renamed.to_text().contains("\"cat\""));
     assert_eq!(renamed.scene().images["dog/1"].path, "cat.png");
+    let edit = Edit::rename(&everything(), List::Meshes, "mug", "cup");
+    let renamed = there_and_back(&everything(), &edit).unwrap();
+    assert!(!renamed.to_text().contains("\"mug\""));
 }
 
 #[test]

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json as value};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
+use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
 use crate::tui::document::choice;
@@ -86,15 +87,18 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
 fn add(state: &mut State, call: &Call) -> Done {
     match call.path()? {
         None => add_here(state, call.times_of("add")?),
-        Some(path) => add_picture(state, &path.to_string_lossy()),
+        Some(path) => add_file(state, &path.to_string_lossy()),
     }
 }
 
-/// Adds the picture of a file (relative to the scene), under the file's name.
-fn add_picture(state: &mut State, path: &str) -> Done {
+/// Adds a picture or a mesh from a file (relative to the scene), under the file's name.
+fn add_file(state: &mut State, path: &str) -> Done {
     let entry = (stem(path).to_owned(), value!({ "path": path }));
-    let added = Edit::insert_entries(state.document(), "/images", [entry].into_iter().collect());
-    let (edit, pointer) = added.ok_or("there is no list of pictures")?;
+    let extension = path.rsplit('.').next().unwrap_or_default().to_lowercase();
+    let list = if MESHES.contains(&extension.as_str()) { List::Meshes } else { List::Images };
+    let map = format!("/{}", list.words().0);
+    let added = Edit::insert_entries(state.document(), &map, [entry].into_iter().collect());
+    let (edit, pointer) = added.ok_or("there is no list for it")?;
     state.edit(edit, false)?;
     go_to(state, &pointer);
     Ok(())
@@ -125,10 +129,10 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         }
         (Kind::Object, false) => add_object(state, &pointer),
         (Kind::List(_), _) => insert(state, &pointer.clone(), end(), times),
-        (Kind::Map(_), _) => ask_for_path(state),
+        (Kind::Map(_), _) => ask_for_path(state, &pointer),
         _ => match item_of(state.document(), &pointer).map(owned) {
             Some((list, index)) => insert(state, &list, index + 1, times),
-            None if pointer.starts_with("/images/") => ask_for_path(state),
+            None if List::entry(&pointer).is_some() => ask_for_path(state, &pointer),
             None if state.cursor.focus == Pane::Tree => {
                 Err("o adds to lists: go to a list or to one of its items".into())
             }
@@ -140,18 +144,16 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
     }
 }
 
-fn ask_for_path(state: &mut State) -> Done {
+fn ask_for_path(state: &mut State, pointer: &str) -> Done {
+    let what = if pointer.starts_with("/meshes") { "mesh" } else { "picture" };
     state.typing.mode = Mode::Line(Line::with("add "));
-    state.say("the picture's file, relative to the scene (Tab completes)");
+    state.say(format!("the {what}'s file, relative to the scene (Tab completes)"));
     Ok(())
 }
 
-/// Adds an optional object, with the one field that it must have.
+/// Adds an optional object, with the fields that it must have.
 fn add_object(state: &mut State, pointer: &str) -> Done {
-    let document = state.document();
-    let image = document.scene().images.keys().next().cloned();
-    let image = image.ok_or("the scene has no images: add one first")?;
-    let edit = Edit::set(document, &format!("{pointer}/image"), image.into());
+    let edit = Edit::begin(state.document(), pointer).ok_or("nothing can be added here")?;
     state.edit(edit, false)
 }
 
@@ -270,7 +272,7 @@ pub fn insert_entries(
 fn duplicate(state: &mut State, call: &Call) -> Done {
     let times = call.times_of("duplicate")?;
     let path = target(state)?;
-    if let Some((map, name)) = pointer::split(&path).filter(|(map, _)| *map == "/images") {
+    if let Some((map, name)) = pointer::split(&path).filter(|_| List::entry(&path).is_some()) {
         let value = field::value(state.document(), &path).unwrap_or(Value::Null);
         let entry = [(name, value)].into_iter().collect();
         let (edit, path) = insert_entries(state, map, &entry, times)?.ok_or("there is nothing to duplicate here")?;
@@ -317,19 +319,22 @@ fn reorder(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Refuses to delete a picture that is used.
+/// Refuses to delete a picture or a mesh that is used.
 fn unused(document: &Document, path: &str) -> Done {
-    let Some((_, name)) = pointer::split(path).filter(|(map, _)| *map == "/images") else { return Ok(()) };
-    let users = document.scene().users_of_image(&name);
+    let Some((list, name)) = List::entry(path) else { return Ok(()) };
+    let users = document.scene().users_of(list, &name);
     let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();
     match users.as_slice() {
         [] => Ok(()),
         [first, rest @ ..] => {
             let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
-            Err(plain(&format!("{name} is used by {first}{more}: choose another picture there first")))
+            Err(plain(&format!("{name} is used by {first}{more}: choose another {} there first", list.words().1)))
         }
     }
 }
+
+/// The extensions of files with meshes; `model.glb#0` is a picture in one.
+const MESHES: [&str; 3] = ["obj", "glb", "gltf"];
 
 /// The name of a file without folder and extension.
 pub fn stem(path: &str) -> &str {

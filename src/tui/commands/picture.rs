@@ -23,7 +23,7 @@ pub const COMMANDS: &[Command] = &[
         "Show or set how the picture is sent to the terminal",
         graphics,
     ),
-    command("pass", "[NAME[:LAYER]]", "Show what the picture is made from in place of it: depth, normal, ...", pass),
+    command("pass", "[NAME[:LAYER]]", "Show depth, normals or another pass in place of the picture", pass),
     command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
 ];
 

@@ -27,7 +27,7 @@ pub fn pictures_and_names_come_and_go() {
     ]);
     for (keys, words) in [
         (format!("{images} d"), "cat is used by layers.face.image: choose another"),
-        (format!("{images} D : \"rename cat\" Enter"), "there is already a picture \"cat\""),
+        (format!("{images} D : \"rename cat\" Enter"), "there is already an image \"cat\""),
         (motion("R"), "this has no name"),
     ] {
         let mut state = state();
