@@ -56,6 +56,17 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "Right", "pan-right", "Shows more on the right"),
     row(WINDOW, "Up", "pan-up", "Shows more above"),
     row(WINDOW, "Down", "pan-down", "Shows more below"),
+    row(WINDOW, "4", "orbit-left", "The window's own camera round to the left; so does a drag with the middle button"),
+    row(WINDOW, "6", "orbit-right", "Round to the right"),
+    row(WINDOW, "8", "orbit-up", "Round over the top"),
+    row(WINDOW, "2", "orbit-down", "Round below"),
+    row(WINDOW, "9", "dolly-nearer", "Nearer to what it looks at; so does the wheel with Alt"),
+    row(WINDOW, "3", "dolly-farther", "Farther away"),
+    row(WINDOW, "h", "walk-left", "Walks to the left; a drag with Shift moves it along"),
+    row(WINDOW, "l", "walk-right", "Walks to the right"),
+    row(WINDOW, "k", "walk-forward", "Walks forward"),
+    row(WINDOW, "j", "walk-back", "Walks back"),
+    row(WINDOW, "0", "own-view-off", "The scene's camera again"),
     row(WINDOW, "F11", "view-full-screen", "The whole screen"),
     row(WINDOW, "Enter", "mark-point", "Marks the pointer's place, for the editor"),
     row(WINDOW, "Space", "select-point", "Selects what is under the pointer; so does a click"),
@@ -68,7 +79,7 @@ const OWN: &[KeyRow] = &[
 
 /// Whether a command repeats while its key is held: steps and moves do, a switch would flicker.
 pub fn repeats(command: &str) -> bool {
-    let steps = ["frame-", "zoom-in", "zoom-out", "pan-", "wipe-", "field-"];
+    let steps = ["frame-", "zoom-in", "zoom-out", "pan-", "wipe-", "field-", "orbit-", "dolly-", "walk-"];
     steps.iter().any(|step| command.starts_with(step))
 }
 
@@ -87,6 +98,8 @@ mod tests {
     #[test]
     fn only_what_steps_and_moves_goes_on_while_a_key_is_held() {
         let held: Vec<&str> = KEYS.iter().filter(|row| repeats(row.command)).map(|row| row.key).collect();
-        assert_eq!(held, ["[", "]", ",", ".", "(", ")", "+", "-", "Left", "Right", "Up", "Down"]);
+        let own = ["4", "6", "8", "2", "9", "3", "h", "l", "k", "j"];
+        let steps = ["[", "]", ",", ".", "(", ")", "+", "-", "Left", "Right", "Up", "Down"];
+        assert_eq!(held, [&steps[..], &own].concat());
     }
 }

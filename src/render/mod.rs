@@ -9,6 +9,8 @@ use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::{CENTRE, Moment};
 use crate::layers::ready::{Making, Ready, Texture, Textures};
+#[cfg(feature = "window")]
+use crate::layers::space::camera::Camera;
 use crate::scene::Scene;
 
 pub mod bands;
@@ -40,6 +42,13 @@ impl Synth {
     /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64) -> Moment {
         self.stage.moment(t, self.size)
+    }
+
+    /// The same, seen by another camera.
+    #[cfg(feature = "window")]
+    pub fn seen_from(&self, camera: Camera) -> Synth {
+        let stage = Stage { camera: Some(camera), ..(*self.stage).clone() };
+        Synth { stage: Arc::new(stage), ..self.clone() }
     }
 
     /// The same with nothing that moves.

@@ -57,6 +57,12 @@ impl Stage {
         Moment { t, size_px, eye: self.camera.as_ref().map(|camera| camera.at(t, size_px)) }
     }
 
+    /// The camera, if layers are seen by it.
+    pub fn seen_by(&self) -> Option<&Camera> {
+        let space = self.groups.iter().any(|group| matches!(group, Group::World(_)));
+        self.camera.as_ref().filter(|_| space)
+    }
+
     /// Only one of its layers, over nothing.
     pub fn only(&self, layer: usize) -> Stage {
         let group = |group: &Group| match group {

@@ -144,6 +144,7 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
     parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
+    parts.extend(state.own.map(|_| (5, "own view, 0 ends it".to_owned())));
     parts.push((1, "? keys".to_owned()));
     loop {
         let text = parts.iter().map(|(_, part)| part.as_str()).collect::<Vec<_>>().join("   ");
@@ -198,6 +199,11 @@ mod tests {
         }
         assert_eq!(first_that_fits(times(&state), 1.0, width), "");
         assert_eq!(right_text(&state, 999.0, width), "200 %   ? keys");
+        state.take_camera(Some(&Default::default()));
+        state.run("orbit-left");
+        assert_eq!(right_text(&state, 999.0, width), "200 %   own view, 0 ends it   ? keys");
+        assert_eq!(right_text(&state, width("own view, 0 ends it"), width), "own view, 0 ends it");
+        state.run("own-view-off");
         (state.fps, state.transport.whole_frames) = (Some(59.97), true);
         assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   200 %   ? keys");
         state.pointer = Some(Point::new(10.0, 43.0));

@@ -13,7 +13,7 @@ use winit::window::WindowId;
 
 use super::app::App;
 use super::input;
-use super::mouse::{Asked, Button};
+use super::mouse::{Asked, Button, Held};
 use super::opened::Opened;
 use super::worker::Event;
 use crate::base::error::{Error, Result};
@@ -148,7 +148,10 @@ impl ApplicationHandler<Event> for App {
                 self.opened.iter_mut().for_each(|o| o.covered = covered);
                 self.redraw();
             }
-            WindowEvent::ModifiersChanged(held) => self.held = held.state(),
+            WindowEvent::ModifiersChanged(held) => {
+                self.held = held.state();
+                self.mouse.hold(Held { alt: self.held.alt_key(), shift: self.held.shift_key() });
+            }
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {
                 if let Some(command) = input::command(&event.logical_key, self.held, event.repeat) {
                     self.key(event_loop, command);

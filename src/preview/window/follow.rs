@@ -73,6 +73,7 @@ impl App {
     fn load(&mut self, ready: &Ready) {
         let (width, height) = ready.synth.size;
         self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
+        self.state.take_camera(ready.synth.stage.seen_by());
     }
 
     fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, show: Show, reduced: Option<String>) {

@@ -46,6 +46,10 @@ enum Drag {
     #[default]
     Nothing,
     Picture,
+    /// The window's own camera, round its target.
+    Round,
+    /// The same, sideways and up.
+    Along,
     Time,
     Border,
 }
@@ -55,6 +59,13 @@ enum Drag {
 pub enum Button {
     Left,
     Middle,
+}
+
+/// The keys that change what it does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Held {
+    pub alt: bool,
+    pub shift: bool,
 }
 
 /// See the top of the file.
@@ -67,6 +78,8 @@ pub struct Mouse {
     clicked: Option<(Instant, Point)>,
     /// The fraction of a wheel step that has been turned so far.
     turned: f64,
+    /// Keys that are held with it.
+    held: Held,
     /// The first of two reports of one notch was counted.
     half_heard: bool,
 }
@@ -75,6 +88,11 @@ impl Mouse {
     /// Whether the time is dragged: then this window leads.
     pub fn drags_time(&self) -> bool {
         self.drag == Drag::Time
+    }
+
+    /// Other keys are held with it.
+    pub fn hold(&mut self, held: Held) {
+        self.held = held;
     }
 
     /// The pointer is at a place, or has left.
@@ -89,6 +107,8 @@ impl Mouse {
                     state.pan(pressed.unwrap_or(from) - to);
                 }
             },
+            (Drag::Round, Some(from), Some(to)) => state.drag_round(to - from),
+            (Drag::Along, Some(from), Some(to)) => state.drag_along(to - from),
             (Drag::Time, _, Some(to)) => scrub(state, to.x),
             (Drag::Border, _, Some(to)) => state.drag_wipe(to.x),
             _ => {}
@@ -99,7 +119,13 @@ impl Mouse {
     pub fn pressed(&mut self, state: &mut State, button: Button) -> Asked {
         let Some(at) = state.pointer else { return Asked::Nothing };
         if at.y < state.area().height {
-            self.drag = if button == Button::Left && on_border(state, at) { Drag::Border } else { Drag::Picture };
+            self.drag = match button {
+                _ if state.camera.is_some() && self.held.shift => Drag::Along,
+                Button::Middle if state.camera.is_some() => Drag::Round,
+                Button::Left if state.camera.is_some() && self.held.alt => Drag::Round,
+                Button::Left if on_border(state, at) => Drag::Border,
+                _ => Drag::Picture,
+            };
             self.pressed_at = (button == Button::Left && self.drag == Drag::Picture).then_some(at);
         } else if button == Button::Left {
             if bar::is_sign(state, at) {
@@ -124,7 +150,7 @@ impl Mouse {
         state.pointed().map_or(Asked::Nothing, Asked::Select)
     }
 
-    /// The wheel or a touchpad turned by `steps`: whole steps zoom about the pointer, fractions are kept until they add up to
+    /// The wheel or a touchpad turned by `steps`: whole steps zoom about the pointer, with Alt they move the camera; fractions are kept until they add up to
     /// one.
     pub fn turned(&mut self, state: &mut State, steps: f64) {
         if steps * self.turned < 0.0 {
@@ -134,9 +160,12 @@ impl Mouse {
         // A hair less than a step is one: parts of steps do not add up exactly.
         let whole = (self.turned + 1e-6_f64.copysign(self.turned)).trunc();
         self.turned -= whole;
-        if whole != 0.0 {
+        let whole = whole.clamp(-64.0, 64.0) as i32;
+        if whole != 0 && self.held.alt && state.camera.is_some() {
+            state.wheel_nearer(whole);
+        } else if whole != 0 {
             let middle = (state.area().to_vec2() / 2.0).to_point();
-            state.zoom(whole.clamp(-64.0, 64.0) as i32, state.pointer.unwrap_or(middle));
+            state.zoom(whole, state.pointer.unwrap_or(middle));
         }
     }
 
@@ -150,7 +179,7 @@ impl Mouse {
     pub fn shape(&self, state: &State) -> Shape {
         match (self.drag, state.pointer) {
             (Drag::Border, _) => Shape::Across,
-            (Drag::Picture, _) => Shape::Held,
+            (Drag::Picture | Drag::Round | Drag::Along, _) => Shape::Held,
             (Drag::Nothing, Some(at)) if at.y >= state.area().height && bar::is_sign(state, at) => Shape::Hand,
             (Drag::Nothing, Some(at)) if on_border(state, at) => Shape::Across,
             _ => Shape::Arrow,
@@ -171,6 +200,7 @@ fn scrub(state: &mut State, x: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layers::space::camera::Camera;
 
     /// Presses at one place, moves through the others, lets go at the last.
     fn drag(mouse: &mut Mouse, state: &mut State, button: Button, places: &[(f64, f64)], at: Instant) -> Asked {
@@ -181,6 +211,36 @@ mod tests {
             Asked::Nothing => asked,
             asked => asked,
         }
+    }
+
+    #[test]
+    fn in_space_the_middle_button_goes_round_and_shift_moves_along() {
+        let (now, scene) = (Instant::now(), Camera::default());
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
+        state.take_camera(Some(&scene));
+        let across = [(100.0, 100.0), (150.0, 100.0)];
+        for (button, alt, shift) in [
+            (Button::Middle, false, false),
+            (Button::Left, true, false),
+            (Button::Left, false, true),
+            (Button::Middle, false, true),
+        ] {
+            state.run("own-view-off");
+            mouse.hold(Held { alt, shift });
+            assert_eq!(drag(&mut mouse, &mut state, button, &across, now), Asked::Nothing);
+            let own = state.own_camera().unwrap();
+            assert_ne!(own.position, scene.position, "{button:?} {alt} {shift}");
+            assert_eq!(own.target != scene.target, shift, "{button:?} {alt} {shift}");
+        }
+        state.run("own-view-off");
+        mouse.hold(Held::default());
+        drag(&mut mouse, &mut state, Button::Left, &across, now);
+        mouse.turned(&mut state, 1.0);
+        assert_eq!(state.own_camera(), None, "these move the picture");
+        mouse.hold(Held { alt: true, shift: false });
+        let zoom = state.viewport.zoom;
+        mouse.turned(&mut state, 1.0);
+        assert!(state.own_camera().unwrap().position[2] < scene.position[2] && state.viewport.zoom == zoom);
     }
 
     #[test]

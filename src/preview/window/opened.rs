@@ -1,5 +1,6 @@
 //! What is open once there is something to show: the window with its GPU and surface, and one drawing of it.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,7 @@ use super::text::Letters;
 use super::x11::Desk;
 use super::{Manner, PLACE, chrome};
 use crate::base::error::{Error, Result};
+use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
 
@@ -150,7 +152,10 @@ impl Opened {
         } else {
             ((if state.shows("view-still") { &show.still } else { &show.frames }, time), None)
         };
-        let (frame, other) = self.gpu.textures(frame, other)?;
+        let own = state.own_camera();
+        let frame = (&*seen(frame.0, own.as_ref()), frame.1);
+        let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
+        let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
         Ok(Pictures { frame, other, scale: show.frame_scale })
     }
 
@@ -172,6 +177,11 @@ impl Opened {
         let rate = self.window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
         Duration::from_secs_f64(1.0 / rate.map_or(RATE, |r| f64::from(r) / 1000.0).max(1.0))
     }
+}
+
+/// A scene as the window's own camera sees it, if there is one.
+fn seen<'a>(synth: &'a Synth, own: Option<&Camera>) -> Cow<'a, Synth> {
+    own.map_or(Cow::Borrowed(synth), |camera| Cow::Owned(synth.seen_from(camera.clone())))
 }
 
 /// The size of a window around a picture, in physical pixels: as large as the picture is in logical ones.

@@ -38,6 +38,9 @@ impl State {
             self.transport.whole_frames = self.shows("view-whole-frames");
             return Outcome::Redraw;
         }
+        if self.steer(name) && wanted.is_none() {
+            return Outcome::Redraw;
+        }
         let area = self.area();
         let about = self.pointer.filter(|p| p.y < area.height).unwrap_or((area.to_vec2() / 2.0).to_point());
         let pan = |x: f64, y: f64| Vec2::new(x * area.width * PAN, y * area.height * PAN);

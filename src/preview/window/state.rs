@@ -2,9 +2,11 @@
 
 use kurbo::{Point, Size, Vec2};
 
+use super::own_view::OwnView;
 use super::transport::Transport;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
+use crate::layers::space::camera::Camera;
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
 
@@ -20,6 +22,10 @@ pub struct State {
     pub scale: f64,
     /// Size of the picture, in its pixels.
     pub picture: Size,
+    /// The scene's camera, if layers in space are seen by it.
+    pub camera: Option<Camera>,
+    /// Where the window looks from, if that is not where the scene's camera does.
+    pub own: Option<OwnView>,
     /// Zoom and place.
     pub viewport: Viewport,
     /// Playing.
@@ -74,6 +80,8 @@ impl Default for State {
             window: Size::ZERO,
             scale: 1.0,
             picture: Size::ZERO,
+            camera: None,
+            own: None,
             viewport: Viewport::default(),
             transport: Transport::default(),
             timeline: Timeline::default(),

@@ -1,0 +1,111 @@
+//! Keys and drags that steer the window's own camera.
+
+use kurbo::Vec2;
+
+use super::own_view::OwnView;
+use super::state::State;
+use crate::layers::space::camera::Camera;
+
+/// A key turns by this, in degrees.
+const TURN_DEGREES: f64 = 5.0;
+/// A drag over a logical pixel turns by this, in degrees.
+const DRAG_DEGREES: f64 = 0.4;
+/// A key walks by this share of the distance from the target.
+const WALK: f64 = 0.05;
+
+impl State {
+    /// Takes the camera that the scene's layers in space are seen by; without one there is nothing to steer.
+    pub fn take_camera(&mut self, camera: Option<&Camera>) {
+        self.camera = camera.cloned();
+        self.own = self.own.filter(|_| camera.is_some());
+    }
+
+    /// The camera to draw with where it is not the scene's.
+    pub fn own_camera(&self) -> Option<Camera> {
+        self.own.map(|own| own.camera())
+    }
+
+    /// Changes the window's own view, which begins as the scene's.
+    fn change_view(&mut self, change: impl FnOnce(&mut OwnView)) {
+        let Some(camera) = &self.camera else { return };
+        let mut own = self.own.unwrap_or_else(|| OwnView::of(camera, self.transport.scene_time(&self.timeline)));
+        change(&mut own);
+        self.own = Some(own);
+    }
+
+    /// Runs a command that steers; false if it is none.
+    pub fn steer(&mut self, command: &str) -> bool {
+        if command == "own-view-off" {
+            self.own = None;
+            return true;
+        }
+        let Some((way, to)) = command.split_once('-') else { return false };
+        let (right, up) = match to {
+            "left" => (-1.0, 0.0),
+            "right" => (1.0, 0.0),
+            "up" | "forward" | "nearer" => (0.0, 1.0),
+            "down" | "back" | "farther" => (0.0, -1.0),
+            _ => return false,
+        };
+        match way {
+            "orbit" => self.change_view(|own| own.orbit(right * TURN_DEGREES, up * TURN_DEGREES)),
+            "walk" => self.change_view(|own| {
+                let step = own.distance() * WALK;
+                own.walk(right * step, up * step);
+            }),
+            "dolly" => self.change_view(|own| own.dolly(up)),
+            _ => return false,
+        }
+        true
+    }
+
+    /// The pointer has dragged the scene round by a distance on the screen.
+    pub fn drag_round(&mut self, by: Vec2) {
+        let by = by / self.scale * DRAG_DEGREES;
+        self.change_view(|own| own.orbit(-by.x, by.y));
+    }
+
+    /// The pointer has dragged the scene along by a distance on the screen.
+    pub fn drag_along(&mut self, by: Vec2) {
+        let (zoom, height) = (self.viewport.zoom, self.picture.height);
+        self.change_view(|own| {
+            let by = by / zoom * own.pixel(height);
+            own.pan(-by.x, by.y);
+        });
+    }
+
+    /// The wheel goes nearer by steps.
+    pub fn wheel_nearer(&mut self, steps: i32) {
+        self.change_view(|own| own.dolly(f64::from(steps)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+
+    use super::*;
+
+    #[test]
+    fn the_scene_is_steered_only_where_it_has_a_camera() {
+        let mut state = State::for_tests();
+        assert!(state.steer("orbit-left"));
+        assert_eq!(state.own_camera(), None);
+        state.take_camera(Some(&Camera::default()));
+        assert!(!state.steer("orbit-sideways") && !state.steer("zoom-in"));
+        assert_eq!(state.own_camera(), None);
+        for command in ["orbit-left", "walk-forward", "dolly-nearer"] {
+            state.steer(command);
+            assert_ne!(state.own_camera(), Some(Camera::default()), "{command}");
+            state.steer("own-view-off");
+            assert_eq!(state.own_camera(), None);
+        }
+        state.drag_along(Vec2::new(20.0, 0.0));
+        let moved = state.own_camera().unwrap();
+        let eye = Camera::default().at(0.0, (320, 200));
+        let seen = eye.project(eye.seen(DVec3::from(Camera::default().target) * 2.0 - DVec3::from(moved.target)));
+        assert!((seen - eye.middle_px).distance(DVec2::new(10.0, 0.0)) < 1e-6, "under the pointer: {moved:?}");
+        state.take_camera(None);
+        assert_eq!(state.own_camera(), None);
+    }
+}

@@ -1,0 +1,74 @@
+//! The window over a scene in space: its own camera goes round the scene, which stays as it is.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![cfg(feature = "window")]
+
+mod display;
+
+use display::{Display, Place, View, corner};
+use plica::base::pixels::Frame;
+use plica::files::{Options, materials};
+use plica::render::{self, cpu};
+
+const MESH: &str = "v -1 -0.5 0\nv 1 -0.5 0\nv 0 1 0.4\nv 0.2 0 -1\nf 1 2 3\nf 2 4 3\nf 4 1 3\nf 1 4 2\n";
+const SCENE: &str = r##"{
+  "plica": 1, "size": [400, 300], "background": "#203040",
+  "camera": { "position": [0.5, 1, 4], "target": [0, 0.2, 0] },
+  "meshes": { "stone": { "path": "stone.obj" } },
+  "layers": [{ "kind": "mesh", "name": "stone", "mesh": "stone" }]
+}
+"##;
+
+/// A stone in a folder of its own.
+fn stone() -> Place {
+    let place = Place::new();
+    std::fs::write(place.folder.path().join("stone.obj"), MESH).unwrap();
+    std::fs::write(&place.scene, SCENE).unwrap();
+    place
+}
+
+/// The frame that a camera sees which has gone round by so many degrees.
+fn round(place: &Place, degrees: f64) -> Frame {
+    let mut scene = place.scene();
+    scene.camera.as_mut().unwrap().turn = degrees;
+    let loaded = materials::load(&place.scene, &scene, &Options::default(), &mut materials::Cache::default());
+    cpu::frame(&render::synth(&scene, &loaded.unwrap().0, None).unwrap(), 1.0)
+}
+
+/// Waits until the window shows `frame` at 1:1, but for some pixels at edges.
+fn shows(view: &mut View<'_>, what: &str, frame: &Frame) {
+    view.until(what, |v| {
+        let shot = v.shot();
+        if shot.width() < frame.width() || shot.height() < frame.height() + display::BAR {
+            return false;
+        }
+        let (left, top) = corner(&shot, frame);
+        let far = |a: &[u8; 4], b: &[u8; 4]| (0..3).any(|c| a[c].abs_diff(b[c]) > 2);
+        let row = |y: usize| shot.row(top + y)[left..].iter().zip(frame.row(y)).filter(|(a, b)| far(a, b)).count();
+        (0..frame.height()).map(row).sum::<usize>() * 300 <= frame.width() * frame.height()
+    });
+}
+
+#[test]
+fn the_windows_own_camera_goes_round_and_comes_back() {
+    let Some(display) = Display::open() else { return };
+    let place = stone();
+    let before = std::fs::read(&place.scene).unwrap();
+    let mut view = View::open(&display, &place);
+    view.keys(&["1"]);
+    let at_first = round(&place, 0.0);
+    shows(&mut view, "the scene's camera", &at_first);
+    view.keys(&["6", "6", "6", "6"]);
+    shows(&mut view, "four steps of 5 degrees", &round(&place, 20.0));
+    let middle = [200, 140].map(|n: i32| n.to_string());
+    let moved = |by: &str| drop(display.tool("xdotool", &["mousemove_relative", "--sync", "--", by, "0"]));
+    display.tool("xdotool", &["mousemove", "--sync", "--window", &view.window, &middle[0], &middle[1]]);
+    display.tool("xdotool", &["mousedown", "2"]);
+    moved("-50");
+    display.tool("xdotool", &["mouseup", "2"]);
+    shows(&mut view, "and 50 pixels of 0.4 degrees", &round(&place, 40.0));
+    view.keys(&["l", "9"]);
+    view.until("another view", |v| v.shot() != at_first);
+    view.keys(&["0"]);
+    shows(&mut view, "the scene's camera again", &at_first);
+    assert_eq!(std::fs::read(&place.scene).unwrap(), before, "the scene stays as it is");
+}
