@@ -4,9 +4,14 @@
 
 mod display;
 
+use std::sync::mpsc::channel;
+
 use display::{Display, Place, View, corner};
 use plica::base::pixels::Frame;
-use plica::files::{Options, materials};
+use plica::files::{Options, materials, scene};
+use plica::layers::space::camera::Camera;
+use plica::preview::editor::{Event, Preview};
+use plica::preview::wire::message::ToEditor;
 use plica::render::{self, cpu};
 
 const MESH: &str = "v -1 -0.5 0\nv 1 -0.5 0\nv 0 1 0.4\nv 0.2 0 -1\nf 1 2 3\nf 2 4 3\nf 4 1 3\nf 1 4 2\n";
@@ -71,4 +76,27 @@ fn the_windows_own_camera_goes_round_and_comes_back() {
     view.keys(&["0"]);
     shows(&mut view, "the scene's camera again", &at_first);
     assert_eq!(std::fs::read(&place.scene).unwrap(), before, "the scene stays as it is");
+}
+
+#[test]
+fn the_editor_is_told_where_the_window_looks_from() {
+    let Some(display) = Display::open() else { return };
+    let place = stone();
+    let (sender, replies) = channel();
+    let document = scene::open(&place.scene, &Options::default()).unwrap();
+    let _editor = Preview::start(&place.scene, &document, 0, move |event| {
+        if let Event::Said(ToEditor::Camera(camera)) = event {
+            drop(sender.send(camera));
+        }
+    });
+    let mut view = View::of(&display, &mut place.joining());
+    view.keys(&["1"]);
+    shows(&mut view, "the scene's camera", &round(&place, 0.0));
+    view.keys(&["6"]);
+    let told = replies.recv_timeout(display::PATIENCE).unwrap().unwrap();
+    let ([wanted, target, _], fov) = Camera { turn: 5.0, ..place.scene().camera.unwrap() }.view(1.0);
+    assert!(wanted.distance(told.position.into()) < 1e-9, "{told:?}");
+    assert_eq!((told.target, told.fov), (target.to_array(), fov));
+    view.keys(&["0"]);
+    assert_eq!(replies.recv_timeout(display::PATIENCE).unwrap(), None);
 }

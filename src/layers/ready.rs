@@ -14,6 +14,7 @@ use super::parts::moment::{CENTRE, Columns, Moment};
 use super::parts::pass::Pass;
 use super::parts::plan::Plan;
 use super::parts::readout::VectorField;
+use super::space::fit::Bounds;
 use super::timeline::Wrap;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
@@ -69,6 +70,11 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// The vectors that its pixels have, from below to above.
     fn fields(&self) -> Vec<VectorField<'_>> {
         Vec::new()
+    }
+
+    /// The box of the world that holds it at scene time `t`; `None` for layers in the frame.
+    fn bounds(&self, _t: f64) -> Option<Bounds> {
+        None
     }
 
     /// The largest side of any picture that a frame reads, in pixels.

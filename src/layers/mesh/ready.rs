@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::frame::Seen;
 use super::plan;
 use super::synth::Synth;
@@ -9,6 +11,7 @@ use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
 use crate::layers::ready::{Ready, Still};
+use crate::layers::space::fit::Bounds;
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
@@ -27,7 +30,47 @@ impl Ready for Synth {
         Arc::new(Synth { surface: self.surface.clone().reduced(pictures), ..self.clone() })
     }
 
+    fn bounds(&self, t: f64) -> Option<Bounds> {
+        let placed = self.pose.at(if self.still { 0.0 } else { t });
+        let world = |at| placed.point(at, DVec3::ZERO).0;
+        if placed.bend_radians == 0.0 {
+            let (low, high) = self.mesh.bounds()?;
+            return Bounds::around(Bounds { low, high }.corners().map(world));
+        }
+        let corners = self.mesh.triangles.iter().flatten();
+        Bounds::around(corners.map(|&corner| world(self.mesh.vertices[corner as usize].position)))
+    }
+
     fn largest_texture(&self) -> usize {
         self.surface.largest_texture()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::mesh::{Mesh, Vertex};
+    use crate::layers::mesh::model::MeshLayer;
+    use crate::layers::parts::materials::Materials;
+    use crate::layers::ready::Making;
+    use crate::layers::timeline::Wrap;
+
+    #[test]
+    fn the_box_is_around_what_the_pose_makes_of_the_mesh() {
+        let corner = |[x, y]: [f64; 2]| Vertex { position: DVec3::new(x, y, 0.0), ..Vertex::default() };
+        let vertices = [[0.0, 0.0], [0.0, 2.0], [0.5, 2.0], [9.0, 9.0]].map(corner).to_vec();
+        let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2]], ..Mesh::default() });
+        let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
+        for (pose, t, low, high) in [
+            (r#"{"position": [1, 0, 0], "scale": 2}"#, 0.0, [1.0, 0.0, 0.0], [2.0, 4.0, 0.0]),
+            (r#"{"spin": 360}"#, 0.25, [0.0, 0.0, -0.5], [0.0, 2.0, 0.0]),
+            (r#"{"bend": {"degrees": 90}}"#, 0.0, [-2.0, 0.0, 0.0], [0.0, 0.5, 0.0]),
+        ] {
+            let layer = format!(r#"{{"name": "m", "mesh": "m", "pose": {pose}}}"#);
+            let layer: MeshLayer = serde_json::from_str(&layer).unwrap();
+            let found = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials)).unwrap().bounds(t).unwrap();
+            let far = (found.low - DVec3::from(low)).length().max((found.high - DVec3::from(high)).length());
+            assert!(far < 1e-12, "{pose}: {found:?}");
+        }
     }
 }

@@ -3,5 +3,6 @@
 
 pub mod camera;
 pub mod eye;
+pub mod fit;
 pub mod raster;
 pub mod upload;

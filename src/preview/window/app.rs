@@ -12,6 +12,7 @@ use super::Manner;
 use super::clock::Clock;
 use super::mouse::Mouse;
 use super::opened::{Opened, first_size};
+use super::own_view::OwnView;
 use super::run::Outcome;
 use super::show::{Cached, Show};
 use super::state::State;
@@ -46,6 +47,8 @@ pub struct App {
     pub(super) owed: Option<ToEditor>,
     /// What was said last about how the window is doing: frames a second and what is wrong.
     pub(super) reported: Option<(f64, String)>,
+    /// What the editor was told last of the window's own view.
+    pub(super) told_view: Option<OwnView>,
     /// When the window opens without a scene, to show a notice.
     pub(super) open_by: Option<Instant>,
     pub(super) failed: Option<Error>,
@@ -77,6 +80,7 @@ impl App {
             waiting: None,
             owed: None,
             reported: None,
+            told_view: None,
             open_by: None,
             failed: None,
         }

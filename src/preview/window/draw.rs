@@ -5,6 +5,7 @@ use super::screen::Drawn;
 use super::text::of_system;
 use super::worker::Event;
 use crate::base::error::Result;
+use crate::preview::wire::message::ToEditor;
 
 impl App {
     /// Draws the window, if it can be seen. A lost device is replaced, and another drawing requested.
@@ -25,6 +26,10 @@ impl App {
             self.clock.drawn += 1;
         } else if !was_hidden {
             self.report();
+        }
+        if self.told_view != self.state.own {
+            self.told_view = self.state.own;
+            self.reply(ToEditor::Camera(self.state.own_camera()));
         }
         self.owed.take().into_iter().for_each(|reply| self.reply(reply));
         Ok(())

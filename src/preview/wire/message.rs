@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::base::problem::Problem;
 use crate::files::originals::Original;
+use crate::layers::space::camera::Camera;
 use crate::preview::Transport;
 use crate::scene::edit::Edit;
 
@@ -119,6 +120,8 @@ pub enum ToEditor {
         /// From the top edge.
         y: f64,
     },
+    /// The camera that the window looks through, where it is not the scene's.
+    Camera(Option<Camera>),
     /// The animation was started or stopped in the window, or moved.
     Transport(Transport),
     /// A request by command name.
@@ -162,6 +165,10 @@ impl ToEditor {
             ToEditor::Ack { synth_ms, .. } => synth_ms.is_finite(),
             ToEditor::Report { fps, .. } => fps.is_finite(),
             ToEditor::Pointer { x, y } => x.is_finite() && y.is_finite(),
+            ToEditor::Camera(None) => true,
+            ToEditor::Camera(Some(Camera { position, target, up, fov, .. })) => {
+                [position, target, up].into_iter().flatten().chain([fov]).all(|number| number.is_finite())
+            }
             ToEditor::Transport(transport) => transport.time.is_finite() && transport.speed.is_finite(),
             ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Command(_) => true,
             ToEditor::Want { .. } | ToEditor::Alive | ToEditor::Edit { .. } => true,

@@ -3,6 +3,7 @@
 use super::state::State;
 use command::{Command, Done, Table};
 
+mod camera;
 mod cells;
 pub mod command;
 mod completing;
@@ -52,6 +53,7 @@ pub static TABLE: Table = Table(&[
     messages::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
+    camera::COMMANDS,
     picture::COMMANDS,
     typing::COMMANDS,
     scripts::COMMANDS,

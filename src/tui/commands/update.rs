@@ -72,6 +72,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
 fn hear(state: &mut State, said: editor::Event) {
     match said {
         editor::Event::Said(ToEditor::Pointer { x, y }) => state.outside.pointer = Some((x, y)),
+        editor::Event::Said(ToEditor::Camera(camera)) => state.outside.camera = camera,
         editor::Event::Said(ToEditor::Transport(transport)) => state.follow(transport),
         editor::Event::Said(ToEditor::Command(name)) => run_of_window(state, &name),
         editor::Event::Edit(asked) => answer(state, asked),

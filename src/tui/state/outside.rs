@@ -1,6 +1,7 @@
 //! What the editor knows of the file, the window and long work, and its questions about unsaved edits that were left behind
 //! and about somebody else who is editing the scene.
 
+use crate::layers::space::camera::Camera;
 use crate::tui::document::choice::{About, Choice, Question, Then};
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::text::plain;
@@ -23,6 +24,8 @@ pub struct Outside {
     pub window: String,
     /// Where the pointer is in the window, in pixels of the picture.
     pub pointer: Option<(f64, f64)>,
+    /// The camera that a window shows, where it is not the scene's: what was said last, if there are several windows.
+    pub camera: Option<Camera>,
 }
 
 impl Outside {

@@ -1,0 +1,128 @@
+//! The scene's camera: from what a window shows, and so that all meshes are seen.
+
+use glam::{DMat3, DVec3};
+use serde_json::{Value, json};
+
+use super::command::{Call, Command, Done, command};
+use super::yanking::counted;
+use crate::layers::space::camera::{self, Camera};
+use crate::layers::space::fit::{Bounds, fit};
+use crate::render::Synth;
+use crate::tui::document::sheet::tidy_json;
+use crate::tui::state::State;
+use crate::tui::text::numbers::short;
+
+pub const COMMANDS: &[Command] = &[command(
+    "camera",
+    "take|key|fit",
+    "Make the window's camera the scene's, or a key of it at this time; or see all meshes",
+    camera,
+)
+.inside()];
+
+/// Where a new camera sees meshes from.
+const FIRST_BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
+/// What moves is looked at at so many times.
+const TIMES: u32 = 16;
+/// Two keys that are nearer than this are one.
+const SAME_TIME: f64 = 1e-6;
+
+fn camera(state: &mut State, call: &Call) -> Done {
+    match call.text {
+        "take" => take(state, call),
+        "key" => key(state, call),
+        _ => see_all(state, call),
+    }
+}
+
+fn take(state: &mut State, call: &Call) -> Done {
+    let own = state.outside.camera.clone();
+    let own = own.ok_or("the window shows the scene's camera: move its own first (drag with the middle button)")?;
+    write(state, call, &own, "the window's camera is the scene's now")
+}
+
+/// Sets the window's view, or that of the scene, as a key at the present time.
+fn key(state: &mut State, call: &Call) -> Done {
+    let time = state.play.time;
+    let scene = state.document().scene().camera.clone();
+    let scene = scene.ok_or("the scene has no camera: :camera fit makes one")?;
+    let seen = state.outside.camera.as_ref().map_or_else(|| scene.view(time), |own| own.view(time));
+    let ([position, target, _], fov) = seen;
+    // The turn comes after the keys.
+    let axis = DVec3::from(scene.up).normalize_or(DVec3::Y);
+    let back = DMat3::from_axis_angle(axis, (-scene.turn * time).to_radians());
+    let key = camera::Key {
+        at: time,
+        position: Some((target + back * (position - target)).into()),
+        target: Some(target.into()),
+        fov: Some(fov),
+    };
+    let others = scene.keys.iter().filter(|other| (other.at - time).abs() > SAME_TIME);
+    let mut keys: Vec<&camera::Key> = others.chain([&key]).collect();
+    keys.sort_by(|a, b| a.at.total_cmp(&b.at));
+    let alone = if keys.len() == 1 { "; with one key the camera stands still" } else { "" };
+    let keys = serde_json::to_value(keys).map_err(|error| error.to_string())?;
+    call.obey(state, &format!("set camera.keys={}", rounded(keys)))?;
+    state.say(format!("the camera has a key at {}{alone}", short(time)));
+    Ok(())
+}
+
+fn see_all(state: &mut State, call: &Call) -> Done {
+    let before = state.document().scene().camera.clone();
+    let shows_meshes = !state.document().scene().meshes.is_empty();
+    let Some((bounds, size)) = state.picture.synth.as_ref().and_then(|synth| Some((bounds(synth)?, synth.size))) else {
+        if shows_meshes || before.is_some() {
+            return Err("no mesh is ready to be seen: :camera fit can be given once one is".into());
+        }
+        // A layer in space asks for a camera before there is anything to see.
+        return write(
+            state,
+            call,
+            &Camera::default(),
+            "the scene has a camera; once there is a mesh, :camera fit sees it",
+        );
+    };
+    let of = before.clone().unwrap_or_default();
+    let ([position, target, up], fov) = of.view(state.play.time);
+    let back = if before.is_some() { position - target } else { FIRST_BACK };
+    let [position, target] = fit(&bounds, [back, up], fov, size).map(Into::into);
+    write(state, call, &Camera { position, target, up: up.into(), fov, ..of }, "the camera sees all meshes")
+}
+
+/// The box around all that is in space, over the whole timeline.
+fn bounds(synth: &Synth) -> Option<Bounds> {
+    let times = (0..TIMES).map(|k| f64::from(k) / f64::from(TIMES));
+    let all = times.flat_map(|t| synth.layers.iter().filter_map(move |layer| layer.bounds(t)));
+    all.reduce(|a, b| a.and(&b))
+}
+
+/// Makes a camera that stands still the scene's; says so, and what is lost by it.
+fn write(state: &mut State, call: &Call, camera: &Camera, said: &str) -> Done {
+    let before = state.document().scene().camera.clone().unwrap_or_default();
+    let value = json!({
+        "position": camera.position, "target": camera.target, "up": camera.up, "fov": camera.fov,
+    });
+    call.obey(state, &format!("set camera={}", rounded(value)))?;
+    let keys = (!before.keys.is_empty()).then(|| counted(before.keys.len(), "key"));
+    let turn = (before.turn != 0.0).then(|| "turn".to_owned());
+    let lost = keys.into_iter().chain(turn).collect::<Vec<_>>().join(" and ");
+    state.say(if lost.is_empty() {
+        said.to_owned()
+    } else {
+        format!("{said}, without its {lost} (u brings them back)")
+    });
+    Ok(())
+}
+
+/// Numbers as a person would write them.
+fn rounded(value: Value) -> Value {
+    const PARTS: f64 = 1e6;
+    match value {
+        Value::Number(number) => {
+            number.as_f64().map_or(Value::Number(number), |n| tidy_json((n * PARTS).round() / PARTS))
+        }
+        Value::Array(all) => all.into_iter().map(rounded).collect(),
+        Value::Object(all) => all.into_iter().map(|(key, value)| (key, rounded(value))).collect(),
+        other => other,
+    }
+}

@@ -1,0 +1,97 @@
+//! The scene's camera from the editor: what a window shows, a key, all meshes in the frame.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::support::{press, said, state, state_of};
+use crate::base::mesh::{Mesh, Vertex};
+use crate::layers::parts::materials::Materials;
+use crate::layers::space::camera::Camera;
+use crate::preview::wire::message::ToEditor;
+use crate::render;
+use crate::tui::commands::update::update;
+use crate::tui::state::State;
+
+const SCENE: &str = r#"{
+  "plica": 1, "size": [200, 100], "camera": { "turn": 90, "fov": 30 },
+  "meshes": { "m": { "path": "m.obj" } },
+  "layers": [{ "kind": "mesh", "name": "m", "mesh": "m", "pose": { "position": [5, 0, 0], "spin": 360 } }]
+}"#;
+
+fn run(state: &mut State, line: &str) -> String {
+    press(state, &format!(": \"{line}\" Enter"));
+    state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default()
+}
+
+fn camera(state: &State) -> Value {
+    state.document().json()["camera"].clone()
+}
+
+fn own() -> Camera {
+    Camera { position: [1.0, 2.0, 3.0000000004], target: [0.0, 0.5, 0.0], fov: 50.0, ..Camera::default() }
+}
+
+#[test]
+fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
+    let mut state = state_of(SCENE);
+    let told = run(&mut state, "camera take");
+    assert!(told.starts_with("the window shows the scene's camera"), "{told}");
+    update(&mut state, said(ToEditor::Camera(Some(own()))));
+    let told = run(&mut state, "camera take");
+    assert!(told.contains("without its turn"), "{told}");
+    let taken = json!({ "position": [1, 2, 3], "target": [0, 0.5, 0], "up": [0, 1, 0], "fov": 50 });
+    assert_eq!(camera(&state), taken);
+    press(&mut state, "u");
+    assert_eq!(camera(&state), json!({ "turn": 90, "fov": 30 }), "one step of undo");
+    update(&mut state, said(ToEditor::Camera(None)));
+    assert!(run(&mut state, "camera take").starts_with("the window shows"), "it is back at the scene's");
+}
+
+#[test]
+fn a_key_shows_at_its_time_what_the_window_shows() {
+    let mut state = state_of(SCENE);
+    state.play.time = 0.5;
+    update(&mut state, said(ToEditor::Camera(Some(own()))));
+    assert!(run(&mut state, "camera key").contains("stands still"));
+    let ([position, target, _], fov) = state.document().scene().camera.clone().unwrap().view(0.5);
+    assert!((position - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-5, "the turn is not done twice: {position}");
+    assert_eq!((target, fov), (DVec3::new(0.0, 0.5, 0.0), 50.0));
+    update(&mut state, said(ToEditor::Camera(None)));
+    state.play.time = 0.25;
+    run(&mut state, "camera key");
+    run(&mut state, "camera key");
+    let keys = state.document().scene().camera.clone().unwrap().keys;
+    assert_eq!(keys.iter().map(|key| key.at).collect::<Vec<_>>(), [0.25, 0.5], "in order, each time once");
+}
+
+#[test]
+fn all_meshes_are_seen_at_all_times() {
+    let mut state = state_of(SCENE);
+    assert!(run(&mut state, "camera fit").starts_with("no mesh is ready"));
+    let corners = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0]];
+    let vertices = corners.map(|at| Vertex { position: DVec3::from(at), ..Vertex::default() }).to_vec();
+    let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2]], ..Mesh::default() });
+    let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
+    state.picture.synth = Some(Arc::new(render::synth(state.document().scene(), &materials, None).unwrap()));
+    let told = run(&mut state, "camera fit");
+    assert!(told.starts_with("the camera sees all meshes"), "{told}");
+    let fitted = state.document().scene().camera.clone().unwrap();
+    assert_eq!((fitted.target, fitted.turn, fitted.fov), ([5.0, 1.5, 0.0], 0.0, 30.0));
+    let back = DVec3::from(fitted.position) - DVec3::from(fitted.target);
+    assert!((back.normalize() - DVec3::new(0.0, 0.4, 4.0).normalize()).length() < 1e-5, "from where it was: {back}");
+    let eye = fitted.at(0.0, (200, 100));
+    for at in [[4.0, 0.0, 0.0], [6.0, 0.0, 0.0], [5.0, 0.0, 1.0], [5.0, 0.0, -1.0], [5.0, 3.0, 0.0]] {
+        let seen = eye.project(eye.seen(DVec3::from(at)));
+        assert!(seen.x > 0.0 && seen.x < 200.0 && seen.y > 0.0 && seen.y < 100.0, "{at:?} at {seen}");
+    }
+}
+
+#[test]
+fn a_scene_without_a_mesh_gets_the_camera_that_a_mesh_layer_asks_for() {
+    let mut state = state();
+    assert!(run(&mut state, "camera key").starts_with("the scene has no camera"));
+    run(&mut state, "camera fit");
+    assert_eq!(state.document().scene().camera, Some(Camera::default()));
+}
