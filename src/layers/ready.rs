@@ -80,8 +80,8 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// The largest side of any picture that a frame reads, in pixels.
     fn largest_texture(&self) -> usize;
 
-    /// What the view shows of the vectors of pixels, in any order; paths are relative to the layer.
-    fn marks(&self, _view: &View) -> Vec<Mark> {
+    /// What the view shows of what was synthesised, as it is at one time, in any order; paths are relative to the layer.
+    fn marks(&self, _view: &View, _moment: &Moment) -> Vec<Mark> {
         Vec::new()
     }
 

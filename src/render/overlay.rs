@@ -4,8 +4,8 @@
 use kurbo::Point;
 
 use super::Synth;
-use crate::layers::KINDS;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
+use crate::layers::{KINDS, space};
 use crate::scene::Scene;
 
 /// Every overlay of every technique; shared ones once.
@@ -19,17 +19,24 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let of_pixels = overlays().any(|overlay| overlay.when == When::Synthesis && view.shows(overlay.name));
     let longest_px = synth.filter(|_| of_pixels).map_or(0.0, longest);
     let view = View { longest_px, ..view.clone() };
-    let ready = synth.iter().flat_map(|synth| synth.layers.iter().enumerate());
-    let ready = ready.flat_map(|(i, layer)| layer.marks(&view).into_iter().map(move |mark| (i, mark)));
+    let t = view.times.first().copied().unwrap_or(0.0);
+    let synth = synth.map(|synth| (synth, synth.moment(t)));
+    let ready = synth.iter().flat_map(|(synth, moment)| {
+        let layers = synth.layers.iter().enumerate();
+        layers.flat_map(|(i, layer)| layer.marks(&view, moment).into_iter().map(move |mark| (i, mark)))
+    });
     let layers = scene.layers.iter().enumerate();
     let layers = layers.flat_map(|(i, layer)| layer.technique().marks(&view).into_iter().map(move |mark| (i, mark)));
-    let mut marks: Vec<Mark> = ready.chain(layers).map(|(i, mark)| collected(i, mark, &view)).collect();
+    let of_layers = ready.chain(layers).map(|(i, mark)| (format!("/layers/{i}{}", mark.path), mark));
+    let world = synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some());
+    let world = world.flat_map(|(_, moment)| space::marks::marks(&view, moment, scene.camera.as_ref()));
+    let all = of_layers.chain(world.map(|mark| (mark.path.clone(), mark)));
+    let mut marks: Vec<Mark> = all.map(|(path, mark)| collected(path, mark, &view)).collect();
     marks.sort_by_key(|mark| mark.look.order);
     marks
 }
 
-fn collected(layer: usize, mark: Mark, view: &View) -> Mark {
-    let path = format!("/layers/{layer}{}", mark.path);
+fn collected(path: String, mark: Mark, view: &View) -> Mark {
     let selected = view.selection.as_deref().is_some_and(|selection| is_selected(&path, selection));
     Mark { path, selected, ..mark }
 }

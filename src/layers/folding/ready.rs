@@ -49,7 +49,7 @@ impl Ready for Synth {
         read.map(|picture| picture.width().max(picture.height())).max().unwrap_or(1)
     }
 
-    fn marks(&self, view: &View) -> Vec<Mark> {
+    fn marks(&self, view: &View, _moment: &Moment) -> Vec<Mark> {
         pixel_marks::marks(self, view)
     }
 

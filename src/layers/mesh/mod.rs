@@ -1,6 +1,7 @@
 //! A mesh in space, seen by the scene's camera. What its surface shows is a slot of its own (`surface/`).
 
 pub mod frame;
+pub mod marks;
 pub mod model;
 pub mod plan;
 pub mod pose;
@@ -28,9 +29,9 @@ pub static KIND: Kind = Kind {
     programs: &[&plan::PLAIN, &plan::PICTURED],
     bundle: None,
     counted: &[],
-    overlays: &[],
+    overlays: marks::OVERLAYS,
     passes: &[],
-    looks: &[],
+    looks: marks::LOOKS,
     template: None,
     starts: Starts::PLAIN,
     example: include_str!("example.json"),

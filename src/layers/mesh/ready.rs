@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::frame::Seen;
-use super::plan;
 use super::synth::Synth;
+use super::{marks, plan};
 use crate::base::reduce::Reduced;
+use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
 use crate::layers::ready::{Ready, Still};
@@ -28,6 +29,10 @@ impl Ready for Synth {
 
     fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
         Arc::new(Synth { surface: self.surface.clone().reduced(pictures), ..self.clone() })
+    }
+
+    fn marks(&self, view: &View, moment: &Moment) -> Vec<Mark> {
+        marks::marks(self, view, moment)
     }
 
     fn bounds(&self, t: f64) -> Option<Bounds> {

@@ -4,5 +4,6 @@
 pub mod camera;
 pub mod eye;
 pub mod fit;
+pub mod marks;
 pub mod raster;
 pub mod upload;

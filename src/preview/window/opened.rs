@@ -1,6 +1,5 @@
 //! What is open once there is something to show: the window with its GPU and surface, and one drawing of it.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,13 +10,12 @@ use winit::window::{CursorIcon, Fullscreen, Window};
 
 use super::mouse::Shape;
 use super::screen::{Drawn, Pictures, Screen, Strokes};
-use super::show::{Cached, Show, jump_at};
+use super::show::{Cached, Show, jump_at, seen};
 use super::state::{BAR_PX, State};
 use super::text::Letters;
 use super::x11::Desk;
 use super::{Manner, PLACE, chrome};
 use crate::base::error::{Error, Result};
-use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
 
@@ -177,11 +175,6 @@ impl Opened {
         let rate = self.window.current_monitor().and_then(|m| m.refresh_rate_millihertz());
         Duration::from_secs_f64(1.0 / rate.map_or(RATE, |r| f64::from(r) / 1000.0).max(1.0))
     }
-}
-
-/// A scene as the window's own camera sees it, if there is one.
-fn seen<'a>(synth: &'a Synth, own: Option<&Camera>) -> Cow<'a, Synth> {
-    own.map_or(Cow::Borrowed(synth), |camera| Cow::Owned(synth.seen_from(camera.clone())))
 }
 
 /// The size of a window around a picture, in physical pixels: as large as the picture is in logical ones.

@@ -1,16 +1,19 @@
 //! A scene that is ready to be drawn, and the strokes of its overlay, which are made again only where something that they
 //! show has changed.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use kurbo::{Point, Size, Vec2};
 
 use super::canvas::Canvas;
+use super::own_view::OwnView;
 use super::state::State;
 use super::text::Letters;
 use super::viewport::Viewport;
 use super::{labels, marks};
 use crate::layers::parts::marks::View;
+use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::overlay::{longest, overlay};
 use crate::render::reduce::reduced;
@@ -39,6 +42,11 @@ impl Show {
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
         (Show { scene, still: frames.unmoved(), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
     }
+}
+
+/// A scene as the window's own camera sees it, if there is one.
+pub fn seen<'a>(synth: &'a Synth, own: Option<&Camera>) -> Cow<'a, Synth> {
+    own.map_or(Cow::Borrowed(synth), |camera| Cow::Owned(synth.seen_from(camera.clone())))
 }
 
 /// The jump vector of the pixel at a place in the picture: that of the topmost field there.
@@ -70,7 +78,7 @@ pub struct Cached {
     made_for: Option<(View, Sight)>,
     /// Those that change with every frame.
     pub moving: Canvas,
-    moved_for: Option<(View, Sight)>,
+    moved_for: Option<(View, Sight, Option<OwnView>)>,
     /// Names and numbers, above all else of the overlay.
     pub labels: Canvas,
     /// See [`State::arrow_scale`].
@@ -99,15 +107,19 @@ impl Cached {
         let viewport = state.viewport.clone();
         let (window, scale, grid) = (state.window, state.scale, state.shows("view-grid"));
         let sight = Sight { viewport, window, scale, grid, revision: self.revision, letters: letters.generation() };
-        let (fixed, moving) = (Some((state.fixed_view(), sight.clone())), Some((state.moving_view(), sight)));
+        let fixed = Some((state.fixed_view(), sight.clone()));
+        let moving = Some((state.moving_view(), sight, state.own));
         if self.made_for != fixed {
             self.made_for = fixed;
             self.make_fixed(state, show, letters);
         }
         if self.moved_for != moving {
             self.moved_for = moving;
-            let found = overlay(&show.scene, Some(&show.synth), &state.moving_view());
-            self.moving = marks::draw(&found, &state.viewport, state.area(), state.scale);
+            let synth = seen(&show.synth, state.own_camera().as_ref());
+            let found = overlay(&show.scene, Some(&synth), &state.moving_view());
+            let (viewport, area, scale) = (&state.viewport, state.area(), state.scale);
+            self.moving = marks::draw(&found, viewport, area, scale);
+            self.moving.strokes.extend(labels::draw(&found, viewport, area, scale, letters).strokes);
         }
     }
 

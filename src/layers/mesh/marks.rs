@@ -1,0 +1,211 @@
+//! What explains a mesh: its edges, its normals, and where its back is seen. As many strokes as a screen can bear; of a
+//! larger mesh every n-th thing is drawn, and a label says so.
+
+use glam::DVec3;
+use kurbo::Point;
+use rayon::prelude::*;
+
+use super::model::Sides;
+use super::synth::Synth;
+use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
+use crate::layers::parts::moment::{CENTRE, Columns, Moment};
+use crate::layers::space::eye::Eye;
+use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OVERLAY, line};
+use crate::layers::space::raster::{NONE, Raster};
+
+const WIRES: &str = "view-wires";
+const NORMALS: &str = "view-normals";
+const BACKS: &str = "view-backs";
+
+const fn overlay(name: &'static str, key: &'static str, help: &'static str) -> Overlay {
+    Overlay { name, key, help, when: When::EveryFrame }
+}
+
+/// Every overlay.
+pub static OVERLAYS: &[Overlay] = &[
+    GROUND_OVERLAY,
+    CAMERA_OVERLAY,
+    overlay(WIRES, "M", "Edges of meshes"),
+    overlay(NORMALS, "N", "Normals at the vertices of meshes"),
+    overlay(BACKS, "B", "Where the back of a mesh is seen"),
+];
+
+/// An edge.
+static WIRE: Look = Look::new("edge", 25, [86, 180, 233, 220], 1.0);
+/// A pixel that sees a triangle from behind.
+static BACK: Look = Look::new("back side", 26, [230, 60, 200, 150], 0.0).dots(Dot::Square, 0.0);
+/// A normal at a vertex.
+static NORMAL: Look = Look::new("normal", 27, [240, 160, 40, 230], 1.2);
+
+/// Every look, from bottom to top.
+pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &WIRE, &BACK, &NORMAL];
+
+/// At most so many strokes, or cells, of one overlay of one layer.
+const MOST: usize = 60_000;
+/// The length of a normal, as a share of the size of the mesh.
+const LENGTH: f64 = 0.03;
+
+/// The marks of a layer at one time.
+pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
+    let shown = [WIRES, NORMALS, BACKS].map(|name| view.shows(name));
+    let Some(eye) = moment.eye.filter(|_| shown.contains(&true)) else { return Vec::new() };
+    let placed = synth.pose.at(synth.time(moment));
+    let vertices = synth.mesh.vertices.par_iter();
+    let world = vertices.map(|vertex| placed.point(vertex.position, vertex.normal)).collect();
+    let seen = Seen { synth, moment, eye, world };
+    let [wires, normals, backs] = shown;
+    let mut marks = Vec::new();
+    marks.extend(wires.then(|| seen.wires(MOST)).into_iter().flatten());
+    marks.extend(normals.then(|| seen.normals(MOST)).into_iter().flatten());
+    marks.extend(backs.then(|| seen.backs(view.cell_px)).into_iter().flatten());
+    marks
+}
+
+/// A mesh at one time, as one eye sees it.
+struct Seen<'a> {
+    synth: &'a Synth,
+    moment: &'a Moment,
+    eye: Eye,
+    /// The vertices in the world: where they are, and their normals.
+    world: Vec<(DVec3, DVec3)>,
+}
+
+impl Seen<'_> {
+    fn both(&self) -> bool {
+        self.synth.sides == Sides::Both
+    }
+
+    /// Whether a triangle is seen from its front.
+    fn is_front(&self, triangle: &[u32; 3]) -> bool {
+        let [a, b, c] = triangle.map(|i| self.eye.seen(self.world[i as usize].0));
+        a.dot(b.cross(c)) < 0.0
+    }
+
+    fn line(&self, look: &'static Look, ends: [DVec3; 2]) -> Option<Mark> {
+        let points = line(self.moment, &self.eye, ends)?;
+        Some(Mark::new(look, "", Shape::Line { points: points.into(), closed: false }))
+    }
+
+    /// The edges of what is seen, each once.
+    fn wires(&self, most: usize) -> Vec<Mark> {
+        let triangles = &self.synth.mesh.triangles;
+        let step = (3 * triangles.len()).div_ceil(most).max(1);
+        let shown = triangles.iter().step_by(step).filter(|triangle| self.both() || self.is_front(triangle));
+        let mut edges: Vec<(u32, u32)> = shown
+            .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+            .map(|(from, to)| (from.min(to), from.max(to)))
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let ends = |(from, to): (u32, u32)| [from, to].map(|i| self.world[i as usize].0);
+        let lines = edges.into_iter().filter_map(|edge| self.line(&WIRE, ends(edge))).collect();
+        told(lines, step, "triangles")
+    }
+
+    /// A short line along each normal that is turned to the eye.
+    fn normals(&self, most: usize) -> Vec<Mark> {
+        let step = self.world.len().div_ceil(most).max(1);
+        let first = self.world.first().map_or(DVec3::ZERO, |(at, _)| *at);
+        let (low, high) = self.world.iter().fold((first, first), |(low, high), (at, _)| (low.min(*at), high.max(*at)));
+        let length = (high - low).length() * LENGTH;
+        let shown = self.world.iter().step_by(step);
+        let shown = shown.filter(|(at, normal)| self.both() || normal.dot(self.eye.position - *at) > 0.0);
+        let lines = shown.filter_map(|&(at, normal)| self.line(&NORMAL, [at, at + normal * length])).collect();
+        told(lines, step, "vertices")
+    }
+
+    /// Cells where the nearest triangle of the mesh is seen from behind, one every so many pixels.
+    fn backs(&self, cell_px: f64) -> Vec<Mark> {
+        let (width, height) = self.moment.size_px;
+        let fewest = ((width * height) as f64 / MOST as f64).sqrt();
+        let side = cell_px.max(fewest).max(1.0).ceil() as usize;
+        let seen = self.world.par_iter().map(|(at, _)| self.eye.seen(*at)).collect();
+        let raster = Raster::new(&self.eye, (width, height), CENTRE, &self.synth.mesh.triangles, seen, true);
+        let columns: Vec<usize> = (side / 2..width).step_by(side).collect();
+        let rows: Vec<usize> = (side / 2..height).step_by(side).collect();
+        let cells = rows.into_par_iter().flat_map_iter(|y| {
+            let (mut depth, mut triangles) = (vec![f64::INFINITY; columns.len()], vec![NONE; columns.len()]);
+            raster.row(y, Columns::Some(&columns), &mut depth, &mut triangles);
+            let found = columns.iter().zip(triangles).filter(|(_, triangle)| *triangle != NONE);
+            let hits = found.filter_map(|(&x, triangle)| Some((x, raster.hit(x, y, triangle)?)));
+            let backs = hits.filter(|(_, hit)| !hit.front).map(|(x, _)| Point::new(x as f64 + 0.5, y as f64 + 0.5));
+            backs.map(|at| Mark::new(&BACK, "", Shape::Cell(at, side as f64, BACK.color))).collect::<Vec<_>>()
+        });
+        cells.collect()
+    }
+}
+
+/// Lines, and a label where only some of them are drawn.
+fn told(mut lines: Vec<Mark>, step: usize, what: &str) -> Vec<Mark> {
+    let first = lines.first().filter(|_| step > 1).map(|line| (line.look, line.shape.clone()));
+    if let Some((look, Shape::Line { points, .. })) = first {
+        lines.push(Mark::new(look, "", Shape::Label(points[0], format!("1 of {step} {what}"))));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::base::mesh::{Mesh, Vertex};
+    use crate::layers::mesh::model::MeshLayer;
+    use crate::layers::parts::materials::Materials;
+    use crate::layers::ready::Making;
+    use crate::layers::space::camera::Camera;
+    use crate::layers::timeline::Wrap;
+
+    /// A square of two triangles, whose front looks to +z, or from behind.
+    fn seen<T>(layer: &str, z: f64, of: impl FnOnce(&Seen) -> T) -> T {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let vertex =
+            |[x, y]: [f64; 2]| Vertex { position: DVec3::new(x, y, 0.0), normal: DVec3::Z, ..Vertex::default() };
+        let vertices = corners.map(vertex).to_vec();
+        let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() });
+        let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
+        let layer: MeshLayer = serde_json::from_str(layer).unwrap();
+        let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials)).unwrap();
+        let camera = Camera { position: [0.0, 0.0, z], target: [0.0; 3], ..Camera::default() };
+        let moment = Moment { t: 0.0, size_px: (60, 60), eye: Some(camera.at(0.0, (60, 60))) };
+        let world = synth.mesh.vertices.iter().map(|vertex| (vertex.position, vertex.normal)).collect();
+        of(&Seen { synth: &synth, moment: &moment, eye: moment.eye.unwrap(), world })
+    }
+
+    const FRONT: &str = r#"{"name": "m", "mesh": "m"}"#;
+    const BOTH: &str = r#"{"name": "m", "mesh": "m", "sides": "both"}"#;
+
+    #[test]
+    fn what_faces_away_has_edges_and_normals_only_where_both_sides_are_seen() {
+        for (layer, z, edges, normals) in [(FRONT, 4.0, 5, 4), (FRONT, -4.0, 0, 0), (BOTH, -4.0, 5, 4)] {
+            let found = seen(layer, z, |seen| (seen.wires(MOST).len(), seen.normals(MOST).len()));
+            assert_eq!(found, (edges, normals), "{layer} {z}");
+        }
+    }
+
+    #[test]
+    fn there_are_never_too_many_and_a_label_says_so() {
+        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3), seen.normals(2)));
+        assert_eq!((wires.len(), normals.len()), (4, 3), "with the labels");
+        for (marks, text) in [(wires, "1 of 2 triangles"), (normals, "1 of 2 vertices")] {
+            let label = marks.last().map(|mark| mark.shape.clone());
+            assert!(matches!(&label, Some(Shape::Label(_, told)) if told == text), "{label:?}");
+        }
+    }
+
+    #[test]
+    fn backs_are_marked_where_they_are_seen() {
+        assert_eq!(seen(FRONT, 4.0, |seen| seen.backs(4.0).len()), 0);
+        let cells = seen(FRONT, -4.0, |seen| seen.backs(4.0));
+        // The square is 41 pixels wide.
+        assert!((81..=121).contains(&cells.len()), "{}", cells.len());
+        assert!(cells.iter().all(|mark| matches!(mark.shape, Shape::Cell(_, 4.0, _))));
+    }
+
+    #[test]
+    fn nothing_is_made_that_is_not_shown() {
+        let shown =
+            |names: &[&'static str]| seen(BOTH, 4.0, |seen| marks(seen.synth, &View::of(names), seen.moment).len());
+        assert_eq!((shown(&[]), shown(&["view-ground"]), shown(&[WIRES]), shown(&[NORMALS])), (0, 0, 5, 4));
+    }
+}

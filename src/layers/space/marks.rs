@@ -1,0 +1,197 @@
+//! What explains a scene in space: the ground with the axes of the world, and where the scene's camera looks. Lines of the
+//! world as marks of the frame.
+
+use glam::DVec3;
+use kurbo::{Point, Rect};
+
+use super::camera::Camera;
+use super::eye::{Eye, NEAR_M};
+use crate::base::maths::nice;
+use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
+use crate::layers::parts::moment::Moment;
+
+const GROUND: &str = "view-ground";
+const CAMERA: &str = "view-camera";
+
+/// The ground and the axes: an overlay of every technique in space.
+pub const GROUND_OVERLAY: Overlay =
+    Overlay { name: GROUND, key: "G", help: "The ground and the axes of the world", when: When::EveryFrame };
+/// The scene's camera: an overlay of every technique in space.
+pub const CAMERA_OVERLAY: Overlay = Overlay {
+    name: CAMERA,
+    key: "C",
+    help: "What the scene's camera sees, looked at from elsewhere",
+    when: When::EveryFrame,
+};
+
+/// A line on the ground.
+pub static GRID: Look = Look::new("ground", 20, [150, 160, 175, 120], 0.8);
+/// The axes of the world: x, y, z.
+pub static AXES: [Look; 3] = [
+    Look::new("x axis", 21, [235, 110, 90, 255], 1.6).stroke("x"),
+    Look::new("y axis", 22, [60, 210, 160, 255], 1.6).dashed(8.0, 3.0).stroke("y"),
+    Look::new("z axis", 23, [86, 160, 240, 255], 1.6).dashed(3.0, 3.0).stroke("z"),
+];
+/// What the scene's camera sees.
+pub static FRUSTUM: Look = Look::new("camera", 24, [240, 228, 66, 255], 1.4).dots(Dot::Diamond, 4.0);
+
+/// The grid has so many lines to each side of the origin.
+const LINES: i32 = 10;
+/// The y axis is as long as so many of its cells.
+const TALL: f64 = 4.0;
+
+/// The line between two places of the world as it is in the frame; `None` if all of it is behind the eye or beside the
+/// frame. It reaches a little beyond the frame at most.
+pub fn line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[Point; 2]> {
+    let [mut a, mut b] = ends.map(|end| eye.seen(end));
+    let (depth_a, depth_b) = (-a.z, -b.z);
+    if depth_a < NEAR_M && depth_b < NEAR_M {
+        return None;
+    }
+    let near = a.lerp(b, (NEAR_M - depth_a) / (depth_b - depth_a));
+    if depth_a < NEAR_M {
+        a = near;
+    } else if depth_b < NEAR_M {
+        b = near;
+    }
+    let [a, b] = [a, b].map(|end| {
+        // Cut at the near plane, an end may be a hair before it.
+        let at = eye.project(end.with_z(end.z.min(-NEAR_M)));
+        Point::new(at.x, at.y)
+    });
+    let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
+    within(Rect::new(0.0, 0.0, width, height).inflate(width / 2.0, height / 2.0), [a, b])
+}
+
+/// The part of a line that is in a rectangle.
+fn within(room: Rect, [a, b]: [Point; 2]) -> Option<[Point; 2]> {
+    let way = b - a;
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let sides = [(way.x, room.x0 - a.x, room.x1 - a.x), (way.y, room.y0 - a.y, room.y1 - a.y)];
+    for (way, low, high) in sides {
+        if way == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let (enters, leaves) = if way > 0.0 { (low / way, high / way) } else { (high / way, low / way) };
+        (from, to) = (from.max(enters), to.min(leaves));
+    }
+    (from <= to).then(|| [a + way * from, a + way * to])
+}
+
+/// The marks of all that is in space together; `camera` is the scene's.
+pub fn marks(view: &View, moment: &Moment, camera: Option<&Camera>) -> Vec<Mark> {
+    let Some(eye) = moment.eye else { return Vec::new() };
+    let mut drawn = Drawn { moment, eye, marks: Vec::new() };
+    if view.shows(GROUND) {
+        drawn.ground();
+    }
+    if let Some(camera) = camera.filter(|camera| view.shows(CAMERA) && camera.at(moment.t, moment.size_px) != eye) {
+        drawn.camera(camera);
+    }
+    drawn.marks
+}
+
+/// Marks in the making.
+struct Drawn<'a> {
+    moment: &'a Moment,
+    eye: Eye,
+    marks: Vec<Mark>,
+}
+
+impl Drawn<'_> {
+    fn line(&mut self, look: &'static Look, ends: [DVec3; 2]) {
+        if let Some(points) = line(self.moment, &self.eye, ends) {
+            let path = if look.name == FRUSTUM.name { "/camera" } else { "" };
+            self.marks.push(Mark::new(look, path, Shape::Line { points: points.into(), closed: false }));
+        }
+    }
+
+    fn label(&mut self, look: &'static Look, at: DVec3, text: String) {
+        if let Some([point, _]) = line(self.moment, &self.eye, [at; 2]) {
+            self.marks.push(Mark::new(look, "", Shape::Label(point, text)));
+        }
+    }
+
+    fn ground(&mut self) {
+        let cell = nice(self.eye.position.length() / 4.0).unwrap_or(1.0);
+        let far = cell * f64::from(LINES);
+        for k in (-LINES..=LINES).filter(|&k| k != 0) {
+            let at = f64::from(k) * cell;
+            self.line(&GRID, [DVec3::new(at, 0.0, -far), DVec3::new(at, 0.0, far)]);
+            self.line(&GRID, [DVec3::new(-far, 0.0, at), DVec3::new(far, 0.0, at)]);
+        }
+        let [x, y, z] = [&AXES[0], &AXES[1], &AXES[2]];
+        self.line(x, [DVec3::X * -far, DVec3::X * far]);
+        self.line(y, [DVec3::ZERO, DVec3::Y * cell * TALL]);
+        self.line(z, [DVec3::Z * -far, DVec3::Z * far]);
+        self.label(x, DVec3::X * cell, format!("x {cell} m"));
+        self.label(y, DVec3::Y * cell, format!("y {cell} m"));
+        self.label(z, DVec3::Z * cell, format!("z {cell} m"));
+    }
+
+    fn camera(&mut self, camera: &Camera) {
+        let ([position, target, _], _) = camera.view(self.moment.t);
+        let (depth, eye) = (position.distance(target), camera.at(self.moment.t, self.moment.size_px));
+        let (right, down) = (eye.middle_px.x * 2.0, eye.middle_px.y * 2.0);
+        let world = |at: (f64, f64)| position + eye.turn.transpose() * (eye.ray(at.into()) * depth);
+        let corners = [(0.0, 0.0), (right, 0.0), (right, down), (0.0, down)].map(world);
+        for (i, corner) in corners.into_iter().enumerate() {
+            self.line(&FRUSTUM, [position, corner]);
+            self.line(&FRUSTUM, [corner, corners[(i + 1) % 4]]);
+        }
+        // A roof shows which side is up.
+        let roof = world((right / 2.0, -down / 4.0));
+        self.line(&FRUSTUM, [corners[0], roof]);
+        self.line(&FRUSTUM, [corners[1], roof]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moment() -> Moment {
+        let camera = Camera { position: [0.0, 2.0, 4.0], target: [0.0, 0.0, 0.0], ..Camera::default() };
+        Moment { t: 0.0, size_px: (200, 100), eye: Some(camera.at(0.0, (200, 100))) }
+    }
+
+    #[test]
+    fn lines_are_cut_at_the_near_plane_and_beside_the_frame() {
+        let moment = moment();
+        let eye = moment.eye.unwrap();
+        let through = line(&moment, &eye, [DVec3::new(0.0, 0.0, -50.0), DVec3::new(0.0, 0.0, 50.0)]).unwrap();
+        assert!(through.iter().all(|end| (end.x - 100.0).abs() < 1e-9), "{through:?}");
+        assert!((through[1].y - 150.0).abs() < 1e-6, "as far as half a frame beyond it: {through:?}");
+        assert_eq!(line(&moment, &eye, [DVec3::new(0.0, 0.0, 9.0), DVec3::new(1.0, 3.0, 50.0)]), None, "behind");
+        assert_eq!(line(&moment, &eye, [DVec3::new(90.0, 0.0, 0.0), DVec3::new(90.0, 1.0, 0.0)]), None, "beside");
+        let [a, b] = line(&moment, &eye, [DVec3::ZERO, DVec3::X]).unwrap();
+        assert!(a.distance(Point::new(100.0, 50.0)) < 1e-9 && (b.y - 50.0).abs() < 1e-9 && b.x > 110.0, "{a} {b}");
+    }
+
+    #[test]
+    fn the_camera_is_seen_from_elsewhere_only() {
+        let (view, own) = (View::of(&[CAMERA]), Camera::default());
+        let seen = Moment { eye: Some(own.at(0.0, (200, 100))), ..moment() };
+        assert_eq!(marks(&view, &seen, Some(&own)), []);
+        let marks = marks(&view, &moment(), Some(&own));
+        assert!(marks.len() > 4 && marks.iter().all(|mark| mark.path == "/camera"), "{marks:?}");
+    }
+
+    #[test]
+    fn the_ground_has_axes_with_their_lengths() {
+        let found = marks(&View::of(&[GROUND]), &moment(), None);
+        let labels: Vec<&str> = found
+            .iter()
+            .filter_map(|mark| match &mark.shape {
+                Shape::Label(_, text) => Some(text.as_str()),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(labels, ["x 1 m", "y 1 m", "z 1 m"]);
+        assert!(found.len() > 30 && found.len() < 60, "{}", found.len());
+        assert_eq!(marks(&View::default(), &moment(), None), []);
+    }
+}
