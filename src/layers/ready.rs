@@ -13,7 +13,7 @@ use super::parts::materials::Materials;
 use super::parts::moment::{CENTRE, Columns, Moment};
 use super::parts::pass::Pass;
 use super::parts::plan::Plan;
-use super::parts::readout::VectorField;
+use super::parts::readout::{Under, VectorField};
 use super::space::fit::Bounds;
 use super::timeline::Wrap;
 use crate::base::pixels::Rgba;
@@ -70,6 +70,11 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// The vectors that its pixels have, from below to above.
     fn fields(&self) -> Vec<VectorField<'_>> {
         Vec::new()
+    }
+
+    /// What the pixel (column, row) shows of it at one time; nothing for layers in the frame.
+    fn under(&self, _pixel: (usize, usize), _moment: &Moment) -> Option<Under> {
+        None
     }
 
     /// The box of the world that holds it at scene time `t`; `None` for layers in the frame.

@@ -2,20 +2,32 @@
 
 use super::frame::{Spot, View};
 use super::model::MeshLayer;
+use super::synth::Synth;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::readout::{Entry, ReadOut, Value};
+use crate::layers::parts::readout::{Entry, ReadOut, Under, Value};
 use crate::layers::ready::Making;
 
 /// What the pixel in column `x`, row `y` shows of the mesh.
 ///
 /// # Errors
 /// If the mesh is not there; the problem's path is relative to the layer.
-pub fn probe(layer: &MeshLayer, making: &Making, (x, y): (usize, usize), moment: &Moment) -> Result<ReadOut, Problem> {
+pub fn probe(layer: &MeshLayer, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<ReadOut, Problem> {
     let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
     let view = View::new(&mesh, layer.sides, &layer.pose.at(moment.t), making.place, moment);
+    Ok(read_out(layer, spot(&view, pixel, moment)))
+}
+
+/// The triangle in column `x`, row `y` of what was synthesised.
+pub fn under(synth: &Synth, pixel: (usize, usize), moment: &Moment) -> Option<Under> {
+    let placed = synth.pose.at(synth.time(moment));
+    let view = View::new(&synth.mesh, synth.sides, &placed, synth.place, moment);
+    spot(&view, pixel, moment).map(|spot| Under { triangle: spot.hit.triangle, depth_m: spot.hit.depth })
+}
+
+fn spot(view: &View, (x, y): (usize, usize), moment: &Moment) -> Option<Spot> {
     let within = x < moment.size_px.0 && y < moment.size_px.1;
-    Ok(read_out(layer, within.then(|| view.at(x, y)).flatten()))
+    within.then(|| view.at(x, y)).flatten()
 }
 
 fn read_out(layer: &MeshLayer, spot: Option<Spot>) -> ReadOut {

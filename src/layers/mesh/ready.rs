@@ -6,11 +6,12 @@ use glam::DVec3;
 
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{marks, plan};
+use super::{marks, plan, probe};
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
+use crate::layers::parts::readout::Under;
 use crate::layers::ready::{Ready, Still};
 use crate::layers::space::fit::Bounds;
 
@@ -33,6 +34,10 @@ impl Ready for Synth {
 
     fn marks(&self, view: &View, moment: &Moment) -> Vec<Mark> {
         marks::marks(self, view, moment)
+    }
+
+    fn under(&self, pixel: (usize, usize), moment: &Moment) -> Option<Under> {
+        probe::under(self, pixel, moment)
     }
 
     fn bounds(&self, t: f64) -> Option<Bounds> {

@@ -14,6 +14,15 @@ pub struct ReadOut {
     pub axis: Option<Axis>,
 }
 
+/// What a pixel shows of a layer in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Under {
+    /// The triangle, by its number from 0.
+    pub triangle: usize,
+    /// How far away it is, in meters.
+    pub depth_m: f64,
+}
+
 /// One entry of a [`ReadOut`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {

@@ -10,7 +10,7 @@ use winit::window::{CursorIcon, Fullscreen, Window};
 
 use super::mouse::Shape;
 use super::screen::{Drawn, Pictures, Screen, Strokes};
-use super::show::{Cached, Show, jump_at, seen};
+use super::show::{Cached, Show, jump_at, seen, under};
 use super::state::{BAR_PX, State};
 use super::text::Letters;
 use super::x11::Desk;
@@ -126,6 +126,11 @@ impl Opened {
                 (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
                 let asked = state.pointed().filter(|_| state.shows_vectors());
                 state.jump = asked.and_then(|at| jump_at(&show.synth, at));
+                let in_space = state.pointed().filter(|_| state.camera.is_some());
+                state.under = in_space.and_then(|at| {
+                    let synth = seen(&show.synth, state.own_camera().as_ref());
+                    under(&show.scene, &synth, state.transport.scene_time(&state.timeline), at)
+                });
                 self.pictures(state, show)?
             }
             None => {

@@ -56,6 +56,20 @@ pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
     fields.into_iter().find_map(|field| field.at(pixel))
 }
 
+/// What stands under a place in the picture, nearest in the topmost group of layers in space that is there at scene time
+/// `t`: layer, triangle and depth.
+pub fn under(scene: &Scene, synth: &Synth, t: f64, at: Point) -> Option<String> {
+    let pixel = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as usize, at.y as usize))?;
+    let moment = synth.moment(t);
+    let (layer, found) = synth.stage.groups.iter().rev().find_map(|group| {
+        let layers = group.layers().iter();
+        let found = layers.filter_map(|&layer| Some((layer, synth.layers[layer].under(pixel, &moment)?)));
+        found.min_by(|(_, a), (_, b)| a.depth_m.total_cmp(&b.depth_m))
+    })?;
+    let name = scene.layers.get(layer)?.technique().name();
+    Some(format!("{name}, triangle {}, {:.2} m", found.triangle, found.depth_m))
+}
+
 /// What a JSON pointer leads to, by the names of the layer and of the item in it: `face/left
 /// eye/motion/3`; `None` for the scene itself.
 pub fn name(scene: &Scene, pointer: &str) -> Option<String> {
@@ -167,6 +181,27 @@ mod tests {
         for (x, y, expected) in table {
             assert_eq!(jump_at(&synth, Point::new(x, y)).map(|jump| jump.x), expected, "{x} {y}");
         }
+    }
+
+    #[test]
+    fn the_nearest_triangle_under_the_pointer_is_told() {
+        use crate::base::mesh::{Mesh, Vertex};
+        use crate::layers::parts::materials::Materials;
+        let scene = r#"{ "plica": 1, "size": [60, 60], "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+            "meshes": {"m": {"path": "m.obj"}}, "layers": [{"kind": "mesh", "name": "near", "mesh": "m"},
+            {"kind": "mesh", "name": "far", "mesh": "m", "pose": {"position": [0.5, 0, -1]}}] }"#;
+        let scene: Scene = serde_json::from_str(scene).unwrap();
+        let corner = |[x, y]: [f64; 2]| Vertex { position: [x, y, 0.0].into(), ..Vertex::default() };
+        let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
+        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+        let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
+        let synth = crate::render::synth(&scene, &materials, None).unwrap();
+        for (x, told) in
+            [(25.0, Some("near, triangle 1, 4.00 m")), (52.5, Some("far, triangle 0, 5.00 m")), (5.0, None)]
+        {
+            assert_eq!(under(&scene, &synth, 0.0, Point::new(x, 20.0)).as_deref(), told, "{x}");
+        }
+        assert_eq!(under(&scene, &synth, 0.0, Point::new(-1.0, 20.0)), None);
     }
 
     #[test]

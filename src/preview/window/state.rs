@@ -52,6 +52,8 @@ pub struct State {
     pub marked: Option<Point>,
     /// The jump vector under the pointer, where what is shown of jump vectors asks for it.
     pub jump: Option<Vec2>,
+    /// What stands under the pointer of layers in space.
+    pub under: Option<String>,
     /// What is selected in the editor, for people.
     pub selected: Option<String>,
     /// Frames a second, while it plays.
@@ -95,6 +97,7 @@ impl Default for State {
             wipe: 0.5,
             marked: None,
             jump: None,
+            under: None,
             selected: None,
             fps: None,
             arrow_scale: 1.0,
