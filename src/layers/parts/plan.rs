@@ -124,7 +124,7 @@ pub struct Packed<'a> {
     pub rows: Rows<'a>,
 }
 
-/// Calls back with the bytes of some rows, row by row.
+/// Calls back once, with the bytes of all of some rows, row by row.
 pub type Rows<'a> = Box<dyn Fn(Range<usize>, &mut dyn FnMut(&[u8])) + 'a>;
 
 /// The format of a texel.

@@ -45,12 +45,29 @@ where
 {
     Box::new(move |rows: Range<usize>, take: &mut dyn FnMut(&[u8])| {
         let each = WIDTH / N;
-        let mut line: Vec<[T; 4]> = Vec::with_capacity(WIDTH);
-        for row in rows {
-            line.clear();
-            (row * each..((row + 1) * each).min(count)).for_each(|i| line.extend(of(i)));
-            line.resize(WIDTH, [T::default(); 4]);
-            take(bytemuck::cast_slice(&line));
-        }
+        let mut texels: Vec<[T; 4]> = Vec::with_capacity(rows.len() * WIDTH);
+        (rows.start * each..(rows.end * each).min(count)).for_each(|i| texels.extend(of(i)));
+        texels.resize(rows.len() * WIDTH, [T::default(); 4]);
+        take(bytemuck::cast_slice(&texels));
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_rows_that_are_asked_for_come_at_once() {
+        let mesh = Mesh { triangles: (0..2 * WIDTH as u32 + 5).map(|i| [i; 3]).collect(), ..Mesh::default() };
+        let packed = &mesh.pack()[TRIANGLES];
+        assert_eq!(packed.size, (WIDTH, 3));
+        let mut all = Vec::new();
+        (packed.rows)(1..3, &mut |bytes| all.push(bytes.to_vec()));
+        let [bytes] = &all[..] else { panic!("taken {} times", all.len()) };
+        let texels: &[[u32; 4]] = bytemuck::cast_slice(bytes);
+        let first = WIDTH as u32;
+        let last = 2 * first + 4;
+        assert_eq!((texels.len(), texels[0]), (2 * WIDTH, [first, first, first, 0]));
+        assert_eq!((texels[WIDTH + 4], texels[WIDTH + 5]), ([last, last, last, 0], [0; 4]));
+    }
 }
