@@ -124,7 +124,7 @@ impl Screen {
         let mut config = config.ok_or_else(|| Error::at("window", "the GPU cannot show in this window"))?;
         config.format = self.format;
         config.present_mode = wgpu::PresentMode::AutoVsync;
-        gpu.device().checked(|| self.surface.configure(&gpu.device().raw, &config))?;
+        gpu.device().alone(|| self.surface.configure(&gpu.device().raw, &config))?;
         self.configured = (width, height);
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! errors are captured and returned to the caller that asked for the work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::base::error::{Error, Result};
 
@@ -21,6 +21,7 @@ pub struct Device {
     pub adapter: wgpu::Adapter,
     lost: Arc<AtomicBool>,
     uncaught: Arc<Mutex<Option<String>>>,
+    submitting: Arc<Mutex<()>>,
 }
 
 impl Device {
@@ -44,7 +45,8 @@ impl Device {
         };
         let (raw, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| failed(format!("{} gave no device: {}", adapter.get_info().name, one_line(&e))))?;
-        let device = Device { raw, queue, adapter, lost: Arc::default(), uncaught: Arc::default() };
+        let (lost, uncaught, submitting) = Default::default();
+        let device = Device { raw, queue, adapter, lost, uncaught, submitting };
         device.listen();
         Ok(device)
     }
@@ -87,6 +89,13 @@ impl Device {
             Some(error) => Err(failed(one_line(&error))),
             None => Ok(done),
         }
+    }
+
+    /// As [`Device::checked`], while no other thread does the same: an upload, or the configuration of a surface, which fails
+    /// where more is submitted before the device has come to rest.
+    pub fn alone<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
+        let _alone = self.submitting.lock().unwrap_or_else(PoisonError::into_inner);
+        self.checked(work)
     }
 
     /// The first error since the last call that no check caught.

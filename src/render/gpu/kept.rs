@@ -159,7 +159,7 @@ fn upload(device: &Device, packed: &Packed<'_>, done: &dyn Fn(f64) -> bool) -> R
             );
             device.queue.submit([]);
         };
-        device.checked(|| (packed.rows)(y..y + rows, &mut send))?;
+        device.alone(|| (packed.rows)(y..y + rows, &mut send))?;
         if !done(rows as f64 / height as f64) {
             return Err(failed("stopped"));
         }
