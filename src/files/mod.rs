@@ -14,6 +14,7 @@ pub mod lines;
 pub mod log;
 pub mod materials;
 pub mod mesh;
+pub mod models;
 pub mod originals;
 pub mod outputs;
 pub mod paths;

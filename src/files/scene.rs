@@ -43,8 +43,8 @@ pub fn read_text(path: &Path, limits: &Limits) -> Result<String> {
     }
 }
 
-/// Whether the file at `path` is a scene by what is in it: the beginning of a JSON object. Where that does not tell, because
-/// it is neither that nor a picture, its name does.
+/// Whether the file at `path` is a scene by what is in it: the beginning of a JSON object (which a `.gltf` is too). Where that
+/// does not tell, because it is neither that nor a picture, its name does.
 pub fn is_one(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = paths::open_named(path).ok().and_then(|file| file.take(HEAD).read_to_end(&mut head).ok());
@@ -52,7 +52,9 @@ pub fn is_one(path: &Path) -> bool {
     let is_object = text
         .strip_prefix(b"{")
         .is_some_and(|text| matches!(text.trim_ascii_start().first(), None | Some(b'"' | b'}')) && !text.contains(&0));
-    read.is_some() && is_object || path.extension().is_some_and(|end| end == "json") && !picture::is_one(path)
+    let is_model = paths::is_model(&path.to_string_lossy());
+    read.is_some() && is_object && !is_model
+        || path.extension().is_some_and(|end| end == "json") && !picture::is_one(path)
 }
 
 /// Whether a text is complete JSON.

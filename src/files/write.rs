@@ -4,7 +4,7 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::{MetadataExt, fchown};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::temporary::{self, Temporary};
 use super::{disk, paths};
@@ -41,6 +41,22 @@ pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     let mut bytes = Vec::new();
     paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
     if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
+}
+
+/// Copies the file called `name` from one folder to another, as [`copy_new`]; folders in its name are made there.
+///
+/// # Errors
+/// If the name leads out of the folder, or as [`copy_new`].
+pub fn copy_into(from: &Path, to: &Path, name: &str) -> Result<()> {
+    let (source, target) = (from.join(name), to.join(name));
+    if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_))) {
+        let error = Error::at(source.display(), "is not in the folder of what names it, and cannot be copied with it");
+        return Err(error.cure("make the scene where that is"));
+    }
+    if let Some(folder) = target.parent().filter(|folder| *folder != to) {
+        std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, error))?;
+    }
+    copy_new(&source, &target)
 }
 
 /// A file being written, moved into place by [`Atomic::commit`]. If dropped before that, it leaves nothing behind.

@@ -138,13 +138,21 @@ pub struct Kind {
     pub passes: &'static [Pass],
     /// How that looks, in ascending order.
     pub looks: &'static [&'static Look],
-    /// A layer that shows the image of this name, of this width and height; `None` if the technique does not start from
-    /// a picture.
-    pub template: Option<fn(image: &str, size: (usize, usize)) -> Value>,
+    /// What makes a new layer, if the technique can start from something.
+    pub template: Option<Template>,
     /// How new things in its layers begin.
     pub starts: Starts,
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,
+}
+
+/// What makes a new layer from something that it shows.
+#[derive(Clone, Copy, Debug)]
+pub enum Template {
+    /// From the image of this name, of this width and height.
+    Picture(fn(image: &str, size: (usize, usize)) -> Value),
+    /// From the mesh of this name, with an image on its surface.
+    Mesh(fn(mesh: &str, image: Option<&str>) -> Value),
 }
 
 /// How new things in a document begin, and which lists ascend.

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use super::scene_options::{RecoveryOptions, SceneOptions};
 
-/// Edit a scene, or a picture, in the terminal
+/// Edit a scene, a picture or a model in the terminal
 #[derive(clap::Args)]
 pub struct Args {
-    /// A scene, or a picture: its scene is the one beside it, which is made if missing
-    #[arg(value_name = "SCENE | PICTURE")]
+    /// A scene; or a picture or a model: its scene is the one beside it, which is made if missing
+    #[arg(value_name = "SCENE | PICTURE | MODEL")]
     pub path: PathBuf,
     /// Do not open the preview window
     #[arg(long)]

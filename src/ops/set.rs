@@ -207,6 +207,7 @@ pub fn parse(setting: &str) -> Result<(&str, Value)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Start;
     use serde_json::json;
 
     #[test]
@@ -228,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_line_of_several_settings() {
-        let document = Document::new(&[("cat", "cat.png", 9, 9)]).unwrap();
+        let document = Start::default().picture("cat", "cat.png", (9, 9)).document().unwrap();
         for (line, expected) in [
             ("title=two words", vec!["title=two words"]),
             ("title=a = b", vec!["title=a = b"]),

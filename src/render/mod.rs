@@ -11,7 +11,7 @@ use crate::layers::parts::moment::{CENTRE, Moment};
 use crate::layers::ready::{Making, Ready, Texture, Textures};
 #[cfg(feature = "window")]
 use crate::layers::space::camera::Camera;
-use crate::scene::Scene;
+use crate::scene::{FRAME, Scene};
 
 pub mod bands;
 pub mod cpu;
@@ -134,5 +134,5 @@ pub fn frame_size(scene: &Scene, materials: &Materials) -> (usize, usize) {
     }
     let named = scene.layers.iter().find_map(|layer| layer.technique().frame_of());
     let picture = named.and_then(|name| materials.pictures.get(name));
-    picture.map_or((1280, 720), |picture| (picture.width(), picture.height()))
+    picture.map_or(FRAME, |picture| (picture.width(), picture.height()))
 }

@@ -3,15 +3,14 @@
 
 use std::sync::Arc;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::check::Rules;
 use super::edit::Edit;
-use super::{Scene, VERSION, check, json, migrate};
+use super::{Scene, check, json, migrate};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
-use crate::layers::KINDS;
 
 /// A scene as written and as meant. A clone shares both.
 #[derive(Clone, Debug)]
@@ -49,19 +48,6 @@ impl Document {
     pub fn from_json_under(json: Value, rules: Rules) -> Result<Document, Vec<Problem>> {
         let read = check::read(&json, &rules)?;
         Ok(Document { json: Arc::new(json), read, rules })
-    }
-
-    /// A scene of pictures, (name, path, width, height) each, with one layer per picture, made by the first technique
-    /// that can start from a picture. The names must be unique.
-    pub fn new(pictures: &[(&str, &str, usize, usize)]) -> Result<Document, Vec<Problem>> {
-        let template = KINDS.iter().find_map(|kind| kind.template);
-        let images: serde_json::Map<_, _> =
-            pictures.iter().map(|(name, path, ..)| (name.to_string(), json!({ "path": path }))).collect();
-        let layers: Vec<_> = pictures
-            .iter()
-            .map(|&(name, _, width, height)| template.map(|template| template(name, (width, height))))
-            .collect();
-        Document::from_json(json!({ "plica": VERSION, "images": images, "layers": layers }))
     }
 
     /// From now on edits are checked by these rules.

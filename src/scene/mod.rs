@@ -26,14 +26,19 @@ pub mod pointer;
 mod references;
 pub mod schema;
 mod shape;
+mod start;
 pub mod words;
 
 pub use document::Document;
 pub use edit::Edit;
 pub use history::History;
+pub use start::Start;
 
 /// The version of the document that this program writes.
 pub const VERSION: u32 = 1;
+
+/// Width and height of a frame if neither the scene nor a picture in it says another.
+pub const FRAME: (usize, usize) = (1280, 720);
 
 /// A scene: what `NAME.plica.json` holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

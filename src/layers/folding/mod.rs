@@ -48,7 +48,7 @@ use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready};
-use super::technique::{Bundle, Checked, Count, Counted, Kind, Starts, Technique, Turned};
+use super::technique::{Bundle, Checked, Count, Counted, Kind, Starts, Technique, Template, Turned};
 use super::timeline::Wrap;
 use crate::base::problem::Problem;
 
@@ -65,7 +65,7 @@ pub static KIND: Kind = Kind {
     overlays: looks::OVERLAYS,
     passes: &[],
     looks: looks::LOOKS,
-    template: Some(starts::template),
+    template: Some(Template::Picture(starts::template)),
     starts: Starts { start: starts::start, beyond: starts::beyond, ascending: starts::ascending, item: starts::item },
     example: include_str!("example.json"),
 };

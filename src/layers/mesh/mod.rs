@@ -13,13 +13,14 @@ pub mod synth;
 use std::sync::Arc;
 
 use kurbo::Rect;
+use serde_json::{Value, json};
 
 use self::model::MeshLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::ReadOut;
 use super::ready::{Making, Ready};
-use super::technique::{Checked, Kind, Starts, Technique};
+use super::technique::{Checked, Kind, Starts, Technique, Template};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -32,10 +33,19 @@ pub static KIND: Kind = Kind {
     overlays: marks::OVERLAYS,
     passes: &[],
     looks: marks::LOOKS,
-    template: None,
+    template: Some(Template::Mesh(template)),
     starts: Starts::PLAIN,
     example: include_str!("example.json"),
 };
+
+/// A layer that shows a mesh, with an image on its surface.
+fn template(mesh: &str, image: Option<&str>) -> Value {
+    let mut layer = json!({ "kind": "mesh", "name": mesh, "mesh": mesh });
+    if let Some(image) = image {
+        layer["surface"] = json!({ "kind": "texture", "image": image });
+    }
+    layer
+}
 
 impl Technique for MeshLayer {
     fn kind(&self) -> &'static Kind {

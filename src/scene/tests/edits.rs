@@ -46,7 +46,7 @@ fn set_makes_parents_and_keeps_what_fits() {
         let path = address::resolve(&changed, &zone(at)).unwrap();
         assert_eq!(field::value(&changed, &path), Some(expected), "{address}");
     }
-    let bare = Document::new(&[("cat", "cat.png", 9, 9)]).unwrap();
+    let bare = Start::default().picture("cat", "cat.png", (9, 9)).document().unwrap();
     for (address, value, at, expected) in [
         ("timeline.fps", json!(24), "/timeline", json!({ "fps": 24 })),
         (

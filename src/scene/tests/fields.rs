@@ -160,7 +160,7 @@ fn fields_tell_what_a_form_needs() {
 
 #[test]
 fn children_also_list_what_is_not_written() {
-    let document = Document::new(&[("cat", "cat.png", 9, 9)]).unwrap();
+    let document = Start::default().picture("cat", "cat.png", (9, 9)).document().unwrap();
     let children = |path: &str| -> Vec<(String, bool)> {
         children(&document, path).into_iter().map(|child| (child.name, child.set)).collect()
     };

@@ -10,11 +10,11 @@ use crate::base::text;
 use crate::files::holder::Holder;
 use crate::files::outputs::{self, Guard};
 use crate::files::session::{Mode, Overwrite, Recovery, Session, Taken};
-use crate::files::{self, picture, write};
+use crate::files::{self, models, picture, write};
 use crate::ops::new;
 use crate::scene::history::{Applied, Way};
 use crate::scene::merge::Side;
-use crate::scene::{Document, Edit, History};
+use crate::scene::{Document, Edit, History, Start};
 use crate::tui::events::Change;
 
 /// Why an edit is refused if the scene is read-only.
@@ -30,7 +30,7 @@ pub struct OpenScene {
 }
 
 impl OpenScene {
-    /// Opens a scene; or, given a picture, the scene beside it, which is made if it is missing.
+    /// Opens a scene; or, given a picture or a model, the scene beside it, which is made if it is missing.
     ///
     /// # Errors
     /// The scene or the picture cannot be read, or somebody else is editing the scene.
@@ -326,7 +326,7 @@ fn millis(time: Duration) -> u64 {
     time.as_millis().try_into().unwrap_or(u64::MAX)
 }
 
-/// The scene beside a picture, and whether it had to be made.
+/// The scene beside a picture or a model, and whether it had to be made.
 fn beside(picture: &Path, read_only: bool, options: &files::Options) -> Result<(PathBuf, bool)> {
     let scene = new::beside(picture);
     if scene.exists() {
@@ -336,11 +336,15 @@ fn beside(picture: &Path, read_only: bool, options: &files::Options) -> Result<(
     if read_only {
         return Ok((scene, false));
     }
-    let (width, height) = picture::size(picture, &options.limits)?;
+    if models::is_one(picture) {
+        new::create(&scene, &[picture.to_owned()], options)?;
+        return Ok((scene, true));
+    }
+    let size = picture::size(picture, &options.limits)?;
     let (name, file) = (new::called(picture), new::file_name(picture)?);
     let place = || scene.display().to_string();
-    let document =
-        Document::new(&[(&name, &file, width, height)]).map_err(|problems| Error::Scene { file: place(), problems })?;
+    let document = Start::default().picture(&name, &file, size).document();
+    let document = document.map_err(|problems| Error::Scene { file: place(), problems })?;
     write::write_new(&scene, document.to_text().as_bytes())?;
     Ok((scene, true))
 }
@@ -351,7 +355,9 @@ fn refuse_other(picture: &Path, scene: &Path, options: &files::Options) -> Resul
     if outputs::reads(scene, document.scene(), picture) {
         return Ok(());
     }
-    picture::size(picture, &options.limits)?;
+    if !models::is_one(picture) {
+        picture::size(picture, &options.limits)?;
+    }
     let (own, other) = (picture.display(), scene.display());
     let cure = format!("edit that one, or make another: plica new {own} -o OTHER.plica.json");
     Err(Error::at(own, format!("is not read by the scene beside it, {other}")).cure(cure))

@@ -1,0 +1,68 @@
+//! Models that a person names to make a scene of them: the mesh, and which other files a scene of it reads.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::{Options, mesh, paths, picture};
+use crate::base::error::Result;
+use crate::base::mesh::Mesh;
+
+/// How the names of models end.
+const ENDS: [&str; 3] = [".obj", ".glb", ".gltf"];
+
+/// A model, read completely. Files are named relative to its folder.
+#[derive(Debug)]
+pub struct Model {
+    /// Its triangles.
+    pub mesh: Mesh,
+    /// The picture on its surface, if it has one that can be shown: a file, or a part of the model (`cow.glb#0`).
+    pub picture: Option<String>,
+    /// The files that it is in, besides its own.
+    pub beside: Vec<String>,
+    /// What in it could not be honored, in words.
+    pub notes: Vec<String>,
+}
+
+/// Whether the file at `path` is a model: by its name, unless it begins as a picture; a `.glb` by whatever name.
+pub fn is_one(path: &Path) -> bool {
+    let name = path.to_string_lossy().to_ascii_lowercase();
+    let is_called = ENDS.iter().any(|end| name.ends_with(end));
+    let mut magic = [0; 4];
+    let read = paths::open_named(path).ok().and_then(|mut file| file.read_exact(&mut magic).ok());
+    read.is_some() && magic == *b"glTF" || is_called && !picture::is_one(path)
+}
+
+/// Reads a model with everything that a scene of it would read. A picture that cannot be shown is left out, which a note
+/// tells.
+///
+/// # Errors
+/// If it is no mesh, is broken, or is larger than the limits allow; if a file that it is in cannot be read.
+pub fn read(path: &Path, options: &Options) -> Result<Model> {
+    let limits = &options.limits;
+    // What a scene beside it may read.
+    let scene = path.with_extension("plica.json");
+    let open = || paths::open_named(path);
+    let sibling = |name: &str| paths::open(&scene, name, options);
+    let place = path.display().to_string();
+    let (mesh, mut notes, _share) = mesh::decode(open()?, &place, limits, &limits.budget(), &sibling)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut beside = mesh::parts(open()?, &name, limits)?;
+    let offered = mesh::pictures(open()?, &name, limits)?;
+    let shown = |picture: &String| picture::decode(sibling(picture)?, picture, limits, &limits.budget()).map(|_| ());
+    let picture = match offered.first() {
+        Some(_) if mesh.without_uv.is_some() => None,
+        Some(picture) => match shown(picture) {
+            Ok(()) => Some(picture.clone()),
+            Err(error) => {
+                notes.push(format!("its picture is not shown: {error}"));
+                None
+            }
+        },
+        None => None,
+    };
+    if let (Some(first), 2..) = (&picture, offered.len()) {
+        notes.push(format!("of its {} pictures only {first} is shown", offered.len()));
+    }
+    beside.extend(picture.iter().filter(|picture| paths::image_of(picture).is_none()).cloned());
+    Ok(Model { mesh, picture, beside, notes })
+}

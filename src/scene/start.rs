@@ -1,0 +1,150 @@
+//! A new scene: a layer for each picture and each mesh, made by the techniques that can start from one, and a camera that
+//! sees all meshes.
+
+use glam::DVec3;
+use serde_json::{Map, Value, json};
+
+use super::build::unique_name;
+use super::{Document, FRAME, VERSION};
+use crate::base::maths;
+use crate::base::problem::Problem;
+use crate::layers::KINDS;
+use crate::layers::space::camera::Camera;
+use crate::layers::space::fit::{Bounds, fit};
+use crate::layers::technique::Template;
+
+/// Where a new camera sees meshes from.
+const BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
+
+/// A scene in the making.
+#[derive(Debug, Default)]
+pub struct Start {
+    images: Map<String, Value>,
+    meshes: Map<String, Value>,
+    layers: Vec<Value>,
+    frame: Option<(usize, usize)>,
+    bounds: Option<Bounds>,
+}
+
+impl Start {
+    /// Adds a picture of this width and height, in a file, with a layer that shows it. If another image has its name
+    /// already, it gets a similar one.
+    pub fn picture(mut self, name: &str, path: &str, size: (usize, usize)) -> Start {
+        let image = self.image(name, path);
+        self.frame.get_or_insert(size);
+        self.layer(|template| match template {
+            Template::Picture(make) => Some(make(&image, size)),
+            Template::Mesh(_) => None,
+        });
+        self
+    }
+
+    /// Adds a mesh between two corners, in a file, with a layer that shows it; on its surface an image, by name and path.
+    pub fn mesh(mut self, name: &str, path: &str, bounds: Option<Bounds>, surface: Option<(&str, &str)>) -> Start {
+        let mesh = put(&mut self.meshes, name, path);
+        let image = surface.map(|(name, path)| self.image(name, path));
+        self.bounds = self.bounds.into_iter().chain(bounds).reduce(|a, b| a.and(&b));
+        self.layer(|template| match template {
+            Template::Mesh(make) => Some(make(&mesh, image.as_deref())),
+            Template::Picture(_) => None,
+        });
+        self
+    }
+
+    /// The scene.
+    ///
+    /// # Errors
+    /// If what is in it is no scene: a path that none can have, for example.
+    pub fn document(self) -> Result<Document, Vec<Problem>> {
+        let mut scene = Map::from_iter([("plica".to_owned(), VERSION.into())]);
+        if !self.meshes.is_empty() {
+            scene.insert("camera".into(), camera(self.bounds, self.frame.unwrap_or(FRAME)));
+        }
+        for (list, items) in [("images", self.images), ("meshes", self.meshes)] {
+            if !items.is_empty() {
+                scene.insert(list.into(), items.into());
+            }
+        }
+        scene.insert("layers".into(), self.layers.into());
+        Document::from_json(scene.into())
+    }
+
+    fn image(&mut self, name: &str, path: &str) -> String {
+        let known = self.images.iter().find(|(_, image)| image["path"] == path).map(|(name, _)| name.clone());
+        known.unwrap_or_else(|| put(&mut self.images, name, path))
+    }
+
+    /// Adds a layer of the first technique that makes one.
+    fn layer(&mut self, make: impl Fn(Template) -> Option<Value>) {
+        let Some(mut layer) = KINDS.iter().find_map(|kind| make(kind.template?)) else { return };
+        let name = layer["name"].as_str().unwrap_or_default();
+        layer["name"] = unique_name(name, |name| self.layers.iter().any(|other| other["name"] == name)).into();
+        self.layers.push(layer);
+    }
+}
+
+/// Adds a file to a list of the scene, and gives the name that it has there.
+fn put(list: &mut Map<String, Value>, name: &str, path: &str) -> String {
+    let name = unique_name(name, |name| list.contains_key(name));
+    list.insert(name.clone(), json!({ "path": path }));
+    name
+}
+
+/// A camera that sees everything between `bounds`, in short numbers.
+fn camera(bounds: Option<Bounds>, frame: (usize, usize)) -> Value {
+    let Some(bounds) = bounds else { return json!({}) };
+    let [position, target] = fit(&bounds, [BACK, DVec3::Y], Camera::default().fov, frame);
+    let distance = position.distance(target);
+    let fine = (0..10).map(maths::ten_to).find(|parts| distance * parts >= 1e4).unwrap_or(1e9);
+    let short = |point: DVec3| point.to_array().map(|v| whole((v * fine).round() / fine));
+    json!({ "position": short(position), "target": short(target) })
+}
+
+/// A number without a point where it needs none.
+fn whole(number: f64) -> Value {
+    if number.fract() == 0.0 && number.abs() < 1e15 { (number as i64).into() } else { number.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::space::eye::Eye;
+
+    #[test]
+    fn the_camera_sees_all_meshes_in_short_numbers() {
+        for (scale, size) in [(1.0, (400, 400)), (0.1, (90, 400)), (1e5, (1280, 720))] {
+            let bounds = [[-1.0, 0.0, -2.0], [1.0, 3.0, 0.5], [4.0, 0.1, 0.3]].map(|at| DVec3::from(at) * scale);
+            let boxes = bounds.map(|at| Bounds::around([at, at + scale]));
+            let start = Start::default().picture("cat", "cat.png", size);
+            let start = boxes.iter().fold(start, |start, one| start.mesh("box", "box.obj", *one, None));
+            let document = start.document().unwrap();
+            let eye = document.scene().camera.as_ref().unwrap().at(0.0, size);
+            let Eye { middle_px, .. } = eye;
+            let corners = boxes.iter().flatten().flat_map(Bounds::corners);
+            let reach = corners.map(|corner| {
+                let from_middle = (eye.project(eye.seen(corner)) - middle_px) / middle_px;
+                from_middle.abs().max_element()
+            });
+            let reach = reach.fold(0.0, f64::max);
+            assert!((0.7..0.91).contains(&reach), "{scale}: {reach}");
+            let text = document.to_text();
+            let camera = text.lines().find(|line| line.contains("\"camera\"")).unwrap();
+            assert!(camera.len() < 100, "{camera}");
+        }
+    }
+
+    #[test]
+    fn names_are_unique_in_each_list() {
+        let start =
+            Start::default().picture("cat", "cat.png", (8, 6)).mesh("cat", "cat.obj", None, Some(("cat", "a.png")));
+        let document = start.mesh("cat", "b/cat.obj", None, Some(("skin", "cat.png"))).document().unwrap();
+        let json = document.json();
+        assert_eq!(json["images"], json!({ "cat": { "path": "cat.png" }, "cat 2": { "path": "a.png" } }));
+        assert_eq!(json["meshes"], json!({ "cat": { "path": "cat.obj" }, "cat 2": { "path": "b/cat.obj" } }));
+        let layers = json["layers"].as_array().unwrap();
+        let names: Vec<_> = layers.iter().map(|layer| layer["name"].as_str().unwrap()).collect();
+        assert_eq!(names, ["cat", "cat 2", "cat 3"]);
+        assert_eq!(layers[2]["surface"], json!({ "kind": "texture", "image": "cat" }));
+        assert_eq!(json["camera"], json!({}));
+    }
+}

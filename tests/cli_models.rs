@@ -1,0 +1,186 @@
+//! Scenes made of models: the real program in a fresh folder.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
+
+mod binary;
+
+use std::path::Path;
+use std::process::Output;
+
+use base64::Engine;
+use image::RgbaImage;
+use serde_json::{Value, json};
+
+/// Standard output and messages of a run that must succeed, or else fail.
+fn plica(folder: &Path, args: &[&str], succeeds: bool) -> (String, String) {
+    let Output { status, stdout, stderr } = binary::plica(folder, args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let (out, messages) = (text(stdout), text(stderr));
+    assert_eq!(status.success(), succeeds, "{args:?}: {out}{messages}");
+    (out, messages)
+}
+
+fn get(folder: &Path, scene: &str, address: &str) -> Value {
+    serde_json::from_str(&plica(folder, &["get", scene, address], true).0).unwrap()
+}
+
+/// The corners of a square from (0, 0) to (2, 2), facing forward, and their texture coordinates.
+fn square() -> Vec<u8> {
+    let positions = [0., 0., 0., 2., 0., 0., 2., 2., 0., 0., 2., 0.];
+    let uvs = [0., 1., 1., 1., 1., 0., 0., 0.];
+    let floats = positions.into_iter().chain(uvs).flat_map(f32::to_le_bytes);
+    floats.chain([0, 1, 2, 0, 2, 3]).collect()
+}
+
+/// The square as glTF, its bytes and its picture at these addresses.
+fn gltf(buffer: &str, image: &str) -> String {
+    json!({
+        "asset": { "version": "2.0" },
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": 0 }] }],
+        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }],
+        "images": [{ "uri": image }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2" },
+            { "bufferView": 2, "componentType": 5121, "count": 6, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteOffset": 0, "byteLength": 48 },
+            { "buffer": 0, "byteOffset": 48, "byteLength": 32 },
+            { "buffer": 0, "byteOffset": 80, "byteLength": 6 },
+        ],
+        "buffers": [{ "uri": buffer, "byteLength": 86 }],
+    })
+    .to_string()
+}
+
+/// A folder with a picture, and in a folder `from` the square as `square.gltf` with its parts in `from/parts`.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(at("from/parts")).unwrap();
+    std::fs::create_dir(at("to")).unwrap();
+    RgbaImage::from_pixel(80, 60, image::Rgba([0, 0, 90, 255])).save(at("cat.png")).unwrap();
+    RgbaImage::from_pixel(4, 4, image::Rgba([200, 0, 0, 255])).save(at("from/parts/skin.png")).unwrap();
+    std::fs::write(at("from/parts/square.bin"), square()).unwrap();
+    std::fs::write(at("from/square.gltf"), gltf("parts/square.bin", "parts/skin.png")).unwrap();
+    std::fs::write(at("flat.obj"), "v -1 5 0\nv 1 5 0\nv 1 9 0\nv -1 9 0\nf 1 2 3 4\n").unwrap();
+    folder
+}
+
+fn rendered(folder: &Path, scene: &str) -> RgbaImage {
+    plica(folder, &["render", scene, "--frames", "0", "-o", "frame.png"], true);
+    image::open(folder.join("frame.png")).unwrap().to_rgba8()
+}
+
+#[test]
+fn a_model_is_seen_whole_by_a_camera() {
+    let folder = folder();
+    assert_eq!(plica(folder.path(), &["new", "flat.obj"], true).0, "flat.plica.json\n");
+    let scene = std::fs::read_to_string(folder.path().join("flat.plica.json")).unwrap();
+    let scene: Value = serde_json::from_str(&scene).unwrap();
+    assert_eq!(scene["layers"], json!([{ "kind": "mesh", "name": "flat", "mesh": "flat" }]));
+    assert_eq!(scene["camera"]["target"], json!([0, 7, 0]));
+    assert_eq!(scene["images"], Value::Null);
+    assert!(plica(folder.path(), &["check", "--lenient", "flat.plica.json"], true).1.contains("no problems"));
+    let frame = rendered(folder.path(), "flat.plica.json");
+    assert_eq!(frame.dimensions(), (1280, 720));
+    let rows: Vec<u32> = (0..720).filter(|&y| (0..1280).any(|x| frame.get_pixel(x, y)[3] > 0)).collect();
+    let (first, last) = (rows[0], rows[rows.len() - 1]);
+    // Seen from a little above, the upper end is nearer, and a twentieth of the height from the edge of the frame.
+    assert!((35..38).contains(&first) && (600..684).contains(&last), "{first} to {last}");
+}
+
+#[test]
+fn the_picture_of_a_model_is_on_its_surface_and_its_files_come_along() {
+    let folder = folder();
+    let new = ["new", "cat.png", "from/square.gltf", "flat.obj", "-o", "to/a.plica.json"];
+    plica(folder.path(), &new, true);
+    let to = folder.path().join("to");
+    for (address, expected) in [
+        ("meshes", json!({ "square": { "path": "square.gltf" }, "flat": { "path": "flat.obj" } })),
+        ("images", json!({ "cat": { "path": "cat.png" }, "skin": { "path": "parts/skin.png" } })),
+        ("layers.square.surface", json!({ "kind": "texture", "image": "skin" })),
+    ] {
+        assert_eq!(get(&to, "a.plica.json", address), expected);
+    }
+    for name in ["cat.png", "square.gltf", "flat.obj", "parts/square.bin", "parts/skin.png"] {
+        assert!(to.join(name).is_file(), "{name}");
+    }
+    std::fs::remove_dir_all(folder.path().join("from")).unwrap();
+    let frame = rendered(&to, "a.plica.json");
+    assert_eq!(frame.dimensions(), (80, 60), "the picture gives the frame its size");
+    let count = |fits: fn(&[u8; 4]) -> bool| frame.pixels().filter(|pixel| fits(&pixel.0)).count();
+    assert!(count(|[r, g, ..]| *r > 60 && *g == 0) > 20, "the red square is seen");
+    assert!(count(|[r, _, b, _]| *r == 0 && *b == 90) > 1000, "before the picture");
+}
+
+#[test]
+fn a_picture_in_the_model_has_its_number_and_names_do_not_collide() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let data = |kind: &str, bytes: &[u8]| {
+        format!("data:{kind};base64,{}", base64::engine::general_purpose::STANDARD.encode(bytes))
+    };
+    let (bytes, skin) = (square(), std::fs::read(at("from/parts/skin.png")).unwrap());
+    let whole = gltf(&data("application/octet-stream", &bytes), &data("image/png", &skin));
+    std::fs::write(at("cat.gltf"), whole).unwrap();
+    plica(folder.path(), &["new", "cat.png", "cat.gltf", "-o", "a.plica.json"], true);
+    assert_eq!(get(folder.path(), "a.plica.json", "images.cat-0.path"), json!("cat.gltf#0"));
+    let names: Vec<Value> = ["/layers/0/name", "/layers/1/name", "/layers/1/mesh"]
+        .into_iter()
+        .map(|at| get(folder.path(), "a.plica.json", at))
+        .collect();
+    assert_eq!(names, ["cat", "cat 2", "cat"]);
+    plica(folder.path(), &["check", "--lenient", "a.plica.json"], true);
+}
+
+#[cfg(feature = "tui")]
+#[test]
+fn a_model_that_is_opened_gets_its_scene() {
+    let folder = folder();
+    let from = folder.path().join("from");
+    std::fs::write(from.join("script"), "get layers.square.mesh\n").unwrap();
+    for there in [false, true] {
+        assert_eq!(from.join("square.plica.json").exists(), there);
+        let (out, _) = plica(&from, &["edit", "square.gltf", "--script", "script"], true);
+        assert!(out.contains("\"square\""), "{out}");
+    }
+}
+
+#[test]
+fn what_of_a_model_cannot_be_read_is_told() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("broken.obj"), "v 0 0\nf 1 1 1\n").unwrap();
+    std::fs::write(at("cat.obj"), std::fs::read(at("cat.png")).unwrap()).unwrap();
+    std::fs::write(at("lost.gltf"), gltf("lost.bin", "x.png")).unwrap();
+    std::fs::write(at("from/bare.gltf"), gltf("parts/square.bin", "gone.png")).unwrap();
+    std::fs::write(at("from/far.gltf"), gltf("../square.bin", "parts/skin.png")).unwrap();
+    std::fs::write(at("square.bin"), square()).unwrap();
+    for (args, told, succeeds) in [
+        (&["new", "broken.obj"][..], "broken.obj: line 1", false),
+        (&["new", "no.obj"], "no.obj: there is no such file", false),
+        (&["new", "lost.gltf"], "lost.bin: there is no such file", false),
+        (&["new", "from/far.gltf"], "leads out of the scene's folder", false),
+        (
+            &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],
+            "is not in the folder of what names it, and cannot be copied with it (make the scene where that is)",
+            false,
+        ),
+        (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
+        // A picture by its content, whatever its name.
+        (&["new", "cat.obj"], "", true),
+    ] {
+        let (_, messages) = plica(folder.path(), args, succeeds);
+        assert!(messages.contains(told), "{args:?}: {messages}");
+    }
+    assert_eq!(
+        get(&at("from"), "bare.plica.json", "layers.bare"),
+        json!({ "kind": "mesh", "name": "bare", "mesh": "bare" })
+    );
+    assert_eq!(get(folder.path(), "cat.plica.json", "/layers/0/kind"), json!("picture"));
+    assert!(!at("to/far.gltf").exists() && !at("to/far.plica.json").exists() && !at("lost.plica.json").exists());
+}
