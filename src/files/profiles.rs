@@ -14,7 +14,7 @@ pub struct Profile {
     pub name: &'static str,
     /// What it shows, in one line.
     pub help: &'static str,
-    /// The scene and its pictures: name and bytes.
+    /// The scene, its pictures and meshes: name and bytes.
     pub files: &'static [(&'static str, &'static [u8])],
 }
 
@@ -40,6 +40,22 @@ pub const TABLE: &[Profile] = &[
     profile!("wound", "a cut closes and opens: 62 anchors from three curves", "wound.plica.json", "arm.png"),
     profile!("pecs", "a chest bounces: two zones, one half a timeline ahead", "pecs.plica.json", "chest.png"),
     profile!("car", "a car flies past a sign", "car.plica.json", "road.png", "car.png", "light.png"),
+    profile!(
+        "ball",
+        "the blinking eye on a ball that looks around",
+        "ball" / "ball.plica.json",
+        "ball" / "ball.obj",
+        "blink" / "eye.png",
+        "blink" / "lashes.png"
+    ),
+    profile!(
+        "mug",
+        "the squinting cat on a mug that turns",
+        "mug" / "mug.plica.json",
+        "mug" / "mug.obj",
+        "mug" / "print.obj",
+        "cat" / "cat.png"
+    ),
 ];
 
 /// The scene that the tutor begins with: a picture, the lid and the opening of an eye, and a curve that does not move
