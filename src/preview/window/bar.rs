@@ -140,12 +140,12 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     let percent = if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 };
     let mut parts: Vec<(u8, String)> = Vec::new();
     parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));
-    parts.extend(state.under.clone().map(|under| (3, under)));
+    parts.extend(state.under.clone().map(|under| (5, under)));
     parts.extend(state.jump.map(|jump| (2, format!("jump {:.2}, {:.2}", jump.x, jump.y))));
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
     parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
-    parts.extend(state.own.map(|_| (5, "own view, 0 ends it".to_owned())));
+    parts.extend(state.own.map(|_| (6, "own view, 0 ends it".to_owned())));
     parts.push((1, "? keys".to_owned()));
     loop {
         let text = parts.iter().map(|(_, part)| part.as_str()).collect::<Vec<_>>().join("   ");
@@ -209,6 +209,10 @@ mod tests {
         assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   200 %   ? keys");
         state.under = Some("stone, triangle 7, 4.00 m".to_owned());
         assert!(right_text(&state, 999.0, width).starts_with("stone, triangle 7, 4.00 m   whole frames"));
+        let narrow = width("stone, triangle 7, 4.00 m   own view, 0 ends it");
+        state.run("orbit-left");
+        assert_eq!(right_text(&state, narrow, width), "stone, triangle 7, 4.00 m   own view, 0 ends it");
+        state.run("own-view-off");
         state.under = None;
         state.pointer = Some(Point::new(10.0, 43.0));
         for text in ["x 5.0  y 10.0   60 fps   200 %   ? keys", "x 5.0  y 10.0   200 %", "200 %", ""] {
