@@ -91,7 +91,9 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 
 /// Removes this process's unfinished files; for a process that must end at once.
 pub fn remove_unfinished() {
-    unfinished().drain(..).for_each(|path| remove(&path));
+    unfinished().drain(..).for_each(|path| {
+        remove(&path);
+    });
 }
 
 /// Removes unfinished files and folders that killed processes left in `folder`; returns how many there were.
@@ -101,7 +103,7 @@ pub fn remove_stale(folder: &Path) -> usize {
         let maker = entry.file_name().to_str().and_then(maker);
         maker.is_some_and(|maker| is_stale(&entry.path(), &maker))
     });
-    stale.map(|entry| remove(&entry.path())).count()
+    stale.filter(|entry| remove(&entry.path())).count()
 }
 
 fn is_stale(path: &Path, maker: &Identity) -> bool {
@@ -118,13 +120,13 @@ fn is_stale(path: &Path, maker: &Identity) -> bool {
     before_boot || idle > FORGOTTEN
 }
 
-/// Removes a file or a folder. It may have been moved into place or removed meanwhile; and what cannot be removed now
-/// will be removed as stale later.
-fn remove(path: &Path) {
+/// Removes a file or a folder, and says whether it did: its process may have moved it into place and ended meanwhile.
+/// What cannot be removed now will be removed as stale later.
+fn remove(path: &Path) -> bool {
     match path.symlink_metadata() {
-        Ok(found) if found.is_dir() => drop(std::fs::remove_dir_all(path)),
-        Ok(_) => drop(disk::remove(path)),
-        Err(_) => {}
+        Ok(found) if found.is_dir() => std::fs::remove_dir_all(path).is_ok(),
+        Ok(_) => disk::remove(path).is_ok(),
+        Err(_) => false,
     }
 }
 
@@ -186,6 +188,15 @@ mod tests {
             assert_eq!(remove_stale(folder.path()), usize::from(goes), "{who:?}, idle for {idle:?}, locked {locked}");
             assert_eq!(path.exists(), !goes);
         }
+    }
+
+    #[test]
+    fn what_is_in_its_place_meanwhile_is_not_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("half");
+        File::create(&path).unwrap();
+        assert!(remove(&path));
+        assert!(!remove(&path));
     }
 
     #[test]

@@ -16,6 +16,9 @@ use crate::layers::parts::moment::Space;
 use crate::layers::technique::{Checked, Technique};
 use crate::layers::{KINDS, check as rules};
 
+/// At most about so many frames are looked at for what the camera sees.
+const MOST_VIEWS: u64 = 2000;
+
 /// Bytes that a pixel of a frame takes: light, and what is written.
 const FRAME_BYTES: u64 = 20;
 
@@ -190,7 +193,10 @@ fn too_many(path: String, what: &str, most: u64) -> Problem {
 /// Problems with what all layers are seen in: the background, the camera.
 fn view(scene: &Scene) -> Vec<Problem> {
     let mut problems: Vec<Problem> = rules::color(&scene.background, "/background").into_iter().collect();
-    let camera = scene.camera.iter().flat_map(|camera| camera.check());
+    let frames = scene.timeline.frames();
+    let step = frames.div_ceil(MOST_VIEWS).max(1) as usize;
+    let times = (0..frames).step_by(step).map(|k| scene.timeline.time_of(k));
+    let camera = scene.camera.iter().flat_map(|camera| camera.check(times.clone()));
     problems.extend(camera.map(|problem| problem.under("/camera")));
     let lost = scene.layers.iter().position(|layer| layer.technique().kind().space == Space::World);
     if let (Some(i), None) = (lost, &scene.camera) {

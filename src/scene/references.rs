@@ -73,7 +73,10 @@ fn circle(scene: &Scene, layer: usize) -> Option<Problem> {
         }
         seen.contains(&layer)
     };
-    let (_, at) = scene.shown_by(layer).into_iter().find(|(shown, _)| reaches(*shown))?;
-    let problem = Problem::error(format!("/layers/{layer}{at}"), "the layer shows itself");
-    Some(problem.hint("name a layer that does not show this one"))
+    let (shown, at) = scene.shown_by(layer).into_iter().find(|(shown, _)| reaches(*shown))?;
+    let what = match shown == layer {
+        true => "the layer shows itself".to_owned(),
+        false => format!("the layer shows itself, by {}", quoted(scene.layers[shown].technique().name())),
+    };
+    Some(Problem::error(format!("/layers/{layer}{at}"), what).hint("name a layer that does not show this one"))
 }

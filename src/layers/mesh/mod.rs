@@ -64,7 +64,8 @@ impl Technique for MeshLayer {
         let mesh = materials.meshes.get(&self.mesh).filter(|_| self.surface.slot().needs_uv());
         let without = mesh.and_then(|mesh| mesh.without_uv);
         let problem = |triangle: usize| {
-            let message = format!("the mesh \"{}\" has no texture coordinates at triangle {triangle}", self.mesh);
+            let message =
+                format!("the mesh \"{}\" has no texture coordinates at triangle {triangle} (from 0)", self.mesh);
             Problem::error("/surface", message).hint("make the surface plain, or unwrap the mesh")
         };
         without.map(problem).into_iter().collect()

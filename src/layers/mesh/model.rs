@@ -1,7 +1,7 @@
 //! The mesh layer as in the document. The doc comments become the help texts of forms and schema.
 
 use glam::DVec3;
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use super::pose::Pose;
@@ -31,6 +31,19 @@ pub struct MeshLayer {
     /// What its surface shows.
     #[serde(default)]
     pub surface: Surface,
+    /// Reserved for what is drawn from the surface: null.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(schema_with = "nothing")]
+    pub strokes: Option<Strokes>,
+}
+
+/// What is drawn from the surface: there is no kind of it yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Strokes {}
+
+/// The schema of what can only be null.
+fn nothing(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": ["string", "null"], "enum": [null] })
 }
 
 /// Which sides of triangles are seen.

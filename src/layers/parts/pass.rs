@@ -42,7 +42,8 @@ pub static OBJECT: Pass = Pass {
     holds: Holds::Number,
 };
 /// The surface before anything is drawn on it.
-pub static SHADE: Pass = Pass { name: "shade", help: "the light of surfaces, before strokes", holds: Holds::Light };
+pub static SHADE: Pass =
+    Pass { name: "shade", help: "the color of surfaces in their light, premultiplied", holds: Holds::Light };
 
 /// The passes that all layers in space have.
 pub static PASSES: [&Pass; 6] = [&COLOR, &DEPTH, &NORMAL, &UV, &OBJECT, &SHADE];

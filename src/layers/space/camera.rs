@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::eye::Eye;
 use crate::base::geometry::Xyz;
 use crate::base::problem::Problem;
+use crate::base::text::short;
 use crate::layers::check;
 use crate::layers::keyframes;
 use crate::layers::technique::{Starts, halfway};
@@ -136,18 +137,25 @@ impl Camera {
         })
     }
 
-    /// The checks beyond shape.
-    pub fn check(&self) -> Vec<Problem> {
+    /// The checks beyond shape, for frames at these times.
+    pub fn check(&self, frames: impl Iterator<Item = f64>) -> Vec<Problem> {
         let at = |i: usize| format!("/keys/{i}/at");
         let mut problems = check::ascending("times of keys", self.keys.iter().map(|key| key.at), at);
         if !problems.is_empty() {
             return problems;
         }
-        let own = [(0.0, "/position".to_owned())];
-        let keys = self.keys.iter().enumerate().map(|(i, key)| (key.at, format!("/keys/{i}")));
-        let places = if self.keys.is_empty() { own.into_iter().collect::<Vec<_>>() } else { keys.collect() };
-        let view = |(t, path): &(f64, String)| Some((view_problem(self.view(*t).0)?, path.clone()));
-        problems.extend(places.iter().find_map(view).map(|((what, cure), path)| Problem::error(path, what).hint(cure)));
+        if self.keys.is_empty() {
+            let wrong = view_problem(self.view(0.0).0);
+            problems.extend(wrong.map(|(what, cure)| Problem::error("/position", what).hint(cure)));
+            return problems;
+        }
+        let mut times = self.keys.iter().map(|key| key.at).chain(frames);
+        let wrong = times.find_map(|t| Some((t, view_problem(self.view(t).0)?)));
+        problems.extend(wrong.map(|(t, (what, cure))| {
+            let after = self.keys.partition_point(|key| key.at <= t);
+            let path = format!("/keys/{}", after.saturating_sub(1));
+            Problem::error(path, format!("{what} at t {}", short(t, 3))).hint(cure)
+        }));
         problems
     }
 }
@@ -206,13 +214,18 @@ mod tests {
                 "/keys/1",
                 "the camera stands where it looks",
             ),
+            (
+                r#"{"target": [0, 0, 0], "keys": [{"at": 0, "position": [0, 0, 3]}, {"at": 1, "position": [0, 0, -3]}]}"#,
+                "/keys/0",
+                "the camera stands where it looks at t 0.5",
+            ),
             (r#"{"keys": [{"at": 0.5}, {"at": 0.5}]}"#, "/keys/1/at", ""),
         ] {
-            let problems = camera(json).check();
+            let problems = camera(json).check([0.25, 0.5].into_iter());
             assert_eq!(problems.len(), 1, "{json}: {problems:?}");
             assert_eq!(problems[0].path, path, "{json}");
             assert!(problems[0].message.starts_with(what), "{:?}", problems[0]);
         }
-        assert_eq!(Camera::default().check(), []);
+        assert_eq!(Camera::default().check(std::iter::empty()), []);
     }
 }

@@ -7,6 +7,7 @@
 //! *Triangle Scan Conversion using 2D Homogeneous Coordinates*, 1997). Nothing need be clipped for that: what is nearer
 //! than the near plane is skipped pixel by pixel.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
@@ -54,7 +55,9 @@ pub struct Hit {
 /// A triangle in front of a ray.
 #[derive(Clone, Copy)]
 struct Sides {
-    /// The normals of the planes through the eye and each side, pointing inward.
+    /// The corners in the order of what follows.
+    order: [usize; 3],
+    /// The normals of the planes through the eye and the side opposite each corner, pointing inward.
     inward: [DVec3; 3],
     /// Whether a ray in the plane of a side still belongs to the triangle.
     owned: [bool; 3],
@@ -65,18 +68,23 @@ struct Sides {
 
 impl Sides {
     /// `None` if the triangle is seen edge-on or from a side that is not shown.
-    fn new([a, b, c]: [DVec3; 3], both: bool) -> Option<Sides> {
+    fn new(corners: [DVec3; 3], both: bool) -> Option<Sides> {
+        // The same corners in another order get the same depth to the bit: sums are made in one order.
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| compare(corners[i], corners[j]));
+        let [a, b, c] = order.map(|i| corners[i]);
+        let swapped = matches!(order, [0, 2, 1] | [1, 0, 2] | [2, 1, 0]);
         let planes = [b.cross(c), c.cross(a), a.cross(b)];
         let volume = a.dot(planes[0]);
-        let front = volume < 0.0;
+        let front = (volume < 0.0) != swapped;
         if volume == 0.0 || !volume.is_finite() || !(front || both) {
             return None;
         }
         // Negation is exact, so a side has the opposite values for the triangle on its other side.
-        let inward = if front { planes.map(|plane| -plane) } else { planes };
+        let inward = if volume < 0.0 { planes.map(|plane| -plane) } else { planes };
         // A left side has its inside to the right; a top side is level and has its inside below.
         let owned = inward.map(|plane| plane.x > 0.0 || (plane.x == 0.0 && plane.y < 0.0));
-        Some(Sides { inward, owned, volume: volume.abs(), front })
+        Some(Sides { order, inward, owned, volume: volume.abs(), front })
     }
 
     /// The weights, not yet divided by their sum, at the ray (x, y, -1), and the depth; `None` beside the triangle.
@@ -171,8 +179,14 @@ impl<'a> Raster<'a> {
         let sides = self.sides(triangle)?;
         let (weights, depth) = sides.at(self.rays.0[x], self.rays.1[y])?;
         let sum = weights[0] + weights[1] + weights[2];
-        Some(Hit { triangle, weights: weights.map(|weight| weight / sum), depth, front: sides.front })
+        let mut of_corners = [0.0; 3];
+        sides.order.iter().zip(weights).for_each(|(corner, weight)| of_corners[*corner] = weight / sum);
+        Some(Hit { triangle, weights: of_corners, depth, front: sides.front })
     }
+}
+
+fn compare(a: DVec3, b: DVec3) -> Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
 }
 
 /// The smallest rectangle of the frame that has all of a triangle that is not nearer than the near plane.
@@ -275,6 +289,18 @@ mod tests {
         let found = frame(&[[0, 1, 2], [3, 4, 5], [6, 7, 8]], &seen, false);
         assert_eq!(found[20 * SIZE.0 + 15], 1);
         assert_eq!(found.iter().filter(|&&t| t == 0 || t == 2).count(), 0);
+    }
+
+    #[test]
+    fn of_the_same_corners_in_any_order_the_first_wins() {
+        let seen = [at(3.1, 4.7, 1.3), at(7.7, 27.3, 2.9), at(36.2, 11.9, 4.1)];
+        let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+        let alone = frame(&[orders[0]], &seen, true);
+        assert!(alone.iter().filter(|&&triangle| triangle == 0).count() > 100);
+        for other in orders {
+            assert_eq!(frame(&[orders[0], other], &seen, true), alone, "{other:?}");
+            assert_eq!(frame(&[other, orders[0]], &seen, true), alone, "{other:?}");
+        }
     }
 
     #[test]
