@@ -64,6 +64,19 @@ pub struct Counts {
     pub triangles: u64,
 }
 
+impl Counts {
+    /// Both together; what is more than 64 bits count is as much as they can.
+    pub fn and(self, more: Counts) -> Counts {
+        Counts {
+            positions: self.positions.saturating_add(more.positions),
+            normals: self.normals.saturating_add(more.normals),
+            uvs: self.uvs.saturating_add(more.uvs),
+            corners: self.corners.saturating_add(more.corners),
+            triangles: self.triangles.saturating_add(more.triangles),
+        }
+    }
+}
+
 /// A corner of a polygon: indices into the lists of a [`Builder`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
@@ -238,12 +251,25 @@ pub fn unit(normal: DVec3) -> DVec3 {
 
 /// The direction that a triangle faces; `None` if it has no area.
 fn facing([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
-    (b - a).cross(c - a).try_normalize()
+    scaled(edge(a, b).cross(edge(a, c))).try_normalize()
+}
+
+/// The way from one point to another, but for a factor. Halves do not overflow.
+fn edge(from: DVec3, to: DVec3) -> DVec3 {
+    scaled(to * 0.5 - from * 0.5)
+}
+
+/// The same direction with its greatest coordinate near 1, so that squares of it neither overflow nor vanish. The factor
+/// is a power of 2, which changes no digit.
+fn scaled(way: DVec3) -> DVec3 {
+    const MOST_SHRUNK: u64 = 2045;
+    let exponent = way.abs().max_element().to_bits() >> 52;
+    way * f64::from_bits((MOST_SHRUNK + 1 - exponent.min(MOST_SHRUNK)) << 52)
 }
 
 /// The angles of a triangle that has an area, at its corners.
 fn angles([a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let [ab, bc, ca] = [b - a, c - b, a - c].map(unit);
+    let [ab, bc, ca] = [edge(a, b), edge(b, c), edge(c, a)].map(unit);
     [(ca, ab), (ab, bc), (bc, ca)].map(|(to, from)| maths::acos((-to.dot(from)).clamp(-1.0, 1.0)))
 }
 
@@ -364,6 +390,23 @@ mod tests {
         assert!(close(at(0, 1).normal, DVec3::Y));
         assert_eq!(at(0, 3).normal, DVec3::Y, "some normal where no face has an area");
         assert_eq!(mesh.bounds(), Some((DVec3::ZERO, DVec3::splat(9.0))), "what no triangle uses does not count");
+    }
+
+    #[test]
+    fn the_largest_and_the_smallest_triangles_have_an_area() {
+        for corners in [
+            [[0.0; 3], [0.0, 0.0, 1e300], [1.0, 0.0, 0.0]],
+            [[0.0; 3], [0.0, 0.0, 1e300], [1e300, 0.0, 0.0]],
+            [[-f64::MAX, 0.0, 0.0], [0.0, 0.0, f64::MAX], [f64::MAX, 0.0, 0.0]],
+            [[0.0; 3], [0.0, 0.0, 1e-300], [1e-300, 0.0, 0.0]],
+            [[0.0; 3], [0.0, 0.0, 1e-200], [1.0, 0.0, 1e-200]],
+        ] {
+            let mesh = mesh(&corners, &[], &[], &[&bare(&[0, 1, 2])]);
+            assert_eq!(mesh.degenerate, 0, "{corners:?}");
+            assert!(mesh.vertices.iter().all(|vertex| close(vertex.normal, DVec3::Y)), "{corners:?}: {mesh:?}");
+            let angles = angles(corners.map(DVec3::from_array));
+            assert!((angles.iter().sum::<f64>() - 2.0 * FRAC_PI_2).abs() < 1e-7, "{corners:?}: {angles:?}");
+        }
     }
 
     #[test]

@@ -210,9 +210,9 @@ mod tests {
             before = Originals::of(&path, &scene, &options, &before);
             let list = before.list();
             let told: Vec<_> = list.iter().map(|one| (one.path.as_str(), one.file.is_ok())).collect();
-            assert_eq!(told, [("sub/../../out.bin", false), ("sub/a b.bin", true), ("sub/m.gltf", true)]);
+            assert_eq!(told, [("sub/a b.bin", true), ("sub/m.gltf", true)]);
         }
-        let part = before.list()[1].file.clone().unwrap();
+        let part = before.list()[0].file.clone().unwrap();
         assert_eq!(before.piece(&part.hash, 0), b"part");
     }
 }

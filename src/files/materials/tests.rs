@@ -100,11 +100,11 @@ fn meshes_are_loaded_with_what_they_name() {
         })
     };
     write("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n");
-    write("sub/b.gltf", model("../sub/b.bin").to_string().as_bytes());
+    write("sub/b.gltf", model("b.bin").to_string().as_bytes());
     write("sub/b.bin", &corners(1.0));
-    write("c.gltf", model("../c.bin").to_string().as_bytes());
+    write("sub/c.gltf", model("../sub/b.bin").to_string().as_bytes());
     let meshes = serde_json::json!({
-        "a": { "path": "a.obj" }, "b": { "path": "sub/b.gltf" }, "c": { "path": "c.gltf" }, "d": { "path": "d.obj" },
+        "a": { "path": "a.obj" }, "b": { "path": "sub/b.gltf" }, "c": { "path": "sub/c.gltf" }, "d": { "path": "d.obj" },
     });
     let scene: Scene = serde_json::from_value(serde_json::json!({ "plica": 1, "meshes": meshes })).unwrap();
     let mut cache = Cache::default();
@@ -114,7 +114,7 @@ fn meshes_are_loaded_with_what_they_name() {
     assert_eq!(
         told,
         [
-            ("/meshes/c/path", "../c.bin: leads out of the scene's folder"),
+            ("/meshes/c/path", "sub/c.gltf: has a part at ../sub/b.bin, which is not in the model's folder"),
             ("/meshes/d/path", "d.obj: there is no such file"),
             ("/meshes/a/path", "a.obj: 1 of 2 triangles has no area and is never seen"),
         ]
@@ -129,7 +129,7 @@ fn meshes_are_loaded_with_what_they_name() {
     assert!(Arc::ptr_eq(&first.meshes["a"], &third.meshes["a"]));
     assert_eq!(third.meshes["b"].bounds().unwrap().1.x, 2.0, "what it names has changed");
     let copy = |name: &str| (name.to_owned(), Ok(folder.path().join(name)));
-    let copies = Copies::from(["sub/b.gltf", "sub/../sub/b.bin"].map(copy));
+    let copies = Copies::from(["sub/b.gltf", "sub/b.bin"].map(copy));
     let (copied, _) = gather_copies(&copies, &scene, &options, &mut Cache::default());
     assert_eq!(copied.meshes["b"], third.meshes["b"]);
     assert_eq!(files(&path, &scene).len(), 4);

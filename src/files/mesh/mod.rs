@@ -47,9 +47,6 @@ const FOREIGN: &[(&str, &[&[u8]], &str)] = &[
     (".gz", &[b"\x1f\x8b"], "compressed by gzip"),
 ];
 
-/// How a line of an OBJ begins.
-const OBJ_KEYS: [&[u8]; 10] = [b"v", b"vt", b"vn", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl", b"vp"];
-
 /// The mesh in an open file, what in it could not be honored in words, and the memory that it takes; `place` is its name
 /// in messages. `sibling` opens a file that the mesh names, by a path relative to it.
 ///
@@ -62,8 +59,8 @@ pub fn decode(
     budget: &Budget,
     sibling: Opener,
 ) -> Result<(Mesh, Vec<String>, Share)> {
-    let (bytes, share) = input::whole(file, place, limits, budget)?;
-    let (builder, mut notes) = match kind(&bytes, place)? {
+    let (kind, bytes, share) = whole(file, place, limits, budget)?;
+    let (builder, mut notes) = match kind {
         Kind::Obj => obj::read(&bytes, place, limits, budget)?,
         Kind::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling })?,
     };
@@ -81,8 +78,8 @@ pub fn decode(
 /// As [`decode`], as far as what it lists shows.
 pub fn pictures(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
     let budget = &limits.budget();
-    let (bytes, _share) = input::whole(file, place, limits, budget)?;
-    match kind(&bytes, place)? {
+    let (kind, bytes, _share) = whole(file, place, limits, budget)?;
+    match kind {
         Kind::Obj => Ok(Vec::new()),
         Kind::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone }),
     }
@@ -94,8 +91,8 @@ pub fn pictures(file: File, place: &str, limits: &Limits) -> Result<Vec<String>>
 /// As [`pictures`].
 pub fn parts(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
     let budget = &limits.budget();
-    let (bytes, _share) = input::whole(file, place, limits, budget)?;
-    match kind(&bytes, place)? {
+    let (kind, bytes, _share) = whole(file, place, limits, budget)?;
+    match kind {
         Kind::Obj => Ok(Vec::new()),
         Kind::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone }),
     }
@@ -104,7 +101,7 @@ pub fn parts(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
 /// The picture with this number in a model, as a file of its own that is nowhere but in memory.
 pub(super) fn embedded(file: File, place: &str, image: usize, limits: &Limits) -> Result<File> {
     let budget = &limits.budget();
-    let (bytes, _share) = input::whole(file, place, limits, budget)?;
+    let (_, bytes, _share) = whole(file, place, limits, budget)?;
     gltf::embedded(&bytes, image, With { place, limits, budget, sibling: &alone }, |bytes| {
         let _share = budget.take(bytes.len() as u64, place)?;
         system::in_memory(bytes).map_err(|error| Error::at(place, error))
@@ -121,40 +118,44 @@ fn unseen(mesh: &Mesh) -> Option<String> {
     (unseen > 0).then(|| format!("{unseen} of {all} triangles {have} never seen"))
 }
 
+/// The kind of an open file, all of it, and the memory that it takes. What is no mesh is not read further than to where
+/// that shows.
+fn whole(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Kind, Vec<u8>, Share)> {
+    let kind = kind(&input::start(&file, place)?, place)?;
+    let (bytes, share) = input::whole(file, place, limits, budget)?;
+    Ok((kind, bytes, share))
+}
+
 /// The kind of a file by how it begins, and by its name where that does not tell.
-fn kind(bytes: &[u8], place: &str) -> Result<Kind> {
+fn kind(start: &[u8], place: &str) -> Result<Kind> {
     const READ: &str = "Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf)";
+    if start.is_empty() {
+        return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it anew"));
+    }
     let name = place.to_ascii_lowercase();
-    let start = &bytes[..bytes.len().min(kinds::LOOKED_AT as usize)];
     if start.starts_with(b"glTF") {
         return Ok(Kind::Gltf);
     }
     let foreign = |(_, begins, _): &&(_, &[&[u8]], _)| begins.iter().any(|begin| start.starts_with(begin));
     let foreign = FOREIGN.iter().find(foreign);
-    let picture = kinds::name(start).filter(|_| foreign.is_none());
+    let picture = kinds::name(&start[..start.len().min(kinds::LOOKED_AT as usize)]).filter(|_| foreign.is_none());
     if let Some(picture) = picture {
         return Err(Error::at(place, format!("is {picture}, not a mesh")).cure(READ));
     }
-    let text = input::text(bytes);
+    let text = input::text(start);
+    let is_text = !start.contains(&0);
     let first = text.trim_ascii_start().first();
     if foreign.is_none() && first == Some(&b'{') {
         return Ok(Kind::Gltf);
     }
-    if foreign.is_none() && (is_obj(text) || name.ends_with(".obj") && first != Some(&b'<') && !start.contains(&0)) {
+    if foreign.is_none() && is_text && (obj::begins(text) || name.ends_with(".obj") && first != Some(&b'<')) {
         return Ok(Kind::Obj);
     }
     let foreign = foreign.or_else(|| FOREIGN.iter().find(|(end, ..)| name.ends_with(end)));
     Err(match foreign {
         Some((.., what)) => Error::at(place, format!("is {what}, which Plica does not read"))
             .cure("export it as .glb or .obj, with Blender for example"),
+        None if !is_text && [".obj", ".gltf"].iter().any(|end| name.ends_with(end)) => input::not_text(place),
         None => Error::at(place, "is not a mesh").cure(READ),
     })
-}
-
-/// Whether the first line that says something is one of an OBJ.
-fn is_obj(text: &[u8]) -> bool {
-    let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
-    let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
-    let mut words = first.split(u8::is_ascii_whitespace);
-    words.next().is_some_and(|word| OBJ_KEYS.contains(&word)) && words.next().is_some()
 }

@@ -13,13 +13,29 @@ use crate::base::mesh::{Builder, Corner, Counts, unit};
 use crate::files::Limits;
 use crate::files::limits::within;
 
+/// How a line begins.
+const KEYS: [&[u8]; 10] = [b"v", b"vt", b"vn", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl", b"vp"];
+
+/// Whether the first line that says something is one of an OBJ.
+pub(super) fn begins(text: &[u8]) -> bool {
+    let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
+    let mut words = first.split(u8::is_ascii_whitespace);
+    words.next().is_some_and(|word| KEYS.contains(&word)) && words.next().is_some()
+}
+
 /// The lists and the polygons of a file, and what in it is not drawn.
 pub(super) fn read(text: &[u8], place: &str, limits: &Limits, budget: &Budget) -> Result<(Builder, Vec<String>)> {
     let text = input::text(text);
-    let (counts, others) = count(text, place)?;
+    if text.contains(&0) {
+        return Err(input::not_text(place));
+    }
+    let Found { counts, others, known, unknown } = count(text, place)?;
     within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
     if counts.triangles == 0 {
-        return Err(Error::at(place, "has no triangles").cure("name a mesh with faces"));
+        let cure =
+            if unknown > known { "it may not be an OBJ: name a mesh with faces" } else { "name a mesh with faces" };
+        return Err(Error::at(place, "has no triangles").cure(cure));
     }
     let mut builder = Builder::new(counts, place, budget)?;
     for line in Lines::of(text, place) {
@@ -34,11 +50,22 @@ pub(super) fn read(text: &[u8], place: &str, limits: &Limits, budget: &Budget) -
     Ok((builder, others.then(|| "its points and lines are not drawn".to_owned()).into_iter().collect()))
 }
 
-/// How much there is of each, and whether there are points or lines.
-fn count(text: &[u8], place: &str) -> Result<(Counts, bool)> {
-    let mut counts = Counts::default();
-    let mut others = false;
+/// What a text has.
+#[derive(Default)]
+struct Found {
+    counts: Counts,
+    /// Whether there are points or lines.
+    others: bool,
+    /// How many lines begin as one of an OBJ does, and how many do not.
+    known: u64,
+    unknown: u64,
+}
+
+fn count(text: &[u8], place: &str) -> Result<Found> {
+    let mut found = Found::default();
+    let counts = &mut found.counts;
     for line in Lines::of(text, place) {
+        found.known += 1;
         match line.key {
             b"v" => counts.positions += 1,
             b"vt" => counts.uvs += 1,
@@ -51,11 +78,15 @@ fn count(text: &[u8], place: &str) -> Result<(Counts, bool)> {
                 counts.corners += corners;
                 counts.triangles += corners - 2;
             }
-            b"p" | b"l" => others = true,
-            _ => {}
+            b"p" | b"l" => found.others = true,
+            key if KEYS.contains(&key) => {}
+            _ => {
+                found.known -= 1;
+                found.unknown += 1;
+            }
         }
     }
-    Ok((counts, others))
+    Ok(found)
 }
 
 fn faces(text: &[u8], place: &str, counts: Counts, builder: &mut Builder) -> Result<()> {
@@ -123,6 +154,7 @@ impl List {
         let (digits, back) = word.strip_prefix(b"-").map_or((word, false), |digits| (digits, true));
         let number = whole(digits).ok_or_else(|| format!("{} is not a whole number", quoted(word)))?;
         match (number, back) {
+            (u64::MAX, _) => Err(format!("{} is out of range: there are {total}", quoted(word))),
             (0, _) => Err(format!("there is no {name} 0: they are counted from 1")),
             (1.., false) if number <= *total => Ok((number - 1) as u32),
             (1.., true) if number <= *read => Ok((read - number) as u32),
@@ -216,16 +248,19 @@ impl<'a> Line<'a> {
     }
 
     fn wrong(&self, what: impl Display) -> Error {
-        let error = Error::at(self.place, format!("line {}: {what}", self.number));
-        if self.open { error.cure("the file seems to be cut short: copy it again from where it came") } else { error }
+        let cure = match self.open {
+            true => "the file seems to be cut short: copy it again from where it came",
+            false => "mend the line, or export the mesh anew",
+        };
+        Error::at(self.place, format!("line {}: {what}", self.number)).cure(cure)
     }
 }
 
-/// A number of digits alone: a million of them are read.
+/// A number of digits alone: a million of them are read. One too large is the largest there is.
 fn whole(digits: &[u8]) -> Option<u64> {
     let add = |number: u64, &byte: &u8| {
         let digit = byte.is_ascii_digit().then(|| u64::from(byte - b'0'))?;
-        number.checked_mul(10)?.checked_add(digit)
+        Some(number.saturating_mul(10).saturating_add(digit))
     };
     digits.iter().try_fold(0, add).filter(|_| !digits.is_empty())
 }

@@ -65,6 +65,15 @@ impl Elements<'_> {
     }
 }
 
+/// Where the numbers of an accessor are.
+pub(super) struct Stored<'a> {
+    pub(super) count: u64,
+    /// All zero without them.
+    all: Option<Elements<'a>>,
+    /// How many differ from those, their indices, and what they are.
+    differ: Option<(u64, Elements<'a>, Elements<'a>)>,
+}
+
 /// The shape of elements of so many numbers.
 fn shape(numbers: usize) -> &'static str {
     ["SCALAR", "VEC2", "VEC3", "VEC4"][numbers.clamp(1, 4) - 1]
@@ -72,7 +81,7 @@ fn shape(numbers: usize) -> &'static str {
 
 impl Source<'_> {
     /// The accessor with this index, which must have elements of `N` numbers.
-    pub(super) fn accessor<const N: usize>(&self, index: usize) -> Result<&Accessor> {
+    fn accessor<const N: usize>(&self, index: usize) -> Result<&Accessor> {
         let accessor = self.get(&self.document.accessors, index, "accessor")?;
         if accessor.shape != shape(N) {
             let what = format!("accessor {index} is {}, and {} was expected", accessor.shape, shape(N));
@@ -81,10 +90,32 @@ impl Source<'_> {
         Ok(accessor)
     }
 
+    /// Where the numbers of an accessor are, all of them there.
+    pub(super) fn stored<const N: usize>(&self, index: usize) -> Result<Stored<'_>> {
+        let Accessor { count, byte_offset, component_type, normalized, buffer_view, ref sparse, .. } =
+            *self.accessor::<N>(index)?;
+        let sparse = sparse.as_ref().filter(|sparse| sparse.count > 0);
+        // They would all be zero: a few bytes that take as much memory as they say.
+        if buffer_view.is_none() && sparse.is_none() {
+            return Err(self.wrong(format!("accessor {index} has no data: it names no buffer view")));
+        }
+        let part = |buffer_view| Part { buffer_view, byte_offset, component_type };
+        let all = buffer_view.map(|view| self.elements::<N>(&part(view), count, normalized)).transpose()?;
+        let Some(Sparse { count: differ, indices, values }) = sparse else {
+            return Ok(Stored { count, all, differ: None });
+        };
+        if *differ > count {
+            return Err(self.wrong(format!("accessor {index}: {differ} of {count} elements differ")));
+        }
+        let indices = self.elements::<1>(indices, *differ, false)?;
+        let values = self.elements::<N>(&Part { component_type, ..*values }, *differ, normalized)?;
+        Ok(Stored { count, all, differ: Some((*differ, indices, values)) })
+    }
+
     /// Hands the elements of an accessor to `put` with their indices; those that differ from the others come again. They
     /// are finite.
     pub(super) fn numbers<const N: usize>(&self, index: usize, mut put: impl FnMut(usize, [f64; N])) -> Result<()> {
-        let accessor = self.accessor::<N>(index)?;
+        let Stored { count, all, differ } = self.stored::<N>(index)?;
         let mut put = |at: usize, numbers: [f64; N]| {
             if !numbers.iter().all(|number| number.is_finite()) {
                 return Err(self.wrong(format!("accessor {index}: element {at} is not finite")));
@@ -92,20 +123,11 @@ impl Source<'_> {
             put(at, numbers);
             Ok(())
         };
-        let Accessor { count, byte_offset, component_type, normalized, .. } = *accessor;
-        let part = |view| Part { buffer_view: view, byte_offset, component_type };
-        if let Some(part) = accessor.buffer_view.map(part) {
-            let elements = self.elements::<N>(&part, count, normalized)?;
+        if let Some(elements) = all {
             (0..count as usize).try_for_each(|at| put(at, elements.get(at)))?;
         }
-        let Some(Sparse { count: differ, indices, values }) = &accessor.sparse else { return Ok(()) };
-        if *differ > count {
-            return Err(self.wrong(format!("accessor {index}: {differ} of {count} elements differ")));
-        }
-        let indices = self.elements::<1>(indices, *differ, false)?;
-        let values = Part { component_type, ..*values };
-        let values = self.elements::<N>(&values, *differ, normalized)?;
-        (0..*differ as usize).try_for_each(|at| {
+        let Some((differ, indices, values)) = differ else { return Ok(()) };
+        (0..differ as usize).try_for_each(|at| {
             let [element] = indices.get(at);
             if !(0.0..count as f64).contains(&element) {
                 return Err(self.wrong(format!("accessor {index}: there is no element {element}: there are {count}")));
@@ -114,14 +136,14 @@ impl Source<'_> {
         })
     }
 
-    /// As [`Source::numbers`], for indices.
-    pub(super) fn whole_numbers(&self, index: usize, mut put: impl FnMut(usize, u32)) -> Result<()> {
+    /// As [`Source::stored`], for indices.
+    pub(super) fn stored_indices(&self, index: usize) -> Result<Stored<'_>> {
         let number = self.accessor::<1>(index)?.component_type;
         let unsigned = |&&(known, ref component): &&(u32, Component)| {
             known == number && matches!(component, Component::U8 | Component::U16 | Component::U32)
         };
         match COMPONENTS.iter().find(unsigned) {
-            Some(_) => self.numbers(index, |at, [number]| put(at, number as u32)),
+            Some(_) => self.stored::<1>(index),
             None => Err(self.wrong(format!("accessor {index} is not of whole numbers"))),
         }
     }

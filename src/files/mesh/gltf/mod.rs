@@ -1,6 +1,8 @@
 //! glTF 2.0, `.glb` and `.gltf`: the triangles of the default scene, moved as its nodes say. Everything is checked here
 //! as it is used, so that no file, however wrong, leads further than to a message.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3};
 
 use crate::base::budget::Share;
@@ -24,21 +26,33 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>)> {
     let With { place, limits, budget, .. } = with;
     let source = Source::of(bytes, with)?;
     let nodes = nodes(&source)?;
-    // Many nodes may show a mesh of many parts.
-    let most =
-        nodes.iter().filter_map(|(node, _)| source.document.meshes.get(node.mesh?)).map(|mesh| mesh.primitives.len());
-    let _share = budget.take((most.sum::<usize>() * size_of::<Piece>()) as u64, place)?;
-    let (pieces, notes) = pieces(&source, nodes)?;
-    let counts = pieces.iter().fold(Counts::default(), |sum, piece| piece.add_to(sum));
+    let meshes: BTreeSet<usize> = nodes.iter().filter_map(|(node, _)| node.mesh).collect();
+    let shapes = meshes.into_iter().map(|mesh| Ok((mesh, Shape::of(&source, mesh)?)));
+    let shapes = shapes.collect::<Result<BTreeMap<usize, Shape>>>()?;
+    // Many nodes may show a mesh of many parts: they are counted before anything is made for each.
+    let shown = || nodes.iter().filter_map(|(node, transform)| Some((shapes.get(&node.mesh?)?, *transform)));
+    let counts = shown().fold(Counts::default(), |sum, (shape, _)| sum.and(shape.counts));
     within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
     if counts.triangles == 0 {
         return Err(Error::at(place, "has no triangles").cure("name a mesh with faces"));
     }
     let mut builder = Builder::new(counts, place, budget)?;
-    for piece in &pieces {
-        piece.put(&source, &mut builder)?;
+    for (shape, transform) in shown() {
+        shape.pieces.iter().try_for_each(|piece| piece.put(&source, &transform, &mut builder))?;
     }
-    Ok((builder, notes))
+    let skinned = nodes.iter().any(|(node, _)| node.mesh.is_some() && node.skin.is_some());
+    let notes = [
+        (shapes.values().any(|shape| shape.others), "its points and lines are not drawn"),
+        (
+            shapes.values().any(|shape| shape.moved),
+            "a texture of it is moved, or laid by other coordinates than the first, which is not applied",
+        ),
+        (
+            skinned || shapes.values().any(|shape| shape.posed),
+            "its bones and morph targets are not applied: it is shown as it is stored",
+        ),
+    ];
+    Ok((builder, notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect()))
 }
 
 /// How corners make triangles.
@@ -68,7 +82,21 @@ impl Mode {
     }
 }
 
-/// Triangles at a place in the scene.
+/// A mesh, wherever nodes show it.
+#[derive(Default)]
+struct Shape<'a> {
+    pieces: Vec<Piece<'a>>,
+    /// How much the pieces are, together.
+    counts: Counts,
+    /// Whether it has points or lines.
+    others: bool,
+    /// Whether a texture is laid otherwise than it is read.
+    moved: bool,
+    /// Whether it has morph targets.
+    posed: bool,
+}
+
+/// Triangles of a mesh.
 struct Piece<'a> {
     primitive: &'a Primitive,
     /// The accessor of its positions.
@@ -76,42 +104,35 @@ struct Piece<'a> {
     mode: Mode,
     count: u64,
     corners: u64,
-    transform: DAffine3,
 }
 
-/// The triangles of the scene in the order of its nodes, and what in it could not be honored.
-fn pieces<'a>(source: &'a Source, nodes: Vec<(&'a Node, DAffine3)>) -> Result<(Vec<Piece<'a>>, Vec<String>)> {
-    let mut pieces = Vec::new();
-    let (mut others, mut posed, mut moved) = (false, false, false);
-    for (node, transform) in nodes {
-        let Some(mesh) = node.mesh else { continue };
-        let mesh = source.get(&source.document.meshes, mesh, "mesh")?;
-        posed |= node.skin.is_some() || mesh.primitives.iter().any(|primitive| !primitive.targets.is_empty());
-        for primitive in &mesh.primitives {
+impl<'a> Shape<'a> {
+    /// The mesh with this index. What its accessors count is there.
+    fn of(source: &'a Source, mesh: usize) -> Result<Shape<'a>> {
+        let mut shape = Shape::default();
+        for primitive in &source.get(&source.document.meshes, mesh, "mesh")?.primitives {
+            shape.posed |= !primitive.targets.is_empty();
             let Some(positions) = primitive.attributes.position else { continue };
             let mode = match primitive.mode {
                 None | Some(4) => Mode::List,
                 Some(5) => Mode::Strip,
                 Some(6) => Mode::Fan,
                 Some(_) => {
-                    others = true;
+                    shape.others = true;
                     continue;
                 }
             };
             let material = primitive.material.and_then(|material| source.document.materials.get(material));
-            moved |= material.and_then(Material::base_color).is_some_and(TextureInfo::is_moved);
-            let count = source.accessor::<3>(positions)?.count;
-            let indices = primitive.indices.map(|indices| source.accessor::<1>(indices)).transpose()?;
-            let corners = indices.map_or(count, |indices| indices.count);
-            pieces.push(Piece { primitive, positions, mode, count, corners, transform });
+            shape.moved |= material.and_then(Material::base_color).is_some_and(TextureInfo::is_moved);
+            let piece = Piece::of(source, primitive, positions, mode)?;
+            // The limit on triangles bounds only what has some, and each node takes the time for all pieces.
+            if piece.counts().triangles > 0 {
+                shape.counts = shape.counts.and(piece.counts());
+                shape.pieces.push(piece);
+            }
         }
+        Ok(shape)
     }
-    let notes = [
-        (others, "its points and lines are not drawn"),
-        (moved, "a texture of it is moved, or laid by other coordinates than the first, which is not applied"),
-        (posed, "its bones and morph targets are not applied: it is shown as it is stored"),
-    ];
-    Ok((pieces, notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect()))
 }
 
 /// The nodes of the default scene, each before its children, and where they are.
@@ -163,26 +184,43 @@ fn own_transform(node: &Node) -> DAffine3 {
     )
 }
 
-impl Piece<'_> {
-    fn add_to(&self, sum: Counts) -> Counts {
+impl<'a> Piece<'a> {
+    fn of(source: &Source, primitive: &'a Primitive, positions: usize, mode: Mode) -> Result<Piece<'a>> {
+        let count = source.stored::<3>(positions)?.count;
+        let same = |accessor: usize, found: u64| match found == count {
+            true => Ok(()),
+            false => Err(source.wrong(format!("accessor {accessor} has {found} elements for {count} positions"))),
+        };
+        if let Some(normals) = primitive.attributes.normal {
+            same(normals, source.stored::<3>(normals)?.count)?;
+        }
+        if let Some(uvs) = primitive.attributes.texcoord_0 {
+            same(uvs, source.stored::<2>(uvs)?.count)?;
+        }
+        let indices = primitive.indices.map(|indices| source.stored_indices(indices)).transpose()?;
+        let corners = indices.map_or(count, |indices| indices.count);
+        Ok(Piece { primitive, positions, mode, count, corners })
+    }
+
+    fn counts(&self) -> Counts {
         let Piece { primitive, count, .. } = self;
         let listed = |accessor: Option<usize>| accessor.map_or(0, |_| *count);
         let triangles = self.mode.triangles(self.corners);
         Counts {
-            positions: sum.positions.saturating_add(*count),
-            normals: sum.normals.saturating_add(listed(primitive.attributes.normal)),
-            uvs: sum.uvs.saturating_add(listed(primitive.attributes.texcoord_0)),
+            positions: *count,
+            normals: listed(primitive.attributes.normal),
+            uvs: listed(primitive.attributes.texcoord_0),
             // A vertex for each position: two where some of its faces have a normal that is zero elsewhere.
-            corners: sum.corners.saturating_add(triangles.saturating_mul(3).min(count.saturating_mul(2))),
-            triangles: sum.triangles.saturating_add(triangles),
+            corners: triangles.saturating_mul(3).min(count.saturating_mul(2)),
+            triangles,
         }
     }
 
     /// Adds the lists and the triangles to a mesh.
-    fn put(&self, source: &Source, builder: &mut Builder) -> Result<()> {
+    fn put(&self, source: &Source, transform: &DAffine3, builder: &mut Builder) -> Result<()> {
         let from = [builder.positions.len(), builder.normals.len(), builder.uvs.len()].map(|length| length as u32);
-        self.put_positions(source, builder)?;
-        let has_normals = self.put_normals(source, builder)?;
+        self.put_positions(source, transform, builder)?;
+        let has_normals = self.put_normals(source, transform, builder)?;
         let has_uvs = self.put_uvs(source, builder)?;
         let (corners, _share) = self.corners(source)?;
         let corner = |at: usize| {
@@ -193,7 +231,7 @@ impl Piece<'_> {
                 uv: has_uvs.then_some(from[2] + index),
             }
         };
-        let mirrored = self.transform.matrix3.determinant() < 0.0;
+        let mirrored = transform.matrix3.determinant() < 0.0;
         for at in 0..self.mode.triangles(self.corners) as usize {
             let [a, b, c] = self.mode.triangle(at).map(corner);
             builder.polygon(&if mirrored { [a, c, b] } else { [a, b, c] });
@@ -207,7 +245,7 @@ impl Piece<'_> {
         let With { place, budget, .. } = source.with;
         let share = budget.take(self.corners.saturating_mul(size_of::<u32>() as u64), place)?;
         let mut corners = vec![0; self.corners as usize];
-        source.whole_numbers(indices, |at, index| corners[at] = index)?;
+        source.numbers(indices, |at, [index]| corners[at] = index as u32)?;
         match corners.iter().find(|&&index| u64::from(index) >= self.count) {
             Some(index) => {
                 let what = format!("accessor {indices}: there is no vertex {index}: there are {}", self.count);
@@ -217,13 +255,13 @@ impl Piece<'_> {
         }
     }
 
-    fn put_positions(&self, source: &Source, builder: &mut Builder) -> Result<()> {
+    fn put_positions(&self, source: &Source, transform: &DAffine3, builder: &mut Builder) -> Result<()> {
         let from = builder.positions.len();
         builder.positions.resize(from + self.count as usize, DVec3::ZERO);
         let positions = &mut builder.positions[from..];
         source.numbers(self.positions, |at, position| positions[at] = DVec3::from_array(position))?;
         for position in positions.iter_mut() {
-            *position = self.transform.transform_point3(*position);
+            *position = transform.transform_point3(*position);
         }
         match positions.iter().all(|position| position.is_finite()) {
             true => Ok(()),
@@ -232,13 +270,12 @@ impl Piece<'_> {
     }
 
     /// Whether there are any. Normals turn by the inverse transpose, which the cofactors are but for a factor.
-    fn put_normals(&self, source: &Source, builder: &mut Builder) -> Result<bool> {
+    fn put_normals(&self, source: &Source, transform: &DAffine3, builder: &mut Builder) -> Result<bool> {
         let Some(accessor) = self.primitive.attributes.normal else { return Ok(false) };
-        self.check_length::<3>(source, accessor)?;
         let from = builder.normals.len();
         builder.normals.resize(from + self.count as usize, DVec3::ZERO);
-        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.transform.matrix3;
-        let sign = if self.transform.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = transform.matrix3;
+        let sign = if transform.matrix3.determinant() < 0.0 { -1.0 } else { 1.0 };
         let turn = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
         let normals = &mut builder.normals[from..];
         source.numbers(accessor, |at, normal| normals[at] = unit(turn * unit(DVec3::from_array(normal))))?;
@@ -248,22 +285,10 @@ impl Piece<'_> {
     /// Whether there are any; v goes up, in the file it goes down.
     fn put_uvs(&self, source: &Source, builder: &mut Builder) -> Result<bool> {
         let Some(accessor) = self.primitive.attributes.texcoord_0 else { return Ok(false) };
-        self.check_length::<2>(source, accessor)?;
         let from = builder.uvs.len();
         builder.uvs.resize(from + self.count as usize, DVec2::new(0.0, 1.0));
         let uvs = &mut builder.uvs[from..];
         source.numbers(accessor, |at, [u, v]| uvs[at] = DVec2::new(u, 1.0 - v))?;
         Ok(true)
-    }
-
-    fn check_length<const N: usize>(&self, source: &Source, accessor: usize) -> Result<()> {
-        let found = source.accessor::<N>(accessor)?.count;
-        match found == self.count {
-            true => Ok(()),
-            false => {
-                let what = format!("accessor {accessor} has {found} elements for {} positions", self.count);
-                Err(source.wrong(what))
-            }
-        }
     }
 }

@@ -32,11 +32,11 @@ pub(in crate::files::mesh) fn named(bytes: &[u8], with: With) -> Result<Vec<Stri
     Ok(found)
 }
 
-/// The files of its buffers, as a scene names them.
+/// The files of its buffers, as a scene names them, as far as they may be read.
 pub(in crate::files::mesh) fn parts(bytes: &[u8], with: With) -> Result<Vec<String>> {
     let source = &Source::of(bytes, with)?;
     let uris = source.document.buffers.iter().filter_map(|buffer| outside(&buffer.uri));
-    uris.map(|uri| Ok(paths::sibling(with.place, &source.path(uri)?))).collect()
+    Ok(uris.filter_map(|uri| source.path(uri).ok()).map(|path| paths::sibling(with.place, &path)).collect())
 }
 
 /// The address of what is in a file of its own.

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::fmt::Display;
+use std::path::{Component, Path};
 
 use base64::Engine;
 use base64::alphabet;
@@ -74,7 +75,10 @@ impl<'a> Source<'a> {
         if version.starts_with("2.") {
             return Ok(());
         }
-        let what = if version.is_empty() { "is not a glTF file".to_owned() } else { format!("is glTF {version}") };
+        let what = match version.is_empty() {
+            true => "is not a glTF file: it has no asset.version".to_owned(),
+            false => format!("is glTF {version}"),
+        };
         Err(Error::at(self.with.place, what).cure("Plica reads glTF 2.0: export it again as .glb"))
     }
 
@@ -132,14 +136,23 @@ impl<'a> Source<'a> {
         Ok((Cow::Owned(bytes), share))
     }
 
-    /// The path, relative to the file, that an address means.
+    /// The path, relative to the file, that an address means; it is in the folder of the file, or below.
     pub(super) fn path(&self, uri: &str) -> Result<String> {
         let scheme = uri.split_once(':').map(|(scheme, _)| scheme).filter(|scheme| !scheme.contains('/'));
         if scheme.is_some() {
             let what = format!("has a part at {uri}, which Plica does not fetch");
             return Err(Error::at(self.with.place, what).cure("export it as .glb, which is one file"));
         }
-        unescaped(uri).ok_or_else(|| self.wrong(format!("has a part at {uri}, which is no path")))
+        let path = unescaped(uri).ok_or_else(|| self.wrong(format!("has a part at {uri}, which is no path")))?;
+        let stays = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        match Path::new(&path).components().all(stays) {
+            true => Ok(path),
+            false => {
+                let what = format!("has a part at {uri}, which is not in the model's folder");
+                let cure = "copy the file beside the model and mend its uri, or export it as .glb";
+                Err(Error::at(self.with.place, what).cure(cure))
+            }
+        }
     }
 }
 

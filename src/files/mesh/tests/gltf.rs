@@ -95,7 +95,7 @@ fn a_model_is_the_same_in_one_file_and_in_several() {
         assert_eq!(read("a.gltf", embedded.to_string().as_bytes()).unwrap().0, mesh);
     }
     let mut beside = json;
-    for (uri, path) in [("parts/a%20b%.bin", "parts/a b%.bin"), ("../\u{e9}.bin", "../\u{e9}.bin")] {
+    for (uri, path) in [("parts/a%20b%.bin", "parts/a b%.bin"), ("./\u{e9}.bin", "./\u{e9}.bin")] {
         beside["buffers"][0]["uri"] = json!(uri);
         let text = format!("\u{feff} {beside}");
         let found = read_with("a.gltf", text.as_bytes(), &[(path, &binary)], &Limits::default());
@@ -292,7 +292,9 @@ fn sparse_and_strided_accessors_are_read() {
     put(&mut json, "/accessors/0/count", json!(2));
     put(&mut json, "/bufferViews/0/byteStride", json!(24));
     put(&mut json, "/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "indices": 3 }));
-    put(&mut json, "/accessors/3", json!({ "componentType": 5125, "count": 3, "type": "SCALAR" }));
+    let (indices, values) = (json!({ "bufferView": 3, "componentType": 5121 }), json!({ "bufferView": 0 }));
+    let zeros = json!({ "count": 1, "indices": indices, "values": values });
+    put(&mut json, "/accessors/3", json!({ "componentType": 5125, "count": 3, "type": "SCALAR", "sparse": zeros }));
     let (mesh, notes) = read("a.glb", &glb(&json, &buffer)).unwrap();
     assert_eq!((positions(&mesh), mesh.degenerate), (vec![[0.0; 3]; 3], 1));
     assert_eq!(notes, ["1 of 1 triangles has no area and is never seen"]);
@@ -304,6 +306,8 @@ fn sparse_and_strided_accessors_are_read() {
 #[test]
 fn what_is_wrong_is_told_by_its_number() {
     const AGAIN: &str = "(export it again)";
+    const OUTSIDE: &str =
+        "not in the model's folder (copy the file beside the model and mend its uri, or export it as .glb)";
     for (pointer, value, expected) in [
         ("/meshes", json!([]), format!("there is no mesh 0: there are 0 {AGAIN}")),
         ("/nodes", json!([{}]), "has no triangles (name a mesh with faces)".to_owned()),
@@ -325,10 +329,19 @@ fn what_is_wrong_is_told_by_its_number() {
         (
             "/accessors/3/count",
             json!(u64::MAX),
-            "has 6148914691236517205 triangles, at most 10000000 are allowed \
-             (make it smaller, or give --limit triangles=6148914691236517205)"
-                .to_owned(),
+            format!("buffer view 3 is too short for {} elements {AGAIN}", u64::MAX),
         ),
+        (
+            "/accessors/0/count",
+            json!(1_u64 << 40),
+            format!("buffer view 0 is too short for {} elements {AGAIN}", 1_u64 << 40),
+        ),
+        (
+            "/accessors/0",
+            json!({ "componentType": 5126, "count": 30_000_000, "type": "VEC3" }),
+            format!("accessor 0 has no data: it names no buffer view {AGAIN}"),
+        ),
+        ("/accessors/3/bufferView", json!(null), format!("accessor 3 has no data: it names no buffer view {AGAIN}")),
         ("/accessors/3/count", json!(7), format!("buffer view 3 is too short for 7 elements {AGAIN}")),
         ("/accessors/3/componentType", json!(5120), format!("accessor 3 is not of whole numbers {AGAIN}")),
         ("/accessors/3/componentType", json!(5126), format!("accessor 3 is not of whole numbers {AGAIN}")),
@@ -349,6 +362,9 @@ fn what_is_wrong_is_told_by_its_number() {
              (export it as .glb, which is one file)"
                 .to_owned(),
         ),
+        ("/buffers/0/uri", json!("../x.bin"), format!("has a part at ../x.bin, which is {OUTSIDE}")),
+        ("/buffers/0/uri", json!("a/%2e%2e/x.bin"), format!("has a part at a/%2e%2e/x.bin, which is {OUTSIDE}")),
+        ("/buffers/0/uri", json!("/x.bin"), format!("has a part at /x.bin, which is {OUTSIDE}")),
         ("/buffers/0/uri", json!("%ff.bin"), format!("has a part at %ff.bin, which is no path {AGAIN}")),
         ("/accessors/0/sparse", json!({ "count": 5 }), format!("accessor 0: 5 of 4 elements differ {AGAIN}")),
         (
@@ -406,7 +422,7 @@ fn a_file_that_is_cut_short_says_so() {
     assert_eq!(read("a.gltf", text.as_bytes()).unwrap_err(), "a.gltf: buffer 0 is not in the file (export it again)");
     assert_eq!(
         read("a.gltf", b"{}").unwrap_err(),
-        "a.gltf: is not a glTF file (Plica reads glTF 2.0: export it again as .glb)"
+        "a.gltf: is not a glTF file: it has no asset.version (Plica reads glTF 2.0: export it again as .glb)"
     );
     let mut old = whole.clone();
     old[4] = 1;
@@ -428,11 +444,32 @@ fn a_small_file_that_means_much_is_refused() {
     put(&mut json, "/scenes/0/nodes", json!((0..1000).collect::<Vec<_>>()));
     let parts = glb(&json, &binary);
     let (mut json, binary) = square();
-    put(&mut json, "/accessors/0", json!({ "componentType": 5126, "count": 1_000_000, "type": "VEC3" }));
+    let (indices, values) = (json!({ "bufferView": 3, "componentType": 5121 }), json!({ "bufferView": 0 }));
+    let sparse = json!({ "count": 1, "indices": indices, "values": values });
+    put(
+        &mut json,
+        "/accessors/0",
+        json!({ "componentType": 5126, "count": 1_000_000, "type": "VEC3", "sparse": sparse }),
+    );
     put(&mut json, "/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "mode": 5 }));
     let zeros = glb(&json, &binary);
     for bytes in [braces.into_bytes(), parts, zeros] {
         let error = read_with("a.glb", &bytes, &[], &limits).unwrap_err();
         assert!(error.contains("of memory besides"), "{error}");
     }
+}
+
+#[test]
+fn triangles_are_counted_before_anything_is_made_for_a_node() {
+    let (mut json, binary) = square();
+    put(&mut json, "/meshes/0/primitives", json!(vec![json!({ "attributes": { "POSITION": 0 } }); 1000]));
+    put(&mut json, "/nodes", json!(vec![json!({ "mesh": 0 }); 11_000]));
+    put(&mut json, "/scenes/0/nodes", json!((0..11_000).collect::<Vec<_>>()));
+    // For the document alone.
+    let limits = Limits { memory: 32 << 20, ..Limits::default() };
+    assert_eq!(
+        read_with("a.glb", &glb(&json, &binary), &[], &limits).unwrap_err(),
+        "a.glb: has 11000000 triangles, at most 10000000 are allowed \
+         (make it smaller, or give --limit triangles=11000000)"
+    );
 }

@@ -47,6 +47,7 @@ fn file(bytes: &[u8]) -> File {
 fn what_is_no_mesh_says_what_it_is() {
     const READ: &str = "(Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf))";
     const EXPORT: &str = "(export it as .glb or .obj, with Blender for example)";
+    const COPY: &str = "(copy it again from where it came, or export it anew)";
     for (name, bytes, expected) in [
         ("a.obj", &b"\x89PNG\r\n\x1a\n"[..], format!("is a PNG picture, not a mesh {READ}")),
         ("a.glb", b"\xff\xd8\xff\xe0", format!("is a JPEG picture, not a mesh {READ}")),
@@ -55,13 +56,24 @@ fn what_is_no_mesh_says_what_it_is() {
         ("a.stl", b"\0\0\0\0", format!("is an STL mesh, which Plica does not read {EXPORT}")),
         ("a.fbx", b"Kaydara FBX Binary  \0", format!("is an FBX scene, which Plica does not read {EXPORT}")),
         ("a.obj", b"#usda 1.0\n", format!("is a USD scene, which Plica does not read {EXPORT}")),
-        ("a.obj", b"\x4c\x01\0\0", format!("is not a mesh {READ}")),
+        ("a.obj", b"\x4c\x01\0\0", format!("is not text: it has zero bytes {COPY}")),
+        ("a.gltf", b"\0{}", format!("is not text: it has zero bytes {COPY}")),
+        ("a.glb", b"\0\0\0\0", format!("is not a mesh {READ}")),
         ("a.obj", b"<!DOCTYPE html>", format!("is not a mesh {READ}")),
         ("a.txt", b"v", format!("is not a mesh {READ}")),
-        ("a.glb", b"", format!("is not a mesh {READ}")),
-        ("a.obj", b"", "has no triangles (name a mesh with faces)".to_owned()),
+        ("a.glb", b"", format!("is empty {COPY}")),
+        ("a.obj", b"", format!("is empty {COPY}")),
+        ("a.obj", b"\n", "has no triangles (name a mesh with faces)".to_owned()),
     ] {
         assert_eq!(read(name, bytes).unwrap_err(), format!("{name}: {expected}"));
+        // Its beginning is enough: what follows, here nothing that is stored, is neither read nor counted.
+        if bytes.contains(&0) {
+            let long = file(bytes);
+            long.set_len(1 << 40).unwrap();
+            let limits = Limits::default();
+            let error = decode(long, name, &limits, &limits.budget(), &alone).unwrap_err();
+            assert_eq!(error.to_string(), format!("{name}: {expected}"));
+        }
     }
     assert_eq!(read("a.txt", b"# a comment\r\n\n\tv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3").unwrap().0.triangles.len(), 1);
 }
