@@ -8,6 +8,7 @@
 )]
 #![cfg(feature = "window")]
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
@@ -17,10 +18,13 @@ use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Grid, decode, encode};
 use plica::base::progress::Progress;
-use plica::files;
+use plica::export::textures::{self, Depth};
+use plica::files::{self, outputs::Guard};
 use plica::layers::KINDS;
+use plica::layers::parts::marks::View;
 use plica::layers::parts::materials::{List, Materials, Of, Use, What};
 use plica::layers::ready::Making;
+use plica::layers::space::camera::Camera;
 use plica::layers::technique::Kind;
 use plica::render::{self, Synth, bands::Bands, cpu, gpu::Gpu, reduce::reduced};
 use plica::scene::Scene;
@@ -154,7 +158,7 @@ fn the_gpu_shows_what_the_cpu_shows() {
     }
 }
 
-/// A ring about the z axis, of radius 1 and thickness 0.35.
+/// Three quarters of a ring about the z axis, of radius 1 and thickness 0.35; its inside is seen at the ends.
 fn ring() -> Mesh {
     let (around, across) = (24, 12);
     let vertex = |i: usize| {
@@ -172,7 +176,7 @@ fn ring() -> Mesh {
     };
     Mesh {
         vertices: (0..(around + 1) * (across + 1)).map(vertex).collect(),
-        triangles: (0..around * across).flat_map(pair).collect(),
+        triangles: (0..around * across).filter(|i| i % around < around * 3 / 4).flat_map(pair).collect(),
         ..Mesh::default()
     }
 }
@@ -201,6 +205,41 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
         (kind.name, scene, materials)
     };
     KINDS.iter().map(example).collect()
+}
+
+#[test]
+fn every_overlay_draws_something_over_the_example_of_its_technique() {
+    let mut nothing = Vec::new();
+    for (kind, scene, materials) in examples() {
+        let synth = render::synth(&scene, &materials, None).unwrap();
+        // From elsewhere, so that the scene's camera is seen too.
+        let elsewhere = Camera { position: [2.5, -2.0, 2.5], target: [0.0; 3], ..Camera::default() };
+        let synth = synth.seen_from(elsewhere);
+        let overlays = KINDS.iter().filter(|row| row.name == kind).flat_map(|row| row.overlays);
+        // Labels are texts at the marks of others.
+        for overlay in overlays.filter(|overlay| overlay.name != "view-labels") {
+            let view = View { spacing_px: 8.0, cell_px: 2.0, times: vec![0.4], ..View::of(&[overlay.name]) };
+            if render::overlay::overlay(&scene, Some(&synth), &view).is_empty() {
+                nothing.push(format!("{kind}: {}", overlay.name));
+            }
+        }
+        let all_off = View { times: vec![0.4], ..View::default() };
+        assert!(render::overlay::overlay(&scene, Some(&synth), &all_off).is_empty(), "{kind}");
+    }
+    assert!(nothing.is_empty(), "nothing is drawn: {nothing:?}");
+}
+
+#[test]
+fn every_technique_with_textures_bundles_its_example() {
+    for (kind, scene, materials) in examples() {
+        let bundles = KINDS.iter().any(|row| row.name == kind && row.bundle.is_some());
+        let folder = tempfile::tempdir().unwrap();
+        let place = Guard::new(false).folder(&folder.path().join("textures"), &|_| true, BTreeSet::new()).unwrap();
+        let synth = render::synth(&scene, &materials, None).unwrap();
+        let written = textures::write(&scene, &synth, Depth::Float, &place, &mut |_, _| Ok(()));
+        let written = written.is_ok() && folder.path().join("textures/manifest.json").is_file();
+        assert!(!bundles || written, "{kind}");
+    }
 }
 
 #[test]
