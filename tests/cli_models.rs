@@ -164,10 +164,10 @@ fn what_of_a_model_cannot_be_read_is_told() {
         (&["new", "broken.obj"][..], "broken.obj: line 1", false),
         (&["new", "no.obj"], "no.obj: there is no such file", false),
         (&["new", "lost.gltf"], "lost.bin: there is no such file", false),
-        (&["new", "from/far.gltf"], "leads out of the scene's folder", false),
+        (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder", false),
         (
             &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],
-            "is not in the folder of what names it, and cannot be copied with it (make the scene where that is)",
+            "../square.bin, which is not in the model's folder",
             false,
         ),
         (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
