@@ -93,7 +93,7 @@ pub struct Corner {
 pub struct Builder {
     /// Positions; all numbers are finite.
     pub positions: Vec<DVec3>,
-    /// Normals of length 1, as [`unit`] makes them; one of zero counts as not named.
+    /// Normals of length 1, as `unit` makes them; one of zero counts as not named.
     pub normals: Vec<DVec3>,
     /// Texture coordinates.
     pub uvs: Vec<DVec2>,
