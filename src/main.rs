@@ -1,7 +1,5 @@
 //! The binary: see `plica::cli`.
 
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
+fn main() {
     plica::cli::main()
 }

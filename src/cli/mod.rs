@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,7 +11,7 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, Parser};
 
 use crate::base::error::{Error, Result};
-use crate::base::text;
+use crate::base::{system, text};
 use crate::files;
 use crate::ops::Context;
 use crate::ops::command_line::CommandLine;
@@ -23,20 +22,24 @@ use crate::{ops::Command, tui};
 mod process;
 
 /// Runs the process.
-pub fn main() -> ExitCode {
+pub fn main() -> ! {
     let line = CommandLine::try_parse().unwrap_or_else(|error| refuse(with_tip(error)));
     let cancel = Arc::new(AtomicBool::new(false));
     let closed = Arc::new(AtomicBool::new(false));
     let mut context = Context::process(cancel.clone());
     context.out = Box::new(process::Output::new(closed.clone()));
-    match run(line, &mut context, cancel) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(_) if closed.load(Ordering::Relaxed) => ExitCode::SUCCESS,
+    let status = match run(line, &mut context, cancel) {
+        Ok(()) => 0,
+        Err(_) if closed.load(Ordering::Relaxed) => 0,
         Err(error) => {
             context.messages.say(&format!("plica: {}", quoting(&error)));
-            ExitCode::from(error.exit_status())
+            error.exit_status()
         }
-    }
+    };
+    // Where nobody reads it there is nothing more to do.
+    let _ = context.out.flush();
+    drop(context);
+    system::process::end(status)
 }
 
 /// The error, with the words of the command line that it quotes on one line each.

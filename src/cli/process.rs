@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::base::error::{Error, Result};
+use crate::base::system::process;
 use crate::base::system::signals::{self, Answer, Registration, Signal};
 use crate::base::text::printable;
 use crate::files::temporary;
@@ -38,7 +39,7 @@ pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
 
 fn end() -> ! {
     temporary::remove_unfinished();
-    std::process::exit(Error::Interrupted.exit_status().into())
+    process::end(Error::Interrupted.exit_status())
 }
 
 /// Makes a panic one line on standard error; the rest goes to the log.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::base::budget::Budget;
+use crate::base::clip::Clip;
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
@@ -90,6 +91,8 @@ pub struct Materials {
     pub fields: BTreeMap<String, Arc<Grid<[f32; 2]>>>,
     /// Meshes by their name in the scene's meshes.
     pub meshes: BTreeMap<String, Arc<Mesh>>,
+    /// Clips by their name in the scene's clips.
+    pub clips: BTreeMap<String, Arc<Clip>>,
     /// Cancellation flag: once set, a running synthesis ends with an error.
     pub stop: Option<Arc<AtomicBool>>,
     /// Where a synthesis counts how far it is, in pixels.
@@ -132,6 +135,15 @@ impl Materials {
     pub fn mesh(&self, name: &str, path: &str) -> Result<Arc<Mesh>, Problem> {
         let missing = || Problem::error(path, format!("the mesh \"{name}\" is not there"));
         self.meshes.get(name).cloned().ok_or_else(missing)
+    }
+
+    /// The clip of that name.
+    ///
+    /// # Errors
+    /// It is not there; `path` tells where it is named.
+    pub fn clip(&self, name: &str, path: &str) -> Result<Arc<Clip>, Problem> {
+        let missing = || Problem::error(path, format!("the clip \"{name}\" is not there"));
+        self.clips.get(name).cloned().ok_or_else(missing)
     }
 
     /// The picture of that name.

@@ -8,6 +8,7 @@ use super::options::Options;
 use super::terminal;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
+use crate::base::system::process;
 use crate::base::system::signals::{self, Answer, Signal};
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Event;
@@ -61,7 +62,7 @@ fn end_on_signals(sender: mpsc::Sender<Event>, lines: bool) -> Result<signals::R
             std::thread::spawn(|| {
                 std::thread::sleep(GRACE);
                 terminal::restore();
-                std::process::exit(i32::from(Error::Interrupted.exit_status()));
+                process::end(Error::Interrupted.exit_status());
             });
             Answer::Done
         }
