@@ -162,7 +162,8 @@ fn a_signal_ends_it_as_interrupted() {
     let place = Place::new();
     let mut view = View::open(&display, &place);
     assert!(Command::new("kill").arg(view.process.id().to_string()).status().unwrap().success());
-    assert_eq!(view.process.wait().unwrap().code(), Some(130));
+    let ended = view.process.wait().unwrap();
+    assert_eq!(ended.code(), Some(130), "{ended}");
 }
 
 #[test]
