@@ -76,6 +76,7 @@ impl Ready for Synth {
                 binds: vec![Bind::Bytes(bytes)],
                 blend: Blend::Replace,
                 vertices: 3,
+                instances: 1,
                 depth: false,
                 scissor_px: None,
             }],

@@ -41,6 +41,7 @@ pub fn plan(synth: &Synth, t: f64) -> Plan {
         binds: vec![Bind::Upload(synth.picture.clone(), 0)],
         blend: Blend::Replace,
         vertices: 3,
+        instances: 1,
         depth: false,
         scissor_px: None,
     };
@@ -74,6 +75,7 @@ fn zone(zone: &ZoneSynth, t: f64) -> Draw {
         ],
         blend: if source.over { Blend::Over } else { Blend::Replace },
         vertices: 3,
+        instances: 1,
         depth: false,
         scissor_px: Some(size.map(|n| n as u32)),
     }

@@ -70,8 +70,16 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
     let program = if picture.is_some() { &PICTURED } else { &PLAIN };
     binds.extend(picture);
     let vertices = 3 * synth.mesh.triangles.len() as u32;
-    let draw =
-        Draw { program, constants: Vec::new(), binds, blend: Blend::Replace, vertices, depth: true, scissor_px: None };
+    let draw = Draw {
+        program,
+        constants: Vec::new(),
+        binds,
+        blend: Blend::Replace,
+        vertices,
+        instances: 1,
+        depth: true,
+        scissor_px: None,
+    };
     Plan { draws: vec![draw] }
 }
 

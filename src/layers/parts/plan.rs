@@ -45,7 +45,7 @@ impl Plan {
         let uploads = binds.flat_map(|bind| match bind {
             Bind::Upload(of, _) => vec![of],
             Bind::Drawn(drawn) => drawn.plan.uploads(),
-            Bind::Bytes(_) => Vec::new(),
+            Bind::Bytes(_) | Bind::List(_) | Bind::Depth | Bind::Linear => Vec::new(),
         });
         uploads.collect()
     }
@@ -64,6 +64,8 @@ pub struct Draw {
     pub blend: Blend,
     /// How many vertices are drawn: three for all of the frame.
     pub vertices: u32,
+    /// How often they are drawn, one time after the other.
+    pub instances: u32,
     /// Whether a pixel is drawn only where it is nearer than all before, and hides what is farther then.
     pub depth: bool,
     /// The pixels to draw: left, top, width, height, clipped to the frame; `None` for all.
@@ -77,16 +79,25 @@ pub enum Blend {
     Replace,
     /// It is drawn over what is there.
     Over,
+    /// What is there shines through by as much as each channel leaves, alpha like colors: in any order the same.
+    Screen,
 }
 
 /// A resource that a program reads.
 pub enum Bind {
     /// A uniform, in the memory layout of WGSL.
     Bytes(Vec<u8>),
+    /// An array that is only read, in the memory layout of WGSL.
+    List(Vec<u8>),
     /// One of the textures that an upload is packed into, by its number.
     Upload(Arc<dyn Upload>, usize),
     /// A texture that is drawn first.
     Drawn(Box<Drawn>),
+    /// The depths of the surfaces that are drawn with the layer, near / depth, 0 where there is none: the draw comes after
+    /// them.
+    Depth,
+    /// What reads between the texels of filtered textures: linear, up to the edge.
+    Linear,
 }
 
 /// A texture that is drawn before what reads it.
@@ -102,8 +113,11 @@ impl fmt::Debug for Bind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Bind::Bytes(bytes) => f.debug_tuple("Bytes").field(&bytes.len()).finish(),
+            Bind::List(bytes) => f.debug_tuple("List").field(&bytes.len()).finish(),
             Bind::Upload(_, part) => f.debug_tuple("Upload").field(part).finish(),
             Bind::Drawn(drawn) => drawn.fmt(f),
+            Bind::Depth => f.write_str("Depth"),
+            Bind::Linear => f.write_str("Linear"),
         }
     }
 }
@@ -132,6 +146,8 @@ pub type Rows<'a> = Box<dyn Fn(Range<usize>, &mut dyn FnMut(&[u8])) + 'a>;
 pub enum Format {
     /// Four floats.
     Rgba32Float,
+    /// Four half floats, which can be filtered.
+    Rgba16Float,
     /// One float.
     R32Float,
     /// Four whole numbers.

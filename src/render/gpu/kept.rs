@@ -130,6 +130,7 @@ fn same(a: &Arc<dyn Upload>, b: &Arc<dyn Upload>) -> bool {
 pub fn format(format: Format) -> (wgpu::TextureFormat, usize) {
     match format {
         Format::Rgba32Float => (wgpu::TextureFormat::Rgba32Float, 16),
+        Format::Rgba16Float => (wgpu::TextureFormat::Rgba16Float, 8),
         Format::R32Float => (wgpu::TextureFormat::R32Float, 4),
         Format::Rgba32Uint => (wgpu::TextureFormat::Rgba32Uint, 16),
     }

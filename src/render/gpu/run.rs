@@ -10,6 +10,12 @@ use crate::layers::parts::plan::{Bind, Blend, Draw, Format, Plan, Program};
 
 /// The format of frames on the device.
 pub const FRAME: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// S + C (1 - S).
+const SCREEN: wgpu::BlendComponent = wgpu::BlendComponent {
+    src_factor: wgpu::BlendFactor::One,
+    dst_factor: wgpu::BlendFactor::OneMinusSrc,
+    operation: wgpu::BlendOperation::Add,
+};
 /// The format of depths.
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -44,8 +50,12 @@ struct Way {
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Kind {
     Uniform,
+    List,
     Floats,
+    Filtered,
     Uints,
+    Depth,
+    Linear,
 }
 
 #[derive(Clone)]
@@ -61,12 +71,16 @@ struct Ready {
     /// Left, top, width, height.
     scissor: Option<[u32; 4]>,
     vertices: u32,
+    instances: u32,
 }
 
 /// A resource on the device that a program reads.
 enum Bound {
-    Buffer(wgpu::Buffer),
+    Uniform(wgpu::Buffer),
+    List(wgpu::Buffer),
     Texture(Texture),
+    Depth(wgpu::TextureView),
+    Linear(wgpu::Sampler),
 }
 
 impl Runner {
@@ -78,19 +92,40 @@ impl Runner {
         into: &wgpu::Texture,
         plan: &Plan,
     ) -> Result<()> {
-        let mut draws = Vec::with_capacity(plan.draws.len());
-        let deep = plan.draws.iter().any(|draw| draw.depth);
-        for draw in &plan.draws {
+        let reads = |draw: &&Draw| draw.binds.iter().any(|bind| matches!(bind, Bind::Depth));
+        let (after, first): (Vec<&Draw>, Vec<&Draw>) = plan.draws.iter().partition(reads);
+        let deep = !after.is_empty() || first.iter().any(|draw| draw.depth);
+        let size = (into.width() as usize, into.height() as usize);
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let depth = deep.then(|| texture(device, size, DEPTH, usage)).transpose()?;
+        let draws = self.ready(device, encoder, (into, None), (&first, deep))?;
+        pass(encoder, (into, depth.as_ref()), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), &draws);
+        if !after.is_empty() {
+            let draws = self.ready(device, encoder, (into, depth.as_ref()), (&after, false))?;
+            pass(encoder, (into, None), wgpu::LoadOp::Load, &draws);
+        }
+        Ok(())
+    }
+
+    /// Draws with everything that they need; those that no pixel is left of are left out.
+    fn ready(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (into, depth): (&wgpu::Texture, Option<&wgpu::Texture>),
+        (draws, deep): (&[&Draw], bool),
+    ) -> Result<Vec<Ready>> {
+        let mut ready = Vec::with_capacity(draws.len());
+        for draw in draws {
             let Some(scissor) = scissor(draw, into) else { continue };
-            let bound = draw.binds.iter().map(|bind| self.bound(device, encoder, bind)).collect::<Result<Vec<_>>>()?;
+            let bound = draw.binds.iter().map(|bind| self.bound(device, encoder, (bind, depth)));
+            let bound = bound.collect::<Result<Vec<_>>>()?;
             let way = Way { blend: draw.blend, into: into.format(), depth: deep.then_some(draw.depth) };
             let (pipeline, group) = self.pipeline(device, (draw.program, &draw.constants), &bound, way)?;
-            draws.push(Ready { pipeline, group, scissor: Some(scissor), vertices: draw.vertices });
+            let (vertices, instances) = (draw.vertices, draw.instances);
+            ready.push(Ready { pipeline, group, scissor: Some(scissor), vertices, instances });
         }
-        let size = (into.width() as usize, into.height() as usize);
-        let depth = deep.then(|| texture(device, size, DEPTH, wgpu::TextureUsages::RENDER_ATTACHMENT)).transpose()?;
-        pass(encoder, (into, depth.as_ref()), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), &draws);
-        Ok(())
+        Ok(ready)
     }
 
     /// Fills a texture with one color.
@@ -111,7 +146,7 @@ impl Runner {
         let bound = [Bound::Texture(Texture { view, format: Format::Rgba32Float })];
         let way = Way { blend, into: into.format(), depth: None };
         let (pipeline, group) = self.pipeline(device, (program, &[]), &bound, way)?;
-        let draw = Ready { pipeline, group, scissor: None, vertices: 3 };
+        let draw = Ready { pipeline, group, scissor: None, vertices: 3, instances: 1 };
         pass(encoder, (into, None), wgpu::LoadOp::Load, &[draw]);
         Ok(())
     }
@@ -126,18 +161,25 @@ impl Runner {
         self.kept.end_frame();
     }
 
-    fn bound(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, bind: &Bind) -> Result<Bound> {
+    /// What a program reads, on the device; `depth` is what was drawn before.
+    fn bound(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (bind, depth): (&Bind, Option<&wgpu::Texture>),
+    ) -> Result<Bound> {
         match bind {
-            Bind::Bytes(bytes) => {
-                let buffer = device.raw.create_buffer(&wgpu::BufferDescriptor {
-                    label: None,
-                    size: bytes.len() as u64,
-                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
-                device.queue.write_buffer(&buffer, 0, bytes);
-                Ok(Bound::Buffer(buffer))
+            Bind::Bytes(bytes) => buffer(device, bytes, wgpu::BufferUsages::UNIFORM).map(Bound::Uniform),
+            Bind::List(bytes) => buffer(device, bytes, wgpu::BufferUsages::STORAGE).map(Bound::List),
+            Bind::Depth => {
+                let depth = depth.ok_or_else(|| failed("a plan reads depths that are not there"))?;
+                Ok(Bound::Depth(depth.create_view(&Default::default())))
             }
+            Bind::Linear => Ok(Bound::Linear(device.raw.create_sampler(&wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }))),
             Bind::Upload(of, part) => self.kept.get(device, of, *part).map(Bound::Texture),
             Bind::Drawn(drawn) => {
                 check_size(device, drawn.size_px.0, drawn.size_px.1)?;
@@ -184,15 +226,20 @@ impl Runner {
 impl Bound {
     fn resource(&self) -> wgpu::BindingResource<'_> {
         match self {
-            Bound::Buffer(buffer) => buffer.as_entire_binding(),
-            Bound::Texture(texture) => wgpu::BindingResource::TextureView(&texture.view),
+            Bound::Uniform(buffer) | Bound::List(buffer) => buffer.as_entire_binding(),
+            Bound::Texture(Texture { view, .. }) | Bound::Depth(view) => wgpu::BindingResource::TextureView(view),
+            Bound::Linear(sampler) => wgpu::BindingResource::Sampler(sampler),
         }
     }
 
     fn kind(&self) -> Kind {
         match self {
-            Bound::Buffer(_) => Kind::Uniform,
+            Bound::Uniform(_) => Kind::Uniform,
+            Bound::List(_) => Kind::List,
+            Bound::Depth(_) => Kind::Depth,
+            Bound::Linear(_) => Kind::Linear,
             Bound::Texture(texture) => match texture.format {
+                Format::Rgba16Float => Kind::Filtered,
                 Format::Rgba32Float | Format::R32Float => Kind::Floats,
                 Format::Rgba32Uint => Kind::Uints,
             },
@@ -207,16 +254,31 @@ impl Kind {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
+        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
         match self {
-            Kind::Uniform => wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
+            Kind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+            Kind::List => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
             Kind::Floats => texture(wgpu::TextureSampleType::Float { filterable: false }),
+            Kind::Filtered => texture(wgpu::TextureSampleType::Float { filterable: true }),
             Kind::Uints => texture(wgpu::TextureSampleType::Uint),
+            Kind::Depth => texture(wgpu::TextureSampleType::Depth),
+            Kind::Linear => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         }
     }
+}
+
+/// A buffer with these bytes.
+fn buffer(device: &Device, bytes: &[u8], usage: wgpu::BufferUsages) -> Result<wgpu::Buffer> {
+    let buffer = device.checked(|| {
+        device.raw.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    })?;
+    device.queue.write_buffer(&buffer, 0, bytes);
+    Ok(buffer)
 }
 
 /// The pixels of `into` to draw; `None` if there are none.
@@ -248,6 +310,7 @@ fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], 
     let blend = match key.way.blend {
         Blend::Replace => None,
         Blend::Over => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        Blend::Screen => Some(wgpu::BlendState { color: SCREEN, alpha: SCREEN }),
     };
     let target = wgpu::ColorTargetState { format: key.way.into, blend, write_mask: wgpu::ColorWrites::ALL };
     let raw = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -303,7 +366,7 @@ fn pass(
         depth_stencil_attachment: depth.as_ref().map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
             // Depths are reversed: 0 is infinitely far.
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
         ..Default::default()
@@ -314,6 +377,6 @@ fn pass(
         }
         pass.set_pipeline(&draw.pipeline);
         pass.set_bind_group(0, &draw.group, &[]);
-        pass.draw(0..draw.vertices, 0..1);
+        pass.draw(0..draw.vertices, 0..draw.instances);
     }
 }
