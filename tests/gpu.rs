@@ -13,6 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 use glam::{DVec2, DVec3};
+use plica::base::clip::Clip;
 use plica::base::maths::{self, TAU};
 use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
@@ -191,6 +192,10 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
             match of {
                 Of::Name(List::Layers, _) => {}
                 Of::Name(List::Meshes, name) => drop(materials.meshes.insert(name.to_owned(), Arc::new(ring()))),
+                Of::Name(List::Clips, name) => {
+                    let frames = (0..5).map(|frame| waves(96, 64, seed + 7 * frame, true)).collect();
+                    drop(materials.clips.insert(name.to_owned(), Arc::new(Clip { fps: 12.5, frames })));
+                }
                 Of::Name(List::Images, name) => {
                     let picture = waves(96, 64, seed + 1, what != What::Picture || seed > 0);
                     drop(materials.pictures.insert(name.to_owned(), picture));

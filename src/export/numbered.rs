@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use crate::base::error::{Error, Result};
+use crate::base::numbered;
 
 /// A file name with one frame number in it.
 #[derive(Debug, PartialEq)]
 pub struct Pattern {
     folder: PathBuf,
-    before: String,
-    digits: usize,
-    after: String,
+    name: numbered::Pattern,
 }
 
 impl Pattern {
@@ -23,38 +22,15 @@ impl Pattern {
     pub fn parse(path: &Path, endings: &[&str], what: &str) -> Result<Option<Self>> {
         let wrong = |what: &str| Error::Usage(format!("{}: {what} (as in frame-%04d.png)", path.display()));
         let name = path.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
-        let (mut texts, mut digits) = (vec![String::new()], None);
-        let mut rest = name.chars();
-        while let Some(c) = rest.next() {
-            let last = texts.len() - 1;
-            if c != '%' {
-                texts[last].push(c);
-                continue;
-            }
-            let mut spec = String::new();
-            for c in rest.by_ref() {
-                spec.push(c);
-                if !c.is_ascii_digit() {
-                    break;
-                }
-            }
-            match spec.strip_suffix('d') {
-                _ if spec == "%" => texts[last].push('%'),
-                Some(_) if digits.is_some() => return Err(wrong("the name holds two frame numbers")),
-                Some(width) => {
-                    digits = Some(width.parse().unwrap_or(0).clamp(1, 20));
-                    texts.push(String::new());
-                }
-                None => return Err(wrong(&format!("\"%{spec}\" is no frame number"))),
-            }
+        let name = numbered::Pattern::of(&name).map_err(|what| wrong(&what))?;
+        if !name.is_numbered() {
+            return Ok(None);
         }
-        let Some(digits) = digits else { return Ok(None) };
-        let [before, after] = <[String; 2]>::try_from(texts).unwrap_or_default();
-        if !endings.iter().any(|ending| after.to_lowercase().ends_with(ending)) {
+        if !endings.iter().any(|ending| name.after().to_lowercase().ends_with(ending)) {
             return Err(wrong(&format!("{what} and end in {}", endings.join(" or "))));
         }
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Ok(Some(Pattern { folder: folder.to_path_buf(), before, digits, after }))
+        Ok(Some(Pattern { folder: folder.to_path_buf(), name }))
     }
 
     /// The folder of the files.
@@ -68,7 +44,7 @@ impl Pattern {
 
     /// The name of the file with this number.
     pub fn name(&self, number: u64) -> String {
-        format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits)
+        self.name.name(number)
     }
 }
 

@@ -32,8 +32,10 @@ pub struct Limits {
     pub mesh: u64,
     /// Triangles of a mesh.
     pub triangles: u64,
-    /// Frames of an animation.
+    /// Frames of an animation, or of a clip.
     pub frames: u64,
+    /// Pixels of all frames of a clip.
+    pub clip: u64,
     /// Bytes of a message between editor and window.
     pub message: u64,
     /// Bytes pasted at once.
@@ -85,7 +87,7 @@ pub static TABLE: LazyLock<Vec<Limit>> = LazyLock::new(|| {
     SCENE.into_iter().chain(counted).chain(REST).collect()
 });
 
-const SCENE: [Limit; 7] = [
+const SCENE: [Limit; 8] = [
     limit("pixels", "pixels of a picture, width times height", 1 << 28, |l| &mut l.pixels),
     limit("side", "width and height of a picture, in pixels", 1 << 20, |l| &mut l.side),
     limit("memory", "bytes that everything read and computed may take in total", 4096 * MIB, |l| &mut l.memory),
@@ -93,12 +95,13 @@ const SCENE: [Limit; 7] = [
     limit("depth", "depth of a scene's JSON", 64, |l| &mut l.depth),
     limit("mesh", "bytes of a file with a mesh, or with a part of one", 512 * MIB, |l| &mut l.mesh),
     limit("triangles", "triangles of a mesh", 10_000_000, |l| &mut l.triangles),
+    limit("clip", "pixels of a clip, all frames together", 1 << 30, |l| &mut l.clip),
 ];
 
 const REST: [Limit; 7] = [
     limit("expression", "bytes of an expression", 4096, |l| &mut l.expression),
     limit("expression-depth", "depth of an expression", 64, |l| &mut l.expression_depth),
-    limit("frames", "frames of an animation", 100_000, |l| &mut l.frames),
+    limit("frames", "frames of an animation, or of a clip", 100_000, |l| &mut l.frames),
     limit("message", "bytes of a message between editor and window", 64 * MIB, |l| &mut l.message),
     limit("paste", "bytes pasted at once", 16 * MIB, |l| &mut l.paste),
     limit("texture", "side of a picture in the window; larger ones are reduced", 1 << 20, |l| &mut l.texture),
@@ -123,6 +126,7 @@ impl Default for Limits {
             mesh: 0,
             triangles: 0,
             frames: 0,
+            clip: 0,
             message: 0,
             paste: 0,
             texture: 0,

@@ -64,7 +64,8 @@ impl Originals {
             let old = before.found.get(path).and_then(|found| found.as_ref().ok());
             (path.to_owned(), look(scene_path, path, options, old).map_err(why))
         };
-        let mut found: BTreeMap<_, _> = materials::paths(scene).into_iter().map(look).collect();
+        let named = materials::paths(scene_path, scene);
+        let mut found: BTreeMap<_, _> = named.iter().map(|path| look(path)).collect();
         let parts: BTreeSet<String> = found.values().flatten().flat_map(|found| found.parts.iter().cloned()).collect();
         for part in parts {
             found.entry(part).or_insert_with_key(|part| look(part).1);

@@ -144,9 +144,9 @@ impl Guard {
                 self.keep(&journal, format!("belongs to the journal of {called}"));
             }
         }
-        for name in materials::paths(scene) {
+        for name in materials::paths(path, scene).into_iter().chain(materials::ahead(path, scene)) {
             // What follows a # says which part of the file is meant.
-            for name in [Some(name), name.rsplit_once('#').map(|(file, _)| file)].into_iter().flatten() {
+            for name in [Some(&*name), name.rsplit_once('#').map(|(file, _)| file)].into_iter().flatten() {
                 self.keep(&paths::beside(path, name), format!("is read by {called}"));
             }
         }
@@ -276,9 +276,9 @@ fn place(path: &Path) -> Option<(PathBuf, String)> {
 
 /// The paths that a scene saved at `path` would name but not find, as written.
 pub fn missing(path: &Path, scene: &Scene) -> Vec<String> {
-    let named = materials::paths(scene).into_iter();
+    let named = materials::paths(path, scene).into_iter();
     let there = |name: &str| paths::beside(path, name.rsplit_once('#').map_or(name, |(file, _)| file)).exists();
-    named.filter(|name| !there(name) && !paths::beside(path, name).exists()).map(str::to_owned).collect()
+    named.filter(|name| !there(name) && !paths::beside(path, name).exists()).collect()
 }
 
 /// Whether a scene at `path` reads the picture at `picture`: this layer of it, where one is named.
@@ -289,8 +289,8 @@ pub fn reads(path: &Path, scene: &Scene, picture: &Path) -> bool {
         (Ok(one), Ok(two)) => identity(&one) == identity(&two),
         (one, two) => one.is_err() && two.is_err() && is_same(file, other),
     };
-    let fits = |name: &&str| layer.is_none() || paths::layer_of(name) == layer;
-    materials::paths(scene).into_iter().filter(fits).any(|name| is_file(&paths::beside(path, name)))
+    let fits = |name: &String| layer.is_none() || paths::layer_of(name) == layer;
+    materials::paths(path, scene).into_iter().filter(fits).any(|name| is_file(&paths::beside(path, &name)))
 }
 
 /// The first and the last bytes of the file at `path`; fewer if it is shorter.
@@ -323,15 +323,17 @@ mod tests {
 
     const PNG: &[u8] = b"\x89PNG\r\n\x1a\n and more";
 
-    /// A scene that reads `sub/cat.png`, `missing.flo` and `layers.exr#beauty`, in a folder with links to them.
+    /// A scene that reads `sub/cat.png`, `missing.flo`, `layers.exr#beauty` and a clip of two frames, in a folder with links
+    /// to them.
     fn folder() -> (tempfile::TempDir, Guard) {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path();
         fs::create_dir(root.join("sub")).unwrap();
-        for name in ["sub/cat.png", "layers.exr", "other.png"] {
+        for name in ["sub/cat.png", "layers.exr", "other.png", "sub/0007.png", "sub/0008.png"] {
             fs::write(root.join(name), PNG).unwrap();
         }
         let text = r#"{"plica": 1, "images": {"cat": {"path": "sub/cat.png"}, "exr": {"path": "layers.exr#beauty"}},
+            "clips": {"falls": {"path": "sub/%04d.png", "first": 7}},
             "layers": [{"kind": "picture", "name": "l", "image": "cat", "zones": [{"name": "z",
             "outline": {"kind": "rectangle", "x": 0, "y": 0, "width": 2, "height": 2},
             "motion": [{"tool": "field", "path": "missing.flo"}]}]}]}"#;
@@ -359,6 +361,11 @@ mod tests {
             ("missing.flo", Some("is read by")),
             ("sub/../Missing.FLO", Some("is read by")),
             ("layers.exr", Some("is read by")),
+            ("sub/0007.png", Some("is read by")),
+            ("folder/0008.png", Some("is read by")),
+            ("sub/0009.png", Some("is read by")),
+            ("sub/0010.png", None),
+            ("sub/0006.png", None),
             ("s.plica.json", Some("the scene itself")),
             ("scene-link.png", Some("the scene itself")),
             (".s.journal", Some("journal")),
@@ -377,7 +384,7 @@ mod tests {
         let text = fs::read_to_string(folder.path().join("s.plica.json")).unwrap();
         let document = Document::parse(&text).unwrap();
         assert_eq!(missing(&folder.path().join("copy.json"), document.scene()), ["missing.flo"]);
-        assert_eq!(missing(&folder.path().join("sub/copy.json"), document.scene()).len(), 3);
+        assert_eq!(missing(&folder.path().join("sub/copy.json"), document.scene()).len(), 4);
         let names = ["new.png".to_owned(), "link.png".into()];
         assert!(guard.files(folder.path(), &names, Kind::Png).is_err());
         assert!(guard.folder(folder.path(), &|name| name == "hard.png", BTreeSet::new()).is_err());

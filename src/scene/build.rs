@@ -72,7 +72,7 @@ impl Edit {
         (from < items.len() && index < items.len()).then(|| (Edit::moved(path, &to), to))
     }
 
-    /// Renames an image or a mesh of the scene, everywhere.
+    /// Renames an image, a mesh or a clip of the scene, everywhere.
     pub fn rename(document: &Document, list: List, from: &str, to: &str) -> Edit {
         let named = document.scene().users_of(list, from).map(|path| Edit::replace(&path, to.into()));
         let at = |name| pointer::join(&format!("/{}", list.words().0), name);

@@ -11,7 +11,7 @@ use super::{Scene, pointer, references, shape};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
-use crate::layers::parts::materials::{Materials, Of};
+use crate::layers::parts::materials::{List, Materials, Of};
 use crate::layers::parts::moment::Space;
 use crate::layers::technique::{Checked, Technique};
 use crate::layers::{KINDS, check as rules};
@@ -125,9 +125,9 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
             layer.technique().problems(checked).into_iter().map(|problem| problem.under(&format!("/layers/{i}"))),
         );
     }
-    let named = [("/images", scene.images.keys().collect::<Vec<_>>()), ("/meshes", scene.meshes.keys().collect())];
-    for (list, names) in named {
-        problems.extend(names.into_iter().filter_map(|name| rules::plain_text(name, &pointer::join(list, name))));
+    for list in [List::Images, List::Meshes, List::Clips] {
+        let at = |name: &str| pointer::join(&format!("/{}", list.words().0), name);
+        problems.extend(scene.names(list).into_iter().filter_map(|name| rules::plain_text(name, &at(name))));
     }
     problems.extend(view(scene));
     if scene.layers.is_empty() {
@@ -182,6 +182,8 @@ fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     if scene.timeline.frames() > rules.frames {
         problems.push(too_many("/timeline".into(), "frames", rules.frames));
     }
+    let long = scene.clips.iter().filter(|(_, clip)| clip.count.is_some_and(|count| u64::from(count) > rules.frames));
+    problems.extend(long.map(|(name, _)| too_many(pointer::join("/clips", name) + "/count", "frames", rules.frames)));
     problems
 }
 
@@ -220,9 +222,16 @@ fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
         Of::Path(file) => Some((used.at, file)),
         Of::Name(..) => None,
     });
+    let clips = scene.clips.iter().map(|(name, clip)| (path("clips", name), &*clip.path));
+    let patterns = scene
+        .clips
+        .iter()
+        .filter_map(|(name, clip)| clip.frames().err().map(|problem| problem.under(&pointer::join("/clips", name))));
     images
         .chain(meshes)
+        .chain(clips)
         .chain(files)
         .filter_map(|(path, file)| rules::file_path(file, &path, rules.allow_outside))
+        .chain(patterns)
         .collect()
 }

@@ -12,6 +12,7 @@ use crate::layers::{Layer, timeline::Timeline};
 pub mod address;
 pub mod build;
 pub mod check;
+mod clip;
 mod document;
 pub mod edit;
 pub mod field;
@@ -29,6 +30,7 @@ mod shape;
 mod start;
 pub mod words;
 
+pub use clip::Clip;
 pub use document::Document;
 pub use edit::Edit;
 pub use history::History;
@@ -72,6 +74,10 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("default" = {}))]
     pub meshes: BTreeMap<String, Mesh>,
+    /// The clips, by name: moving pictures.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("default" = {}))]
+    pub clips: BTreeMap<String, Clip>,
     /// The layers, composed in this order: later over earlier.
     #[serde(default)]
     pub layers: Vec<Layer>,
@@ -103,6 +109,7 @@ impl Default for Scene {
             camera: None,
             images: BTreeMap::new(),
             meshes: BTreeMap::new(),
+            clips: BTreeMap::new(),
             layers: Vec::new(),
         }
     }

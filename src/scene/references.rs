@@ -1,4 +1,4 @@
-//! What layers name by its name in the scene: images, meshes, other layers. A layer that another shows as a texture is
+//! What layers name by its name in the scene: images, meshes, clips, other layers. A layer that another shows as a texture is
 //! not composed by itself.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,6 +16,7 @@ impl Scene {
         match list {
             List::Images => self.images.keys().map(String::as_str).collect(),
             List::Meshes => self.meshes.keys().map(String::as_str).collect(),
+            List::Clips => self.clips.keys().map(String::as_str).collect(),
             List::Layers => self.layers.iter().map(|layer| layer.technique().name()).collect(),
         }
     }
@@ -27,7 +28,7 @@ impl Scene {
         let uses = self.layers.get(layer).map(|layer| layer.technique().uses()).unwrap_or_default();
         let shown = uses.into_iter().filter_map(|used| match used.of {
             Of::Name(List::Layers, name) => Some((index(name)?, used.at)),
-            Of::Name(List::Images | List::Meshes, _) | Of::Path(_) => None,
+            Of::Name(List::Images | List::Meshes | List::Clips, _) | Of::Path(_) => None,
         });
         shown.collect()
     }

@@ -13,7 +13,7 @@ const LARGEST: f64 = 1e9;
 
 /// The units of numbers, each with the range of numbers that have no range of their own; `None` if they may be any
 /// finite number. The schema has the unit of every number.
-const UNITS: [(&str, Option<(f64, f64)>); 9] = [
+const UNITS: [(&str, Option<(f64, f64)>); 10] = [
     (PLAIN, Some((-LARGEST, LARGEST))),
     ("px", Some((-LARGEST, LARGEST))),
     ("m", Some((-LARGEST, LARGEST))),
@@ -21,6 +21,7 @@ const UNITS: [(&str, Option<(f64, f64)>); 9] = [
     ("cycles", Some((-LARGEST, LARGEST))),
     ("s", Some((-LARGEST, LARGEST))),
     ("fps", Some((-LARGEST, LARGEST))),
+    ("frames", Some((-LARGEST, LARGEST))),
     ("passes", None),
     ("timelines", None),
 ];

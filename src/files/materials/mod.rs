@@ -1,4 +1,4 @@
-//! Loads the files that a scene names, pictures, meshes and vector fields, in parallel. A cache keeps what did not change, and
+//! Loads the files that a scene names, pictures, meshes, clips and vector fields, in parallel. A cache keeps what did not change, and
 //! the last good version of what cannot be read just now.
 
 use std::cell::RefCell;
@@ -20,6 +20,7 @@ use crate::base::problem::{Problem, Severity};
 use crate::layers::parts::materials::Materials;
 use crate::scene::{Scene, check};
 
+mod clips;
 mod masks;
 mod named;
 mod store;
@@ -27,9 +28,10 @@ mod store;
 mod tests;
 
 pub use named::files;
-pub(super) use named::paths;
+pub(super) use named::{ahead, paths};
 pub(super) use store::Stamp;
 
+use clips::Clips;
 use masks::Masked;
 use named::Named;
 use store::{Loaded, Store};
@@ -41,6 +43,7 @@ pub struct Cache {
     /// What masks without alpha were turned into.
     masks: Vec<Masked>,
     meshes: Store<Mesh>,
+    clips: Clips,
     fields: Store<VectorField>,
     /// The memory that is left for the files and what is made from them; by the limits at the first use.
     budget: Option<Budget>,
@@ -107,6 +110,10 @@ pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<S
     for named in named::meshes(scene).into_iter().chain(named::fields(scene)) {
         problems.extend(super::paths::open(scene_path, named.path, options).err().map(|error| problem(&named, error)));
     }
+    for (named, frames) in named::clips(scene_path, scene) {
+        let opened = frames.iter().try_for_each(|path| super::paths::open(scene_path, path, options).map(drop));
+        problems.extend(opened.err().map(|error| problem(&named, error)));
+    }
     (sizes, problems)
 }
 
@@ -129,10 +136,11 @@ impl Sources<'_> {
         let budget = cache.budget.get_or_insert_with(|| self.options.limits.budget()).clone();
         let stop = cache.stop.clone();
         let allowed = Allowed { limits: &self.options.limits, budget: &budget, stop: stop.as_deref() };
-        let pictures = self.load(&named::pictures(scene), allowed, decode_picture, &mut cache.pictures, &mut problems);
-        let meshes = self.load(&named::meshes(scene), allowed, decode_mesh, &mut cache.meshes, &mut problems);
-        let fields = self.load(&named::fields(scene), allowed, decode_field, &mut cache.fields, &mut problems);
-        let mut materials = Materials { pictures, meshes, fields, stop, budget, ..Materials::default() };
+        let pictures = self.load(&named::pictures(scene), allowed, &decode_picture, &mut cache.pictures, &mut problems);
+        let meshes = self.load(&named::meshes(scene), allowed, &decode_mesh, &mut cache.meshes, &mut problems);
+        let fields = self.load(&named::fields(scene), allowed, &decode_field, &mut cache.fields, &mut problems);
+        let clips = self.clips(scene, allowed, &mut cache.clips, &mut problems);
+        let mut materials = Materials { pictures, meshes, fields, clips, stop, budget, ..Materials::default() };
         problems.extend(check::check_materials(scene, &materials));
         masks::lay(scene, &mut materials, &mut cache.masks, &mut problems);
         problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
@@ -247,7 +255,7 @@ struct Allowed<'a> {
 
 /// Reads an open file; the path is its name in messages, and the last is for files that it names. Also returns what in
 /// it could not be honored, and the memory that it takes.
-type Decode<T> = fn(File, &str, Allowed, mesh::Opener) -> Result<(T, Vec<String>, Share)>;
+type Decode<'a, T> = &'a (dyn Fn(File, &str, Allowed, mesh::Opener) -> Result<(T, Vec<String>, Share)> + Sync);
 
 fn decode_mesh(file: File, place: &str, allowed: Allowed, sibling: mesh::Opener) -> Result<(Mesh, Vec<String>, Share)> {
     mesh::decode(file, place, allowed.limits, allowed.budget, sibling)

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::files;
 use crate::layers::parts::materials::{Of, Use, What};
-use crate::scene::{Scene, pointer};
+use crate::scene::{Clip, Scene, pointer};
 
 /// A file that a scene names.
 pub(super) struct Named<'a> {
@@ -32,21 +32,52 @@ fn listed<'a>(list: &str, key: &'a str, path: &'a str) -> Named<'a> {
 pub(super) fn fields(scene: &Scene) -> Vec<Named<'_>> {
     let fields = scene.uses().filter_map(|Use { at, of, what }| match (of, what) {
         (Of::Path(path), What::Vectors) => Some(Named { key: path, path, at }),
-        (Of::Name(..), _) | (Of::Path(_), What::Picture | What::Mask { .. } | What::Mesh | What::Layer) => None,
+        (Of::Name(..), _)
+        | (Of::Path(_), What::Picture | What::Mask { .. } | What::Mesh | What::Clip | What::Layer) => None,
     });
     fields.collect()
 }
 
-fn all(scene: &Scene) -> impl Iterator<Item = Named<'_>> {
-    pictures(scene).into_iter().chain(meshes(scene)).chain(fields(scene))
+/// The paths of a clip's frames; without a count, as many as are there one after the other, and at least the first.
+pub(super) fn frames(clip: &Clip, is_there: impl Fn(&str) -> bool) -> Vec<String> {
+    let Ok(frames) = clip.frames() else { return Vec::new() };
+    let paths = (0..clip.count.map_or(Clip::MOST, u64::from)).map(|index| frames.path(index));
+    match clip.count {
+        Some(_) => paths.collect(),
+        None => paths.enumerate().take_while(|(i, path)| *i == 0 || is_there(path)).map(|(_, path)| path).collect(),
+    }
+}
+
+/// The path of the frame that would make a clip longer if it were there.
+fn next(clip: &Clip, is_there: impl Fn(&str) -> bool) -> Option<String> {
+    let count = frames(clip, is_there).len() as u64;
+    clip.frames().ok().filter(|_| clip.count.is_none()).map(|frames| frames.path(count))
+}
+
+/// The clips, each with the paths of its frames beside the scene.
+pub(super) fn clips<'a>(scene_path: &Path, scene: &'a Scene) -> Vec<(Named<'a>, Vec<String>)> {
+    let all = |clip| frames(clip, |path| is_there(scene_path, path));
+    scene.clips.iter().map(|(key, clip)| (listed("/clips", key, &clip.path), all(clip))).collect()
+}
+
+fn is_there(scene_path: &Path, path: &str) -> bool {
+    files::paths::beside(scene_path, path).exists()
 }
 
 /// The files that `scene` names, for watching.
 pub fn files(scene_path: &Path, scene: &Scene) -> Vec<PathBuf> {
-    all(scene).map(|named| files::paths::beside(scene_path, named.path)).collect()
+    let all = paths(scene_path, scene).into_iter().chain(ahead(scene_path, scene));
+    all.map(|path| files::paths::beside(scene_path, &path)).collect()
 }
 
-/// The same, as the paths written in the scene.
-pub(in crate::files) fn paths(scene: &Scene) -> BTreeSet<&str> {
-    all(scene).map(|named| named.path).collect()
+/// The same, as the paths written in the scene, without those that are not there yet.
+pub(in crate::files) fn paths(scene_path: &Path, scene: &Scene) -> BTreeSet<String> {
+    let single = pictures(scene).into_iter().chain(meshes(scene)).chain(fields(scene));
+    let frames = clips(scene_path, scene).into_iter().flat_map(|(_, frames)| frames);
+    single.map(|named| named.path.to_owned()).chain(frames).collect()
+}
+
+/// The files that would make clips of `scene` longer if they were there.
+pub(in crate::files) fn ahead(scene_path: &Path, scene: &Scene) -> Vec<String> {
+    scene.clips.values().filter_map(|clip| next(clip, |path| is_there(scene_path, path))).collect()
 }

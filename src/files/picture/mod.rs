@@ -170,7 +170,22 @@ pub fn is_one(path: &Path) -> bool {
 /// # Errors
 /// As [`read`].
 pub fn decode(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Found, Share)> {
+    decode_if(file, place, limits, budget, |_| Ok(()))
+}
+
+/// As [`decode`], if the picture's width and height will do.
+///
+/// # Errors
+/// As [`decode`], and those of `fits`.
+pub fn decode_if(
+    file: File,
+    place: &str,
+    limits: &Limits,
+    budget: &Budget,
+    fits: impl Fn((usize, usize)) -> Result<()>,
+) -> Result<(Found, Share)> {
     let opened = open(file, place, limits)?;
+    fits(opened.upright())?;
     let mut share = budget.take(opened.bytes, place)?;
     let orientation = opened.orientation;
     let mut decoded = (opened.decode)()?;

@@ -39,6 +39,8 @@ pub enum List {
     Images,
     /// Meshes.
     Meshes,
+    /// Clips.
+    Clips,
     /// The layers themselves.
     Layers,
 }
@@ -48,7 +50,7 @@ impl List {
     /// are in a list by their order.
     pub fn entry(pointer: &str) -> Option<(List, String)> {
         let (list, name) = pointer.strip_prefix('/')?.split_once('/').filter(|(_, name)| !name.contains('/'))?;
-        let list = [List::Images, List::Meshes].into_iter().find(|known| known.words().0 == list)?;
+        let list = [List::Images, List::Meshes, List::Clips].into_iter().find(|known| known.words().0 == list)?;
         Some((list, name.replace("~1", "/").replace("~0", "~")))
     }
 
@@ -57,6 +59,7 @@ impl List {
         match self {
             List::Images => ("images", "image"),
             List::Meshes => ("meshes", "mesh"),
+            List::Clips => ("clips", "clip"),
             List::Layers => ("layers", "layer"),
         }
     }
@@ -76,6 +79,8 @@ pub enum What<'a> {
     Vectors,
     /// A mesh.
     Mesh,
+    /// A clip.
+    Clip,
     /// A layer as a picture, at its own time.
     Layer,
 }

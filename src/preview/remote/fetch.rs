@@ -86,7 +86,9 @@ impl Fetch {
                     }
                     None => {
                         let entry = self.missing.entry(contents.hash.clone()).or_insert((contents, Vec::new()));
-                        entry.1.push(path);
+                        entry.1.push(path.clone());
+                        // A clip is as long as there are frames of it, here or on their way.
+                        copies.entry(path).or_insert_with(|| Err("is not here yet".into()));
                         continue;
                     }
                 },
@@ -173,7 +175,8 @@ impl Fetch {
                     copies.insert(path, Ok(copy.clone()));
                 }
                 Err(error) => {
-                    copies.entry(path).or_insert_with(|| Err(error.to_string()));
+                    let copy = copies.entry(path).or_insert_with(|| Err(String::new()));
+                    *copy = copy.clone().map_err(|_| error.to_string());
                 }
             }
         }
@@ -296,8 +299,9 @@ mod tests {
         fetch.told(vec![told("a", b"123456"), told("b", b"123456"), told("c", b"78901"), told("d", b"2345")]);
         assert_eq!(fetch.missing.len(), 2, "a is b; c is too much; d fits again");
         let copies = fetch.copies.lock().unwrap().clone();
-        assert_eq!(copies.keys().collect::<Vec<_>>(), ["c"]);
-        assert!(copies["c"].as_ref().unwrap_err().contains("--limit cache"));
+        let why = |path: &str| copies[path].as_ref().unwrap_err().as_str();
+        assert_eq!(["a", "b", "d"].map(why), ["is not here yet"; 3], "all that the scene names is listed");
+        assert!(why("c").contains("--limit cache"));
     }
 
     #[test]

@@ -158,13 +158,15 @@ fn items_are_duplicated_moved_and_taken_away() {
 }
 
 #[test]
-fn images_and_meshes_are_renamed_everywhere() {
+fn images_meshes_and_clips_are_renamed_everywhere() {
     let renamed = there_and_back(&everything(), &Edit::rename(&everything(), List::Images, "cat", "dog/1")).unwrap();
     assert!(!renamed.to_text().contains("\"cat\""));
     assert_eq!(renamed.scene().images["dog/1"].path, "cat.png");
     let edit = Edit::rename(&everything(), List::Meshes, "mug", "cup");
     let renamed = there_and_back(&everything(), &edit).unwrap();
     assert!(!renamed.to_text().contains("\"mug\""));
+    let renamed = there_and_back(&everything(), &Edit::rename(&everything(), List::Clips, "falls", "river")).unwrap();
+    assert_eq!(renamed.scene().names(List::Clips).into_iter().collect::<Vec<_>>(), ["fire", "river"]);
 }
 
 #[test]

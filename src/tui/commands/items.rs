@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json as value};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
+use crate::base::numbered::Pattern;
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json, pointer};
@@ -18,7 +19,7 @@ use crate::tui::state::{Mode, Pane, State, first};
 use crate::tui::text::line::Line;
 
 pub const COMMANDS: &[Command] = &[
-    command("add", "[PATH]", "Add an item to the list, an optional node, or the picture of a file", add)
+    command("add", "[PATH]", "Add an item to the list, an optional node, or the picture, mesh or clip of a file", add)
         .change()
         .counted_with(&[""]),
     command("delete", "", "Delete the row, the selection or the node", delete).change().counted(),
@@ -91,11 +92,10 @@ fn add(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Adds a picture or a mesh from a file (relative to the scene), under the file's name.
+/// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name.
 fn add_file(state: &mut State, path: &str) -> Done {
-    let entry = (stem(path).to_owned(), value!({ "path": path }));
-    let extension = path.rsplit('.').next().unwrap_or_default().to_lowercase();
-    let list = if MESHES.contains(&extension.as_str()) { List::Meshes } else { List::Images };
+    let entry = (called(path).to_owned(), value!({ "path": path }));
+    let list = list_for(path);
     let map = format!("/{}", list.words().0);
     let added = Edit::insert_entries(state.document(), &map, [entry].into_iter().collect());
     let (edit, pointer) = added.ok_or("there is no list for it")?;
@@ -145,9 +145,13 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
 }
 
 fn ask_for_path(state: &mut State, pointer: &str) -> Done {
-    let what = if pointer.starts_with("/meshes") { "mesh" } else { "picture" };
+    let what = match pointer.split('/').nth(1) {
+        Some("clips") => "the clip's files as falls/%04d.jpg",
+        Some("meshes") => "the mesh's file",
+        _ => "the picture's file",
+    };
     state.typing.mode = Mode::Line(Line::with("add "));
-    state.say(format!("the {what}'s file, relative to the scene (Tab completes)"));
+    state.say(format!("{what}, relative to the scene (Tab completes)"));
     Ok(())
 }
 
@@ -319,7 +323,7 @@ fn reorder(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Refuses to delete a picture or a mesh that is used.
+/// Refuses to delete a picture, a mesh or a clip that is used.
 fn unused(document: &Document, path: &str) -> Done {
     let Some((list, name)) = List::entry(path) else { return Ok(()) };
     let users = document.scene().users_of(list, &name);
@@ -335,6 +339,28 @@ fn unused(document: &Document, path: &str) -> Done {
 
 /// The extensions of files with meshes; `model.glb#0` is a picture in one.
 const MESHES: [&str; 3] = ["obj", "glb", "gltf"];
+
+/// The list of the scene that a file goes to, by its name.
+fn list_for(path: &str) -> List {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    let extension = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+    match Pattern::of(name) {
+        Ok(pattern) if pattern.is_numbered() => List::Clips,
+        _ if MESHES.contains(&extension.as_str()) => List::Meshes,
+        _ => List::Images,
+    }
+}
+
+/// What a file is called in a scene: its name without extension, or for numbered files what is before the number, or their
+/// folder.
+fn called(path: &str) -> &str {
+    if list_for(path) != List::Clips {
+        return stem(path);
+    }
+    let before = stem(path).split('%').next().unwrap_or_default().trim_end_matches(['-', '_', ' ']);
+    let folder = || path.rsplit('/').nth(1).unwrap_or("clip");
+    if before.is_empty() { folder() } else { before }
+}
 
 /// The name of a file without folder and extension.
 pub fn stem(path: &str) -> &str {

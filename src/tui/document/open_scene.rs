@@ -17,6 +17,9 @@ use crate::scene::merge::Side;
 use crate::scene::{Document, Edit, History, Start};
 use crate::tui::events::Change;
 
+/// At most so many missing files are named.
+const MOST_NAMED: usize = 5;
+
 /// Why an edit is refused if the scene is read-only.
 const READ_ONLY: &str = "the scene is open read-only: :w PATH saves a copy of it";
 
@@ -275,7 +278,7 @@ impl OpenScene {
                 return Err(error.cure("choose another name, or replace it with :w! PATH"));
             }
         }
-        let missing = outputs::missing(to, scene).join(", ");
+        let missing = few(&outputs::missing(to, scene));
         let but = if missing.is_empty() { missing } else { format!(", but lacks what it reads there: {missing}") };
         Ok(format!("{} is written{but}", to.display()))
     }
@@ -361,6 +364,13 @@ fn refuse_other(picture: &Path, scene: &Path, options: &files::Options) -> Resul
     let (own, other) = (picture.display(), scene.display());
     let cure = format!("edit that one, or make another: plica new {own} -o OTHER.plica.json");
     Err(Error::at(own, format!("is not read by the scene beside it, {other}")).cure(cure))
+}
+
+/// The first of many files, and how many more there are.
+fn few(files: &[String]) -> String {
+    let (first, rest) = files.split_at(files.len().min(MOST_NAMED));
+    let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+    first.join(", ") + &more
 }
 
 #[cfg(test)]

@@ -1,0 +1,164 @@
+//! Clips: which files their frames are, and loading them. Each frame is kept for itself, so that only those that change
+//! are read again.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::fs::File;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::named::{Named, frames};
+use super::store::{Loaded, Store};
+use super::{Allowed, Place, Sources, decode_picture, problem};
+use crate::base::budget::Share;
+use crate::base::clip::Clip;
+use crate::base::error::{Error, Result};
+use crate::base::picture::Picture;
+use crate::base::problem::Problem;
+use crate::files::limits::within;
+use crate::files::{mesh, paths, picture};
+use crate::scene::{self, Scene, pointer};
+
+/// The clips that were loaded before, and their frames.
+#[derive(Debug, Default)]
+pub(super) struct Clips {
+    frames: Store<Picture>,
+    made: HashMap<String, Made>,
+}
+
+/// A whole clip.
+#[derive(Clone, Debug)]
+struct Made {
+    clip: Arc<Clip>,
+    /// The memory of its frames, which it keeps even if some are replaced.
+    _shares: Arc<[Arc<Share>]>,
+}
+
+impl Sources<'_> {
+    /// Loads all clips of `scene`. One that cannot be loaded is replaced by its last good version.
+    pub(super) fn clips(
+        &self,
+        scene: &Scene,
+        allowed: Allowed,
+        cache: &mut Clips,
+        problems: &mut Vec<Problem>,
+    ) -> BTreeMap<String, Arc<Clip>> {
+        let mut kept = Clips::default();
+        for (key, clip) in &scene.clips {
+            let named = Named { key, path: &clip.path, at: pointer::join("/clips", key) + "/path" };
+            let old = cache.made.get(key);
+            let loaded = self.clip(clip, allowed, [&cache.frames, &kept.frames], &named, problems);
+            let whole: std::result::Result<Vec<_>, _> = loaded.iter().map(|(_, frame)| frame.as_ref()).collect();
+            let made = match whole {
+                Ok(frames) => Some(made(clip.fps, &frames, old)),
+                Err(error) => {
+                    problems.push(problem(&named, error));
+                    old.cloned()
+                }
+            };
+            kept.made.extend(made.map(|made| (key.clone(), made)));
+            kept.frames.extend(loaded.into_iter().filter_map(|(path, frame)| Some((path, frame.ok()?))));
+        }
+        *cache = kept;
+        cache.made.iter().map(|(key, made)| (key.clone(), made.clip.clone())).collect()
+    }
+
+    /// The frames of a clip, each by its key in the cache; with an error among them, perhaps not all.
+    fn clip(
+        &self,
+        clip: &scene::Clip,
+        allowed: Allowed,
+        known: [&Store<Picture>; 2],
+        named: &Named,
+        problems: &mut Vec<Problem>,
+    ) -> Vec<(PathBuf, Result<Loaded<Picture>>)> {
+        let paths = frames(clip, |path| self.is_there(path));
+        let [first, rest @ ..] = paths.as_slice() else { return Vec::new() };
+        let old = |path: &str| known.into_iter().find_map(|store| store.get(&self.key(path)));
+        let one = |path: &str, decode| self.load_one(path, allowed, decode, old(path));
+        let start = one(first, &decode_picture).and_then(|start| {
+            let new = rest.iter().filter(|path| old(path).is_none()).count() as u64;
+            fits(named.path, &start.value, paths.len() as u64, new, allowed).map(|()| start)
+        });
+        let start = match start {
+            Ok(start) => start,
+            Err(error) => return vec![(self.key(first), Err(first_missing(error, clip)))],
+        };
+        let size = (start.value.width(), start.value.height());
+        let like_first = |file: File, place: &str, allowed: Allowed, _: mesh::Opener| {
+            let found = |found| same_size(place, found, size);
+            let (found, share) = picture::decode_if(file, place, allowed.limits, allowed.budget, found)?;
+            Ok((found.picture, found.notes, share))
+        };
+        let load = |path: &String| {
+            let loaded = one(path, &like_first);
+            // What was read before, as the first of another clip, say, has not been compared.
+            loaded.and_then(|frame| same_size(path, (frame.value.width(), frame.value.height()), size).map(|()| frame))
+        };
+        let mut all = vec![(self.key(first), Ok(start))];
+        all.par_extend(rest.par_iter().map(|path| (self.key(path), load(path))));
+        notes(named, paths.iter().zip(all.iter().map(|(_, frame)| frame)), problems);
+        all
+    }
+
+    fn is_there(&self, path: &str) -> bool {
+        match self.place {
+            Place::Beside(scene_path) => paths::beside(scene_path, path).exists(),
+            Place::Copies(copies) => copies.contains_key(path),
+        }
+    }
+}
+
+/// A clip of these frames; the `old` one if it has the same.
+fn made(fps: f64, frames: &[&Loaded<Picture>], old: Option<&Made>) -> Made {
+    let same = |old: &&Made| {
+        let pairs = || old.clip.frames.iter().zip(frames);
+        old.clip.fps == fps && old.clip.frames.len() == frames.len() && pairs().all(|(a, b)| Arc::ptr_eq(a, &b.value))
+    };
+    old.filter(same).cloned().unwrap_or_else(|| Made {
+        clip: Arc::new(Clip { fps, frames: frames.iter().map(|frame| frame.value.clone()).collect() }),
+        _shares: frames.iter().map(|frame| frame.share.clone()).collect(),
+    })
+}
+
+/// Refuses a clip that is too long or too large, before its frames are read; `new` of them have not been before.
+fn fits(place: &str, first: &Picture, count: u64, new: u64, allowed: Allowed) -> Result<()> {
+    let (limits, pixels) = (allowed.limits, first.width() as u64 * first.height() as u64);
+    within(place, "it has", "frames", "frames", count, limits.frames)?;
+    within(place, "its frames have", "pixels together", "clip", pixels.saturating_mul(count), limits.clip)?;
+    allowed.budget.take(first.bytes().saturating_mul(new), place).map(drop)
+}
+
+fn same_size(place: &str, found: (usize, usize), first: (usize, usize)) -> Result<()> {
+    if found == first {
+        return Ok(());
+    }
+    let what = format!("is {} x {}, and the clip's first frame {} x {}", found.0, found.1, first.0, first.1);
+    Err(Error::at(place, what).cure("make all frames of one size"))
+}
+
+/// What to do if already the first frame is not there.
+fn first_missing(error: Error, clip: &scene::Clip) -> Error {
+    match error {
+        Error::Failed { place, what, cure: None } if what.ends_with("no such file") => {
+            let cure = format!("the clip begins with number {}: if others are there, set first", clip.first);
+            Error::Failed { place, what, cure: Some(cure) }
+        }
+        other => other,
+    }
+}
+
+/// Warns of what could not be honored; what holds for several frames is told once.
+fn notes<'a>(
+    named: &Named,
+    frames: impl Iterator<Item = (&'a String, &'a Result<Loaded<Picture>>)>,
+    problems: &mut Vec<Problem>,
+) {
+    let mut told = BTreeSet::new();
+    for (path, frame) in frames {
+        let notes = frame.iter().flat_map(|frame| frame.notes.iter());
+        let new: Vec<&String> = notes.filter(|note| told.insert((*note).clone())).collect();
+        problems.extend(new.into_iter().map(|note| Problem::warning(&named.at, format!("{path}: {note}"))));
+    }
+}
