@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use kurbo::Vec2;
 use rayon::prelude::*;
 
-use super::model::{Light, Sides};
+use super::model::Sides;
 use super::pose::Placed;
 use super::surface::StillSurface;
 use super::synth::Synth;
@@ -37,6 +37,24 @@ pub struct Spot {
     pub uv: DVec2,
 }
 
+impl Spot {
+    /// Between corners: where they are in the world with their normals, and their texture coordinates.
+    #[inline]
+    fn new(hit: Hit, corners: &[((DVec3, DVec3), DVec2); 3]) -> Spot {
+        let mut spot = Spot { hit, position: DVec3::ZERO, normal: DVec3::ZERO, uv: DVec2::ZERO };
+        for (((position, normal), uv), weight) in corners.iter().zip(hit.weights) {
+            spot.position += position * weight;
+            spot.normal += normal * weight;
+            spot.uv += uv * weight;
+        }
+        spot.normal = spot.normal.normalize_or_zero();
+        if !hit.front {
+            spot.normal = -spot.normal;
+        }
+        spot
+    }
+}
+
 impl<'a> View<'a> {
     /// The mesh in a pose, seen at `place` in each pixel.
     pub fn new(mesh: &'a Mesh, sides: Sides, placed: &Placed, place: Vec2, moment: &Moment) -> Self {
@@ -50,35 +68,16 @@ impl<'a> View<'a> {
     }
 
     /// Calls `each` with every wanted cell of row `y` that shows the mesh nearer than `depth`, which becomes its depth.
+    #[inline]
     fn row_of(&self, y: usize, columns: Columns, depth: &mut [f64], mut each: impl FnMut(usize, Spot)) {
         let Some(raster) = &self.raster else { return };
         let mut triangles = vec![NONE; depth.len()];
         raster.row(y, columns, depth, &mut triangles);
-        for (cell, triangle) in triangles.into_iter().enumerate().filter(|(_, triangle)| *triangle != NONE) {
-            let x = match columns {
-                Columns::All => cell,
-                Columns::Some(wanted) => wanted[cell],
-            };
-            if let Some(hit) = raster.hit(x, y, triangle) {
-                each(cell, self.spot(hit));
-            }
-        }
-    }
-
-    fn spot(&self, hit: Hit) -> Spot {
-        let corners = self.mesh.triangles[hit.triangle].map(|i| i as usize);
-        let mut spot = Spot { hit, position: DVec3::ZERO, normal: DVec3::ZERO, uv: DVec2::ZERO };
-        for (corner, weight) in corners.into_iter().zip(hit.weights) {
-            let (position, normal) = self.world[corner];
-            spot.position += position * weight;
-            spot.normal += normal * weight;
-            spot.uv += self.mesh.vertices[corner].uv * weight;
-        }
-        spot.normal = spot.normal.normalize_or_zero();
-        if !hit.front {
-            spot.normal = -spot.normal;
-        }
-        spot
+        let corners = |triangle: usize| {
+            self.mesh.triangles[triangle].map(|i| (self.world[i as usize], self.mesh.vertices[i as usize].uv))
+        };
+        let found = (&*depth, &*triangles);
+        raster.hits(y, columns, found, corners, |cell, hit, corners| each(cell, Spot::new(hit, corners)));
     }
 
     /// What the pixel in column `x`, row `y` shows.
@@ -92,7 +91,8 @@ impl<'a> View<'a> {
 /// A mesh layer at one time.
 pub struct Seen<'a> {
     view: View<'a>,
-    light: &'a Light,
+    /// Where the light comes from, of length 1, and the share of it that comes from everywhere.
+    light: (DVec3, f64),
     surface: Box<dyn StillSurface + 'a>,
 }
 
@@ -101,12 +101,13 @@ impl<'a> Seen<'a> {
     pub fn new(synth: &'a Synth, moment: &'a Moment) -> Self {
         let placed = synth.pose.at(synth.time(moment));
         let view = View::new(&synth.mesh, synth.sides, &placed, synth.place, moment);
-        Seen { view, light: &synth.light, surface: synth.surface.at(moment) }
+        Seen { view, light: (synth.light.toward(), synth.light.ambient), surface: synth.surface.at(moment) }
     }
 
     /// The light that a spot sends to the camera: linear, premultiplied.
     fn shaded(&self, spot: &Spot) -> Rgba {
-        let light = self.light.on(spot.normal) as f32;
+        let (toward, ambient) = self.light;
+        let light = (ambient + (1.0 - ambient) * spot.normal.dot(toward).max(0.0)) as f32;
         let [r, g, b, a] = self.surface.color(spot.uv);
         [r * light, g * light, b * light, a]
     }

@@ -123,12 +123,14 @@ impl Seen<'_> {
         let raster = Raster::new(&self.eye, (width, height), CENTRE, &self.synth.mesh.triangles, seen, true);
         let columns: Vec<usize> = (side / 2..width).step_by(side).collect();
         let rows: Vec<usize> = (side / 2..height).step_by(side).collect();
+        let wanted = Columns::Some(&columns);
         let cells = rows.into_par_iter().flat_map_iter(|y| {
             let (mut depth, mut triangles) = (vec![f64::INFINITY; columns.len()], vec![NONE; columns.len()]);
-            raster.row(y, Columns::Some(&columns), &mut depth, &mut triangles);
-            let found = columns.iter().zip(triangles).filter(|(_, triangle)| *triangle != NONE);
-            let hits = found.filter_map(|(&x, triangle)| Some((x, raster.hit(x, y, triangle)?)));
-            let backs = hits.filter(|(_, hit)| !hit.front).map(|(x, _)| Point::new(x as f64 + 0.5, y as f64 + 0.5));
+            raster.row(y, wanted, &mut depth, &mut triangles);
+            let mut backs = Vec::new();
+            let found = (&*depth, &*triangles);
+            raster.hits(y, wanted, found, |_| (), |cell, hit, ()| backs.extend((!hit.front).then_some(columns[cell])));
+            let backs = backs.into_iter().map(|x| Point::new(x as f64 + 0.5, y as f64 + 0.5));
             backs.map(|at| Mark::new(&BACK, "", Shape::Cell(at, side as f64, BACK.color))).collect::<Vec<_>>()
         });
         cells.collect()

@@ -76,10 +76,9 @@ impl Default for Light {
 }
 
 impl Light {
-    /// The share of a surface's color that is seen where its normal is `normal`, of length 1.
-    pub fn on(&self, normal: DVec3) -> f64 {
-        let direction = DVec3::from(self.direction).normalize_or_zero();
-        self.ambient + (1.0 - self.ambient) * normal.dot(-direction).max(0.0)
+    /// Where it comes from, in the world: of length 1.
+    pub fn toward(&self) -> DVec3 {
+        -DVec3::from(self.direction).normalize_or_zero()
     }
 }
 

@@ -46,13 +46,12 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
     let focal = [2.0 * eye.focal_px / width, 2.0 * eye.focal_px / height];
     // A pixel is drawn at its centre; what is to be seen there is moved there.
     let shift = [(1.0 - 2.0 * synth.place.x) / width, (2.0 * synth.place.y - 1.0) / height];
-    let light = -DVec3::from(synth.light.direction).normalize_or_zero();
     let uniform = Uniform {
         eye_from_model: eye_from_model(&eye, &placed),
         world_from_normal: columns(placed.turn, DVec3::ZERO),
         along: placed.along.as_vec3().to_array(),
         from: placed.from as f32,
-        light: light.as_vec3().to_array(),
+        light: synth.light.toward().as_vec3().to_array(),
         ambient: synth.light.ambient as f32,
         color,
         focal: focal.map(|v| v as f32),

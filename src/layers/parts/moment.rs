@@ -35,3 +35,14 @@ pub enum Columns<'a> {
     /// These, ascending and within the frame.
     Some(&'a [usize]),
 }
+
+impl Columns<'_> {
+    /// The column of the frame that the wanted cell of this number is.
+    #[inline]
+    pub fn at(&self, cell: usize) -> usize {
+        match self {
+            Columns::All => cell,
+            Columns::Some(wanted) => wanted[cell],
+        }
+    }
+}

@@ -32,8 +32,8 @@ pub struct Raster<'a> {
     both: bool,
     /// The horizontal part of each column's ray, and the vertical part of each row's.
     rays: (Vec<f64>, Vec<f64>),
-    /// The first and last column that each triangle may cover.
-    columns: Vec<[u32; 2]>,
+    /// What is known of each triangle in all rows.
+    spans: Vec<Span>,
     /// The triangles that each row may show, ascending: those of row y are `of_rows[starts[y]..starts[y + 1]]`.
     starts: Vec<usize>,
     of_rows: Vec<u32>,
@@ -52,6 +52,15 @@ pub struct Hit {
     pub front: bool,
 }
 
+/// What is known of a triangle in all rows that it may cover. Kept small: there may be ten million.
+#[derive(Clone, Copy, Default)]
+struct Span {
+    /// The first column that it may cover, and the one after the last.
+    columns: [u32; 2],
+    /// See [`order`].
+    order: [u8; 3],
+}
+
 /// A triangle in front of a ray.
 #[derive(Clone, Copy)]
 struct Sides {
@@ -67,38 +76,44 @@ struct Sides {
 }
 
 impl Sides {
-    /// `None` if the triangle is seen edge-on or from a side that is not shown.
-    fn new(corners: [DVec3; 3], both: bool) -> Option<Sides> {
-        // The same corners in another order get the same depth to the bit: sums are made in one order.
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| compare(corners[i], corners[j]));
+    /// `None` if the triangle is seen edge-on or from a side that is not shown. `order` is that of its corners.
+    fn new(corners: [DVec3; 3], order: [u8; 3], both: bool) -> Option<Sides> {
+        let order = order.map(usize::from);
         let [a, b, c] = order.map(|i| corners[i]);
-        let swapped = matches!(order, [0, 2, 1] | [1, 0, 2] | [2, 1, 0]);
+        let swapped = (order[0] + 1) % 3 != order[1];
         let planes = [b.cross(c), c.cross(a), a.cross(b)];
         let volume = a.dot(planes[0]);
         let front = (volume < 0.0) != swapped;
         if volume == 0.0 || !volume.is_finite() || !(front || both) {
             return None;
         }
-        // Negation is exact, so a side has the opposite values for the triangle on its other side.
-        let inward = if volume < 0.0 { planes.map(|plane| -plane) } else { planes };
+        // A change of sign is exact, so a side has the opposite values for the triangle on its other side.
+        let inward = planes.map(|plane| plane * volume.signum());
         // A left side has its inside to the right; a top side is level and has its inside below.
         let owned = inward.map(|plane| plane.x > 0.0 || (plane.x == 0.0 && plane.y < 0.0));
         Some(Sides { order, inward, owned, volume: volume.abs(), front })
     }
 
-    /// The weights, not yet divided by their sum, at the ray (x, y, -1), and the depth; `None` beside the triangle.
+    /// The depth at the ray (x, y, -1), in meters; `None` beside the triangle.
     #[inline]
-    fn at(&self, x: f64, y: f64) -> Option<([f64; 3], f64)> {
-        let weight = |k: usize| self.inward[k].x * x + (self.inward[k].y * y - self.inward[k].z);
-        let weights = [weight(0), weight(1), weight(2)];
+    fn depth(&self, x: f64, y: f64) -> Option<f64> {
+        let weights = weights(&self.inward, x, y);
         let inside = |k: usize| weights[k] > 0.0 || (weights[k] == 0.0 && self.owned[k]);
-        if !(inside(0) && inside(1) && inside(2)) {
-            return None;
-        }
-        let depth = self.volume / (weights[0] + weights[1] + weights[2]);
-        (depth >= NEAR_M && depth.is_finite()).then_some((weights, depth))
+        (inside(0) && inside(1) && inside(2)).then(|| self.volume / (weights[0] + weights[1] + weights[2]))
     }
+
+    /// `inward`, in the order in which the mesh has the corners.
+    fn of_corners(&self) -> [DVec3; 3] {
+        let mut planes = [DVec3::ZERO; 3];
+        self.order.iter().zip(self.inward).for_each(|(corner, plane)| planes[*corner] = plane);
+        planes
+    }
+}
+
+/// What each of the planes weighs at the ray (x, y, -1).
+#[inline]
+fn weights(planes: &[DVec3; 3], x: f64, y: f64) -> [f64; 3] {
+    planes.map(|plane| plane.x * x + (plane.y * y - plane.z))
 }
 
 impl<'a> Raster<'a> {
@@ -115,16 +130,22 @@ impl<'a> Raster<'a> {
         let along = |x: usize| eye.ray(DVec2::new(x as f64 + place.x, 0.0)).x;
         let down = |y: usize| eye.ray(DVec2::new(0.0, y as f64 + place.y)).y;
         let rays = ((0..width).map(along).collect(), (0..height).map(down).collect());
-        let spans: Vec<[Range<usize>; 2]> = triangles
+        let found: Vec<(Span, Range<usize>)> = triangles
             .par_iter()
             .map(|triangle| {
-                let [low, high] = bounds(eye, triangle.map(|i| seen[i as usize]))?;
-                Some([pixels(low.x, high.x, place.x, width), pixels(low.y, high.y, place.y, height)])
+                let corners = triangle.map(|i| seen[i as usize]);
+                let order = order(corners);
+                Sides::new(corners, order, both)?;
+                let [low, high] = bounds(eye, corners)?;
+                let columns = pixels(low.x, high.x, place.x, width);
+                let rows = pixels(low.y, high.y, place.y, height);
+                let span = Span { columns: [columns.start as u32, columns.end as u32], order };
+                Some((span, rows)).filter(|(_, rows)| !columns.is_empty() && !rows.is_empty())
             })
-            .map(|spans| spans.filter(|spans| spans.iter().all(|span| !span.is_empty())).unwrap_or([0..0, 0..0]))
+            .map(|found| found.unwrap_or((Span::default(), 0..0)))
             .collect();
         let mut starts = vec![0; height + 1];
-        for [_, rows] in &spans {
+        for (_, rows) in &found {
             starts[rows.start + 1..rows.end + 1].iter_mut().for_each(|count| *count += 1);
         }
         for y in 0..height {
@@ -132,18 +153,18 @@ impl<'a> Raster<'a> {
         }
         let mut next = starts.clone();
         let mut of_rows = vec![0; starts[height]];
-        for (i, [_, rows]) in spans.iter().enumerate() {
+        for (i, (_, rows)) in found.iter().enumerate() {
             for next in &mut next[rows.clone()] {
                 of_rows[*next] = i as u32;
                 *next += 1;
             }
         }
-        let columns = spans.into_iter().map(|[columns, _]| [columns.start as u32, columns.end as u32]).collect();
-        Raster { triangles, seen, both, rays, columns, starts, of_rows }
+        let spans = found.into_iter().map(|(span, _)| span).collect();
+        Raster { triangles, seen, both, rays, spans, starts, of_rows }
     }
 
     fn sides(&self, triangle: usize) -> Option<Sides> {
-        Sides::new(self.triangles[triangle].map(|i| self.seen[i as usize]), self.both)
+        Sides::new(self.triangles[triangle].map(|i| self.seen[i as usize]), self.spans[triangle].order, self.both)
     }
 
     /// For each wanted column of row `y`, the triangle that is nearest and nearer than `depth`, or [`NONE`]; its depth,
@@ -153,10 +174,10 @@ impl<'a> Raster<'a> {
         let down = self.rays.1[y];
         for &triangle in &self.of_rows[self.starts[y]..self.starts[y + 1]] {
             let Some(sides) = self.sides(triangle as usize) else { continue };
-            let [from, to] = self.columns[triangle as usize].map(|x| x as usize);
+            let [from, to] = self.spans[triangle as usize].columns.map(|x| x as usize);
             let mut meet = |cell: usize, along: f64| {
-                if let Some((_, found)) = sides.at(along, down)
-                    && found < depth[cell]
+                if let Some(found) = sides.depth(along, down)
+                    && (NEAR_M..depth[cell]).contains(&found)
                 {
                     depth[cell] = found;
                     triangles[cell] = triangle;
@@ -173,16 +194,46 @@ impl<'a> Raster<'a> {
         }
     }
 
-    /// What the pixel in column `x`, row `y` shows of a triangle that [`Raster::row`] found there.
-    pub fn hit(&self, x: usize, y: usize, triangle: u32) -> Option<Hit> {
-        let triangle = triangle as usize;
-        let sides = self.sides(triangle)?;
-        let (weights, depth) = sides.at(self.rays.0[x], self.rays.1[y])?;
-        let sum = weights[0] + weights[1] + weights[2];
-        let mut of_corners = [0.0; 3];
-        sides.order.iter().zip(weights).for_each(|(corner, weight)| of_corners[*corner] = weight / sum);
-        Some(Hit { triangle, weights: of_corners, depth, front: sides.front })
+    /// Calls `each` with every wanted cell of row `y` that shows one of these triangles at these depths, as
+    /// [`Raster::row`] found them, and with what `of` knows of the triangle.
+    #[inline]
+    pub fn hits<T>(
+        &self,
+        y: usize,
+        columns: Columns,
+        (depth, triangles): (&[f64], &[u32]),
+        of: impl Fn(usize) -> T,
+        mut each: impl FnMut(usize, Hit, &T),
+    ) {
+        let down = self.rays.1[y];
+        // Neighbors mostly show the same triangle.
+        let mut last = (NONE, None);
+        for (cell, &shown) in triangles.iter().enumerate().filter(|(_, triangle)| **triangle != NONE) {
+            let triangle = shown as usize;
+            if shown != last.0 {
+                last = (shown, self.sides(triangle).map(|sides| (sides, sides.of_corners(), of(triangle))));
+            }
+            let Some((sides, planes, known)) = &last.1 else { continue };
+            let along = self.rays.0[columns.at(cell)];
+            // The sum is made in the order of the sides, as it was for the depth.
+            let [a, b, c] = weights(&sides.inward, along, down);
+            let sum = a + b + c;
+            let weights = weights(planes, along, down).map(|weight| weight / sum);
+            each(cell, Hit { triangle, weights, depth: depth[cell], front: sides.front }, known);
+        }
     }
+}
+
+/// The corners in an order of their own: those of another triangle in another order get the same depths to the bit, since
+/// sums are made in one order.
+fn order(corners: [DVec3; 3]) -> [u8; 3] {
+    let mut order = [0, 1, 2];
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if compare(corners[usize::from(order[i])], corners[usize::from(order[j])]).is_gt() {
+            order.swap(i, j);
+        }
+    }
+    order
 }
 
 fn compare(a: DVec3, b: DVec3) -> Ordering {
@@ -235,6 +286,14 @@ mod tests {
         eye().ray(DVec2::new(x, y)) * depth
     }
 
+    fn hit(raster: &Raster, x: usize, y: usize) -> Option<Hit> {
+        let (mut depth, mut triangle, mut found) = ([f64::INFINITY], [NONE], None);
+        let columns = Columns::Some(&[x]);
+        raster.row(y, columns, &mut depth, &mut triangle);
+        raster.hits(y, columns, (&depth, &triangle), |_| (), |_, hit, ()| found = Some(hit));
+        found
+    }
+
     fn frame(triangles: &[[u32; 3]], seen: &[DVec3], both: bool) -> Vec<u32> {
         let raster = Raster::new(&eye(), SIZE, CENTRE, triangles, seen.to_vec(), both);
         let row = |y: usize| {
@@ -243,6 +302,36 @@ mod tests {
             row
         };
         (0..SIZE.1).flat_map(row).collect()
+    }
+
+    /// Depths and weights of triangles wherever they happen to be, around the eye and through the near plane.
+    #[test]
+    fn every_bit_is_as_kept() {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24) - 0.5
+        };
+        let seen: Vec<DVec3> = (0..60).map(|_| DVec3::new(next() * 4.0, next() * 4.0, next() * 4.0 - 1.5)).collect();
+        let triangles: Vec<[u32; 3]> = (0..40).map(|_| [0; 3].map(|_| ((next() + 0.5) * 60.0) as u32)).collect();
+        let (mut hits, mut sum) = (0, 0_u64);
+        for both in [false, true] {
+            let raster = Raster::new(&eye(), SIZE, CENTRE, &triangles, seen.clone(), both);
+            for y in 0..SIZE.1 {
+                let (mut depth, mut row) = (vec![f64::INFINITY; SIZE.0], vec![NONE; SIZE.0]);
+                raster.row(y, Columns::All, &mut depth, &mut row);
+                let add = |cell: usize, hit: Hit, (): &()| {
+                    hits += 1;
+                    let [a, b, c] = hit.weights;
+                    let whole = [cell as u64, hit.triangle as u64, u64::from(hit.front)];
+                    for number in whole.into_iter().chain([hit.depth, a, b, c].map(f64::to_bits)) {
+                        sum = (sum ^ number).wrapping_mul(0x0100_0000_01b3).rotate_left(23);
+                    }
+                };
+                raster.hits(y, Columns::All, (&depth, &row), |_| (), add);
+            }
+        }
+        assert_eq!((hits, sum), (2321, 0xb052_56b0_546b_12fc));
     }
 
     #[test]
@@ -333,11 +422,11 @@ mod tests {
         let seen = [at(5.0, 15.0, 1.0), at(5.0, 25.0, 1.0), at(35.0, 15.0, 5.0)];
         let triangles = [[0, 1, 2]];
         let raster = Raster::new(&eye(), SIZE, CENTRE, &triangles, seen.to_vec(), false);
-        let hit = raster.hit(15, 16, 0).unwrap();
+        assert_eq!(hit(&raster, 30, 29), None);
+        let hit = hit(&raster, 15, 16).unwrap();
         let point: DVec3 = (0..3).map(|k| seen[k] * hit.weights[k]).sum();
         let ray = eye().ray(DVec2::new(15.5, 16.5));
         assert!((point - ray * hit.depth).length() < 1e-12, "{point} {}", ray * hit.depth);
         assert!((hit.weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
-        assert_eq!(raster.hit(30, 29, 0), None);
     }
 }
