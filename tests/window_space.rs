@@ -12,6 +12,7 @@ use plica::files::{Options, materials, scene};
 use plica::layers::space::camera::Camera;
 use plica::preview::editor::{Event, Preview};
 use plica::preview::wire::message::ToEditor;
+use plica::render::passes::{self, Asked};
 use plica::render::{self, cpu};
 
 const MESH: &str = "v -1 -0.5 0\nv 1 -0.5 0\nv 0 1 0.4\nv 0.2 0 -1\nf 1 2 3\nf 2 4 3\nf 4 1 3\nf 1 4 2\n";
@@ -39,7 +40,16 @@ fn round(place: &Place, degrees: f64) -> Frame {
     cpu::frame(&render::synth(&scene, &loaded.unwrap().0, None).unwrap(), 1.0)
 }
 
-/// Waits until the window shows `frame` at 1:1, but for some pixels at edges.
+/// The same of a pass.
+fn pass(place: &Place, name: &str, degrees: f64) -> Frame {
+    let mut scene = place.scene();
+    scene.camera.as_mut().unwrap().turn = degrees;
+    let loaded = materials::load(&place.scene, &scene, &Options::default(), &mut materials::Cache::default());
+    let asked = Asked::parse(name, &scene).unwrap();
+    passes::view(asked.pass, &asked.picture(&render::synth(&scene, &loaded.unwrap().0, None).unwrap(), 1.0))
+}
+
+/// Waits until the window shows `frame` at 1:1 where it is not transparent, but for some pixels at edges.
 fn shows(view: &mut View<'_>, what: &str, frame: &Frame) {
     view.until(what, |v| {
         let shot = v.shot();
@@ -47,7 +57,7 @@ fn shows(view: &mut View<'_>, what: &str, frame: &Frame) {
             return false;
         }
         let (left, top) = corner(&shot, frame);
-        let far = |a: &[u8; 4], b: &[u8; 4]| (0..3).any(|c| a[c].abs_diff(b[c]) > 2);
+        let far = |a: &[u8; 4], b: &[u8; 4]| b[3] > 0 && (0..3).any(|c| a[c].abs_diff(b[c]) > 2);
         let row = |y: usize| shot.row(top + y)[left..].iter().zip(frame.row(y)).filter(|(a, b)| far(a, b)).count();
         (0..frame.height()).map(row).sum::<usize>() * 300 <= frame.width() * frame.height()
     });
@@ -76,6 +86,32 @@ fn the_windows_own_camera_goes_round_and_comes_back() {
     view.keys(&["0"]);
     shows(&mut view, "the scene's camera again", &at_first);
     assert_eq!(std::fs::read(&place.scene).unwrap(), before, "the scene stays as it is");
+}
+
+#[test]
+fn passes_are_shown_in_place_of_the_frame() {
+    let Some(display) = Display::open() else { return };
+    let place = stone();
+    let (sender, replies) = channel();
+    let document = scene::open(&place.scene, &Options::default()).unwrap();
+    let editor = Preview::start(&place.scene, &document, 0, move |event| {
+        if let Event::Said(ToEditor::Command(command)) = event {
+            drop(sender.send(command));
+        }
+    });
+    editor.view("pass normal:stone");
+    let mut view = View::of(&display, &mut place.joining());
+    view.keys(&["1"]);
+    shows(&mut view, "the pass that was shown before it came", &pass(&place, "normal", 0.0));
+    view.keys(&["D"]);
+    shows(&mut view, "the next pass", &pass(&place, "uv", 0.0));
+    assert_eq!(replies.recv_timeout(display::PATIENCE).unwrap(), "pass uv", "other windows and the editor follow");
+    editor.view("pass depth");
+    view.keys(&["6"]);
+    shows(&mut view, "depth from its own camera", &pass(&place, "depth", 5.0));
+    view.keys(&["0"]);
+    editor.view("pass color");
+    shows(&mut view, "the frame again", &round(&place, 0.0));
 }
 
 #[test]

@@ -67,6 +67,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "k", "walk-forward", "Walks forward"),
     row(WINDOW, "j", "walk-back", "Walks back"),
     row(WINDOW, "0", "own-view-off", "The scene's camera again"),
+    row(WINDOW, "D", "next-pass", "The next pass, from depth on; the frame at the end"),
     row(WINDOW, "F11", "view-full-screen", "The whole screen"),
     row(WINDOW, "Enter", "mark-point", "Marks the pointer's place, for the editor"),
     row(WINDOW, "Space", "select-point", "Selects what is under the pointer; so does a click"),

@@ -4,7 +4,7 @@ pub mod editor;
 pub mod follow;
 pub mod keys;
 pub mod remote;
-mod views;
+pub mod views;
 #[cfg(feature = "window")]
 pub mod window;
 pub mod wire;

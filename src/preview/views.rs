@@ -6,6 +6,7 @@ use std::iter::repeat_n;
 use std::ops::RangeInclusive;
 
 use super::keys::{KEYS, VIEW};
+use crate::layers::parts::pass::COLOR;
 
 /// Switches that are on in a new window.
 const ON_AT_FIRST: [&str; 2] = ["view-checkerboard", "view-legends"];
@@ -65,6 +66,8 @@ impl Switches {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Views {
     switches: Switches,
+    /// The pass that is shown in place of the frame, as `NAME` or `NAME:LAYER`.
+    pass: Option<String>,
     /// How the picture was fitted last, if it was.
     fit: Option<&'static str>,
     /// Steps taken since then, or since the beginning, by the command that counts them up.
@@ -78,6 +81,9 @@ impl Views {
         let (name, wanted) = wanted(command);
         if let Some(on) = self.switches.set(name, wanted) {
             return set(name, on);
+        }
+        if let Some(pass) = pass_in(command) {
+            self.pass = pass;
         }
         if let Some(fit) = FITS.into_iter().find(|fit| *fit == command) {
             self.fit = Some(fit);
@@ -112,11 +118,12 @@ impl Views {
         list
     }
 
-    /// The commands that set the switches that are otherwise in `before`.
+    /// The commands that set the switches, and the pass, that are otherwise in `before`.
     fn changes(&self, before: &Views) -> Vec<String> {
         let rows = KEYS.iter().filter_map(|row| switch(row.command));
         let differs = |name: &&str| self.switches.is_on(name) != before.switches.is_on(name);
-        rows.filter(differs).map(|name| set(name, self.switches.is_on(name))).collect()
+        let pass = (self.pass != before.pass).then(|| show_pass(self.pass.as_deref()));
+        rows.filter(differs).map(|name| set(name, self.switches.is_on(name))).chain(pass).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -129,7 +136,7 @@ impl Views {
             return self.list();
         }
         let changes = wanted.changes(self);
-        self.switches = wanted.switches;
+        (self.switches, self.pass) = (wanted.switches, wanted.pass);
         changes
     }
 }
@@ -154,9 +161,21 @@ fn set(name: &str, on: bool) -> String {
     format!("{name} {}", if on { "on" } else { "off" })
 }
 
-/// Whether a command sets a switch of the view, and does nothing else: any window may ask for it.
-pub(super) fn sets_a_switch(command: &str) -> bool {
-    matches!(wanted(command), (name, Some(_)) if switch(name).is_some())
+/// The command that shows a pass in place of the frame; the frame again for `None`.
+pub fn show_pass(pass: Option<&str>) -> String {
+    format!("pass {}", pass.unwrap_or(COLOR.name))
+}
+
+/// The pass that a command shows, `None` for the frame; if it is such a command.
+pub fn pass_in(command: &str) -> Option<Option<String>> {
+    let pass = command.strip_prefix("pass ")?;
+    Some((pass != COLOR.name).then(|| pass.to_owned()))
+}
+
+/// Whether a command sets what all windows show alike, a switch or the pass, and does nothing else: any window may ask for
+/// it.
+pub(super) fn is_for_all(command: &str) -> bool {
+    pass_in(command).is_some() || matches!(wanted(command), (name, Some(_)) if switch(name).is_some())
 }
 
 /// The switch of that name, which all windows are to show alike; `None` if there is none.
@@ -178,7 +197,9 @@ mod tests {
 
     #[test]
     fn only_what_is_in_force_is_listed() {
-        let table: [(&[&str], &[&str]); 9] = [
+        let table: [(&[&str], &[&str]); 11] = [
+            (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),
+            (&["pass depth", "pass color"], &[]),
             (&["view-field", "view-grid", "view-field"], &["view-grid on"]),
             (&["view-field on", "view-field on"], &["view-field on"]),
             (&["view-checkerboard", "view-legends off", "view-legends"], &["view-checkerboard off"]),
@@ -210,17 +231,23 @@ mod tests {
         ] {
             assert_eq!(views.take(given), told, "{given}");
         }
-        for (command, sets) in
-            [("view-field on", true), ("view-field", false), ("quit on", false), ("view-x on", false)]
-        {
-            assert_eq!(sets_a_switch(command), sets, "{command}");
+        for (command, sets) in [
+            ("view-field on", true),
+            ("pass depth", true),
+            ("view-field", false),
+            ("quit on", false),
+            ("view-x on", false),
+            ("next-pass", false),
+        ] {
+            assert_eq!(is_for_all(command), sets, "{command}");
         }
     }
 
     #[test]
     fn who_comes_back_is_told_what_is_new() {
         let list = ["view-field on", "zoom-in", "zoom-in", "view-grid on"].map(String::from);
-        let table: [(&[&str], &[&str]); 4] = [
+        let table: [(&[&str], &[&str]); 5] = [
+            (&["pass depth"], &["view-field on", "view-grid on", "pass color"]),
             (&[], &["view-field on", "view-grid on", "zoom-in", "zoom-in"]),
             (&["view-grid"], &["view-field on"]),
             (&["view-paths on"], &["view-field on", "view-paths off", "view-grid on"]),

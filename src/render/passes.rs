@@ -28,6 +28,13 @@ pub fn all() -> impl Iterator<Item = &'static Pass> {
     PASSES.into_iter().chain(KINDS.iter().flat_map(|kind| kind.passes))
 }
 
+/// The name of the pass after one, as [`Asked::parse`] reads it, or after the frame: one after the other, then the frame.
+#[cfg(feature = "window")]
+pub fn next(now: Option<&str>) -> &'static str {
+    let name = now.and_then(|now| now.split(':').next()).unwrap_or(COLOR.name);
+    all().skip_while(|pass| pass.name != name).nth(1).map_or(COLOR.name, |pass| pass.name)
+}
+
 /// The table of passes, a line each.
 pub fn table() -> String {
     let widest = all().map(|pass| pass.name.len()).max().unwrap_or(0);
@@ -127,6 +134,19 @@ pub fn topmost(synth: &Synth, time: f64, (x, y): (usize, usize)) -> Option<usize
     let within = x < synth.size.0 && y < synth.size.1 && synth.stage.camera.is_some();
     let number = within.then(|| lines(&OBJECT, synth, time, Columns::Some(&[x]), &[y]).get(0, 0)[0] as usize)?;
     number.checked_sub(1)
+}
+
+/// The same as [`Asked::picture`], thinned out to at most so many pixels; and how many pixels of the frame each of them is
+/// wide. For pictures that are made again at every step of the camera.
+#[cfg(feature = "window")]
+pub fn thinned(asked: &Asked, synth: &Synth, time: f64, most: usize) -> (Linear, usize) {
+    let (width, height) = synth.size;
+    let each = ((width * height) as f64 / most as f64).sqrt().ceil().max(1.0) as usize;
+    if each == 1 {
+        return (asked.picture(synth, time), 1);
+    }
+    let [columns, rows] = [width, height].map(|side| (each / 2..side).step_by(each).collect::<Vec<_>>());
+    (asked.lattice(synth, time, &columns, &rows), each)
 }
 
 /// The numbers of a pass as colors to look at.

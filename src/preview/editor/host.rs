@@ -299,7 +299,7 @@ impl Shared {
                     self.heard(said);
                 }
                 ToEditor::Command(name) => {
-                    if views::sets_a_switch(&name) {
+                    if views::is_for_all(&name) {
                         self.change(|state| state.view(Some(id), &name));
                     }
                     self.heard(ToEditor::Command(line(&name)));

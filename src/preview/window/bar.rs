@@ -85,6 +85,10 @@ fn said(state: &State) -> (String, Color) {
         Some(words.progress.clone().unwrap_or_else(|| state.waits_for()))
     } else if let Some(work) = state.work.filter(|work| work.percent.is_some()) {
         Some(work.to_string())
+    } else if let Some(why) = &state.no_pass {
+        Some(why.clone())
+    } else if let Some(pass) = &state.pass {
+        Some(format!("pass {pass}, D shows the next"))
     } else if state.shows("view-seam") {
         let last = state.timeline.frames() - 1;
         Some(format!("seam: frame {last} against 0, differences x 8"))

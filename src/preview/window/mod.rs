@@ -34,6 +34,7 @@ mod opened;
 mod overlays;
 mod own_view;
 mod panel;
+mod pass;
 mod problems;
 mod run;
 mod screen;

@@ -9,6 +9,7 @@ use winit::event_loop::ActiveEventLoop;
 use winit::window::{CursorIcon, Fullscreen, Window};
 
 use super::mouse::Shape;
+use super::pass::{self, For};
 use super::screen::{Drawn, Pictures, Screen, Strokes};
 use super::show::{Cached, Show, jump_at, seen, under};
 use super::state::{BAR_PX, State};
@@ -18,6 +19,7 @@ use super::{Manner, PLACE, chrome};
 use crate::base::error::{Error, Result};
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
+use crate::render::passes::Asked;
 
 /// Smallest and first size of a window, in logical pixels.
 const SMALLEST: (f64, f64) = (480.0, 320.0);
@@ -43,6 +45,7 @@ pub struct Opened {
     desk: Option<Desk>,
     looked: Option<Instant>,
     shape: Shape,
+    passes: pass::Kept,
 }
 
 impl Opened {
@@ -66,8 +69,8 @@ impl Opened {
             window.set_visible(true);
         }
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        let shape = Shape::default();
-        Ok(Opened { window, gpu, screen, hidden: false, covered: false, desk, looked: None, shape })
+        let (shape, passes) = Default::default();
+        Ok(Opened { window, gpu, screen, hidden: false, covered: false, desk, looked: None, shape, passes })
     }
 
     /// The same window on a new device.
@@ -76,7 +79,8 @@ impl Opened {
         let instance = gpu.instance().clone();
         drop((gpu, screen)); // a window has one surface at a time
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape })
+        let passes = pass::Kept::default();
+        Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape, passes })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
@@ -131,7 +135,7 @@ impl Opened {
                     let synth = seen(&show.synth, state.own_camera().as_ref());
                     under(&show.scene, &synth, state.transport.scene_time(&state.timeline), at)
                 });
-                self.pictures(state, show)?
+                self.pictures(state, show, marks.revision)?
             }
             None => {
                 let frame = self.gpu.texture(&Synth { size: (1, 1), ..Synth::default() }, 0.0)?;
@@ -145,7 +149,7 @@ impl Opened {
         drawn
     }
 
-    fn pictures(&mut self, state: &State, show: &Show) -> Result<Pictures> {
+    fn pictures(&mut self, state: &mut State, show: &Show, revision: u64) -> Result<Pictures> {
         let time = state.transport.scene_time(&state.timeline);
         let last = state.timeline.time_of(state.timeline.frames() - 1);
         let (frame, other) = if state.shows("view-seam") {
@@ -158,6 +162,14 @@ impl Opened {
         let own = state.own_camera();
         let frame = (&*seen(frame.0, own.as_ref()), frame.1);
         let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
+        let asked = state.pass.as_deref().map(|pass| Asked::parse(pass, &show.scene)).transpose();
+        state.no_pass = asked.as_ref().err().cloned();
+        if let Ok(Some(asked)) = asked {
+            let times = (frame.1, other.as_ref().map(|(_, t)| *t), state.shows("view-still"));
+            let wanted = For { asked, revision, own: state.own, times };
+            let (frame, other) = self.passes.follow(&self.gpu, wanted, frame, other)?;
+            return Ok(Pictures { frame, other, scale: show.frame_scale / self.passes.each as f64 });
+        }
         let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
         Ok(Pictures { frame, other, scale: show.frame_scale })
     }

@@ -6,6 +6,7 @@ use super::state::{Panel, State};
 use super::viewport::Fit;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::views::{self, FIELD};
+use crate::render::passes::next;
 
 /// A key moves the border between still and moving by this share of the picture.
 const WIPE_STEP: f64 = 0.05;
@@ -38,6 +39,10 @@ impl State {
             self.transport.whole_frames = self.shows("view-whole-frames");
             return Outcome::Redraw;
         }
+        if let Some(pass) = views::pass_in(command) {
+            self.pass = pass;
+            return Outcome::Redraw;
+        }
         if self.steer(name) && wanted.is_none() {
             return Outcome::Redraw;
         }
@@ -52,6 +57,7 @@ impl State {
             "last-frame" => self.transport.go_to_end(&self.timeline),
             "slower" => self.transport.change_speed(-1),
             "faster" => self.transport.change_speed(1),
+            "next-pass" => self.pass = views::pass_in(&views::show_pass(Some(next(self.pass.as_deref())))).flatten(),
             "field-closer" => self.field_step = FIELD.step(self.field_step, -1),
             "field-wider" => self.field_step = FIELD.step(self.field_step, 1),
             "wipe-left" => self.move_wipe(-WIPE_STEP),
@@ -125,6 +131,23 @@ mod tests {
         state.run("view-whole-frames on");
         assert!(state.transport.whole_frames);
         assert_eq!(state.run("zoom-in on"), Outcome::Unknown);
+    }
+
+    #[test]
+    fn the_passes_are_shown_one_after_the_other() {
+        let mut state = State::for_tests();
+        for pass in [Some("depth"), Some("normal"), Some("uv"), Some("object"), Some("shade"), None, Some("depth")] {
+            assert_eq!(state.run("next-pass"), Outcome::Redraw);
+            assert_eq!(state.pass.as_deref(), pass);
+        }
+        for (command, pass, next) in
+            [("pass uv:face", Some("uv:face"), Some("object")), ("pass color", None, Some("depth"))]
+        {
+            state.run(command);
+            assert_eq!(state.pass.as_deref(), pass);
+            state.run("next-pass");
+            assert_eq!(state.pass.as_deref(), next);
+        }
     }
 
     #[test]

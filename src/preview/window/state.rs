@@ -34,6 +34,10 @@ pub struct State {
     pub timeline: Timeline,
     /// Which overlays and other switches are on.
     pub switches: Switches,
+    /// The pass that is shown in place of the frame, as `NAME` or `NAME:LAYER`.
+    pub pass: Option<String>,
+    /// Why it cannot be shown.
+    pub no_pass: Option<String>,
     /// JSON pointer of what is selected in the editor.
     pub selection: Option<String>,
     /// The pointer on the screen, while it is in the window.
@@ -88,6 +92,8 @@ impl Default for State {
             transport: Transport::default(),
             timeline: Timeline::default(),
             switches: Switches::default(),
+            pass: None,
+            no_pass: None,
             selection: None,
             pointer: None,
             words: Words::default(),

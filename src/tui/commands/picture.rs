@@ -5,6 +5,7 @@ use kurbo::Vec2;
 use super::command::{Call, Command, Done, command};
 use crate::base::problem;
 use crate::layers::parts::pass::COLOR;
+use crate::preview::views;
 use crate::render::passes::Asked;
 use crate::tui::events::Effect;
 use crate::tui::graphics::{Protocol, viewport};
@@ -23,7 +24,12 @@ pub const COMMANDS: &[Command] = &[
         "Show or set how the picture is sent to the terminal",
         graphics,
     ),
-    command("pass", "[NAME[:LAYER]]", "Show depth, normals or another pass in place of the picture", pass),
+    command(
+        "pass",
+        "[NAME[:LAYER]]",
+        "Show depth, normals or another pass in place of the picture, here and in the window",
+        pass,
+    ),
     command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
 ];
 
@@ -103,14 +109,30 @@ fn graphics(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Shows a pass in the picture's pane; without a name, or by the name color, the picture again.
+/// Shows a pass in the picture's pane and in the windows; without a name, or by the name color, the picture again.
 fn pass(state: &mut State, call: &Call) -> Done {
     let asked = match call.text {
         "" => None,
         text => Some(Asked::parse(text, state.document().scene())?),
     };
-    state.picture.pass = asked.filter(|asked| *asked.pass != COLOR || asked.layer.is_some());
+    take_pass(state, asked);
+    let words = state.picture.pass.map(|asked| asked.words(state.document().scene()));
+    state.ask(Effect::View(Some(views::show_pass(words.as_deref()))));
     Ok(())
+}
+
+/// Shows here what a window was told to show.
+pub fn follow_window(state: &mut State, command: &str) {
+    // The window's scene may be a step behind, and have other layers.
+    if let Some(pass) = views::pass_in(command)
+        && let Ok(asked) = pass.map(|pass| Asked::parse(&pass, state.document().scene())).transpose()
+    {
+        take_pass(state, asked);
+    }
+}
+
+fn take_pass(state: &mut State, asked: Option<Asked>) {
+    state.picture.pass = asked.filter(|asked| *asked.pass != COLOR || asked.layer.is_some());
 }
 
 /// Opens the read-out of the pixel under the cursor, or of X,Y; closes it if it is open.

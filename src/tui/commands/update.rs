@@ -8,7 +8,7 @@ use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
-use super::{conflicts, tutor};
+use super::{conflicts, picture, tutor};
 use crate::preview::editor::{self, Asked};
 use crate::preview::wire::message::ToEditor;
 use crate::tui::commands;
@@ -238,11 +238,11 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
     }
 }
 
-/// Runs a command of a window; others than these two are not the editor's.
+/// Runs a command of a window.
 fn run_of_window(state: &mut State, name: &str) {
     match name {
         "mark-point" => commands::run(state, "pointer mark", None),
         "select-point" => commands::run(state, "pointer select", None),
-        _ => {}
+        told => picture::follow_window(state, told),
     }
 }

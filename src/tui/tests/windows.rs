@@ -128,3 +128,24 @@ fn a_name_takes_a_capital_m() {
     let names = state.document().json().to_string();
     assert!(names.contains("\"Mouth\""), "{names}");
 }
+
+#[test]
+fn a_pass_is_the_same_here_and_in_the_windows() {
+    let mut state = state();
+    let shown = |state: &State| {
+        let words = state.picture.pass.map(|asked| asked.words(state.document().scene()));
+        words.unwrap_or_default()
+    };
+    for (typed, told, here) in
+        [("pass depth", "pass depth", "depth"), ("pass uv:face", "pass uv:face", "uv:face"), ("pass", "pass color", "")]
+    {
+        let effects = update(&mut state, Event::Line(typed.into()));
+        assert!(effects.iter().any(|effect| matches!(effect, Effect::View(Some(view)) if view == told)), "{typed}");
+        assert_eq!(shown(&state), here, "{typed}");
+    }
+    for (told, here) in [("pass depth:face", "depth:face"), ("pass uv:gone", "depth:face"), ("pass color", "")] {
+        let effects = update(&mut state, said(ToEditor::Command(told.into())));
+        assert!(!effects.iter().any(|effect| matches!(effect, Effect::View(_))), "{told} is not told again");
+        assert_eq!(shown(&state), here, "{told}");
+    }
+}
