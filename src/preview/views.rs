@@ -35,7 +35,7 @@ impl Steps {
 
 /// Which switches of the view are on, by their commands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Switches(BTreeSet<&'static str>);
+pub struct Switches(BTreeSet<&'static str>);
 
 impl Default for Switches {
     fn default() -> Self {
@@ -47,6 +47,12 @@ impl Switches {
     /// Whether a switch is on.
     pub fn is_on(&self, name: &str) -> bool {
         self.0.contains(name)
+    }
+
+    /// Takes a command that sets a switch, or turns it over; returns it as windows are to be told it, if it is one.
+    pub fn take(&mut self, command: &str) -> Option<String> {
+        let (name, wanted) = wanted(command);
+        self.set(name, wanted).map(|on| set(name, on))
     }
 
     /// Turns a switch on or off, or over if `wanted` is `None`; returns what it is then. `None` if there is no such switch.
@@ -78,9 +84,8 @@ impl Views {
     /// Takes a command; returns it as windows are to be told it: a switch is set. Commands that leave nothing behind, as
     /// `view-full-screen`, pass through.
     pub fn take(&mut self, command: &str) -> String {
-        let (name, wanted) = wanted(command);
-        if let Some(on) = self.switches.set(name, wanted) {
-            return set(name, on);
+        if let Some(told) = self.switches.take(command) {
+            return told;
         }
         if let Some(pass) = pass_in(command) {
             self.pass = pass;
@@ -151,8 +156,7 @@ pub(super) fn wanted(command: &str) -> (&str, Option<bool>) {
 }
 
 /// The command that sets a switch to what it is; `None` if there is no such switch.
-#[cfg(feature = "window")]
-pub(super) fn setting(name: &str, switches: &Switches) -> Option<String> {
+pub fn setting(name: &str, switches: &Switches) -> Option<String> {
     switch(name).map(|name| set(name, switches.is_on(name)))
 }
 

@@ -5,13 +5,32 @@ use kurbo::Point;
 
 use super::Synth;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
+use crate::layers::timeline::Wrap;
 use crate::layers::{KINDS, space};
 use crate::scene::Scene;
+
+/// How often samplers are shown where they were before, and how far apart that is, as a share of the timeline.
+const ONION: (u32, f64) = (6, 1.0 / 48.0);
 
 /// Every overlay of every technique; shared ones once.
 pub fn overlays() -> impl Iterator<Item = &'static Overlay> {
     let all = || KINDS.iter().flat_map(|kind| kind.overlays);
     all().enumerate().filter(move |(i, overlay)| all().take(*i).all(|other| other.name != overlay.name)).map(|(_, o)| o)
+}
+
+/// Pixels of the picture between two marks that are to be about `wanted` pixels apart: a power of two.
+pub fn spacing(wanted: f64) -> f64 {
+    (0..24).map(|k| f64::from(1 << k)).find(|&s| s >= wanted).unwrap_or(wanted)
+}
+
+/// The present scene time, and some before it at which samplers were elsewhere.
+pub fn times(now: f64, wrap: Wrap) -> Vec<f64> {
+    let before = (1..=ONION.0).map(|k| now - f64::from(k) * ONION.1);
+    let before = before.filter_map(|t| match wrap {
+        Wrap::Once => (t >= 0.0).then_some(t),
+        Wrap::Repeat | Wrap::PingPong => Some(t.rem_euclid(1.0)),
+    });
+    std::iter::once(now).chain(before).collect()
 }
 
 /// The marks of a scene, from bottom to top. Marks that need the synthesis are left out without it.

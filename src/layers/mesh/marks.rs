@@ -10,7 +10,8 @@ use super::synth::Synth;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::{CENTRE, Columns, Moment};
 use crate::layers::space::eye::Eye;
-use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OVERLAY, line};
+use crate::layers::space::hidden::Depths;
+use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OVERLAY, deep_line, line};
 use crate::layers::space::raster::{NONE, Raster};
 
 const WIRES: &str = "view-wires";
@@ -33,7 +34,7 @@ pub static OVERLAYS: &[Overlay] = &[
 /// An edge.
 static WIRE: Look = Look::new("edge", 25, [86, 180, 233, 220], 1.0);
 /// A pixel that sees a triangle from behind.
-static BACK: Look = Look::new("back side", 26, [230, 60, 200, 150], 0.0).dots(Dot::Square, 0.0);
+static BACK: Look = Look::new("back side", 26, [230, 60, 200, 150], 0.0).dots(Dot::Square, 0.0).stroke("▒");
 /// A normal at a vertex.
 static NORMAL: Look = Look::new("normal", 27, [240, 160, 40, 230], 1.2);
 
@@ -55,7 +56,8 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let seen = Seen { synth, moment, eye, world };
     let [wires, normals, backs] = shown;
     let mut marks = Vec::new();
-    marks.extend(wires.then(|| seen.wires(MOST)).into_iter().flatten());
+    // Who looks at back sides looks into the mesh.
+    marks.extend(wires.then(|| seen.wires(MOST, !backs)).into_iter().flatten());
     marks.extend(normals.then(|| seen.normals(MOST)).into_iter().flatten());
     marks.extend(backs.then(|| seen.backs(view.cell_px)).into_iter().flatten());
     marks
@@ -86,8 +88,14 @@ impl Seen<'_> {
         Some(Mark::new(look, "", Shape::Line { points: points.into(), closed: false }))
     }
 
-    /// The edges of what is seen, each once.
-    fn wires(&self, most: usize) -> Vec<Mark> {
+    /// The triangles, as the eye sees them.
+    fn raster(&self, both: bool) -> Raster<'_> {
+        let seen = self.world.par_iter().map(|(at, _)| self.eye.seen(*at)).collect();
+        Raster::new(&self.eye, self.moment.size_px, CENTRE, &self.synth.mesh.triangles, seen, both)
+    }
+
+    /// The edges of what is seen, each once; without the parts that the mesh itself hides, if those are to be left out.
+    fn wires(&self, most: usize, hides: bool) -> Vec<Mark> {
         let triangles = &self.synth.mesh.triangles;
         let step = (3 * triangles.len()).div_ceil(most).max(1);
         let shown = triangles.iter().step_by(step).filter(|triangle| self.both() || self.is_front(triangle));
@@ -98,8 +106,14 @@ impl Seen<'_> {
         edges.sort_unstable();
         edges.dedup();
         let ends = |(from, to): (u32, u32)| [from, to].map(|i| self.world[i as usize].0);
-        let lines = edges.into_iter().filter_map(|edge| self.line(&WIRE, ends(edge))).collect();
-        told(lines, step, "triangles")
+        let depths = hides.then(|| Depths::new(&self.raster(self.both()), self.moment.size_px));
+        let parts = edges.into_iter().filter_map(|edge| deep_line(self.moment, &self.eye, ends(edge)));
+        let parts = parts.flat_map(|line| match &depths {
+            Some(depths) => depths.shown(line),
+            None => vec![line.map(|(at, _)| at)],
+        });
+        let wire = |points: [Point; 2]| Mark::new(&WIRE, "", Shape::Line { points: points.into(), closed: false });
+        told(parts.map(wire).collect(), step, "triangles")
     }
 
     /// A short line along each normal that is turned to the eye.
@@ -119,8 +133,7 @@ impl Seen<'_> {
         let (width, height) = self.moment.size_px;
         let fewest = ((width * height) as f64 / MOST as f64).sqrt();
         let side = cell_px.max(fewest).max(1.0).ceil() as usize;
-        let seen = self.world.par_iter().map(|(at, _)| self.eye.seen(*at)).collect();
-        let raster = Raster::new(&self.eye, (width, height), CENTRE, &self.synth.mesh.triangles, seen, true);
+        let raster = self.raster(true);
         let columns: Vec<usize> = (side / 2..width).step_by(side).collect();
         let rows: Vec<usize> = (side / 2..height).step_by(side).collect();
         let wanted = Columns::Some(&columns);
@@ -160,11 +173,19 @@ mod tests {
 
     /// A square of two triangles, whose front looks to +z, or from behind.
     fn seen<T>(layer: &str, z: f64, of: impl FnOnce(&Seen) -> T) -> T {
-        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-        let vertex =
-            |[x, y]: [f64; 2]| Vertex { position: DVec3::new(x, y, 0.0), normal: DVec3::Z, ..Vertex::default() };
-        let vertices = corners.map(vertex).to_vec();
-        let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() });
+        of_squares(&[(-1.0, 1.0, 0.0)], layer, z, of)
+    }
+
+    /// Such squares: where they begin and end in x, and where they are in z.
+    fn of_squares<T>(squares: &[(f64, f64, f64)], layer: &str, z: f64, of: impl FnOnce(&Seen) -> T) -> T {
+        let corners = |&(from, to, z): &(f64, f64, f64)| {
+            [[from, -1.0, z], [to, -1.0, z], [to, 1.0, z], [from, 1.0, z]].map(DVec3::from_array)
+        };
+        let vertex = |position: DVec3| Vertex { position, normal: DVec3::Z, ..Vertex::default() };
+        let vertices = squares.iter().flat_map(corners).map(vertex).collect();
+        let pair = |i: u32| [[4 * i, 4 * i + 1, 4 * i + 2], [4 * i, 4 * i + 2, 4 * i + 3]];
+        let triangles = (0..squares.len() as u32).flat_map(pair).collect();
+        let mesh = Arc::new(Mesh { vertices, triangles, ..Mesh::default() });
         let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
         let layer: MeshLayer = serde_json::from_str(layer).unwrap();
         let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials)).unwrap();
@@ -180,14 +201,35 @@ mod tests {
     #[test]
     fn what_faces_away_has_edges_and_normals_only_where_both_sides_are_seen() {
         for (layer, z, edges, normals) in [(FRONT, 4.0, 5, 4), (FRONT, -4.0, 0, 0), (BOTH, -4.0, 5, 4)] {
-            let found = seen(layer, z, |seen| (seen.wires(MOST).len(), seen.normals(MOST).len()));
+            let found = seen(layer, z, |seen| (seen.wires(MOST, true).len(), seen.normals(MOST).len()));
             assert_eq!(found, (edges, normals), "{layer} {z}");
         }
     }
 
     #[test]
+    fn edges_end_where_the_mesh_hides_them() {
+        let lengths = |squares: &[(f64, f64, f64)], hides: bool| {
+            let wires = of_squares(squares, FRONT, 4.0, |seen| seen.wires(MOST, hides));
+            let length = |mark: &Mark| match &mark.shape {
+                Shape::Line { points, .. } => (points[1] - points[0]).hypot(),
+                _ => 0.0,
+            };
+            (wires.len(), wires.iter().map(length).sum::<f64>())
+        };
+        let near = (-1.0, 1.0, 0.0);
+        let alone = lengths(&[near], true);
+        assert_eq!((alone.0, lengths(&[near, (-0.5, 0.5, -1.0)], false).0), (5, 10));
+        assert_eq!(lengths(&[near, (-0.5, 0.5, -1.0)], true), alone, "all of it is behind");
+        // From the middle to beyond the edge, which is at 0.8 of it.
+        let [all, half] = [false, true].map(|hides| lengths(&[near, (0.0, 2.5, -1.0)], hides));
+        assert_eq!(half.0, 9, "the left side is hidden, three edges are cut");
+        let share = (half.1 - alone.1) / (all.1 - alone.1);
+        assert!((0.4..0.6).contains(&share), "as far as the edge in front of it: {share}");
+    }
+
+    #[test]
     fn there_are_never_too_many_and_a_label_says_so() {
-        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3), seen.normals(2)));
+        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3, true), seen.normals(2)));
         assert_eq!((wires.len(), normals.len()), (4, 3), "with the labels");
         for (marks, text) in [(wires, "1 of 2 triangles"), (normals, "1 of 2 vertices")] {
             let label = marks.last().map(|mark| mark.shape.clone());

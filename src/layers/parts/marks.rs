@@ -182,7 +182,7 @@ pub const FILL_ALPHA: f32 = 0.16;
 
 /// Vectors of pixels as colors, by [`vector_color`], for all techniques.
 pub static VECTOR_COLORS: Look =
-    Look::new("vector field as colors", 0, [255, 255, 255, 220], 0.0).dots(Dot::Square, 0.0);
+    Look::new("vector field as colors", 0, [255, 255, 255, 220], 0.0).dots(Dot::Square, 0.0).stroke("▒");
 /// Vectors of pixels as arrows, for all techniques.
 pub static VECTORS: Look = Look::new("vector field", 1, [190, 205, 220, 230], 1.0);
 

@@ -6,7 +6,7 @@ use kurbo::{Point, Rect};
 
 use super::camera::Camera;
 use super::eye::{Eye, NEAR_M};
-use crate::base::maths::nice;
+use crate::base::maths::{lerp, nice};
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::Moment;
 
@@ -43,6 +43,11 @@ const TALL: f64 = 4.0;
 /// The line between two places of the world as it is in the frame; `None` if all of it is behind the eye or beside the
 /// frame. It reaches a little beyond the frame at most.
 pub fn line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[Point; 2]> {
+    deep_line(moment, eye, ends).map(|ends| ends.map(|(at, _)| at))
+}
+
+/// The same, each end with 1 / its depth, which is even along the line in the frame.
+pub fn deep_line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[(Point, f64); 2]> {
     let [mut a, mut b] = ends.map(|end| eye.seen(end));
     let (depth_a, depth_b) = (-a.z, -b.z);
     if depth_a < NEAR_M && depth_b < NEAR_M {
@@ -54,17 +59,17 @@ pub fn line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[Point; 2]> 
     } else if depth_b < NEAR_M {
         b = near;
     }
-    let [a, b] = [a, b].map(|end| {
-        // Cut at the near plane, an end may be a hair before it.
-        let at = eye.project(end.with_z(end.z.min(-NEAR_M)));
-        Point::new(at.x, at.y)
-    });
+    // Cut at the near plane, an end may be a hair before it.
+    let [a, b] = [a, b].map(|end| end.with_z(end.z.min(-NEAR_M)));
+    let [at_a, at_b] = [a, b].map(|end| eye.project(end)).map(|at| Point::new(at.x, at.y));
     let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
-    within(Rect::new(0.0, 0.0, width, height).inflate(width / 2.0, height / 2.0), [a, b])
+    let room = Rect::new(0.0, 0.0, width, height).inflate(width / 2.0, height / 2.0);
+    let shares = within(room, [at_a, at_b])?;
+    Some(shares.map(|share| (at_a + (at_b - at_a) * share, lerp(-1.0 / a.z, -1.0 / b.z, share))))
 }
 
-/// The part of a line that is in a rectangle.
-fn within(room: Rect, [a, b]: [Point; 2]) -> Option<[Point; 2]> {
+/// The part of a line that is in a rectangle, as shares of its length.
+fn within(room: Rect, [a, b]: [Point; 2]) -> Option<[f64; 2]> {
     let way = b - a;
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     let sides = [(way.x, room.x0 - a.x, room.x1 - a.x), (way.y, room.y0 - a.y, room.y1 - a.y)];
@@ -78,7 +83,7 @@ fn within(room: Rect, [a, b]: [Point; 2]) -> Option<[Point; 2]> {
         let (enters, leaves) = if way > 0.0 { (low / way, high / way) } else { (high / way, low / way) };
         (from, to) = (from.max(enters), to.min(leaves));
     }
-    (from <= to).then(|| [a + way * from, a + way * to])
+    (from <= to).then_some([from, to])
 }
 
 /// The marks of all that is in space together; `camera` is the scene's.

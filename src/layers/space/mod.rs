@@ -4,6 +4,7 @@
 pub mod camera;
 pub mod eye;
 pub mod fit;
+pub mod hidden;
 pub mod marks;
 pub mod raster;
 pub mod upload;

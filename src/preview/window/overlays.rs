@@ -3,23 +3,19 @@
 use super::state::State;
 use crate::base::maths::pow;
 use crate::layers::parts::marks::{View, When};
-use crate::layers::timeline::Wrap;
-use crate::render::overlay::overlays;
+use crate::render::overlay::{self, overlays};
 
 /// An arrow of the vector field stands about every so many logical pixels of the screen, unless keys change it, by so many
 /// times twice or half.
 const FIELD_PX: f64 = 22.0;
 /// A square of the field in colors, in logical pixels of the screen.
 const WHEEL_PX: f64 = 4.0;
-/// How often samplers are shown where they were before, and how far apart that is, as a share of the timeline.
-const ONION: (u32, f64) = (6, 1.0 / 48.0);
 
 impl State {
     /// Pixels of the picture between two of those whose jump vectors are shown, when they are about `px` logical pixels
     /// of the screen apart: a power of two.
     fn spacing(&self, px: f64) -> f64 {
-        let wanted = px * self.scale / self.viewport.zoom;
-        (0..24).map(|k| f64::from(1 << k)).find(|&s| s >= wanted).unwrap_or(wanted)
+        overlay::spacing(px * self.scale / self.viewport.zoom)
     }
 
     /// Pixels of the picture between two arrows of the field, two jump paths or two samplers.
@@ -40,7 +36,8 @@ impl State {
     /// What changes with every frame.
     pub fn moving_view(&self) -> View {
         let view = self.view(|when| when == When::EveryFrame);
-        let times = if view.shown.is_empty() { Vec::new() } else { self.times() };
+        let now = self.transport.scene_time(&self.timeline);
+        let times = if view.shown.is_empty() { Vec::new() } else { overlay::times(now, self.timeline.wrap) };
         View { times, ..view }
     }
 
@@ -54,17 +51,6 @@ impl State {
             selection: self.selection.clone(),
             ..View::default()
         }
-    }
-
-    /// The present scene time and some before it.
-    fn times(&self) -> Vec<f64> {
-        let now = self.transport.scene_time(&self.timeline);
-        let before = (1..=ONION.0).map(|k| now - f64::from(k) * ONION.1);
-        let before = before.filter_map(|t| match self.timeline.wrap {
-            Wrap::Once => (t >= 0.0).then_some(t),
-            Wrap::Repeat | Wrap::PingPong => Some(t.rem_euclid(1.0)),
-        });
-        std::iter::once(now).chain(before).collect()
     }
 }
 

@@ -81,7 +81,11 @@ fn view(state: &mut State, call: &Call) -> Done {
         "" if call.count.is_some() => return Err("view takes no count".into()),
         "" => state.ask(Effect::View(None)),
         name if known(name) => {
-            call.steps().for_each(|_| state.ask(Effect::View(Some(name.to_owned()))));
+            // A switch is told as what it is set to here.
+            call.steps().for_each(|_| {
+                let told = state.picture.switches.take(name).unwrap_or_else(|| name.to_owned());
+                state.ask(Effect::View(Some(told)));
+            });
         }
         name => return Err(format!("the window has no command {}", quoted(name))),
     }

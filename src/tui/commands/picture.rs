@@ -123,6 +123,7 @@ fn pass(state: &mut State, call: &Call) -> Done {
 
 /// Shows here what a window was told to show.
 pub fn follow_window(state: &mut State, command: &str) {
+    state.picture.switches.take(command);
     // The window's scene may be a step behind, and have other layers.
     if let Some(pass) = views::pass_in(command)
         && let Ok(asked) = pass.map(|pass| Asked::parse(&pass, state.document().scene())).transpose()

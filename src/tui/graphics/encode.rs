@@ -129,11 +129,12 @@ fn left_alone(area: Rect, sequence: &str) -> Buffer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layers::parts::marks::View;
     use crate::render::part::Part;
 
     fn wanted(protocol: Protocol, tmux: bool) -> Wanted {
         let part = Part { corner: kurbo::Point::ZERO, scale: 1.0, dots: (30, 24) };
-        Wanted { part, cells: (3, 2), protocol, tmux, bytes: 100_000, pass: None, marks: None }
+        Wanted { part, cells: (3, 2), protocol, tmux, bytes: 100_000, pass: None, over: View::default(), marks: None }
     }
 
     fn first(protocol: Protocol, tmux: bool) -> String {

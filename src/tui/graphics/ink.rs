@@ -52,7 +52,19 @@ impl Ink<'_> {
             Shape::Arrow(from, to) => self.arrow(&pen, self.at(*from), self.at(*to)),
             Shape::Dot(at) => self.dot(&pen, self.at(*at), look.dot, f64::from(look.dot_px), mark.selected),
             Shape::Fill(points) => self.hatch(&pen, points),
-            Shape::Cell(..) | Shape::Label(..) => {}
+            Shape::Cell(at, side, color) => self.cell(*at, *side, *color),
+            Shape::Label(..) => {}
+        }
+    }
+
+    /// Draws a square of the picture.
+    fn cell(&mut self, at: Point, side: f64, color: [u8; 4]) {
+        let half = Vec2::new(side / 2.0, side / 2.0);
+        let [from, to] = [at - half, at + half].map(|corner| self.at(corner).round());
+        let [columns, rows] = [(from.x, to.x, self.frame.width()), (from.y, to.y, self.frame.height())]
+            .map(|(from, to, most)| from.max(0.0) as usize..(to.max(0.0) as usize).min(most));
+        for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
+            blend(self.frame, Point::new(x as f64, y as f64), color);
         }
     }
 
@@ -196,6 +208,8 @@ mod tests {
             found,
             ["............", "..########..", "..#......#..", "..#......#..", "..########..", "............"]
         );
+        let cell = Shape::Cell(Point::new(20.0, 15.0), 4.0, [200, 200, 200, 255]);
+        assert_eq!(drawn(cell, &SOLID, false)[1..4], ["............", "....##......", "....##......"]);
         let far = Shape::Line { points: vec![Point::new(-1e9, 15.0), Point::new(1e9, 15.0)], closed: false };
         assert_eq!(drawn(far, &SOLID, false)[2], "############");
         assert_eq!(drawn(Shape::Fill(rectangle), &DASHED, false)[1..4].concat().matches('#').count(), 3);

@@ -8,6 +8,7 @@ use ratatui::buffer::Buffer;
 use super::protocol::Wanted;
 use super::{encode, ink};
 use crate::base::pixels::Frame;
+use crate::layers::parts::marks::Mark;
 use crate::render::Synth;
 use crate::render::overlay::overlay;
 use crate::render::part::{self, Part};
@@ -22,6 +23,8 @@ pub struct TerminalPicture {
     pub frame: Frame,
     /// How many times fewer dots than the pane it has, in each direction, to stay within the limit of bytes.
     pub by: usize,
+    /// The marks of [`Wanted::over`].
+    pub over: Vec<Mark>,
     /// The cells of the pane with the picture in them; `None` for half-blocks.
     pub cells: Option<Buffer>,
     /// How many bytes are written to the terminal; for half-blocks, at most.
@@ -40,17 +43,24 @@ impl TerminalPicture {
         wanted: Wanted,
         before: Option<&TerminalPicture>,
     ) -> Arc<TerminalPicture> {
+        let over = if wanted.over.shown.is_empty() { Vec::new() } else { overlay(scene, Some(synth), &wanted.over) };
         let mut by = before.map_or(1, |before| guess(before, &wanted));
         loop {
-            let shown = TerminalPicture::reduced(synth, scene, time, &wanted, by);
+            let shown = TerminalPicture::reduced(synth, scene, time, &wanted, (&over, by));
             if shown.bytes <= wanted.bytes || by >= MOST_REDUCED {
-                return Arc::new(shown);
+                return Arc::new(TerminalPicture { over, ..shown });
             }
             by = (guess(&shown, &wanted)).max(by + 1);
         }
     }
 
-    fn reduced(synth: &Synth, scene: &Scene, time: f64, wanted: &Wanted, by: usize) -> TerminalPicture {
+    fn reduced(
+        synth: &Synth,
+        scene: &Scene,
+        time: f64,
+        wanted: &Wanted,
+        (over, by): (&[Mark], usize),
+    ) -> TerminalPicture {
         let part = wanted.part.reduced(by);
         let mut frame = match &wanted.pass {
             Some(pass) => part::pass(synth, time, &part, pass),
@@ -59,12 +69,13 @@ impl TerminalPicture {
         ground(&mut frame, synth.size, &part);
         if let Some(marks) = &wanted.marks {
             let mut ink = ink::Ink { frame: &mut frame, part: &part, by };
+            ink.draw(over);
             ink.draw(&overlay(scene, Some(synth), &marks.view));
             marks.aim.iter().for_each(|&from| ink.aim(from, marks.cursor));
             ink.cross(marks.cursor);
         }
         let (cells, bytes) = encode::encode(&frame, by, wanted);
-        TerminalPicture { wanted: wanted.clone(), frame, by, cells, bytes }
+        TerminalPicture { wanted: wanted.clone(), frame, by, over: Vec::new(), cells, bytes }
     }
 
     /// The color at a place of the picture; `None` if the place is beyond the picture or was not visible.

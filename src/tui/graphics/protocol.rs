@@ -105,7 +105,9 @@ pub struct Wanted {
     pub bytes: usize,
     /// The pass to show in place of the frame.
     pub pass: Option<Asked>,
-    /// The marks drawn into the pixels; `None` for half-blocks, whose marks are drawn as characters.
+    /// The overlays that need more than the document alone.
+    pub over: View,
+    /// The other marks drawn into the pixels; `None` for half-blocks, whose marks are drawn as characters.
     pub marks: Option<Marks>,
 }
 

@@ -4,7 +4,9 @@ use crate::tui::graphics::request::{ProbeAt, Request};
 use crate::tui::layout;
 use kurbo::Point;
 
-use crate::layers::parts::marks::{View, When};
+use std::collections::BTreeSet;
+
+use crate::layers::parts::marks::{Overlay, View, When};
 use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::document::tree;
@@ -45,11 +47,24 @@ pub fn settle(state: &mut State) {
     }
 }
 
-/// Which overlays are drawn over the picture, and what is selected.
+/// Which overlays of the document are drawn over the picture, and what is selected.
 pub fn overlays(state: &State) -> View {
     let selection = Some(state.focused());
     let of_document = overlay::overlays().filter(|overlay| overlay.when == When::Document);
     View { shown: of_document.map(|overlay| overlay.name).collect(), selection, ..View::default() }
+}
+
+/// The other overlays that are shown, no denser than stays legible.
+fn switched(state: &State, part: &Part, protocol: Protocol) -> View {
+    let is_shown = |overlay: &&Overlay| overlay.when != When::Document && state.picture.switches.is_on(overlay.name);
+    let shown: BTreeSet<_> = overlay::overlays().filter(is_shown).map(|overlay| overlay.name).collect();
+    if shown.is_empty() {
+        return View::default();
+    }
+    let [spacing_px, cell_px] = (if protocol == Protocol::Blocks { [4.0, 1.0] } else { [22.0, 4.0] })
+        .map(|dots| overlay::spacing(dots * part.scale));
+    let times = overlay::times(state.play.time, state.document().scene().timeline.wrap);
+    View { shown, spacing_px, cell_px, times, selection: Some(state.focused()), ..View::default() }
 }
 
 fn wanted(state: &State) -> Option<Wanted> {
@@ -57,18 +72,21 @@ fn wanted(state: &State) -> Option<Wanted> {
     let graphics = &state.picture.graphics;
     let (playing, still) = graphics.bytes;
     let protocol = protocol(state);
+    let part = part(state)?;
+    let over = switched(state, &part, protocol);
     let marks = || Marks {
         view: overlays(state),
         cursor: state.picture.cursor,
         aim: place::selected(state).filter(|_| matches!(state.typing.mode, Mode::Aim)),
     };
     Some(Wanted {
-        part: part(state)?,
+        part,
         cells: (area.width, area.height),
         protocol,
         tmux: graphics.tmux,
         bytes: if state.play.playing { playing } else { still },
         pass: state.picture.pass,
+        over,
         marks: (protocol != Protocol::Blocks).then(marks),
     })
 }

@@ -135,7 +135,8 @@ fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     let synth = state.picture.synth.as_deref();
     let mut marks = overlay::overlay(state.document().scene(), synth, &picture::overlays(state));
     marks.sort_by_key(|mark| mark.selected);
-    for mark in &marks {
+    let over = state.picture.latest.iter().flat_map(|shown| &shown.over);
+    for mark in over.chain(&marks) {
         draw_mark(mark, state.depth, part, area, buffer);
     }
     if let (Mode::Aim, Some(from)) = (&state.typing.mode, place::selected(state)) {
@@ -145,12 +146,19 @@ fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
 }
 
 fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Buffer) {
-    let [r, g, b, _] = if mark.selected { SELECTED } else { mark.look.color };
+    let [r, g, b, _] = match mark.shape {
+        Shape::Cell(.., color) => color,
+        _ if mark.selected => SELECTED,
+        _ => mark.look.color,
+    };
     let style = depth.color([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
     let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
     let glyph = mark.look.stroke;
     match &mark.shape {
-        Shape::Cell(..) => {} // never requested here: a cell of the terminal is too large for it
+        Shape::Cell(at, ..) => {
+            let (x, half) = cell(part, *at);
+            put(buffer, area, x, half, glyph, style);
+        }
         Shape::Line { points, closed } => {
             let last = points.last().filter(|_| *closed);
             let from = last.into_iter().chain(points);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
 
+use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
 use crate::tui::graphics::probed::Probed;
@@ -21,6 +22,8 @@ pub struct Picture {
     pub size: Option<(usize, usize)>,
     /// The pass that is shown in place of the frame.
     pub pass: Option<Asked>,
+    /// Which overlays are shown here and in the windows. Those of the document alone are always shown here.
+    pub switches: Switches,
     /// How pictures are sent to the terminal.
     pub graphics: Graphics,
     /// The picture that the worker made last.
@@ -47,6 +50,7 @@ impl Picture {
             viewport: Viewport { zoom: None, center: cursor },
             size: None,
             pass: None,
+            switches: Switches::default(),
             graphics: Graphics::default(),
             latest: None,
             probing: false,

@@ -1,5 +1,7 @@
 //! The picture in the terminal: zoom and pan, every protocol, the limit of bytes, the read-out of a pixel.
 
+use std::sync::Arc;
+
 use crate::scene::Edit;
 use crate::tui::layout;
 use kurbo::Point;
@@ -11,11 +13,15 @@ use ratatui::style::Color;
 use serde_json::json;
 
 use super::screens::{STATES, changed, opened, screen, see};
-use super::support::{press, state, state_of};
+use super::support::{press, said, state, state_of};
+use crate::base::mesh::{Mesh, Vertex};
+use crate::layers::parts::marks::View;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::{Entry, Value};
+use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::update::update;
-use crate::tui::events::Event;
-use crate::tui::graphics::Protocol;
+use crate::tui::events::{Effect, Event};
+use crate::tui::graphics::{Protocol, TerminalPicture, Wanted};
 use crate::tui::layout::picture;
 use crate::tui::panes::view;
 use crate::tui::state::State;
@@ -348,5 +354,48 @@ fn panes_say_what_the_items_of_a_layer_are_called() {
         state.size = (160, 48);
         let shown = screen(&state);
         assert!(words.iter().all(|word| shown.contains(word)), "{shown}");
+    }
+}
+
+#[test]
+fn overlays_that_are_switched_on_are_in_the_picture() {
+    for protocol in [Protocol::Blocks, Protocol::Kitty] {
+        let mut state = shown_by(protocol, "");
+        let shown = |state: &State| (state.picture.latest.as_ref().unwrap().frame.clone(), screen(state));
+        let before = shown(&state);
+        let told = press(&mut state, "z v");
+        assert!(told.iter().any(|effect| matches!(effect, Effect::View(Some(view)) if view == "view-field on")));
+        see(&mut state);
+        let arrows = shown(&state);
+        match protocol {
+            Protocol::Blocks => assert!(before.0 == arrows.0 && before.1 != arrows.1),
+            _ => assert!(before.0 != arrows.0),
+        }
+        update(&mut state, said(ToEditor::Command("view-field off".into())));
+        see(&mut state);
+        assert!(shown(&state) == before, "a window has switched it off: {protocol:?}");
+    }
+}
+
+#[test]
+fn the_edges_of_a_mesh_are_made_for_every_protocol() {
+    let scene = r#"{ "plica": 1, "size": [60, 60], "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+        "meshes": {"m": {"path": "m.obj"}}, "layers": [{"kind": "mesh", "name": "m", "mesh": "m"}] }"#;
+    let scene = serde_json::from_str(scene).unwrap();
+    let corner = |[x, y]: [f64; 2]| Vertex { position: [x, y, 0.0].into(), ..Vertex::default() };
+    let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
+    let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+    let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
+    let synth = crate::render::synth(&scene, &materials, None).unwrap();
+    for protocol in [Protocol::Blocks, Protocol::Kitty] {
+        let shown = |over: View| {
+            let mut state = shown_by(protocol, "");
+            state.picture.size = Some((60, 60));
+            let wanted = Wanted { over, ..picture::request(&state).picture.unwrap() };
+            TerminalPicture::new(&synth, &scene, 0.0, wanted, None)
+        };
+        let [plain, edges] = [shown(View::default()), shown(View::of(&["view-wires"]))];
+        assert_eq!((plain.over.len(), edges.over.len()), (0, 5));
+        assert_eq!(plain.frame != edges.frame, protocol == Protocol::Kitty, "half-blocks have them over the picture");
     }
 }
