@@ -27,7 +27,7 @@ mod store;
 #[cfg(test)]
 mod tests;
 
-pub use named::files;
+pub use named::Watched;
 pub(super) use named::{ahead, paths};
 pub(super) use store::Stamp;
 

@@ -1,9 +1,10 @@
 //! The files that a scene names, and where.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::files;
+use super::Stamp;
+use crate::files::{self, Options, mesh};
 use crate::layers::parts::materials::{Of, Use, What};
 use crate::scene::{Clip, Scene, pointer};
 
@@ -64,13 +65,41 @@ fn is_there(scene_path: &Path, path: &str) -> bool {
     files::paths::beside(scene_path, path).exists()
 }
 
-/// The files that `scene` names, for watching.
-pub fn files(scene_path: &Path, scene: &Scene) -> Vec<PathBuf> {
-    let all = paths(scene_path, scene).into_iter().chain(ahead(scene_path, scene));
-    all.map(|path| files::paths::beside(scene_path, &path)).collect()
+/// What tells which files to watch. A model is read only where it has changed.
+#[derive(Debug, Default)]
+pub struct Watched {
+    /// The files that models are made from besides their own, by the path of the model.
+    models: BTreeMap<String, (Stamp, Vec<String>)>,
 }
 
-/// The same, as the paths written in the scene, without those that are not there yet.
+impl Watched {
+    /// The files that `scene` names, and those that its models name.
+    pub fn files(&mut self, scene_path: &Path, scene: &Scene, options: &Options) -> Vec<PathBuf> {
+        let before = std::mem::take(&mut self.models);
+        let models = meshes(scene).into_iter().map(|named| named.path).filter(|path| files::paths::is_model(path));
+        self.models =
+            models.filter_map(|path| Some((path.to_owned(), model(scene_path, path, options, &before)?))).collect();
+        let parts = self.models.values().flat_map(|(_, parts)| parts.iter().cloned());
+        let named = paths(scene_path, scene).into_iter().chain(ahead(scene_path, scene));
+        let all: BTreeSet<String> = named.chain(parts).collect();
+        all.iter().map(|path| files::paths::beside(scene_path, path)).collect()
+    }
+}
+
+/// What a model is made from besides its own file; what is wrong with it shows when it is loaded.
+fn model(
+    scene_path: &Path,
+    path: &str,
+    options: &Options,
+    before: &BTreeMap<String, (Stamp, Vec<String>)>,
+) -> Option<(Stamp, Vec<String>)> {
+    let file = files::paths::open(scene_path, path, options).ok()?;
+    let stamp = Stamp::of(&file).ok()?;
+    let known = before.get(path).filter(|(old, _)| *old == stamp).cloned();
+    Some(known.unwrap_or_else(|| (stamp, mesh::parts(file, path, &options.limits).unwrap_or_default())))
+}
+
+/// The files that `scene` names, as the paths written in it, without those that are not there yet.
 pub(in crate::files) fn paths(scene_path: &Path, scene: &Scene) -> BTreeSet<String> {
     let single = pictures(scene).into_iter().chain(meshes(scene)).chain(fields(scene));
     let frames = clips(scene_path, scene).into_iter().flat_map(|(_, frames)| frames);

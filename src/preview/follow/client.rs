@@ -8,8 +8,9 @@ use std::time::Duration;
 use super::news::{News, Sink, Update, window_sink};
 use super::talk::{Heard, Outcome, Talk, WindowGone};
 use crate::base::error::Error;
+use crate::files::materials::Watched;
 use crate::files::watch::Watch;
-use crate::files::{self, Options, materials};
+use crate::files::{self, Options};
 use crate::preview::wire::handshake;
 use crate::preview::wire::message::{FromEditor, Role, ToEditor};
 
@@ -36,7 +37,7 @@ pub fn follow(scene: &Path, options: &Options, joined: bool) -> Link {
 /// The same for any receiver of the news.
 pub(in crate::preview) fn follow_with(scene: &Path, options: &Options, joined: bool, sink: Sink) -> Sender<ToEditor> {
     let (talk, replies, heard) = Talk::new(scene.display().to_string(), options, sink);
-    let client = Client { scene: scene.to_owned(), joined, talk, watch: None };
+    let client = Client { scene: scene.to_owned(), joined, talk, watch: None, watched: Watched::default() };
     std::thread::spawn(move || drop(client.run(&heard)));
     replies
 }
@@ -46,6 +47,7 @@ struct Client {
     joined: bool,
     talk: Talk,
     watch: Option<Watch>,
+    watched: Watched,
 }
 
 impl Client {
@@ -134,7 +136,12 @@ impl Client {
         if scene && !self.talk.is_joined() {
             return self.load();
         }
-        if scene && files.len() == 1 { Ok(()) } else { self.talk.tell(News::Files) }
+        if scene && files.len() == 1 {
+            return Ok(());
+        }
+        // A model may have other parts now.
+        self.watch()?;
+        self.talk.tell(News::Files)
     }
 
     /// Shows the file. If it cannot be read, the last good scene stays.
@@ -159,7 +166,7 @@ impl Client {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         let mut files = vec![self.scene.clone()];
         if let Some((document, _)) = &self.talk.shown {
-            files.extend(materials::files(&self.scene, document.scene()));
+            files.extend(self.watched.files(&self.scene, document.scene(), &self.talk.options));
         }
         watch.set(&files).or_else(|error| self.talk.notice(error.to_string()))
     }

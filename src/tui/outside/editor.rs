@@ -10,6 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::files;
 use crate::files::lines;
 use crate::files::lines::Log;
+use crate::files::materials::Watched;
 use crate::files::watch::Watch;
 use crate::preview::editor::{self, Preview};
 use crate::tui::commands::update::update;
@@ -45,6 +46,8 @@ pub struct Editor {
     pub(super) window_told: String,
     /// Watches the files of the scene; `None` if they cannot be watched.
     pub(super) watch: Option<Watch>,
+    /// Which those are.
+    pub(super) watched: Watched,
     /// The scripts that are running.
     pub(super) scripts: Scripts,
     /// The log of the session; `None` if there is no folder for it.
@@ -106,6 +109,7 @@ impl Editor {
             preview,
             window_told: String::new(),
             watch,
+            watched: Watched::default(),
             scripts: Scripts::default(),
             log,
             throttle: Throttle::default(),
@@ -152,7 +156,7 @@ impl Editor {
     pub fn watch_files(&mut self) {
         let Some(watch) = &mut self.watch else { return };
         let path = self.state.scene.path();
-        let mut all = files::materials::files(path, self.state.document().scene());
+        let mut all = self.watched.files(path, self.state.document().scene(), &self.options.files);
         all.push(path.to_owned());
         if let Err(error) = watch.set(&all) {
             tracing::warn!("{error}");

@@ -33,7 +33,11 @@ impl Editor {
                 self.preview.transport(self.state.transport());
             }
             Effect::Pass => self.preview.passing(self.state.transport().time),
-            Effect::Reload => self.worker.ask(Request { fresh: true, ..request(&self.state) }),
+            Effect::Reload => {
+                // A model may have other parts now.
+                self.watch_files();
+                self.worker.ask(Request { fresh: true, ..request(&self.state) });
+            }
             Effect::Save { to, overwrite, leave } => self.save(to.as_deref(), overwrite, leave),
             Effect::Write(path, text) => self.write(&path, &text),
             Effect::Source(path) => {

@@ -42,7 +42,7 @@ fn frames_follow_one_another_from_the_first() {
         assert_eq!((found.frames.len(), found.fps, found.size_px(), problems.len()), (count, fps, (2, 1), 0), "{clip}");
         assert_eq!(materials.budget.taken(), count as u64 * found.frames[0].bytes());
         assert_eq!(paths(&path, &scene).len(), count);
-        let watched = files(&path, &scene).len();
+        let watched = Watched::default().files(&path, &scene, &Options::default()).len();
         assert_eq!(watched, count + usize::from(clip.get("count").is_none()), "one more would make it longer: {clip}");
         assert_eq!(sizes(&path, &scene, &Options::default()).1, []);
     }

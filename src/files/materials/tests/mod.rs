@@ -44,7 +44,7 @@ fn what_did_not_change_is_not_loaded_again() {
         assert!(Arc::ptr_eq(&third.pictures["b"], &second.pictures["b"]), "the last good one");
         assert_eq!(problems.iter().map(|p| p.path.as_str()).collect::<Vec<_>>(), ["/images/b/path"]);
     }
-    assert_eq!(files(&path, &scene).len(), 2, "each file once");
+    assert_eq!(Watched::default().files(&path, &scene, &Options::default()).len(), 2, "each file once");
 }
 
 #[test]
@@ -135,6 +135,28 @@ fn meshes_are_loaded_with_what_they_name() {
     let copies = Copies::from(["sub/b.gltf", "sub/b.bin"].map(copy));
     let (copied, _) = gather_copies(&copies, &scene, &options, &mut Cache::default());
     assert_eq!(copied.meshes["b"], third.meshes["b"]);
-    assert_eq!(files(&path, &scene).len(), 4);
+    assert_eq!(Watched::default().files(&path, &scene, &Options::default()).len(), 5, "and the part of a model");
     assert_eq!(sizes(&path, &scene, &options).1.len(), 1, "each is opened");
+}
+
+#[test]
+fn the_parts_of_a_model_are_watched() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.plica.json");
+    let scene: Scene = serde_json::from_str(r#"{"plica": 1, "meshes": {"m": {"path": "in/m.gltf"}}}"#).unwrap();
+    std::fs::create_dir(folder.path().join("in")).unwrap();
+    let mut watched = Watched::default();
+    let mut found = || {
+        let files = watched.files(&path, &scene, &Options::default());
+        let name = |file: &PathBuf| file.strip_prefix(folder.path()).unwrap().to_string_lossy().into_owned();
+        files.iter().map(name).collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(found(), "in/m.gltf", "which is not there yet");
+    for (uri, expected) in [("a.bin", "in/a.bin in/m.gltf"), ("b/c.bin", "in/b/c.bin in/m.gltf")] {
+        let text = format!(r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "{uri}", "byteLength": 4}}]}}"#);
+        std::fs::write(folder.path().join("in/m.gltf"), text).unwrap();
+        assert_eq!(found(), expected);
+    }
+    std::fs::write(folder.path().join("in/m.gltf"), "{").unwrap();
+    assert_eq!(found(), "in/m.gltf");
 }

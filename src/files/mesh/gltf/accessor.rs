@@ -4,6 +4,7 @@
 use super::document::{Accessor, Part, Sparse};
 use super::source::Source;
 use crate::base::error::Result;
+use crate::files::limits::within;
 
 /// What a number is stored as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +99,12 @@ impl Source<'_> {
         // They would all be zero: a few bytes that take as much memory as they say.
         if buffer_view.is_none() && sparse.is_none() {
             return Err(self.wrong(format!("accessor {index} has no data: it names no buffer view")));
+        }
+        // With a few that are not zero, a few bytes are a mesh still: no more than a mesh may have triangles.
+        if buffer_view.is_none() {
+            let (place, most) = (self.with.place, self.with.limits.triangles);
+            let what = format!("accessor {index} has");
+            within(place, &what, "elements that are not stored", "triangles", count, most)?;
         }
         let part = |buffer_view| Part { buffer_view, byte_offset, component_type };
         let all = buffer_view.map(|view| self.elements::<N>(&part(view), count, normalized)).transpose()?;

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use super::*;
 
+mod built;
 mod gltf;
 mod obj;
 mod pictures;

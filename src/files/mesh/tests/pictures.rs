@@ -4,7 +4,7 @@ use base64::Engine;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::json;
 
-use super::gltf::{glb, put, square, views};
+use super::built::{glb, put, square, views};
 use super::*;
 use crate::files::picture;
 
