@@ -1,10 +1,17 @@
 //! What is drawn over a picture to explain it: the marks of all layers, from bottom to top. A pure function from scene,
 //! synthesis and view to marks in pixels of the picture.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use kurbo::Point;
 
 use super::Synth;
+use super::stage::Group;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
+use crate::layers::parts::moment::{Columns, Moment};
+use crate::layers::ready::Ready;
+use crate::layers::space::hidden::Depths;
 use crate::layers::timeline::Wrap;
 use crate::layers::{KINDS, space};
 use crate::scene::Scene;
@@ -41,8 +48,12 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let t = view.times.first().copied().unwrap_or(0.0);
     let synth = synth.map(|synth| (synth, synth.moment(t)));
     let ready = synth.iter().flat_map(|(synth, moment)| {
-        let layers = synth.layers.iter().enumerate();
-        layers.flat_map(|(i, layer)| layer.marks(&view, moment).into_iter().map(move |mark| (i, mark)))
+        let nearest = nearest(synth, moment, &view);
+        let marks = |(i, layer): (usize, &Arc<dyn Ready>)| {
+            let view = View { nearest: nearest.get(&i).cloned(), ..view.clone() };
+            layer.marks(&view, moment).into_iter().map(move |mark| (i, mark))
+        };
+        synth.layers.iter().enumerate().flat_map(marks).collect::<Vec<_>>()
     });
     let layers = scene.layers.iter().enumerate();
     let layers = layers.flat_map(|(i, layer)| layer.technique().marks(&view).into_iter().map(move |mark| (i, mark)));
@@ -53,6 +64,24 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let mut marks: Vec<Mark> = all.map(|(path, mark)| collected(path, mark, &view)).collect();
     marks.sort_by_key(|mark| mark.look.order);
     marks
+}
+
+/// For each layer in space what is nearest in its group, if marks are shown that surfaces hide.
+fn nearest(synth: &Synth, moment: &Moment, view: &View) -> BTreeMap<usize, Arc<Depths>> {
+    if !overlays().any(|overlay| overlay.hidden && view.shows(overlay.name)) {
+        return BTreeMap::new();
+    }
+    let of_group = |group: &Group| {
+        let Group::World(layers) = group else { return Vec::new() };
+        let stills: Vec<_> = layers.iter().map(|&layer| synth.layers[layer].at(moment)).collect();
+        let row = |y: usize, columns: Columns, depth: &mut [f64]| {
+            let mut colors = vec![[0.0; 4]; depth.len()];
+            stills.iter().for_each(|still| still.surface(y, columns, depth, &mut colors));
+        };
+        let depths = Arc::new(Depths::new(synth.size, row));
+        layers.iter().map(|&layer| (layer, depths.clone())).collect()
+    };
+    synth.stage.groups.iter().flat_map(of_group).collect()
 }
 
 fn collected(path: String, mark: Mark, view: &View) -> Mark {
@@ -103,6 +132,26 @@ mod tests {
             ("/layers/0/zones/2", "", false),
         ] {
             assert_eq!(is_selected(mark, selection), selected, "{mark} {selection}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_hides_the_edges_of_another_behind_it() {
+        use crate::base::mesh::{Mesh, Vertex};
+        use crate::layers::parts::materials::Materials;
+        let scene = r#"{ "plica": 1, "size": [60, 60], "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+            "meshes": {"m": {"path": "m.obj"}}, "layers": [{"kind": "mesh", "name": "far", "mesh": "m",
+            "pose": {"position": [0.5, 0, -1]}}, {"kind": "mesh", "name": "near", "mesh": "m"}] }"#;
+        let scene: Scene = serde_json::from_str(scene).unwrap();
+        let corner = |[x, y]: [f64; 2]| Vertex { position: [x, y, 0.0].into(), ..Vertex::default() };
+        let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
+        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+        let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
+        let synth = crate::render::synth(&scene, &materials, None).unwrap();
+        // One edge of the far square is hidden, and parts of three.
+        for (shown, edges) in [(&["view-wires"][..], 9), (&["view-wires", "view-backs"], 10), (&["view-backs"], 0)] {
+            let marks = overlay(&scene, Some(&synth), &View { cell_px: 4.0, ..View::of(shown) });
+            assert_eq!(marks.iter().filter(|mark| mark.look.name == "edge").count(), edges, "{shown:?}");
         }
     }
 

@@ -4,7 +4,7 @@
 use crate::layers::parts::marks::{Dot, Look, Overlay, VECTOR_COLORS, VECTORS, When};
 
 const fn overlay(name: &'static str, key: &'static str, help: &'static str, when: When) -> Overlay {
-    Overlay { name, key, help, when }
+    Overlay { name, key, help, when, hidden: false }
 }
 
 pub(super) const OUTLINES: &str = "view-outlines";

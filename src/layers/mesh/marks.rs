@@ -18,17 +18,17 @@ const WIRES: &str = "view-wires";
 const NORMALS: &str = "view-normals";
 const BACKS: &str = "view-backs";
 
-const fn overlay(name: &'static str, key: &'static str, help: &'static str) -> Overlay {
-    Overlay { name, key, help, when: When::EveryFrame }
+const fn overlay(name: &'static str, key: &'static str, help: &'static str, hidden: bool) -> Overlay {
+    Overlay { name, key, help, when: When::EveryFrame, hidden }
 }
 
 /// Every overlay.
 pub static OVERLAYS: &[Overlay] = &[
     GROUND_OVERLAY,
     CAMERA_OVERLAY,
-    overlay(WIRES, "M", "Edges of meshes"),
-    overlay(NORMALS, "N", "Normals at the vertices of meshes"),
-    overlay(BACKS, "B", "Where the back of a mesh is seen"),
+    overlay(WIRES, "M", "Edges of meshes", true),
+    overlay(NORMALS, "N", "Normals at the vertices of meshes", false),
+    overlay(BACKS, "B", "Where the back of a mesh is seen", false),
 ];
 
 /// An edge.
@@ -57,7 +57,8 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let [wires, normals, backs] = shown;
     let mut marks = Vec::new();
     // Who looks at back sides looks into the mesh.
-    marks.extend(wires.then(|| seen.wires(MOST, !backs)).into_iter().flatten());
+    let nearest = view.nearest.as_deref().filter(|_| !backs);
+    marks.extend(wires.then(|| seen.wires(MOST, nearest)).into_iter().flatten());
     marks.extend(normals.then(|| seen.normals(MOST)).into_iter().flatten());
     marks.extend(backs.then(|| seen.backs(view.cell_px)).into_iter().flatten());
     marks
@@ -94,8 +95,8 @@ impl Seen<'_> {
         Raster::new(&self.eye, self.moment.size_px, CENTRE, &self.synth.mesh.triangles, seen, both)
     }
 
-    /// The edges of what is seen, each once; without the parts that the mesh itself hides, if those are to be left out.
-    fn wires(&self, most: usize, hides: bool) -> Vec<Mark> {
+    /// The edges of what is seen, each once; without the parts that something nearer hides.
+    fn wires(&self, most: usize, nearest: Option<&Depths>) -> Vec<Mark> {
         let triangles = &self.synth.mesh.triangles;
         let step = (3 * triangles.len()).div_ceil(most).max(1);
         let shown = triangles.iter().step_by(step).filter(|triangle| self.both() || self.is_front(triangle));
@@ -106,10 +107,9 @@ impl Seen<'_> {
         edges.sort_unstable();
         edges.dedup();
         let ends = |(from, to): (u32, u32)| [from, to].map(|i| self.world[i as usize].0);
-        let depths = hides.then(|| Depths::new(&self.raster(self.both()), self.moment.size_px));
         let parts = edges.into_iter().filter_map(|edge| deep_line(self.moment, &self.eye, ends(edge)));
-        let parts = parts.flat_map(|line| match &depths {
-            Some(depths) => depths.shown(line),
+        let parts = parts.flat_map(|line| match nearest {
+            Some(nearest) => nearest.shown(line),
             None => vec![line.map(|(at, _)| at)],
         });
         let wire = |points: [Point; 2]| Mark::new(&WIRE, "", Shape::Line { points: points.into(), closed: false });
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn what_faces_away_has_edges_and_normals_only_where_both_sides_are_seen() {
         for (layer, z, edges, normals) in [(FRONT, 4.0, 5, 4), (FRONT, -4.0, 0, 0), (BOTH, -4.0, 5, 4)] {
-            let found = seen(layer, z, |seen| (seen.wires(MOST, true).len(), seen.normals(MOST).len()));
+            let found = seen(layer, z, |seen| (seen.wires(MOST, None).len(), seen.normals(MOST).len()));
             assert_eq!(found, (edges, normals), "{layer} {z}");
         }
     }
@@ -209,7 +209,14 @@ mod tests {
     #[test]
     fn edges_end_where_the_mesh_hides_them() {
         let lengths = |squares: &[(f64, f64, f64)], hides: bool| {
-            let wires = of_squares(squares, FRONT, 4.0, |seen| seen.wires(MOST, hides));
+            let wires = of_squares(squares, FRONT, 4.0, |seen| {
+                let raster = seen.raster(false);
+                let row = |y: usize, columns: Columns, depth: &mut [f64]| {
+                    raster.row(y, columns, depth, &mut vec![NONE; depth.len()]);
+                };
+                let nearest = hides.then(|| Depths::new(seen.moment.size_px, row));
+                seen.wires(MOST, nearest.as_ref())
+            });
             let length = |mark: &Mark| match &mark.shape {
                 Shape::Line { points, .. } => (points[1] - points[0]).hypot(),
                 _ => 0.0,
@@ -229,7 +236,7 @@ mod tests {
 
     #[test]
     fn there_are_never_too_many_and_a_label_says_so() {
-        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3, true), seen.normals(2)));
+        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3, None), seen.normals(2)));
         assert_eq!((wires.len(), normals.len()), (4, 3), "with the labels");
         for (marks, text) in [(wires, "1 of 2 triangles"), (normals, "1 of 2 vertices")] {
             let label = marks.last().map(|mark| mark.shape.clone());

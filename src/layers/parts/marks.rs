@@ -2,10 +2,12 @@
 //! that switch them on. The window, plots and the terminal only draw them.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
 
 use crate::base::oklab::srgb;
+use crate::layers::space::hidden::Depths;
 
 /// An overlay: one switch of the window and of the editor's view menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +20,8 @@ pub struct Overlay {
     pub help: &'static str,
     /// What its marks depend on, and so when they change.
     pub when: When,
+    /// Whether surfaces in space hide its marks.
+    pub hidden: bool,
 }
 
 /// What the marks of an overlay depend on.
@@ -45,6 +49,9 @@ pub struct View {
     pub times: Vec<f64>,
     /// The longest vector of a pixel in the scene, in pixels; filled in when the marks of all layers are collected.
     pub longest_px: f64,
+    /// How near surfaces in space are that may hide marks of a layer, if marks are shown that are hidden; filled in when
+    /// the marks of all layers are collected.
+    pub nearest: Option<Arc<Depths>>,
     /// JSON pointer of what is selected.
     pub selection: Option<String>,
 }

@@ -1,9 +1,8 @@
-//! Which parts of lines on a surface are hidden by it. Depths are looked up in a grid over the frame.
+//! Which parts of lines in space are hidden by surfaces. Depths are looked up in a grid over the frame.
 
 use kurbo::Point;
 use rayon::prelude::*;
 
-use super::raster::{NONE, Raster};
 use crate::base::maths::lerp;
 use crate::layers::parts::moment::Columns;
 
@@ -12,7 +11,9 @@ const MOST: f64 = 500_000.0;
 /// A line is hidden only by what is nearer than it by more than this share of its depth.
 const NEARER: f64 = 1e-3;
 
-/// How far away the farthest surface in and beside each cell of a grid is.
+/// How far away the nearest surfaces are, the farthest of those in and beside each cell of a grid: at its edge a surface
+/// does not hide what is drawn on it.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Depths {
     /// Side of a cell, in pixels.
     side: usize,
@@ -22,14 +23,14 @@ pub struct Depths {
 }
 
 impl Depths {
-    /// Of the nearest surfaces in a frame of this width and height.
-    pub fn new(raster: &Raster, (width, height): (usize, usize)) -> Depths {
+    /// In a frame of this width and height; `row` lowers the depths in these columns of a row to those of surfaces.
+    pub fn new((width, height): (usize, usize), row: impl Fn(usize, Columns, &mut [f64]) + Sync) -> Depths {
         let side = ((width * height) as f64 / MOST).sqrt().ceil().max(1.0) as usize;
         let middles = |length: usize| (0..length).step_by(side).map(move |from| (from + side / 2).min(length - 1));
         let (columns, rows): (Vec<usize>, Vec<usize>) = (middles(width).collect(), middles(height).collect());
         let mut depths = vec![f64::INFINITY; columns.len() * rows.len()];
         let lines = depths.par_chunks_mut(columns.len().max(1)).zip(&rows);
-        lines.for_each(|(depths, &y)| raster.row(y, Columns::Some(&columns), depths, &mut vec![NONE; columns.len()]));
+        lines.for_each(|(depths, &y)| row(y, Columns::Some(&columns), depths));
         let width = columns.len();
         let farthest = |i: usize| {
             let (x, y) = (i % width, i / width);
@@ -37,7 +38,6 @@ impl Depths {
             let near = beside(y, rows.len()).flat_map(|y| beside(x, width).map(move |x| y * width + x));
             near.map(|i| depths[i]).fold(0.0, f64::max)
         };
-        // A line is drawn between the centers of pixels, at which depths are known: beside it is near enough.
         let cells = (0..depths.len()).into_par_iter().map(farthest).collect();
         Depths { side, width, cells }
     }

@@ -14,14 +14,20 @@ const GROUND: &str = "view-ground";
 const CAMERA: &str = "view-camera";
 
 /// The ground and the axes: an overlay of every technique in space.
-pub const GROUND_OVERLAY: Overlay =
-    Overlay { name: GROUND, key: "G", help: "The ground and the axes of the world", when: When::EveryFrame };
+pub const GROUND_OVERLAY: Overlay = Overlay {
+    name: GROUND,
+    key: "G",
+    help: "The ground and the axes of the world",
+    when: When::EveryFrame,
+    hidden: false,
+};
 /// The scene's camera: an overlay of every technique in space.
 pub const CAMERA_OVERLAY: Overlay = Overlay {
     name: CAMERA,
     key: "C",
     help: "What the scene's camera sees, looked at from elsewhere",
     when: When::EveryFrame,
+    hidden: false,
 };
 
 /// A line on the ground.
