@@ -63,7 +63,12 @@ fn materials() -> Materials {
         ("other", waves(50, 40, 3, true)),
         ("mask", waves(96, 64, 4, true)),
     ];
-    Materials { pictures: pictures.map(|(name, picture)| (name.to_owned(), picture)).into(), ..Materials::default() }
+    let frames = (0..5).map(|frame| waves(50, 40, 5 + frame, true)).collect();
+    Materials {
+        pictures: pictures.map(|(name, picture)| (name.to_owned(), picture)).into(),
+        clips: [("clip".to_owned(), Arc::new(Clip { fps: 6.5, frames }))].into(),
+        ..Materials::default()
+    }
 }
 
 fn with(mut a: Value, b: &Value) -> Value {
@@ -102,6 +107,7 @@ fn synth(layers: &[Value]) -> Synth {
 /// Every rule, source and composition.
 fn scenes() -> Vec<(&'static str, Synth)> {
     let other = json!({"sampler": {"image": "other", "offset": [-20.25, -11.5]}});
+    let clip = json!({"sampler": {"clip": "clip", "offset": [-20.25, -11.5]}});
     let mask = json!({"fold": {"rule": "mask", "image": "mask"}});
     let corner = json!({"outline": {"kind": "rectangle", "x": -8.5, "y": -3, "width": 60, "height": 44.5}});
     let own = |zone_fields: Value| synth(&[layer("a", "own", &[zone("z", zone_fields)])]);
@@ -123,6 +129,8 @@ fn scenes() -> Vec<(&'static str, Synth)> {
         ("sampler image", own(other.clone())),
         ("sampler image and cover", own(with(fold("cover"), &other))),
         ("sampler image and fly-over", clear(with(fold("fly-over"), &other))),
+        ("clip", own(clip.clone())),
+        ("clip and cover", clear(with(fold("cover"), &clip))),
         ("zone over the corner", own(with(fold("return"), &corner))),
         ("zones over one another", synth(&[layer("a", "clear", &two_zones)])),
         ("layers over one another", synth(&three_layers)),
@@ -131,7 +139,8 @@ fn scenes() -> Vec<(&'static str, Synth)> {
 
 /// Scenes in which neighboring samplers always read neighboring places, so that no pixel can fall on the other side of
 /// an edge.
-const WITHOUT_SILHOUETTES: &[&str] = &["no zone", "no fold", "mask", "mask, transparent picture", "sampler image"];
+const WITHOUT_SILHOUETTES: &[&str] =
+    &["no zone", "no fold", "mask", "mask, transparent picture", "sampler image", "clip"];
 
 /// The largest difference in any channel, and the share of pixels that differ by more than 2.
 fn difference(a: &Frame, b: &Frame) -> (u8, f64) {

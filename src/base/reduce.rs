@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
+use super::clip::Clip;
 use super::picture::Picture;
 use super::pixels::Rgba;
 
@@ -11,12 +14,13 @@ pub struct Reduced {
     /// How many times smaller on each side; at least 1.
     pub by: usize,
     made: Vec<(Arc<Picture>, Arc<Picture>)>,
+    clips: Vec<(Arc<Clip>, Arc<Clip>)>,
 }
 
 impl Reduced {
     /// No picture yet.
     pub fn new(by: usize) -> Self {
-        Reduced { by, made: Vec::new() }
+        Reduced { by, made: Vec::new(), clips: Vec::new() }
     }
 
     /// The picture made smaller; the same one for the same `Arc`.
@@ -26,6 +30,17 @@ impl Reduced {
         }
         let made = Arc::new(means(picture, self.by));
         self.made.push((picture.clone(), made.clone()));
+        made
+    }
+
+    /// The clip with all its frames made smaller; the same one for the same `Arc`.
+    pub fn clip(&mut self, clip: &Arc<Clip>) -> Arc<Clip> {
+        if let Some((_, made)) = self.clips.iter().find(|(large, _)| Arc::ptr_eq(large, clip)) {
+            return made.clone();
+        }
+        let frames = clip.frames.par_iter().map(|frame| Arc::new(means(frame, self.by))).collect();
+        let made = Arc::new(Clip { fps: clip.fps, frames });
+        self.clips.push((clip.clone(), made.clone()));
         made
     }
 }
@@ -60,5 +75,10 @@ mod tests {
         let small = reduced.picture(&picture);
         assert_eq!((small.texel(0, 0), small.texel(1, 0)), ([2.0; 4], [8.0; 4]));
         assert!(Arc::ptr_eq(&small, &reduced.picture(&picture)));
+        let clip = Arc::new(Clip { fps: 5.0, frames: vec![picture; 3] });
+        let small = reduced.clip(&clip);
+        assert_eq!((small.fps, small.frames.len(), small.size_px()), (5.0, 3, (2, 1)));
+        assert_eq!(small.frames[2].texel(1, 0), [8.0; 4]);
+        assert!(Arc::ptr_eq(&small, &reduced.clip(&clip)));
     }
 }

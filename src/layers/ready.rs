@@ -15,7 +15,7 @@ use super::parts::pass::Pass;
 use super::parts::plan::Plan;
 use super::parts::readout::{Under, VectorField};
 use super::space::fit::Bounds;
-use super::timeline::Wrap;
+use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
@@ -25,6 +25,8 @@ use crate::base::reduce::Reduced;
 pub struct Making<'a> {
     /// What follows the end of the timeline.
     pub wrap: Wrap,
+    /// How long the timeline is, in seconds.
+    pub duration: f64,
     /// The files that layers name.
     pub materials: &'a Materials,
     /// The place in each pixel that is evaluated: its centre, or another for supersampling.
@@ -34,10 +36,10 @@ pub struct Making<'a> {
 }
 
 impl<'a> Making<'a> {
-    /// At the centre of each pixel, without layers as textures.
+    /// At the centre of each pixel, without layers as textures; the timeline is as long as one that is not set.
     pub fn plain(wrap: Wrap, materials: &'a Materials) -> Self {
         static NONE: Textures = Textures::new();
-        Making { wrap, materials, place: CENTRE, textures: &NONE }
+        Making { wrap, duration: Timeline::default().duration, materials, place: CENTRE, textures: &NONE }
     }
 }
 

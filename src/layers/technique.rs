@@ -16,7 +16,7 @@ use super::parts::plan::Program;
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready, Whole};
-use super::timeline::Wrap;
+use super::timeline::{Timeline, Wrap};
 use crate::base::error::Error;
 use crate::base::problem::Problem;
 
@@ -100,7 +100,7 @@ pub trait Technique: Any + Send + Sync {
     }
 
     /// What happens to the layer when time starts over.
-    fn repeat(&self, _wrap: Wrap) -> Repeat {
+    fn repeat(&self, _timeline: &Timeline, _materials: &Materials) -> Repeat {
         Repeat::default()
     }
 

@@ -69,7 +69,8 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     problems.extend(found);
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
-    let loops =
-        render::seams::warnings(scene, || if broken { None } else { render::synth(scene, &materials, None).ok() });
+    let loops = render::seams::warnings(scene, &materials, || {
+        if broken { None } else { render::synth(scene, &materials, None).ok() }
+    });
     Ok((problems, loops))
 }

@@ -53,6 +53,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let seen = synth.as_ref().and_then(|synth| passes::topmost(synth, args.time, pixel));
         let layer = seen.and_then(|i| scene.layers.get(i)).map_or(asked, |layer| layer.technique());
         let making = Making::plain(scene.timeline.wrap, &opened.materials);
+        let making = Making { duration: scene.timeline.duration, ..making };
         let read = layer.probe(&making, pixel, &moment);
         let read = read.map_err(|problem| Error::at(args.scene.display(), problem))?;
         // A layer larger than the first reaches beyond the frame, which shows nothing there.

@@ -15,6 +15,7 @@ use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
 use crate::layers::ready::{Making, Prepared, Whole};
+use crate::layers::timeline::Timeline;
 use crate::scene::Scene;
 
 /// A scene whose parts can be rendered without the rest.
@@ -42,7 +43,8 @@ impl<'a> Bands<'a> {
                 if let Some(texture) = textures.get(layer.technique().name()) {
                     return Ok(Box::new(Whole(texture.layer.clone())) as Box<dyn Prepared>);
                 }
-                let making = Making { wrap: scene.timeline.wrap, materials, place, textures: &textures };
+                let Timeline { wrap, duration, .. } = scene.timeline;
+                let making = Making { wrap, duration, materials, place, textures: &textures };
                 layer.technique().prepare(&making).map_err(|problem| problem.under(&format!("/layers/{i}")))
             };
             scene.layers.iter().enumerate().map(prepare).collect::<Result<Vec<_>, _>>()

@@ -11,6 +11,7 @@ use crate::layers::parts::moment::{CENTRE, Moment};
 use crate::layers::ready::{Making, Ready, Texture, Textures};
 #[cfg(feature = "window")]
 use crate::layers::space::camera::Camera;
+use crate::layers::timeline::Timeline;
 use crate::scene::{FRAME, Scene};
 
 pub mod bands;
@@ -90,7 +91,8 @@ fn no_layers() -> Problem {
 
 fn synth_at(scene: &Scene, making: (&Materials, &Textures, Vec2), previous: Option<&Synth>) -> Result<Synth, Problem> {
     let (materials, textures, place) = making;
-    let making = Making { wrap: scene.timeline.wrap, materials, place, textures };
+    let Timeline { wrap, duration, .. } = scene.timeline;
+    let making = Making { wrap, duration, materials, place, textures };
     let ready = |(i, layer): (usize, &Layer)| {
         if let Some(texture) = textures.get(layer.technique().name()) {
             return Ok(texture.layer.clone());
@@ -116,7 +118,8 @@ fn textures(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> R
     while let Some(next) = left.iter().position(|&i| scene.shown_by(i).iter().all(|(shown, _)| !left.contains(shown))) {
         let i = left.swap_remove(next);
         let layer = scene.layers[i].technique();
-        let making = Making { wrap: scene.timeline.wrap, materials, place: CENTRE, textures: &made };
+        let Timeline { wrap, duration, .. } = scene.timeline;
+        let making = Making { wrap, duration, materials, place: CENTRE, textures: &made };
         let before = previous.and_then(|synth| synth.layers.get(i)).map(|before| &**before);
         let ready = layer.synth(&making, before).map_err(|problem| problem.under(&format!("/layers/{i}")))?;
         let picture = layer.frame_of().and_then(|name| materials.pictures.get(name));

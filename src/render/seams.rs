@@ -6,6 +6,8 @@ use std::borrow::Borrow;
 use super::{Synth, cpu};
 use crate::base::pixels::encode;
 use crate::base::problem::Problem;
+use crate::layers::Layer;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::scene::Scene;
 
@@ -17,11 +19,16 @@ const SEEN: u8 = 8;
 const ONE_IN: usize = 500;
 
 /// A warning for everything that visibly jumps in the loop; `synth` is only called if something may jump.
-pub fn warnings<S: Borrow<Synth>>(scene: &Scene, synth: impl FnOnce() -> Option<S>) -> Vec<Problem> {
+pub fn warnings<S: Borrow<Synth>>(
+    scene: &Scene,
+    materials: &Materials,
+    synth: impl FnOnce() -> Option<S>,
+) -> Vec<Problem> {
     if scene.timeline.frames() < 2 {
         return Vec::new();
     }
-    let layers: Vec<Repeat> = scene.layers.iter().map(|layer| layer.technique().repeat(scene.timeline.wrap)).collect();
+    let repeat = |layer: &Layer| layer.technique().repeat(&scene.timeline, materials);
+    let layers: Vec<Repeat> = scene.layers.iter().map(repeat).collect();
     if layers.iter().all(|layer| layer.snaps.is_empty()) {
         return Vec::new();
     }
@@ -79,8 +86,9 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::base::clip::Clip;
+    use crate::base::picture::Picture;
     use crate::base::pixels::Frame;
-    use crate::layers::parts::materials::Materials;
 
     fn found(zone: serde_json::Value, wrap: &str) -> Vec<Problem> {
         let mut whole = json!({
@@ -95,8 +103,14 @@ mod tests {
         .unwrap();
         let cells = (0..50 * 30).map(|i| [(i % 50 * 5) as u8, (i / 50 * 8) as u8, 90, 255]).collect();
         let picture = Arc::new(Frame::from_cells(50, 30, cells).to_linear().into());
-        let materials = Materials { pictures: [("p".to_owned(), picture)].into(), ..Materials::default() };
-        warnings(&scene, || crate::render::synth(&scene, &materials, None).ok())
+        let shade = |k: usize| Arc::new(Picture::filled(50, 30, [k as f32 / 10.0, 0.0, 0.0, 1.0]));
+        let clip = Arc::new(Clip { fps: 5.0, frames: (0..7).map(shade).collect() });
+        let materials = Materials {
+            pictures: [("p".to_owned(), picture)].into(),
+            clips: [("c".to_owned(), clip)].into(),
+            ..Materials::default()
+        };
+        warnings(&scene, &materials, || crate::render::synth(&scene, &materials, None).ok())
     }
 
     #[test]
@@ -109,6 +123,11 @@ mod tests {
                 &["/layers/0/zones/0: warning: the loop snaps", "from 1 to 0", "cosine", "ping-pong"][..],
             ),
             (json!({ "shift": 0.25 }), "repeat", &["at t = 0.75"]),
+            (
+                json!({ "position": { "function": "cosine" }, "sampler": { "clip": "c" } }),
+                "repeat",
+                &["/layers/0/zones/0/sampler: warning: the loop snaps", "frame 3 of 7", "take 1.4 s"],
+            ),
             (
                 json!({ "speed": 1.5, "position": { "function": "cosine" } }),
                 "repeat",

@@ -34,7 +34,8 @@ impl Edit {
         {
             return turn(document, parent, holder, (last.as_str(), name, variant));
         }
-        (write(document, path, value), None)
+        let others = others(document, path, &value).map(|other| Edit::remove(&other));
+        (Edit::all(std::iter::once(write(document, path, value)).chain(others)), None)
     }
 
     /// Adds `item` to the list at `list`, before the one at `index` (or at the end).
@@ -119,6 +120,16 @@ fn lost(tag: &str, old: &Value, new: &Value) -> Option<String> {
     }
 }
 
+/// The places that are written and that a `value` at `path` excludes.
+fn others<'a>(document: &'a Document, path: &'a str, value: &Value) -> impl Iterator<Item = String> + 'a {
+    let (holder, last) = pointer::split(path).filter(|_| !value.is_null()).unwrap_or_default();
+    let place = Place::of(document.json(), holder);
+    let either = place.into_iter().flat_map(|place| place.shape.either());
+    let excluded = either.clone().any(|name| name == last).then_some(either).into_iter().flatten();
+    let others = excluded.filter(move |name| *name != last).map(move |name| pointer::join(holder, name));
+    others.filter(|other| document.json().pointer(other).is_some())
+}
+
 /// Writes `value` at `path`, creating parents that are not written from their defaults.
 pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
     let json = document.json();
@@ -134,7 +145,12 @@ pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
             let default = place.value.filter(|value| !value.is_null());
             let mut holder = default.map_or_else(|| fresh.value(place.shape), |default| barest(place.shape, default));
             match &mut holder {
-                Value::Object(map) => drop(map.insert(last, value)),
+                Value::Object(map) => {
+                    if place.shape.either().any(|name| name == last) {
+                        place.shape.either().for_each(|other| drop(map.shift_remove(other)));
+                    }
+                    map.insert(last, value);
+                }
                 Value::Array(items) => match pointer::index(&last).and_then(|index| items.get_mut(index)) {
                     Some(item) => *item = value,
                     None => items.push(value),
@@ -285,7 +301,7 @@ impl<'a> Fresh<'a> {
 
     /// The required fields of an object or of a variant.
     fn object(&self, shape: Shape, variant: &str) -> Value {
-        let required = shape.required().filter_map(|name| {
+        let required = shape.required().chain(shape.either().take(1)).filter_map(|name| {
             let field = shape.property(None, name)?;
             let start = || (self.kind?.starts.start)(variant, name, self.bounds);
             let start = shape.constant(name).cloned().or_else(start);

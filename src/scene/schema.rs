@@ -246,6 +246,11 @@ impl Shape {
         self.text("reference")
     }
 
+    /// The fields of an object of which exactly one is written; a new object has the first.
+    pub fn either(self) -> impl Iterator<Item = &'static str> + Clone {
+        self.body.get("either").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
+    }
+
     /// The names of the numbers of a pair, if they have any: x and y for anything in pixels.
     pub fn column(self, index: usize) -> Option<&'static str> {
         match self.meta("columns") {

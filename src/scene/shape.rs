@@ -46,7 +46,8 @@ fn changed_fits(shape: Shape, value: &Value, change: &Change) -> bool {
                 (Some(value), Some(field)) => changed_fits(field, value, change),
                 (Some(_), None) => false,
             };
-            branch.required().all(|name| map.contains_key(name)) && fields.iter().all(field)
+            let whole = branch.required().all(|name| map.contains_key(name)) && one_of(branch, map).is_ok();
+            whole && fields.iter().all(field)
         }
         _ => fits(shape, value),
     }
@@ -179,6 +180,9 @@ impl Walk {
             let hint = field.map(|field| format!("{}; {}", field.help().trim_end_matches('.'), expected(field)));
             self.report(format!("{} is missing", quoted(name)), hint);
         }
+        if let Err((message, hint)) = one_of(shape, map) {
+            self.report(message, Some(hint));
+        }
         for (name, value) in map {
             match shape.property(None, name) {
                 Some(_) if shape.constant(name).is_some() => {}
@@ -188,6 +192,18 @@ impl Walk {
                 }),
             }
         }
+    }
+}
+
+/// Whether an object has exactly one of the fields that exclude each other; else what is wrong, and the cure.
+fn one_of(shape: Shape, map: &Map<String, Value>) -> Result<(), (String, String)> {
+    let all: Vec<String> = shape.either().map(quoted).collect();
+    let written: Vec<String> =
+        shape.either().filter(|name| map.get(*name).is_some_and(|v| !v.is_null())).map(quoted).collect();
+    match written.as_slice() {
+        [] if !all.is_empty() => Err((format!("{} is missing", all.join(" or ")), "write one of them".into())),
+        [] | [_] => Ok(()),
+        several => Err((format!("{} do not go together", several.join(" and ")), "remove all but one".into())),
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::*;
+use crate::base::clip::Clip;
 use crate::base::picture::{Channels, Picture, SRGB_8, Samples};
 use crate::files::outputs::Guard;
 use crate::layers::parts::materials::Materials;
@@ -55,6 +56,21 @@ fn written(scene: &Scene, materials: &Materials, depth: Depth) -> (tempfile::Tem
     let synth = render::synth(scene, materials, None).unwrap();
     write(scene, &synth, depth, &place(&dir.path().join("out")), &mut |_, _| Ok(())).unwrap();
     (dir, synth)
+}
+
+#[test]
+fn a_clip_is_refused_with_its_place() {
+    let mut moving = zone("water");
+    moving["sampler"] = json!({ "clip": "falls" });
+    let scene = scene("repeat", vec![zone("zone"), moving]);
+    let frame = Arc::new(Picture::filled(4, 4, [0.5; 4]));
+    let clips = [("falls".to_owned(), Arc::new(Clip { fps: 25.0, frames: vec![frame; 3] }))].into();
+    let synth = render::synth(&scene, &Materials { clips, ..materials() }, None).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let place = place(&dir.path().join("out"));
+    let told = write(&scene, &synth, Depth::Float, &place, &mut |_, _| Ok(())).err().unwrap().to_string();
+    assert!(told.starts_with("layer \"face\", zone \"water\": reads the clip \"falls\", and textures"), "{told}");
+    assert!(!dir.path().join("out").exists(), "nothing is written");
 }
 
 #[test]

@@ -69,7 +69,11 @@ pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
             let at = format!("/zones/{i}/fold/image");
             uses.push(Use { at, of: Of::Name(List::Images, image), what: What::Mask { on: &layer.image } });
         }
-        uses.extend(zone.sampler.iter().map(|sampler| picture(format!("/zones/{i}/sampler/image"), &sampler.image)));
+        let image = zone.sampler.as_ref().and_then(|sampler| sampler.image.as_deref());
+        uses.extend(image.map(|image| picture(format!("/zones/{i}/sampler/image"), image)));
+        let clip =
+            |clip| Use { at: format!("/zones/{i}/sampler/clip"), of: Of::Name(List::Clips, clip), what: What::Clip };
+        uses.extend(zone.clip().map(clip));
         for (j, tool) in zone.motion.iter().enumerate() {
             if let Some(path) = tool.file() {
                 uses.push(Use { at: format!("/zones/{i}/motion/{j}/path"), of: Of::Path(path), what: What::Vectors });
@@ -156,7 +160,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
         let hint = "remove either the fold or the sampler";
         problems.push(Problem::error("/fold", "a mask and a sampler image do not go together").hint(hint));
     }
-    if zone.motion.iter().all(|tool| matches!(tool, Tool::StillBorder { .. })) {
+    if zone.motion.iter().all(|tool| matches!(tool, Tool::StillBorder { .. })) && zone.clip().is_none() {
         problems.push(Problem::warning("/motion", "nothing moves: no tool gives a jump vector").hint("add a point"));
     }
     problems.extend(motion(zone));

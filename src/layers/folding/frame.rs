@@ -3,7 +3,8 @@
 use kurbo::{Point, Vec2};
 
 use super::field::Field;
-use super::synth::{Source, Synth, ZoneSynth};
+use super::synth::{Synth, ZoneSynth};
+use crate::base::picture::Picture;
 use crate::base::pixels::{Rgba, over};
 use crate::layers::parts::moment::Columns;
 use crate::layers::ready::Still;
@@ -11,38 +12,50 @@ use crate::layers::ready::Still;
 /// A picture layer at one time.
 pub struct Frame<'a> {
     synth: &'a Synth,
-    /// The place along the jump paths of each zone.
-    s: Vec<f64>,
+    /// The zones, as they are then.
+    zones: Vec<Shown<'a>>,
+}
+
+/// A zone at one time.
+struct Shown<'a> {
+    zone: &'a ZoneSynth,
+    /// The place along its jump paths.
+    s: f64,
+    /// What its samplers read.
+    picture: &'a Picture,
 }
 
 impl<'a> Frame<'a> {
     /// The layer at scene time `t`.
     pub fn new(synth: &'a Synth, t: f64) -> Self {
-        Frame { synth, s: synth.zones.iter().map(|zone| zone.clock.s(t)).collect() }
+        let shown = |zone: &'a ZoneSynth| Shown { zone, s: zone.clock.s(t), picture: zone.source.picture_at(t) };
+        Frame { synth, zones: synth.zones.iter().map(shown).collect() }
     }
 
-    /// The zones that meet row `y`, in order, each with its s.
-    fn zones(&self, y: usize) -> impl Iterator<Item = (&ZoneSynth, f64)> {
-        let meets = move |zone: &ZoneSynth| (zone.field.y0..zone.field.y0 + zone.field.inside.height()).contains(&y);
-        self.synth.zones.iter().zip(self.s.iter().copied()).filter(move |(zone, _)| meets(zone))
+    /// The zones that meet row `y`, in order.
+    fn zones(&self, y: usize) -> impl Iterator<Item = &Shown<'_>> {
+        let meets = move |field: &Field| (field.y0..field.y0 + field.inside.height()).contains(&y);
+        self.zones.iter().filter(move |shown| meets(&shown.zone.field))
     }
 
     fn all(&self, y: usize, out: &mut [Rgba]) {
         self.synth.picture.row(0, y, out);
-        for (zone, s) in self.zones(y) {
+        for shown in self.zones(y) {
+            let field = &shown.zone.field;
             // A frame may be smaller than the picture.
-            let end = (zone.field.x0 + zone.field.inside.width()).min(out.len());
-            let Some(beneath) = out.get_mut(zone.field.x0..end) else { continue };
-            beneath.iter_mut().enumerate().for_each(|(column, still)| zone_pixel(zone, s, (column, y), still));
+            let end = (field.x0 + field.inside.width()).min(out.len());
+            let Some(beneath) = out.get_mut(field.x0..end) else { continue };
+            beneath.iter_mut().enumerate().for_each(|(column, still)| zone_pixel(shown, (column, y), still));
         }
     }
 
     fn some(&self, y: usize, columns: &[usize], out: &mut [Rgba]) {
         out.iter_mut().zip(columns).for_each(|(out, &x)| *out = self.synth.picture.texel(x, y));
-        for (zone, s) in self.zones(y) {
-            let within = zone.field.x0..zone.field.x0 + zone.field.inside.width();
+        for shown in self.zones(y) {
+            let field = &shown.zone.field;
+            let within = field.x0..field.x0 + field.inside.width();
             let covered = out.iter_mut().zip(columns).filter(|(_, x)| within.contains(*x));
-            covered.for_each(|(out, &x)| zone_pixel(zone, s, (x - zone.field.x0, y), out));
+            covered.for_each(|(out, &x)| zone_pixel(shown, (x - field.x0, y), out));
         }
     }
 }
@@ -65,14 +78,14 @@ impl Still for Frame<'_> {
 }
 
 /// Draws the pixel in column `column` of the zone's box, row `y` of the picture, over `still`, the color beneath.
-fn zone_pixel(zone: &ZoneSynth, s: f64, (column, y): (usize, usize), still: &mut Rgba) {
-    let field = &*zone.field;
+fn zone_pixel(zone: &Shown, (column, y): (usize, usize), still: &mut Rgba) {
+    let field = &*zone.zone.field;
     let i = (y - field.y0) * field.inside.width() + column;
     if field.inside.cells()[i]
-        && let Some(e) = effective(field, i, s)
+        && let Some(e) = effective(field, i, zone.s)
     {
         let q = Point::new((field.x0 + column) as f64 + 0.5, y as f64 + 0.5);
-        *still = shown(&zone.source, q, jump(field, i) * e, *still);
+        *still = shown(zone, q, jump(field, i) * e, *still);
     }
 }
 
@@ -91,8 +104,9 @@ fn jump(field: &Field, i: usize) -> Vec2 {
 }
 
 /// The color of pixel `q` when its sampler has `moved` away from it; `still` is the color beneath.
-fn shown(source: &Source, q: Point, moved: Vec2, still: Rgba) -> Rgba {
+fn shown(zone: &Shown, q: Point, moved: Vec2, still: Rgba) -> Rgba {
+    let source = &zone.zone.source;
     let x = q + source.offset + moved;
-    let moving = source.picture.read(x.x, x.y, source.beyond);
+    let moving = zone.picture.read(x.x, x.y, source.beyond);
     if source.over { over(moving, still) } else { moving }
 }

@@ -49,7 +49,7 @@ use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready};
 use super::technique::{Bundle, Checked, Count, Counted, Kind, Starts, Technique, Template, Turned};
-use super::timeline::Wrap;
+use super::timeline::{Timeline, Wrap};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -142,8 +142,8 @@ impl Technique for PictureLayer {
         pick::pick(self, at, reach_px)
     }
 
-    fn repeat(&self, wrap: Wrap) -> Repeat {
-        seam::repeat(self, wrap)
+    fn repeat(&self, timeline: &Timeline, materials: &Materials) -> Repeat {
+        seam::repeat(self, timeline, materials)
     }
 
     fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {

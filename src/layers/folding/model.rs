@@ -44,7 +44,7 @@ pub struct Zone {
     /// Where one part slides over another; none: every sampler is active.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fold: Option<Fold>,
-    /// The picture that samplers read; none: the layer's own.
+    /// The picture or the clip that samplers read; none: the layer's own picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampler: Option<Sampler>,
     /// Passes in one timeline; negative runs backwards.
@@ -62,19 +62,30 @@ pub struct Zone {
 }
 
 impl Zone {
+    /// The clip that its samplers read.
+    pub fn clip(&self) -> Option<&str> {
+        self.sampler.as_ref()?.clip.as_deref()
+    }
+
     /// The clock of its samplers.
     pub fn clock(&self, wrap: Wrap) -> Clock {
         Clock { position: self.position.clone(), speed: self.speed, shift: self.shift, wrap }
     }
 }
 
-/// The picture that samplers read instead of the layer's own; transparent beyond its edge.
+/// The picture or the clip that samplers read instead of the layer's own picture; transparent beyond its edge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("either" = ["image", "clip"]))]
 pub struct Sampler {
     /// Name of the picture, one of the scene's images.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("reference" = "images"))]
-    pub image: String,
+    pub image: Option<String>,
+    /// Name of the clip, one of the scene's clips, in place of a picture: its frame at the scene time is read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("reference" = "clips"))]
+    pub clip: Option<String>,
     /// Added to where every sampler reads.
     #[serde(default)]
     #[schemars(extend("unit" = "px"))]

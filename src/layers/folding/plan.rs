@@ -71,7 +71,7 @@ fn zone(zone: &ZoneSynth, t: f64) -> Draw {
             Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
             Bind::Upload(field.clone(), 0),
             Bind::Upload(field.clone(), 1),
-            Bind::Upload(source.picture.clone(), 0),
+            Bind::Upload(source.picture_at(t).clone(), 0),
         ],
         blend: if source.over { Blend::Over } else { Blend::Replace },
         vertices: 3,

@@ -30,6 +30,8 @@ pub struct Probe {
     pub active: bool,
     /// Where it reads (or would read), in pixels of the sampler image.
     pub read: Point,
+    /// The frame that it reads, if that is one of a clip.
+    pub frame: Option<usize>,
     /// The stretches of s in [0, 1] in which the sampler is active, ascending.
     pub active_parts: Vec<(f64, f64)>,
 }
@@ -59,9 +61,10 @@ pub fn probe(
             .pop()
             .unwrap_or_default();
         if pixel.inside {
-            let source = source(layer, index, &own, materials)?;
+            let source = source(layer, index, &own, making)?;
             let clock = zone.clock(wrap);
-            return Ok(Some(at(zone, &pixel, &clock, centre + source.offset, time)));
+            let frame = source.clip.as_ref().map(|playing| playing.frame_at(time));
+            return Ok(Some(Probe { frame, ..at(zone, &pixel, &clock, centre + source.offset, time) }));
         }
     }
     Ok(None)
@@ -73,7 +76,7 @@ pub fn read_out(probe: Option<Probe>) -> ReadOut {
     let Some(probe) = probe else {
         return ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None };
     };
-    let entries = vec![
+    let mut entries = vec![
         entry("zone", "zone", Value::Of(Some(probe.zone))),
         entry("jump", "jump", Value::Vector(probe.jump)),
         entry("thresholds", "thresholds", Value::List(probe.thresholds.clone())),
@@ -83,6 +86,7 @@ pub fn read_out(probe: Option<Probe>) -> ReadOut {
         entry("active", "active", Value::Flag { on: probe.active, off: "still" }),
         entry("read", "reads", Value::Place(probe.read)),
     ];
+    entries.extend(probe.frame.map(|frame| entry("frame", "frame", Value::Index(frame))));
     let points = vec![("s", probe.s), ("e", probe.e)];
     ReadOut { entries, axis: Some(Axis { stretches: probe.active_parts, ticks: probe.thresholds, points }) }
 }
@@ -109,6 +113,7 @@ fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Pr
         e,
         active: effective.is_some(),
         read: origin + pixel.jump * e,
+        frame: None,
     }
 }
 

@@ -20,6 +20,9 @@ fn zone(zone: &ZoneSynth, pictures: &mut Reduced) -> Option<ZoneSynth> {
     let mut small = zone.clone();
     small.field = Arc::new(field(&zone.field, factor)?);
     small.source.picture = pictures.picture(&zone.source.picture);
+    if let Some(playing) = &mut small.source.clip {
+        playing.clip = pictures.clip(&playing.clip);
+    }
     small.source.offset = zone.source.offset / factor as f64;
     Some(small)
 }

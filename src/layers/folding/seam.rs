@@ -4,14 +4,21 @@
 use super::model::{PictureLayer, Zone};
 use super::position::{Pieces, Position};
 use super::tools::Tool;
+use crate::base::clip::Clip;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
-use crate::layers::timeline::Wrap;
+use crate::layers::timeline::{Timeline, Wrap};
 
 /// The smallest jump in s that counts.
 const LEAST: f64 = 0.01;
 
-/// How a layer repeats: the first jump of each zone, and the speeds of the zones whose passes end as they begin.
-pub fn repeat(layer: &PictureLayer, wrap: Wrap) -> Repeat {
+/// So close to its end, in frames, a clip has ended.
+const CLOSE_FRAMES: f64 = 1e-3;
+
+/// How a layer repeats: the first jump of each zone, clips that do not end with the timeline, and the speeds of the zones
+/// whose passes end as they begin.
+pub fn repeat(layer: &PictureLayer, timeline: &Timeline, materials: &Materials) -> Repeat {
+    let wrap = timeline.wrap;
     let closing = layer.zones.iter().filter(|zone| closes(&zone.position, wrap));
     let speeds = closing.map(|zone| zone.speed).collect();
     let round = |s: f64| (s * 1000.0).round() / 1000.0;
@@ -26,7 +33,24 @@ pub fn repeat(layer: &PictureLayer, wrap: Wrap) -> Repeat {
             needs_time_alone: closes(&zone.position, wrap),
         })
     });
-    Repeat { snaps: snaps.collect(), speeds }
+    let clips = layer.zones.iter().enumerate().filter_map(|(i, zone)| {
+        let (what, cure) = cut(materials.clips.get(zone.clip()?)?, timeline)?;
+        let bounds = zone.outline.polygon().bounds();
+        Some(Snap { path: format!("/zones/{i}/sampler"), bounds, time: 1.0, what, cure, needs_time_alone: false })
+    });
+    Repeat { snaps: snaps.chain(clips).collect(), speeds }
+}
+
+/// What jumps, and its cure, if a timeline that is played in a loop ends while a clip is under way.
+fn cut(clip: &Clip, timeline: &Timeline) -> Option<(String, String)> {
+    let count = clip.frames.len();
+    let passes = timeline.duration * clip.fps / count as f64;
+    if timeline.wrap == Wrap::Once || (passes - passes.round()).abs() * count as f64 <= CLOSE_FRAMES {
+        return None;
+    }
+    let what = format!("the clip has come to frame {} of {count}, and begins again", clip.frame_at(timeline.duration));
+    let whole = passes.round().max(1.0) * count as f64 / clip.fps;
+    Some((what, format!("let the timeline take {} s, as the clip does", (whole * 1000.0).round() / 1000.0)))
 }
 
 /// The first jump of a zone while the timeline is played in a loop: its scene time, and s before and after. `None` if
@@ -108,6 +132,25 @@ mod tests {
         ] {
             let found = snap(&zone(position, speed, shift), wrap).map(|(time, _)| (time * 1e9).round() / 1e9);
             assert_eq!(found, time, "{position} {wrap:?} {speed} {shift}");
+        }
+    }
+
+    #[test]
+    fn a_clip_that_is_under_way_at_the_end_is_cut() {
+        use crate::base::picture::Picture;
+        let frame = std::sync::Arc::new(Picture::filled(1, 1, [0.0; 4]));
+        let clip = Clip { fps: 5.0, frames: vec![frame; 10] };
+        for (duration, wrap, cure) in [
+            (2.0, Wrap::Repeat, None),
+            (6.0, Wrap::PingPong, None),
+            (2.2, Wrap::Once, None),
+            (2.2, Wrap::Repeat, Some("take 2 s")),
+            (3.5, Wrap::PingPong, Some("take 4 s")),
+            (0.5, Wrap::Repeat, Some("take 2 s")),
+        ] {
+            let found = cut(&clip, &Timeline { duration, wrap, ..Timeline::default() });
+            assert_eq!(found.is_some(), cure.is_some(), "{duration} {wrap:?}: {found:?}");
+            assert!(cure.is_none_or(|cure| found.as_ref().unwrap().1.contains(cure)), "{found:?}");
         }
     }
 }

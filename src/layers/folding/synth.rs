@@ -6,10 +6,11 @@ use std::sync::Arc;
 use kurbo::Vec2;
 
 use super::field::{self, Field, Inputs, Prepared};
-use super::model::{PictureLayer, Zone};
+use super::model::{PictureLayer, Sampler, Zone};
 use super::outline::vector;
 use super::position::Clock;
 use crate::base::budget::Share;
+use crate::base::clip::Clip;
 use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;
@@ -46,8 +47,10 @@ pub struct ZoneSynth {
 /// What the samplers of a zone read, and how it is blended with what is beneath.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// The sampler image: the layer's own picture, a named one, or a mask.
+    /// The sampler image: the layer's own picture, a named one, a mask, or the first frame of a clip.
     pub picture: Arc<Picture>,
+    /// The clip that it is the first frame of.
+    pub clip: Option<Playing>,
     /// Added to where every sampler reads, in pixels.
     pub offset: Vec2,
     /// The result of a read beyond the edge.
@@ -55,6 +58,30 @@ pub struct Source {
     /// Whether the read is drawn over what is beneath (a named image or a mask) or replaces it (the layer's own
     /// picture).
     pub over: bool,
+}
+
+/// A clip on the timeline of its scene.
+#[derive(Clone, Debug)]
+pub struct Playing {
+    /// The clip; its frames are of one size.
+    pub clip: Arc<Clip>,
+    /// How long the timeline is, in seconds.
+    pub duration: f64,
+}
+
+impl Playing {
+    /// The number of the frame that is read at scene time `t`.
+    pub fn frame_at(&self, t: f64) -> usize {
+        self.clip.frame_at(t * self.duration)
+    }
+}
+
+impl Source {
+    /// What samplers read at scene time `t`.
+    pub fn picture_at(&self, t: f64) -> &Arc<Picture> {
+        let frame = self.clip.as_ref().and_then(|playing| playing.clip.frames.get(playing.frame_at(t)));
+        frame.unwrap_or(&self.picture)
+    }
 }
 
 /// Prepares a layer for rendering at any time. Fields of `previous` with equal inputs are reused.
@@ -75,7 +102,7 @@ pub fn synth(layer: &PictureLayer, making: &Making, previous: Option<&Synth>) ->
     materials.expect(to_make.map(|(zone, _)| field::pixels(zone, size)).sum());
     let mut zones = Vec::with_capacity(layer.zones.len());
     for (index, (zone, inputs)) in layer.zones.iter().zip(inputs).enumerate() {
-        let source = source(layer, index, &picture, materials)?;
+        let source = source(layer, index, &picture, making)?;
         let made = match known(zone, &inputs) {
             Some(known) => Some((known.field.clone(), known.share.clone())),
             None => Field::new(zone, &inputs, materials)
@@ -123,7 +150,7 @@ impl PreparedLayer {
         let picture = materials.picture(&layer.image, "/image")?;
         let size = (picture.width(), picture.height());
         let ready = |(index, zone): (usize, &Zone)| {
-            let source = source(layer, index, &picture, materials)?;
+            let source = source(layer, index, &picture, making)?;
             let inputs = Inputs::new(zone, size, place);
             let prepared = Prepared::new(zone, &inputs, materials);
             let prepared = prepared.map_err(|problem| problem.under(&format!("/zones/{index}")))?;
@@ -170,22 +197,25 @@ fn reads_file(zone: &Zone) -> bool {
 ///
 /// # Errors
 /// If a picture that the zone names is not among the materials; the problem's path is relative to the layer.
-pub fn source(
-    layer: &PictureLayer,
-    index: usize,
-    own: &Arc<Picture>,
-    materials: &Materials,
-) -> Result<Source, Problem> {
+pub fn source(layer: &PictureLayer, index: usize, own: &Arc<Picture>, making: &Making) -> Result<Source, Problem> {
+    let materials = making.materials;
+    let own = Source { picture: own.clone(), clip: None, offset: Vec2::ZERO, beyond: Beyond::Clamp, over: false };
     let zone = &layer.zones[index];
     if let Some(image) = zone.fold.as_ref().and_then(|fold| fold.mask()) {
         let picture = materials.mask(image, &layer.image, &format!("/zones/{index}/fold/image"))?;
-        return Ok(Source { picture, offset: Vec2::ZERO, beyond: Beyond::Clamp, over: true });
+        return Ok(Source { picture, over: true, ..own });
     }
-    Ok(match &zone.sampler {
-        None => Source { picture: own.clone(), offset: Vec2::ZERO, beyond: Beyond::Clamp, over: false },
-        Some(sampler) => {
-            let picture = materials.picture(&sampler.image, &format!("/zones/{index}/sampler/image"))?;
-            Source { picture, offset: vector(sampler.offset), beyond: Beyond::Transparent, over: true }
+    let Some(Sampler { image, clip, offset }) = &zone.sampler else { return Ok(own) };
+    let named = Source { offset: vector(*offset), beyond: Beyond::Transparent, over: true, ..own };
+    let at = |field: &str| format!("/zones/{index}/sampler{field}");
+    Ok(match (image, clip) {
+        (Some(image), _) => Source { picture: materials.picture(image, &at("/image"))?, ..named },
+        (None, Some(clip)) => {
+            let clip = materials.clip(clip, &at("/clip"))?;
+            let first =
+                clip.frames.first().cloned().ok_or_else(|| Problem::error(at("/clip"), "the clip has no frames"))?;
+            Source { picture: first, clip: Some(Playing { clip, duration: making.duration }), ..named }
         }
+        (None, None) => return Err(Problem::error(at(""), "neither an image nor a clip is named")),
     })
 }

@@ -6,13 +6,16 @@ use kurbo::Vec2;
 
 use super::model::PictureLayer;
 use super::{frame::Frame, probe, synth};
+use crate::base::clip::Clip;
 use crate::base::picture::Picture;
 use crate::base::pixels::{Grid, Rgba};
 use crate::base::progress::Progress;
+use crate::base::reduce::Reduced;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Columns;
-use crate::layers::ready::Making;
-use crate::layers::ready::Still;
+use crate::layers::parts::moment::Moment;
+use crate::layers::ready::{Making, Ready, Still};
+use crate::layers::technique::Technique;
 use crate::layers::timeline::Wrap;
 
 /// The variants of a tagged type, from its schema.
@@ -35,6 +38,8 @@ fn materials() -> Materials {
     mask.cells_mut().iter_mut().enumerate().filter(|(i, _)| i % 40 >= 20).for_each(|(_, c)| *c = [0.0; 4]);
     materials.pictures.insert("mask".into(), Arc::new(mask.into()));
     materials.pictures.insert("dot".into(), Arc::new(Picture::filled(1, 1, [0.5, 0.5, 0.5, 0.5])));
+    let frames = (0..4).map(|k| Arc::new(Picture::filled(20, 20, [k as f32 / 10.0, 0.0, 0.0, 1.0]))).collect();
+    materials.clips.insert("clip".into(), Arc::new(Clip { fps: 4.0, frames }));
     materials
 }
 
@@ -181,4 +186,35 @@ fn a_synthesis_counts_the_pixels_that_are_not_taken_over() {
     let again = Materials { progress: progress(&told), ..counting };
     synth::synth(&layer, &Making::plain(Wrap::Once, &again), Some(&first)).unwrap();
     assert!(told.lock().unwrap().is_empty(), "nothing was left to do");
+}
+
+#[test]
+fn a_clip_is_read_frame_by_frame() {
+    // 3 s at 4 frames a second: the four frames three times.
+    let layer = layer(&zone("[2,0]", r#","sampler":{"clip":"clip","offset":[0,0]}"#));
+    let materials = materials();
+    let making = Making { duration: 3.0, ..Making::plain(Wrap::Repeat, &materials) };
+    let synth = synth::synth(&layer, &making, None).unwrap();
+    let bands = layer.prepare(&making).unwrap();
+    let band = bands.part(0..40, 8..9, &materials).unwrap();
+    let small = synth.reduced(&mut Reduced::new(2));
+    let still = Arc::new(synth.clone()).unmoved();
+    let seen = |layer: &dyn Ready, t: f64, (x, y): (usize, usize)| {
+        let mut row = vec![[0.0; 4]; 40];
+        layer.at(&Moment { t, size_px: (40, 30), eye: None }).row(y, Columns::All, &mut row);
+        row[x][0]
+    };
+    for (t, frame) in [(0.0, 0), (1.0 / 12.0, 1), (0.2, 2), (0.25, 3), (1.0 / 3.0, 0), (0.99, 3), (1.0, 0)] {
+        let red = frame as f32 / 10.0;
+        assert_eq!(seen(&synth, t, (8, 8)), red, "at {t}");
+        assert_eq!(seen(&*band, t, (8, 8)), red, "at {t}, in a band");
+        assert_eq!(seen(&*small, t, (4, 4)), red, "at {t}, reduced");
+        assert_eq!(seen(&*still, t, (8, 8)), 0.08, "at {t}, still");
+        assert_eq!(seen(&synth, t, (22, 8)), 0.22, "at {t}: beyond the clip's edge");
+        let probe = probe::probe(&layer, &making, (8, 8), t).unwrap().unwrap();
+        assert_eq!(probe.frame, Some(frame), "at {t}");
+    }
+    let gone = Materials { clips: Default::default(), ..materials.clone() };
+    let problem = synth::synth(&layer, &Making { materials: &gone, ..making }, None).unwrap_err();
+    assert_eq!(problem.path, "/zones/0/sampler/clip");
 }

@@ -138,7 +138,7 @@ fn write(
     let mut renderer = Renderer::new(args, opened, (show.width, show.height), todo.len())?;
     let _encoding = opened.materials.budget.take(target.memory(&show), &show.place)?;
     if todo.len() > 1 {
-        let loops = seams::warnings(opened.document.scene(), || renderer.samples.first());
+        let loops = seams::warnings(opened.document.scene(), &opened.materials, || renderer.samples.first());
         loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
     }
     let total = todo.len() as u64;

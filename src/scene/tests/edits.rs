@@ -167,6 +167,32 @@ fn images_meshes_and_clips_are_renamed_everywhere() {
     assert!(!renamed.to_text().contains("\"mug\""));
     let renamed = there_and_back(&everything(), &Edit::rename(&everything(), List::Clips, "falls", "river")).unwrap();
     assert_eq!(renamed.scene().names(List::Clips).into_iter().collect::<Vec<_>>(), ["fire", "river"]);
+    assert!(!renamed.to_text().contains("\"falls\""));
+}
+
+#[test]
+fn fields_of_which_one_is_written_replace_each_other() {
+    let sampler = |zone: usize, rest: &str| format!("/layers/0/zones/{zone}/sampler{rest}");
+    // Zone 4 reads an image, zone 9 a clip, zone 0 neither.
+    for (path, value, zone, after) in [
+        (sampler(4, "/clip"), json!("fire"), 4, json!({ "offset": [3, -2], "clip": "fire" })),
+        (sampler(9, "/image"), json!("mask"), 9, json!({ "offset": [3, -2], "image": "mask" })),
+        (sampler(9, "/clip"), json!("fire"), 9, json!({ "clip": "fire", "offset": [3, -2] })),
+        (sampler(0, "/clip"), json!("fire"), 0, json!({ "clip": "fire" })),
+        (sampler(0, "/offset"), json!([1, 2]), 0, json!({ "image": "cat", "offset": [1, 2] })),
+        (sampler(4, "/clip"), json!(null), 4, json!({ "image": "cat", "offset": [3, -2] })),
+    ] {
+        let changed = there_and_back(&everything(), &Edit::set(&everything(), &path, value)).unwrap();
+        assert_eq!(changed.json().pointer(&sampler(zone, "")), Some(&after), "{path}");
+    }
+    for (path, what) in
+        [(sampler(4, "/image"), "\"image\" or \"clip\" is missing"), (sampler(9, "/clip"), "is missing")]
+    {
+        let problems = everything().apply(&Edit::remove(&path)).unwrap_err();
+        assert!(problems[0].message.contains(what), "{path}: {problems:?}");
+    }
+    let both = everything().apply(&Edit::add(&sampler(4, "/clip"), json!("fire"))).unwrap_err();
+    assert_eq!((both.len(), both[0].path.as_str()), (1, sampler(4, "").as_str()), "{both:?}");
 }
 
 #[test]

@@ -30,7 +30,9 @@ impl Probed {
         let seen = seen.and_then(|_| scene.layers.get(passes::topmost(synth, at.time, at.pixel)?));
         let layer = seen.map_or(asked, |layer| layer.technique());
         let moment = synth.moment(at.time);
-        let read = layer.probe(&Making::plain(scene.timeline.wrap, materials), at.pixel, &moment).ok()?;
+        let making = Making::plain(scene.timeline.wrap, materials);
+        let making = Making { duration: scene.timeline.duration, ..making };
+        let read = layer.probe(&making, at.pixel, &moment).ok()?;
         let within = x < synth.size.0 && y < synth.size.1;
         let color = within.then(|| encode(*cpu::lattice(synth, at.time, &[x], &[y]).get(0, 0)));
         Some(Probed { at, read, color: color.unwrap_or_default() })

@@ -156,6 +156,11 @@ fn kinds_and_optional_nodes_are_chosen() {
         ("/ \"fold\" Enter o j Enter", &zone("/fold/rule"), json!("return")),
         ("/ \"fold\" Enter o Enter d", &zone("/fold"), Value::Null),
         ("/ \"sampler\" Enter o", &zone("/sampler/image"), json!("cat")),
+        (
+            ": \"add falls/%d.png\" Enter / \"sampler\" Enter o / \"clip\" Enter Enter Enter",
+            &zone("/sampler"),
+            json!({ "clip": "falls" }),
+        ),
         ("/ \"loop\" Enter Enter j Enter", "/timeline/loop", json!("ping-pong")),
     ]);
 }

@@ -7,10 +7,11 @@ use serde_json::{Map, Value};
 
 use super::atlas::{Area, Atlas, Need, Piece, reach};
 use super::fold::Fold;
-use super::model::{PictureLayer, Zone};
+use super::model::{PictureLayer, Sampler, Zone};
 use super::synth::{Synth, ZoneSynth};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Beyond, Grid};
+use crate::base::problem::quoted;
 use crate::layers::parts::bundle::{Channel, Names, Sink, Texture};
 use crate::layers::technique::{Bundled, Technique};
 
@@ -52,6 +53,7 @@ pub fn names(layers: &[&dyn Technique]) -> Names {
 /// # Errors
 /// Those of `to`, or its codes cannot number the zones.
 pub fn write(layers: &[Bundled], to: &mut dyn Sink) -> Result<Map<String, Value>> {
+    still(layers)?;
     let plan = Plan::new(layers);
     plan.fits(to.largest_code())?;
     let rows = plan.rows();
@@ -74,6 +76,22 @@ pub fn write(layers: &[Bundled], to: &mut dyn Sink) -> Result<Map<String, Value>
         Ok(_) => Ok(Map::new()),
         Err(error) => Err(Error::at("manifest.json", error)),
     }
+}
+
+/// Refuses zones that read clips: an atlas holds pictures that do not change.
+fn still(layers: &[Bundled]) -> Result<()> {
+    for (layer, zone) in layers
+        .iter()
+        .filter_map(|layer| model(layer.layer))
+        .flat_map(|layer| layer.zones.iter().map(move |zone| (layer, zone)))
+    {
+        if let Some(clip) = zone.clip() {
+            let place = format!("layer {}, zone {}", quoted(&layer.name), quoted(&zone.name));
+            let what = format!("reads the clip {}, and textures hold still pictures only", quoted(clip));
+            return Err(Error::at(place, what).cure("let its sampler read the image of one frame, or render frames"));
+        }
+    }
+    Ok(())
 }
 
 /// The layer of the document, which is one of this technique.
@@ -155,7 +173,7 @@ impl<'a> Plan<'a> {
 fn source_name<'a>(layer: &'a PictureLayer, zone: &'a Zone) -> &'a str {
     match (&zone.fold, &zone.sampler) {
         (Some(Fold::Mask { image }), _) => image,
-        (_, Some(sampler)) => &sampler.image,
+        (_, Some(Sampler { image: Some(image), .. })) => image,
         _ => &layer.image,
     }
 }
