@@ -310,7 +310,8 @@ impl Shared {
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));
                 }
-                other => self.heard(other),
+                // Numbers alone: there is no text in them to clean.
+                ToEditor::Pointer { .. } | ToEditor::Camera(_) => self.heard(said),
             }
         }
         Ok(())

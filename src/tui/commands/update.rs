@@ -77,7 +77,15 @@ fn hear(state: &mut State, said: editor::Event) {
         editor::Event::Said(ToEditor::Command(name)) => run_of_window(state, &name),
         editor::Event::Edit(asked) => answer(state, asked),
         // The loop on a screen asks for the status after every event.
-        editor::Event::Status | editor::Event::Said(_) => {}
+        editor::Event::Status | editor::Event::Said(ToEditor::Ack { .. } | ToEditor::Report { .. }) => {}
+        // The link answers these itself.
+        editor::Event::Said(
+            ToEditor::Hello { .. }
+            | ToEditor::WantScene
+            | ToEditor::Want { .. }
+            | ToEditor::Alive
+            | ToEditor::Edit { .. },
+        ) => {}
     }
 }
 
