@@ -44,5 +44,5 @@ fn edit_512x512_with_94_anchors_and_a_fold(bencher: Bencher, method: &str) {
 fn synthesis(bencher: Bencher, size: (usize, usize), anchors: usize, interpolation: &str) {
     let zone = scenes::zone(size, anchors, interpolation);
     let inputs = Inputs::new(&zone, size, CENTRE);
-    bencher.bench(|| Field::new(&zone, &inputs, &Materials::default()));
+    bencher.bench(|| Field::new(&inputs, &Materials::default()));
 }

@@ -22,6 +22,7 @@ use plica::base::progress::Progress;
 use plica::export::textures::{self, Depth};
 use plica::files::{self, outputs::Guard};
 use plica::layers::KINDS;
+use plica::layers::folding::fold::Fold;
 use plica::layers::parts::marks::View;
 use plica::layers::parts::materials::{List, Materials, Of, Use, What};
 use plica::layers::ready::Making;
@@ -158,10 +159,20 @@ fn check(gpu: &mut Gpu, name: &str, synth: &Synth, time: f64) {
     assert!(largest <= 2 || !WITHOUT_SILHOUETTES.contains(&name), "{name} at {time}: {largest}");
 }
 
+/// The fold rules of the schema.
+fn rules() -> Vec<String> {
+    let schema = Value::from(schemars::schema_for!(Fold));
+    let rule = |branch: &Value| branch["properties"]["rule"]["const"].as_str().unwrap().to_owned();
+    schema["oneOf"].as_array().unwrap().iter().map(rule).collect()
+}
+
 #[test]
 fn the_gpu_shows_what_the_cpu_shows() {
     let Some(mut gpu) = gpu() else { return };
     let scenes = scenes();
+    for rule in rules() {
+        assert!(scenes.iter().any(|(name, _)| *name == rule), "no scene folds by {rule}");
+    }
     assert!(WITHOUT_SILHOUETTES.iter().all(|name| scenes.iter().any(|(known, _)| known == name)));
     for (name, synth) in &scenes {
         TIMES.into_iter().for_each(|time| check(&mut gpu, name, synth, time));

@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 
 use kurbo::Point;
 use plica::base::pixels::Frame;
-use plica::layers::folding::anchors::anchors;
 use show::{Show, TIMES, at, no_seam, step, still_outside};
 
 mod show;
@@ -102,7 +101,7 @@ fn the_face_blinks() {
 #[test]
 fn the_wound_on_the_hand_closes() {
     let Some(show) = open("hand") else { return };
-    assert_eq!(anchors(&show.layer().zones[1]).len(), 62);
+    assert_eq!(show.layer().zones[1].anchors().len(), 62);
     let flesh = |time: f64| {
         let frame = show.frame(time);
         let cut = (488..608).flat_map(|y| (270..420).map(move |x| (x, y)));

@@ -11,7 +11,7 @@ use glam::DVec2;
 use plica::base::pixels::Frame;
 use plica::files::profiles;
 use plica::layers::Layer;
-use plica::layers::folding::{anchors::anchors, synth::Synth};
+use plica::layers::folding::synth::Synth;
 use plica::scene::Document;
 use show::{Show, TIMES, at, no_seam, step, still_outside};
 
@@ -174,7 +174,7 @@ fn the_wound_closes() {
     let flesh = |frame: &Frame| frame.cells().iter().filter(|c| c[0] < 150 && c[1] < 45).count();
     let (open, closed) = (flesh(&show.frame(0.0)), flesh(&show.frame(0.5)));
     assert!(open > 4000 && closed * 2 < open, "flesh {open} -> {closed}");
-    assert_eq!(anchors(&show.layer().zones[0]).len(), 62);
+    assert_eq!(show.layer().zones[0].anchors().len(), 62);
     let synth = show.synth.layers[0].downcast::<Synth>().unwrap();
     let folds = synth.zones[0].field.folds.as_ref().unwrap();
     let thresholds = |i: usize| folds.ahead.of(i).iter().filter(|&&s| s > 0.0 && s <= 1.0).count();

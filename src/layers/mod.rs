@@ -15,6 +15,8 @@ pub mod parts;
 pub mod ready;
 pub mod space;
 pub mod technique;
+#[cfg(test)]
+mod tests;
 pub mod timeline;
 
 use technique::{Kind, Technique};

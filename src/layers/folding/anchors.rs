@@ -5,8 +5,7 @@ use std::sync::Arc;
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
 
 use super::anchor::Anchor;
-use super::model::Zone;
-use super::outline::{Node, bezier, point, vector};
+use super::outline::{Node, Outline, bezier, point, vector};
 use super::tools::{CurveFrame, Distribution, JumpAlong, LassoVertex, Tool};
 use crate::base::geometry::Polygon;
 use crate::base::maths;
@@ -25,25 +24,25 @@ pub enum Dense {
 /// Lengths are exact to this many pixels.
 const ARC_ACCURACY_PX: f64 = 1e-6;
 
-/// All anchors of a zone, tools in list order.
-pub fn anchors(zone: &Zone) -> Vec<Anchor> {
+/// All anchors of a zone with this motion and outline, tools in list order.
+pub fn anchors(motion: &[Tool], outline: &Outline) -> Vec<Anchor> {
     let mut all = Vec::new();
-    for (tool, each) in zone.motion.iter().enumerate() {
-        let given = given(each, zone).into_iter();
+    for (tool, each) in motion.iter().enumerate() {
+        let given = given(each, outline).into_iter();
         all.extend(given.map(|(at, jump)| Anchor { at, jump, tool }));
     }
     all
 }
 
-/// The anchors of one tool in a zone: their places and jump vectors.
-pub fn given(tool: &Tool, zone: &Zone) -> Vec<(Point, Vec2)> {
+/// The anchors of one tool in a zone with this outline: their places and jump vectors.
+pub fn given(tool: &Tool, outline: &Outline) -> Vec<(Point, Vec2)> {
     match tool {
         Tool::Point { at, jump } => vec![(point(*at), vector(*jump))],
         Tool::Curve { frame, samples, distribution, nodes, jumps } => {
             curve(nodes, *samples, |along| jump_at(jumps, *distribution, along), *frame)
         }
         Tool::Lasso { samples, vertices } => lasso(vertices, *samples),
-        Tool::StillBorder { spacing } => still_border(&zone.outline.polygon(), *spacing),
+        Tool::StillBorder { spacing } => still_border(&outline.polygon(), *spacing),
         Tool::Translate { .. }
         | Tool::Scale { .. }
         | Tool::Rotate { .. }
@@ -53,9 +52,9 @@ pub fn given(tool: &Tool, zone: &Zone) -> Vec<(Point, Vec2)> {
     }
 }
 
-/// All dense fields of a zone, tools in list order. A `field` whose file is not among the materials is left out.
-pub fn dense(zone: &Zone, materials: &Materials) -> Vec<Dense> {
-    zone.motion.iter().filter_map(|tool| dense_of(tool, materials)).collect()
+/// All dense fields of a motion, tools in list order. A `field` whose file is not among the materials is left out.
+pub fn dense(motion: &[Tool], materials: &Materials) -> Vec<Dense> {
+    motion.iter().filter_map(|tool| dense_of(tool, materials)).collect()
 }
 
 fn dense_of(tool: &Tool, materials: &Materials) -> Option<Dense> {
@@ -247,6 +246,7 @@ fn still_border(outline: &Polygon, spacing: f64) -> Vec<(Point, Vec2)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::layers::folding::model::Zone;
 
     fn zone(motion: &str) -> Zone {
         serde_json::from_str(&format!(
@@ -256,7 +256,7 @@ mod tests {
     }
 
     fn found(motion: &str) -> Vec<[f64; 4]> {
-        anchors(&zone(motion)).iter().map(|a| [a.at.x, a.at.y, a.jump.x, a.jump.y]).collect()
+        zone(motion).anchors().iter().map(|a| [a.at.x, a.at.y, a.jump.x, a.jump.y]).collect()
     }
 
     #[track_caller]
@@ -320,7 +320,7 @@ mod tests {
             (r#"{"tool":"shear","center":[0,1],"factor":[0.5,2]}"#, (3., 3.), (1., 6.)),
             (r#"{"tool":"affine","matrix":[[1,2,3],[4,5,6]]}"#, (1., 1.), (5., 14.)),
         ] {
-            let fields = dense(&zone(&format!("[{tool}]")), &Materials::default());
+            let fields = dense(&zone(&format!("[{tool}]")).motion, &Materials::default());
             let found = fields[0].at(q.into());
             assert_eq!((found.x, found.y), jump, "{tool}");
         }

@@ -6,7 +6,6 @@ use std::collections::hash_map::Entry;
 use kurbo::{Point, Rect, Vec2};
 
 use super::anchor::Anchor;
-use super::anchors;
 use super::interpolation::Interpolation;
 use super::position::{Pieces, Position};
 use super::{counts, fold::Fold, outline::Outline};
@@ -122,7 +121,7 @@ pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Probl
             problems.push(Problem::warning(format!("/zones/{i}/outline"), message));
         }
         for (j, tool) in zone.motion.iter().enumerate() {
-            let Tool::Field { path, .. } = tool else { continue };
+            let Some(path) = tool.file() else { continue };
             let size = materials.fields.get(path).map(|field| (field.width(), field.height()));
             if let Some((w, h)) = size.filter(|&size| size != (width, height)) {
                 let message = format!("the field is {w} x {h} px, the picture {width} x {height}");
@@ -209,7 +208,7 @@ fn anchors_of(zone: &Zone) -> Vec<Problem> {
     if counts::all_anchors(zone) > MAX_COMPARED {
         return Vec::new();
     }
-    let anchors = anchors::anchors(zone);
+    let anchors = zone.anchors();
     let mut problems: Vec<Problem> = nearly_straight(zone, &anchors).into_iter().collect();
     let cell = |at: Point| ((at.x / SAME_PX).round() as i64, (at.y / SAME_PX).round() as i64);
     let mut first = HashMap::new();

@@ -121,13 +121,16 @@ impl Inputs {
     /// The inputs of the field of `zone`, on a picture of `size`, for a `place` in each pixel; (0.5, 0.5) is the
     /// centre.
     pub fn new(zone: &Zone, size: (usize, usize), place: Vec2) -> Self {
-        let (low, high) = zone.position.range();
+        // Every field is named: a new one has to be placed, here or among those that a field does not depend on.
+        let Zone { outline, motion, interpolation, feather, fold, position, name: _, sampler: _, speed: _, shift: _ } =
+            zone;
+        let (low, high) = position.range();
         Inputs {
-            outline: zone.outline.clone(),
-            motion: zone.motion.clone(),
-            interpolation: zone.interpolation.clone(),
-            feather: zone.feather,
-            fold: zone.fold.clone().filter(|fold| fold.rule().is_some()),
+            outline: outline.clone(),
+            motion: motion.clone(),
+            interpolation: interpolation.clone(),
+            feather: *feather,
+            fold: fold.clone().filter(|fold| fold.rule().is_some()),
             range: (low.min(0.0), high.max(1.0)),
             size,
             place,
@@ -168,15 +171,17 @@ impl Prepared {
     ///
     /// # Errors
     /// As [`Interpolator::new`].
-    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Result<Self, Problem> {
+    pub fn new(inputs: &Inputs, materials: &Materials) -> Result<Self, Problem> {
+        // From the inputs alone: what else it read could change without the field being made anew.
+        let Inputs { outline, motion, interpolation, feather, fold, range, size: _, place } = inputs;
         Ok(Prepared {
-            outline: zone.outline.polygon(),
-            interpolator: Interpolator::new(&zone.interpolation, anchors(zone), materials)?,
-            dense: dense(zone, materials),
-            feather: zone.feather,
-            fold: zone.fold.as_ref().and_then(|fold| Some((fold.rule()?, Regions::new(fold.regions())))),
-            range: inputs.range,
-            place: inputs.place,
+            outline: outline.polygon(),
+            interpolator: Interpolator::new(interpolation, anchors(motion, outline), materials)?,
+            dense: dense(motion, materials),
+            feather: *feather,
+            fold: fold.as_ref().and_then(|fold| Some((fold.rule()?, Regions::new(fold.regions())))),
+            range: *range,
+            place: *place,
         })
     }
 
@@ -246,13 +251,13 @@ impl Prepared {
 }
 
 impl Field {
-    /// The field of `zone`; `None` if no pixel of the picture is in its bounding box.
+    /// The field of these inputs; `None` if no pixel of the picture is in its bounding box.
     ///
     /// # Errors
     /// If it needs too much memory or is cancelled; the problem's path is relative to the zone.
-    pub fn new(zone: &Zone, inputs: &Inputs, materials: &Materials) -> Made {
+    pub fn new(inputs: &Inputs, materials: &Materials) -> Made {
         let (width, height) = inputs.size;
-        Prepared::new(zone, inputs, materials)?.field((0..width, 0..height), materials)
+        Prepared::new(inputs, materials)?.field((0..width, 0..height), materials)
     }
 }
 

@@ -48,6 +48,16 @@ impl Fold {
         }
     }
 
+    /// The rule, as in the document.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Fold::Cover { .. } => "cover",
+            Fold::Return { .. } => "return",
+            Fold::FlyOver { .. } => "fly-over",
+            Fold::Mask { .. } => "mask",
+        }
+    }
+
     /// The fold regions; empty for a mask.
     pub fn regions(&self) -> &[Outline] {
         match self {
@@ -75,6 +85,31 @@ impl Rule {
             Rule::Cover => 1,
             Rule::Return => 2,
             Rule::FlyOver => 3,
+        }
+    }
+
+    /// Whether a sampler whose init-position is in a region moves from there.
+    pub fn moves_inside(self) -> bool {
+        match self {
+            Rule::FlyOver => true,
+            Rule::Cover | Rule::Return => false,
+        }
+    }
+
+    /// Whether a sampler that comes into a region stays shown, at the edge where it entered.
+    pub fn waits(self) -> bool {
+        match self {
+            Rule::Cover => true,
+            Rule::Return | Rule::FlyOver => false,
+        }
+    }
+
+    /// The place that a probe reports for a sampler that is still at `s`: where it stays is its init-position, unless the
+    /// rule only hides it on its way.
+    pub fn still_place(self, s: f64) -> f64 {
+        match self {
+            Rule::Cover => 0.0,
+            Rule::Return | Rule::FlyOver => s,
         }
     }
 
@@ -106,7 +141,32 @@ impl Fold {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
+    use crate::layers::tests::variants;
+
+    /// A fold of this rule, with one region or a mask.
+    fn fold(rule: &str) -> Fold {
+        let region = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": 9, "height": 9 });
+        let [regions, mask] = [json!({ "rule": rule, "regions": [region] }), json!({ "rule": rule, "image": "a" })]
+            .map(serde_json::from_value);
+        regions.or(mask).unwrap()
+    }
+
+    #[test]
+    fn a_rule_has_the_name_of_the_document_and_facts_that_fit_it() {
+        let mut numbers = Vec::new();
+        for name in variants::<Fold>("rule") {
+            assert_eq!(fold(&name).name(), name);
+            let Some(rule) = fold(&name).rule() else { continue };
+            assert_eq!(rule.effective(true, &[], 0.3).is_some(), rule.moves_inside(), "{name}");
+            assert_eq!(rule.effective(false, &[], 0.3).is_some(), !rule.moves_inside(), "{name}");
+            assert_eq!(rule.effective(false, &[0.4], 0.6) == Some(0.4), rule.waits(), "{name}");
+            numbers.push(rule.number());
+        }
+        assert_eq!(numbers, (1..=numbers.len() as u32).collect::<Vec<_>>(), "0 is no rule");
+    }
 
     #[test]
     fn rules_follow_the_table() {

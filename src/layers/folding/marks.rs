@@ -2,7 +2,6 @@
 
 use kurbo::{Point, Vec2};
 
-use super::anchors::anchors;
 use super::looks::{ANCHOR, ANCHORS, CURVE, CURVES, FOLD_REGION, HANDLE, JUMP, LABELS, LASSO, OUTLINES, REGIONS};
 use super::looks::{STILL, ZONE_OUTLINE};
 use super::model::{PictureLayer, Zone};
@@ -74,7 +73,7 @@ impl<'a> Drawing<'a> {
     fn anchors(&mut self, zone: &Zone, at: &str) {
         let labels = self.view.shows(LABELS);
         let mut numbered = None;
-        for anchor in anchors(zone) {
+        for anchor in zone.anchors() {
             // The first anchor of each tool is labelled with its number.
             let number =
                 if numbered.replace(anchor.tool) == Some(anchor.tool) { "" } else { &format!("{}: ", anchor.tool) };
@@ -108,7 +107,15 @@ impl<'a> Drawing<'a> {
                 let points = vertices.iter().map(|v| point(v.from)).collect();
                 self.add(&LASSO, at, Shape::Line { points, closed: true });
             }
-            _ => {}
+            // Their anchors say it all, or they have no place.
+            Tool::Point { .. }
+            | Tool::Translate { .. }
+            | Tool::Scale { .. }
+            | Tool::Rotate { .. }
+            | Tool::Shear { .. }
+            | Tool::Affine { .. }
+            | Tool::StillBorder { .. }
+            | Tool::Field { .. } => {}
         }
     }
 

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::anchor::Anchor;
+use super::anchors::anchors;
 use super::position::{Clock, Position};
 use super::{fold::Fold, interpolation::Interpolation, outline::Outline, tools::Tool};
 use crate::base::geometry::Xy;
@@ -65,6 +67,11 @@ impl Zone {
     /// The clip that its samplers read.
     pub fn clip(&self) -> Option<&str> {
         self.sampler.as_ref()?.clip.as_deref()
+    }
+
+    /// All its anchors, tools in list order.
+    pub fn anchors(&self) -> Vec<Anchor> {
+        anchors(&self.motion, &self.outline)
     }
 
     /// The clock of its samplers.

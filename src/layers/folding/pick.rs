@@ -2,7 +2,6 @@
 
 use kurbo::Point;
 
-use super::anchors::anchors;
 use super::marks::zone_path;
 use super::model::{PictureLayer, Zone};
 use crate::layers::parts::marks::Hit;
@@ -22,6 +21,6 @@ pub fn pick(layer: &PictureLayer, at: Point, reach_px: f64) -> Option<Hit> {
 
 /// The tool of the nearest anchor, and its distance.
 fn nearest(zone: &Zone, at: Point) -> Option<(usize, f64)> {
-    let distances = anchors(zone).into_iter().map(|anchor| (anchor.tool, anchor.at.distance(at)));
+    let distances = zone.anchors().into_iter().map(|anchor| (anchor.tool, anchor.at.distance(at)));
     distances.min_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -325,7 +325,7 @@ fn piecewise(segments: &[Segment], tau: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::folding::tests::variants;
+    use crate::layers::tests::variants;
 
     fn parse(json: &str) -> Position {
         serde_json::from_str(json).unwrap()

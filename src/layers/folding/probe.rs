@@ -55,7 +55,7 @@ pub fn probe(
             continue;
         }
         let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
-        let pixel = Prepared::new(zone, &inputs, materials)
+        let pixel = Prepared::new(&inputs, materials)
             .map_err(|problem| problem.under(&format!("/zones/{index}")))?
             .row(x, y, 1)
             .pop()
@@ -99,8 +99,7 @@ fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Pr
         None => Some(s),
         Some(rule) => rule.effective(pixel.crossings.inside, crossings, s),
     };
-    let still = if rule == Some(super::fold::Rule::Cover) { 0.0 } else { s };
-    let e = effective.unwrap_or(still);
+    let e = effective.unwrap_or_else(|| rule.map_or(s, |rule| rule.still_place(s)));
     let thresholds: Vec<f64> = pixel.crossings.ahead.iter().copied().filter(|c| *c > 0.0 && *c <= 1.0).collect();
     let active = |s: f64| rule.is_none_or(|r| r.effective(pixel.crossings.inside, &pixel.crossings.ahead, s).is_some());
     Probe {

@@ -105,7 +105,7 @@ pub fn synth(layer: &PictureLayer, making: &Making, previous: Option<&Synth>) ->
         let source = source(layer, index, &picture, making)?;
         let made = match known(zone, &inputs) {
             Some(known) => Some((known.field.clone(), known.share.clone())),
-            None => Field::new(zone, &inputs, materials)
+            None => Field::new(&inputs, materials)
                 .map_err(|problem| problem.under(&format!("/zones/{index}")))?
                 .map(|(field, share)| (field, Arc::new(share))),
         };
@@ -152,7 +152,7 @@ impl PreparedLayer {
         let ready = |(index, zone): (usize, &Zone)| {
             let source = source(layer, index, &picture, making)?;
             let inputs = Inputs::new(zone, size, place);
-            let prepared = Prepared::new(zone, &inputs, materials);
+            let prepared = Prepared::new(&inputs, materials);
             let prepared = prepared.map_err(|problem| problem.under(&format!("/zones/{index}")))?;
             Ok((ZoneParts { name: zone.name.clone(), index, source, clock: zone.clock(wrap), inputs }, prepared))
         };

@@ -18,13 +18,6 @@ use crate::layers::ready::{Making, Ready, Still};
 use crate::layers::technique::Technique;
 use crate::layers::timeline::Wrap;
 
-/// The variants of a tagged type, from its schema.
-pub fn variants<T: schemars::JsonSchema>(tag: &str) -> Vec<String> {
-    let schema = serde_json::Value::from(schemars::schema_for!(T));
-    let branches = schema["oneOf"].as_array().unwrap();
-    branches.iter().map(|branch| branch["properties"][tag]["const"].as_str().unwrap().to_owned()).collect()
-}
-
 /// A picture whose red encodes the column and whose green the row.
 fn ramp(width: usize, height: usize) -> Grid<Rgba> {
     let cell = |i: usize| [(i % width) as f32 / 100.0, (i / width) as f32 / 100.0, 0.0, 1.0];

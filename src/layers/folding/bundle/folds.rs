@@ -3,7 +3,6 @@
 
 use crate::base::pixels::Grid;
 use crate::layers::folding::field::{Field, Folds};
-use crate::layers::folding::fold::Rule;
 use crate::layers::parts::bundle::{Channel, Texture};
 
 /// Crossings of all pixels, in blocks of the box's size stacked downward.
@@ -28,7 +27,7 @@ pub fn stretch(field: &Field, i: usize) -> [f64; 2] {
 }
 
 fn moves_at_init(folds: &Folds, i: usize) -> bool {
-    folds.inside.cells()[i] == (folds.rule == Rule::FlyOver)
+    folds.inside.cells()[i] == folds.rule.moves_inside()
 }
 
 /// The `thresholds` texture of a zone whose position function takes s from `low` to `high`; `None` if the first stretch
@@ -68,6 +67,6 @@ fn needs_more(folds: &Folds, i: usize, low: f64, high: f64) -> bool {
     let ahead: Vec<f64> = folds.ahead.of(i).iter().copied().take_while(|&c| c < high).collect();
     let behind = folds.behind.of(i).iter().any(|&c| c > low);
     let told = if moves_at_init(folds, i) { 1 } else { 2 };
-    let waits = folds.rule == Rule::Cover && ahead.len() > usize::from(folds.inside.cells()[i]);
+    let waits = folds.rule.waits() && ahead.len() > usize::from(folds.inside.cells()[i]);
     behind || waits || ahead.len() > told || ahead.first() == Some(&0.0) || ahead.last().is_some_and(|&c| c >= 1.0)
 }

@@ -178,17 +178,6 @@ fn source_name<'a>(layer: &'a PictureLayer, zone: &'a Zone) -> &'a str {
     }
 }
 
-/// The rule of a zone's fold, as in the document.
-fn rule_name(zone: &Zone) -> &'static str {
-    match &zone.fold {
-        None => "none",
-        Some(Fold::Cover { .. }) => "cover",
-        Some(Fold::Return { .. }) => "return",
-        Some(Fold::FlyOver { .. }) => "fly-over",
-        Some(Fold::Mask { .. }) => "mask",
-    }
-}
-
 fn zone(to: &mut dyn Sink, plan: &Plan, table: &Table, zone: &Planned, row: usize) -> Result<manifest::Zone> {
     let field = &*zone.synth.field;
     let clock = &zone.synth.clock;
@@ -216,7 +205,7 @@ fn zone(to: &mut dyn Sink, plan: &Plan, table: &Table, zone: &Planned, row: usiz
         row,
         piece: zone.piece,
         bounds: manifest::Box { x: field.x0, y: field.y0, width, height },
-        rule: rule_name(zone.model),
+        rule: zone.model.fold.as_ref().map_or("none", Fold::name),
         lay: if zone.synth.source.over { "over" } else { "replace" },
         wrap: clock.wrap,
         speed: clock.speed,

@@ -7,7 +7,7 @@ use kurbo::{Point, Vec2};
 
 use super::*;
 use crate::base::budget::Budget;
-use crate::layers::folding::tests::variants;
+use crate::layers::tests::variants;
 
 const METHODS: [&str; 9] = [
     r#"{"method":"shepard"}"#,

@@ -7,6 +7,7 @@ use crate::layers::folding::model::Zone;
 use crate::layers::folding::outline::Outline;
 use crate::layers::folding::position::Position;
 use crate::layers::folding::tools::Tool;
+use crate::layers::tests::variants;
 
 fn zone() -> Zone {
     let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": 100, "height": 80 });
@@ -323,4 +324,18 @@ fn position_functions_keep_their_curve() {
         assert!(apart.fold(0.0, f64::max) < 0.1, "{found}");
     }
     assert_eq!(positions::turned(&Position::Linear, "keyframes"), None);
+}
+
+#[test]
+fn every_tool_becomes_every_other() {
+    let point = json!({ "tool": "point", "at": [10, 10], "jump": [3, 4] });
+    for from in variants::<Tool>("tool") {
+        let old = if from == "point" { point.clone() } else { tool(&point, &from).0[0].clone() };
+        for to in variants::<Tool>("tool").iter().filter(|to| **to != from) {
+            let new = tool(&old, to).0;
+            assert!(new.iter().all(|new| read::<Tool>(new).is_some() && new["tool"] == **to), "{old} is {new:?}");
+        }
+        assert_eq!(tools::turned(&zone(), &read(&old).unwrap(), &from), None);
+    }
+    assert_eq!(tools::turned(&zone(), &read(&point).unwrap(), "brush"), None);
 }

@@ -3,6 +3,8 @@
 //! groups, some vectors are kept.
 
 use kurbo::{Affine, Point, Rect, Vec2};
+use serde::Deserialize;
+use serde::de::value::StrDeserializer;
 use serde_json::{Value, json};
 
 use super::{Turned, pair, px, ratio, told};
@@ -22,17 +24,52 @@ const SAME_PX: f64 = 1e-6;
 
 /// The tool of `zone` turned into the kind `to`; `None` if it is of that kind already, or there is no such kind.
 pub fn turned(zone: &Zone, old: &Tool, to: &str) -> Option<Turned> {
-    let kind = serde_json::to_value(old).ok()?.get("tool")?.as_str()?.to_owned();
-    let turning = Turning { zone, old, kind, bounds: zone.outline.polygon().bounds() };
-    match to {
-        to if to == turning.kind => None,
-        "point" => Some(turning.points()),
-        "lasso" => Some(turning.lasso()),
-        "curve" => Some(turning.curve()),
-        "translate" | "scale" | "rotate" | "shear" | "affine" => Some(turning.dense(to)),
-        "still-border" => Some(turning.fresh(to, &["spacing"])),
-        "field" => Some(turning.fresh(to, &["path"])),
-        _ => None,
+    let kind = Kind::deserialize(StrDeserializer::<serde::de::value::Error>::new(to)).ok()?;
+    if kind == Kind::of(old) {
+        return None;
+    }
+    let name = serde_json::to_value(old).ok()?.get("tool")?.as_str()?.to_owned();
+    let turning = Turning { zone, old, kind: name, bounds: zone.outline.polygon().bounds() };
+    Some(match kind {
+        Kind::Point => turning.points(),
+        Kind::Lasso => turning.lasso(),
+        Kind::Curve => turning.curve(),
+        Kind::Translate | Kind::Scale | Kind::Rotate | Kind::Shear | Kind::Affine => turning.dense(to),
+        Kind::StillBorder => turning.fresh(to, &["spacing"]),
+        Kind::Field => turning.fresh(to, &["path"]),
+    })
+}
+
+/// The kinds of tools, by their names in the document.
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Point,
+    Curve,
+    Lasso,
+    Translate,
+    Scale,
+    Rotate,
+    Shear,
+    Affine,
+    StillBorder,
+    Field,
+}
+
+impl Kind {
+    fn of(tool: &Tool) -> Self {
+        match tool {
+            Tool::Point { .. } => Kind::Point,
+            Tool::Curve { .. } => Kind::Curve,
+            Tool::Lasso { .. } => Kind::Lasso,
+            Tool::Translate { .. } => Kind::Translate,
+            Tool::Scale { .. } => Kind::Scale,
+            Tool::Rotate { .. } => Kind::Rotate,
+            Tool::Shear { .. } => Kind::Shear,
+            Tool::Affine { .. } => Kind::Affine,
+            Tool::StillBorder { .. } => Kind::StillBorder,
+            Tool::Field { .. } => Kind::Field,
+        }
     }
 }
 
@@ -76,9 +113,9 @@ impl Turning<'_> {
             Tool::Curve { samples, frame, distribution, nodes, jumps } if *samples as usize > MOST => {
                 let samples = MOST as u32;
                 let (frame, distribution, nodes, jumps) = (*frame, *distribution, nodes.clone(), jumps.clone());
-                given(&Tool::Curve { samples, frame, distribution, nodes, jumps }, self.zone)
+                given(&Tool::Curve { samples, frame, distribution, nodes, jumps }, &self.zone.outline)
             }
-            other => given(other, self.zone),
+            other => given(other, &self.zone.outline),
         };
         let total = if let Tool::Curve { samples, .. } = self.old { *samples as usize } else { all.len() };
         let every = all.len().div_ceil(MOST).max(1);
