@@ -103,19 +103,32 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The paths in `text` up to its tests, which come last in a file. Braces in `use` are expanded.
-fn paths(text: &str) -> Vec<(usize, String)> {
+/// A path in a text.
+struct Named {
+    line: usize,
+    path: String,
+    /// Whether it stands in a `use`, which gives it a name in the file.
+    used: bool,
+    /// Whether that name is for others too.
+    public: bool,
+}
+
+/// The paths in `text` without its tests. Braces in `use` are expanded.
+fn named(text: &str) -> Vec<Named> {
     let mut found = Vec::new();
     let mut lines = text.lines().enumerate();
     while let Some((at, line)) = lines.next() {
         if line.trim() == "#[cfg(test)]" {
-            // Tests in a separate file are one line; otherwise they are the rest of this one.
-            if lines.next().is_some_and(|(_, line)| line.ends_with(';')) { continue } else { break }
+            skip_item(line, &mut lines);
+            continue;
         }
         let code = uncommented(line);
-        let mut words = code.split_whitespace().skip_while(|word| word.starts_with("pub"));
+        let public = code.trim_start().starts_with("pub");
+        let mut words =
+            code.split_whitespace().skip_while(|word| word.starts_with("pub") || *word == "in" || word.ends_with(')'));
         if words.next() != Some("use") {
-            found.extend(spoken(code).into_iter().map(|path| (at + 1, path)));
+            let spoken = spoken(code).into_iter();
+            found.extend(spoken.map(|path| Named { line: at + 1, path, used: false, public: false }));
             continue;
         }
         let mut tree = code.split_once("use").map_or(String::new(), |(_, tree)| tree.to_owned());
@@ -123,9 +136,88 @@ fn paths(text: &str) -> Vec<(usize, String)> {
             let Some((_, line)) = lines.next() else { break };
             tree.push_str(uncommented(line));
         }
-        spread("", tree.trim().trim_end_matches(';'), at + 1, &mut found);
+        let mut paths = Vec::new();
+        spread("", tree.trim().trim_end_matches(';'), &mut paths);
+        found.extend(paths.into_iter().map(|path| Named { line: at + 1, path, used: true, public }));
     }
     found
+}
+
+/// The paths in `text`, each with its line, written out: what begins with a name that a `use` in it gives is the path of
+/// that `use` and the rest.
+fn paths(text: &str) -> Vec<(usize, String)> {
+    let all = named(text);
+    let uses = all.iter().filter(|named| named.used).map(|named| bound(&named.path));
+    let names: BTreeMap<&str, &str> = uses.map(|(path, name)| (name, path)).collect();
+    let whole = |path: &str| {
+        let mut path = path.to_owned();
+        // Names of names; not forever, since `use a::a` gives `a` itself.
+        for _ in 0..3 {
+            let head = path.split("::").next().unwrap_or_default();
+            match names.get(head).filter(|to| to.split("::").next() != Some(head)) {
+                Some(to) => path = format!("{to}{}", &path[head.len()..]),
+                None => break,
+            }
+        }
+        path
+    };
+    all.iter().map(|named| (named.line, whole(bound(&named.path).0))).collect()
+}
+
+/// Skips the item after the attribute `line`, as rustfmt lays it out: one line, or all up to the first line at the same
+/// indentation that closes it.
+fn skip_item<'a>(line: &str, lines: &mut impl Iterator<Item = (usize, &'a str)>) {
+    let indent = &line[..line.len() - line.trim_start().len()];
+    let mut open = false;
+    for (_, line) in lines {
+        let code = line.strip_prefix(indent).unwrap_or_default();
+        let is_attribute = !open && (code.starts_with("#[") || code.starts_with("//"));
+        let starts_here = code.starts_with(|c: char| !c.is_whitespace());
+        if is_attribute || !starts_here && !line.is_empty() {
+            open |= starts_here && !is_attribute;
+            continue;
+        }
+        // `fn f(` and `) -> T {` go on; `}`, `};`, `mod tests;` and `fn f() {}` end.
+        if code.ends_with('}') || code.ends_with(';') {
+            return;
+        }
+        open = true;
+    }
+}
+
+/// What modules pass on of others by `pub use`: module and name, and the path that this stands for.
+fn passed_on(sources: &[Source]) -> BTreeMap<Vec<String>, Vec<String>> {
+    let mut all = BTreeMap::new();
+    for source in sources.iter().filter(|source| source.is_program()) {
+        let own = module(&source.path);
+        for Named { path, .. } in named(&source.text).into_iter().filter(|named| named.public) {
+            let (path, name) = bound(&path);
+            let key = own.iter().copied().chain([name]).map(str::to_owned).collect();
+            all.insert(key, absolute(&own, path));
+        }
+    }
+    all
+}
+
+/// The path of an item of a `use`, and the name that it gets.
+fn bound(path: &str) -> (&str, &str) {
+    let (path, name) = path.split_once(" as ").unwrap_or((path, ""));
+    let path = path.strip_suffix("::self").unwrap_or(path);
+    (path, if name.is_empty() { path.rsplit("::").next().unwrap_or_default() } else { name })
+}
+
+/// The path from the root of the program that `path` means in the module `own`.
+fn absolute(own: &[&str], path: &str) -> Vec<String> {
+    let mut at: Vec<&str> = own.to_vec();
+    for part in path.split("::") {
+        match part {
+            "crate" => at.clear(),
+            "self" => {}
+            "super" => drop(at.pop()),
+            part => at.push(part),
+        }
+    }
+    at.into_iter().map(str::to_owned).collect()
 }
 
 /// The functions in `text`, as rustfmt lays them out: first line, name, number of lines.
@@ -164,7 +256,7 @@ fn spoken(code: &str) -> Vec<String> {
 }
 
 /// The paths in a `use` tree: `a::{b, c::{d, e}}` is `a::b`, `a::c::d`, `a::c::e`.
-fn spread(prefix: &str, tree: &str, line: usize, found: &mut Vec<(usize, String)>) {
+fn spread(prefix: &str, tree: &str, found: &mut Vec<String>) {
     let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
     for (at, c) in tree.char_indices().chain([(tree.len(), ',')]) {
         match c {
@@ -179,10 +271,8 @@ fn spread(prefix: &str, tree: &str, line: usize, found: &mut Vec<(usize, String)
     }
     for part in parts.into_iter().filter(|part| !part.is_empty()) {
         match part.split_once('{') {
-            Some((head, rest)) => {
-                spread(&format!("{prefix}{head}"), rest.strip_suffix('}').unwrap_or(rest), line, found)
-            }
-            None => found.push((line, format!("{prefix}{part}"))),
+            Some((head, rest)) => spread(&format!("{prefix}{head}"), rest.strip_suffix('}').unwrap_or(rest), found),
+            None => found.push(format!("{prefix}{part}")),
         }
     }
 }
@@ -193,37 +283,44 @@ fn module(file: &str) -> Vec<&str> {
     stem.strip_suffix("/mod").unwrap_or(stem).split('/').collect()
 }
 
-/// The files of all modules.
-fn modules(sources: &[Source]) -> BTreeMap<Vec<&str>, &str> {
-    let program = sources.iter().filter(|source| source.path.ends_with(".rs"));
-    program.map(|source| (module(&source.path), source.path.as_str())).collect()
+/// Where paths lead.
+struct Map<'a> {
+    /// The files of all modules.
+    files: BTreeMap<Vec<String>, &'a str>,
+    /// See [`passed_on`].
+    passed: BTreeMap<Vec<String>, Vec<String>>,
 }
 
-/// The file, of `known` modules, that a path in a file leads to; `None` if it leads out of the program.
-fn leads_to<'a>(file: &str, path: &str, known: &BTreeMap<Vec<&str>, &'a str>) -> Option<&'a str> {
-    let own = module(file);
-    let mut parts = path.split("::").map(|part| part.split(' ').next().unwrap_or_default()).peekable();
-    let mut at: Vec<&str> = match *parts.peek()? {
-        "crate" => {
-            parts.next();
-            Vec::new()
-        }
-        "self" | "super" => own.clone(),
-        // A module inside this one.
-        name => known.contains_key(&[&own[..], &[name]].concat()).then(|| own.clone())?,
-    };
-    for part in parts {
-        match part {
-            "self" => {}
-            "super" => drop(at.pop()),
-            part => at.push(part),
-        }
+impl<'a> Map<'a> {
+    fn new(sources: &'a [Source]) -> Self {
+        let program = sources.iter().filter(|source| source.path.ends_with(".rs"));
+        let files = program.map(|source| (absolute(&[], &module(&source.path).join("::")), source.path.as_str()));
+        Map { files: files.collect(), passed: passed_on(sources) }
     }
-    // What is not a module is something in one.
-    while !at.is_empty() && !known.contains_key(&at) {
-        at.pop();
+
+    /// The file that a path in a file leads to, past modules that only pass it on; `None` if it leads out of the program.
+    fn leads_to(&self, file: &str, path: &str) -> Option<&'a str> {
+        let (own, head) = (module(file), path.split("::").next()?);
+        let mut at = absolute(&own, path);
+        // Otherwise a module inside this one, or what it passes on.
+        let begin = &at[..at.len().min(own.len() + 1)];
+        if !["crate", "self", "super"].contains(&head)
+            && !self.files.contains_key(begin)
+            && !self.passed.contains_key(begin)
+        {
+            return None;
+        }
+        for _ in 0..8 {
+            let known = |n: &usize| !self.files.contains_key(&at[..*n]) && self.passed.contains_key(&at[..*n]);
+            let Some(n) = (1..=at.len()).find(known) else { break };
+            at = [&self.passed[&at[..n]][..], &at[n..]].concat();
+        }
+        // What is not a module is something in one.
+        while !at.is_empty() && !self.files.contains_key(&at) {
+            at.pop();
+        }
+        self.files.get(&at).copied().filter(|&found| found != file)
     }
-    known.get(&at).copied().filter(|&found| found != file)
 }
 
 /// Groups of files that all lead to each other, directly or through others in the group (strongly connected components,
@@ -302,8 +399,7 @@ fn a_room_names_only_what_stands_to_its_left() {
 #[test]
 fn a_rung_of_the_editor_names_only_what_stands_to_its_left() {
     let sources = sources();
-    let files = sources.iter().filter(|source| source.path.ends_with(".rs"));
-    let known: BTreeMap<Vec<&str>, &str> = files.map(|source| (module(&source.path), source.path.as_str())).collect();
+    let map = Map::new(&sources);
     let rung = |path: &str| {
         let name = path.strip_prefix("tui/")?.split(['/', '.']).next()?;
         ORDER_TUI.iter().position(|rung| *rung == name)
@@ -311,7 +407,7 @@ fn a_rung_of_the_editor_names_only_what_stands_to_its_left() {
     let (mut seen, mut broken) = (0, Vec::new());
     for source in sources.iter().filter(|source| source.room() == "tui" && source.path != "tui/mod.rs") {
         for (line, path) in source.paths() {
-            let other = leads_to(&source.path, &path, &known).filter(|other| other.starts_with("tui/"));
+            let other = map.leads_to(&source.path, &path).filter(|other| other.starts_with("tui/"));
             let Some(other) = other.filter(|other| !other.contains("/tests/")) else { continue };
             seen += 1;
             if rung(&source.path).is_none() || rung(other) > rung(&source.path) || rung(other).is_none() {
@@ -352,7 +448,7 @@ fn techniques_name_neither_one_another_nor_their_list() {
     let sources = sources();
     let techniques = techniques(&sources);
     assert!(techniques.len() > 1, "{techniques:?}");
-    let known = modules(&sources);
+    let map = Map::new(&sources);
     let mut broken = Vec::new();
     for source in &sources {
         // `parts` and what else stands beside them names none of them.
@@ -361,7 +457,7 @@ fn techniques_name_neither_one_another_nor_their_list() {
         }
         let own = source.slice().filter(|slice| techniques.contains(slice));
         for (line, path) in source.paths() {
-            let Some(file) = leads_to(&source.path, &path, &known) else { continue };
+            let Some(file) = map.leads_to(&source.path, &path) else { continue };
             let to = file.strip_prefix(SLICES).and_then(|rest| rest.split_once('/')).map(|(slice, _)| slice);
             let other = to.is_some_and(|to| techniques.contains(&to) && Some(to) != own);
             if other || (own.is_some() && file == LIST) {
@@ -400,7 +496,7 @@ fn nobody_outside_names_a_technique() {
 #[test]
 fn only_its_list_names_what_is_in_a_slot() {
     let sources = sources();
-    let known = modules(&sources);
+    let map = Map::new(&sources);
     let mut broken = Vec::new();
     for slot in SLOTS {
         let part = |file: &str| {
@@ -411,7 +507,7 @@ fn only_its_list_names_what_is_in_a_slot() {
         for source in sources.iter().filter(|source| source.path != format!("{slot}mod.rs")) {
             let own = part(&source.path);
             for (line, path) in source.paths() {
-                let Some(to) = leads_to(&source.path, &path, &known) else { continue };
+                let Some(to) = map.leads_to(&source.path, &path) else { continue };
                 if part(to).is_some_and(|to| own.as_ref() != Some(&to)) {
                     broken.push(format!("src/{}:{line} names {path}", source.path));
                 }
@@ -424,10 +520,10 @@ fn only_its_list_names_what_is_in_a_slot() {
 #[test]
 fn no_file_names_one_that_names_it() {
     let sources = sources();
-    let known = modules(&sources);
+    let map = Map::new(&sources);
     let mut arrows: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for source in &sources {
-        let to = source.paths().into_iter().filter_map(|(_, path)| leads_to(&source.path, &path, &known));
+        let to = source.paths().into_iter().filter_map(|(_, path)| map.leads_to(&source.path, &path));
         // A folder's files are part of its `mod.rs`: they may use what it declares.
         let above = |file: &&str| file.strip_suffix("mod.rs").is_some_and(|folder| source.path.starts_with(folder));
         arrows.insert(&source.path, to.filter(|file| !above(file)).collect());
@@ -478,32 +574,51 @@ fn functions_and_circles_are_found() {
     found.sort();
     assert_eq!(found, [["a", "b", "c"].map(str::to_owned).into(), ["d", "e"].map(str::to_owned).into()]);
     let files = ["layers/mod.rs", "layers/folding/mod.rs", "layers/folding/frame.rs", "base/maths.rs"];
-    let known: BTreeMap<Vec<&str>, &str> = files.iter().map(|&file| (module(file), file)).collect();
+    let text = |file: &&str| match *file {
+        "layers/mod.rs" => "pub use folding::frame::Frame as Picture;\npub(crate) use crate::base::maths::sin;",
+        _ => "",
+    };
+    let sources: Vec<Source> =
+        files.iter().map(|file| Source { path: (*file).to_owned(), text: text(file).to_owned() }).collect();
+    let map = Map::new(&sources);
     for (file, path, to) in [
         ("layers/folding/frame.rs", "super::super::Layer", Some("layers/mod.rs")),
         ("layers/folding/frame.rs", "super::self", Some("layers/folding/mod.rs")),
-        ("layers/folding/mod.rs", "frame::Frame as F", Some("layers/folding/frame.rs")),
+        ("layers/folding/mod.rs", "frame::Frame", Some("layers/folding/frame.rs")),
+        ("layers/folding/mod.rs", "super::Picture", Some("layers/folding/frame.rs")),
+        ("layers/folding/mod.rs", "crate::layers::Picture::new", Some("layers/folding/frame.rs")),
+        ("layers/folding/mod.rs", "super::sin", Some("base/maths.rs")),
         ("layers/folding/frame.rs", "crate::base::maths::sin", Some("base/maths.rs")),
         ("layers/folding/frame.rs", "Vec::new", None),
         ("layers/folding/frame.rs", "self::own", None),
     ] {
-        assert_eq!(leads_to(file, path, &known), to, "{file} {path}");
+        assert_eq!(map.leads_to(file, path), to, "{file} {path}");
     }
 }
 
 #[test]
 fn the_scanner_sees_what_it_should() {
-    let table: [(&str, &[&str]); 8] = [
+    let table: [(&str, &[&str]); 12] = [
         ("use crate::base::error;", &["crate::base::error"]),
         (
             "pub(super) use crate::{base::{error, maths}, scene};",
             &["crate::base::error", "crate::base::maths", "crate::scene"],
         ),
-        ("use std::{\n    fs, // files\n    io::{self, Read},\n};", &["std::fs", "std::io::self", "std::io::Read"]),
+        ("use std::{\n    fs, // files\n    io::{self, Read},\n};", &["std::fs", "std::io", "std::io::Read"]),
         ("let a = std::fs::read(wgpu::x(b));", &["std::fs::read", "wgpu::x"]),
         ("// crate::tui\n/// [`crate::cli`]", &[]),
         ("let image = image.width();", &[]),
         ("use winit;", &["winit"]),
+        (
+            "use crate::layers::Layer as L;\nlet a = L::Mesh(b);",
+            &["crate::layers::Layer", "crate::layers::Layer::Mesh"],
+        ),
+        ("use crate::a::Layer;\nuse Layer::Mesh as M;", &["crate::a::Layer", "crate::a::Layer::Mesh"]),
+        ("#[cfg(test)]\nuse a::b;\n#[cfg(test)]\nfn c(\n    d: u8,\n) {\n    e::f();\n}\nfn g() { h::i() }", &["h::i"]),
+        (
+            "impl A {\n    #[cfg(test)]\n    #[inline]\n    fn c() {\n        e::f();\n    }\n\n    fn g() { h::i() }\n}",
+            &["h::i"],
+        ),
         ("fn f() {}\n#[cfg(test)]\nmod tests { use crate::tui::x; }", &[]),
     ];
     for (text, expected) in table {

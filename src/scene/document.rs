@@ -6,7 +6,6 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::check::Rules;
-use super::edit::Edit;
 use super::{Scene, check, json, migrate};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
@@ -75,19 +74,9 @@ impl Document {
         &self.read.warnings
     }
 
-    /// The document after an edit.
-    ///
-    /// # Errors
-    /// The problems that the edit would cause.
-    pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
-        Ok(self.change(edit)?.map_or_else(|| self.clone(), |(document, _)| document))
-    }
-
-    /// The same, with the inverse of the edit; `None` if it changes nothing. Only what the edit changes is read and
-    /// checked again, with the same result as a check of the whole.
-    pub(super) fn change(&self, edit: &Edit) -> Result<Option<(Document, Edit)>, Vec<Problem>> {
-        let mut json = Value::clone(&self.json);
-        let inverse = edit.patch(&mut json).map_err(|problem| vec![problem])?;
+    /// The document that `json` means after a change of this one, under the same rules; `None` if it is the same. Only what
+    /// has changed is read and checked again, with the same result as a check of the whole.
+    pub(super) fn changed(&self, json: Value) -> Result<Option<Document>, Vec<Problem>> {
         let change = Change::of(&self.json, &json);
         if change == Change::Same {
             return Ok(None);
@@ -103,6 +92,6 @@ impl Document {
             let problem = Problem::error("/plica", "the version of the format cannot be edited");
             return Err(vec![problem.hint("a newer plica brings a scene to its own version by itself")]);
         }
-        Ok(Some((Document { json: Arc::new(json), read, rules: self.rules.clone() }, inverse)))
+        Ok(Some(Document { json: Arc::new(json), read, rules: self.rules.clone() }))
     }
 }

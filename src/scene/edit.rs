@@ -115,6 +115,23 @@ impl Edit {
     }
 }
 
+impl Document {
+    /// The document after an edit.
+    ///
+    /// # Errors
+    /// The problems that the edit would cause.
+    pub fn apply(&self, edit: &Edit) -> Result<Document, Vec<Problem>> {
+        Ok(self.change(edit)?.map_or_else(|| self.clone(), |(document, _)| document))
+    }
+
+    /// The same, with the inverse of the edit; `None` if it changes nothing.
+    pub(super) fn change(&self, edit: &Edit) -> Result<Option<(Document, Edit)>, Vec<Problem>> {
+        let mut json = self.json().clone();
+        let inverse = edit.patch(&mut json).map_err(|problem| vec![problem])?;
+        Ok(self.changed(json)?.map(|document| (document, inverse)))
+    }
+}
+
 /// The bytes that `copy` operations have made so far. Only `copy` can make much out of little: each one may double the
 /// scene, while what other operations write is no longer than the edit. Plica itself never writes one.
 #[derive(Debug, Default)]

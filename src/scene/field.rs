@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::Document;
 use super::pointer;
-use super::schema::{Body, Place, Shape};
+use super::schema::{Body, Place, Shape, range_text};
 
 /// One place in a document.
 #[derive(Clone, Debug, PartialEq)]
@@ -203,17 +203,6 @@ impl Field {
     pub fn range_text(&self) -> Option<String> {
         range_text(self.range, self.unit)
     }
-}
-
-/// A range with its unit in words.
-pub fn range_text(range: Option<(f64, f64)>, unit: Option<&str>) -> Option<String> {
-    let (min, max) = range?;
-    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
-    Some(match (min.is_finite(), max.is_finite()) {
-        (true, false) => format!("at least {min}{unit}"),
-        (false, true) => format!("at most {max}{unit}"),
-        _ => format!("{min} to {max}{unit}"),
-    })
 }
 
 fn kind(shape: Shape) -> Kind {

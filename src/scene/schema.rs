@@ -421,3 +421,14 @@ impl<'a> Place<'a> {
         }
     }
 }
+
+/// A range with its unit in words.
+pub fn range_text(range: Option<(f64, f64)>, unit: Option<&str>) -> Option<String> {
+    let (min, max) = range?;
+    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+    Some(match (min.is_finite(), max.is_finite()) {
+        (true, false) => format!("at least {min}{unit}"),
+        (false, true) => format!("at most {max}{unit}"),
+        _ => format!("{min} to {max}{unit}"),
+    })
+}

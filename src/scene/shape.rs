@@ -4,9 +4,8 @@
 
 use serde_json::{Map, Number, Value};
 
-use super::field::range_text;
 use super::pointer;
-use super::schema::{Body, Shape, is_widest};
+use super::schema::{Body, Shape, is_widest, range_text};
 use crate::base::change::Change;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 
