@@ -1,7 +1,7 @@
 //! Mathematics with the same bits on every machine: the transcendental functions come from `libm`, never from the
 //! platform (clippy.toml bans the others).
 
-pub use libm::{acos, atan2, cbrt, cos, exp, expm1, log as ln, pow, sin, tanh};
+pub use libm::{acos, atan, atan2, atanh, cbrt, cos, exp, expm1, log as ln, log1p as ln_1p, log2, pow, sin, tan, tanh};
 
 /// One whole turn in radians.
 pub const TAU: f64 = std::f64::consts::TAU;

@@ -244,6 +244,17 @@ impl Picture {
         with_texels!(self, texels => texels.at(y * self.width + x))
     }
 
+    /// Red, green and blue of the pixel in column `x`, row `y` in codes of 8 bits: those that were read, otherwise sRGB.
+    pub fn codes(&self, x: usize, y: usize) -> [u8; 3] {
+        let Samples::Bytes(all, _) = &self.samples else {
+            let [r, g, b, _] = encode(self.texel(x, y));
+            return [r, g, b];
+        };
+        let count = self.channels.count();
+        let first = (y * self.width + x) * count;
+        if count < 3 { [all[first]; 3] } else { [0, 1, 2].map(|c| all[first + c]) }
+    }
+
     /// Gives a fully transparent encoded pixel the color that the picture has at `place`, where it has one: pictures with
     /// straight alpha do, whatever the alpha.
     pub fn keep_clear_color(&self, place: Option<(usize, usize)>, code: &mut [u8; 4]) {

@@ -18,11 +18,12 @@ pub mod technique;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
+pub mod waterfall;
 
 use technique::{Kind, Technique};
 
 /// The techniques: what `kind` can be in the document.
-pub static KINDS: &[&Kind] = &[&folding::KIND, &fill::KIND, &mesh::KIND];
+pub static KINDS: &[&Kind] = &[&folding::KIND, &fill::KIND, &mesh::KIND, &waterfall::KIND];
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,6 +35,8 @@ pub enum Layer {
     Fill(fill::model::FillLayer),
     /// A mesh in space, seen by the scene's camera.
     Mesh(mesh::model::MeshLayer),
+    /// Sprites of water, fire or smoke from a clip, carried along flow lines.
+    Waterfall(waterfall::model::WaterfallLayer),
 }
 
 impl Layer {
@@ -43,6 +46,7 @@ impl Layer {
             Layer::Picture(layer) => layer,
             Layer::Fill(layer) => layer,
             Layer::Mesh(layer) => layer,
+            Layer::Waterfall(layer) => layer,
         }
     }
 
@@ -52,7 +56,7 @@ impl Layer {
         match self {
             _ if *change.field("kind") != Change::Same => None,
             Layer::Picture(layer) => folding::reread::layer(layer, json, change).map(Layer::Picture),
-            Layer::Fill(_) | Layer::Mesh(_) => None,
+            Layer::Fill(_) | Layer::Mesh(_) | Layer::Waterfall(_) => None,
         }
     }
 }

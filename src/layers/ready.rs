@@ -63,6 +63,17 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// The layer at one time, for the GPU: looks the same as [`Ready::at`].
     fn plan(&self, moment: &Moment) -> Plan;
 
+    /// The same, as one of a group whose surfaces are at these depths in meters, pixel by pixel. What is no sprite is
+    /// tested against them on the device.
+    fn plan_before(&self, moment: &Moment, _depth: &[f64]) -> Plan {
+        self.plan(moment)
+    }
+
+    /// Whether it has sprites: they are drawn after all surfaces of their group.
+    fn has_sprites(&self) -> bool {
+        false
+    }
+
     /// The same layer with nothing that moves.
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready>;
 
@@ -113,6 +124,10 @@ pub trait Still: Sync {
     /// The same for a layer in space, as one of a group: writes only what is nearer than `depth`, one cell per column,
     /// in meters, and its depth.
     fn surface(&self, _y: usize, _columns: Columns, _depth: &mut [f64], _out: &mut [Rgba]) {}
+
+    /// Draws the sprites of the layer, as one of a group, over `out`: its cells are those of these rows, one after the
+    /// other, with all surfaces of the group, whose depths in meters are `depth`. Nothing for layers without sprites.
+    fn sprites(&self, _rows: &[usize], _columns: Columns, _depth: &[f64], _out: &mut [Rgba]) {}
 
     /// What a pass other than color has in row `y`, as [`Still::surface`]; nothing for layers in the frame.
     fn pass(&self, _pass: &Pass, _y: usize, _columns: Columns, _depth: &mut [f64], _out: &mut [Rgba]) {}

@@ -99,11 +99,13 @@ fn pixel_at([x, y]: [f64; 2], (width, height): (usize, usize)) -> Result<(usize,
 }
 
 fn line(read: Option<&ReadOut>, color: [u8; 4]) -> String {
-    let entries = read.into_iter().flat_map(|read| &read.entries);
-    let mut line: serde_json::Map<String, Json> =
-        entries.map(|entry| (entry.key.to_owned(), value(&entry.value))).collect();
-    line.insert("color".into(), json!(color));
-    Json::Object(line).to_string()
+    let mut line = object(read.map_or(&[], |read| &read.entries));
+    line["color"] = json!(color);
+    line.to_string()
+}
+
+fn object(entries: &[Entry]) -> Json {
+    Json::Object(entries.iter().map(|entry| (entry.key.to_owned(), value(&entry.value))).collect())
 }
 
 fn value(value: &Value) -> Json {
@@ -116,6 +118,7 @@ fn value(value: &Value) -> Json {
         Value::Index(index) => json!(index),
         Value::Coordinates(numbers, _) => json!(numbers),
         Value::Flag { on, .. } => json!(on),
+        Value::Items(items) => items.iter().map(|entries| object(entries)).collect(),
     }
 }
 
@@ -159,6 +162,13 @@ fn said(label: &str, value: &Value) -> String {
             format!("{label} {} {unit}", numbers.join(", ")).trim_end().to_owned()
         }
         Value::Flag { on, off } => if *on { label } else { off }.to_owned(),
+        Value::Items(items) => {
+            let words = |entries: &Vec<Entry>| {
+                let words: Vec<String> = entries.iter().map(|entry| said(entry.label, &entry.value)).collect();
+                format!("{label}: {}", words.join(", "))
+            };
+            items.iter().map(words).collect::<Vec<_>>().join("\n  ")
+        }
     }
 }
 

@@ -9,6 +9,8 @@ use super::Synth;
 use super::stage::Group;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
 use crate::layers::parts::moment::Columns;
+#[cfg(feature = "window")]
+use crate::layers::parts::moment::Moment;
 use crate::layers::ready::Still;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
@@ -30,24 +32,71 @@ fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Li
     let moment = synth.moment(scene_time);
     let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
     let mut picture = Linear::filled(width, rows.len(), synth.stage.background);
-    let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
-    lines.for_each(|(out, &y)| {
-        let mut own = vec![[0.0; 4]; width];
-        let mut depth = Vec::new();
-        for group in &synth.stage.groups {
-            own.fill([0.0; 4]);
-            match group {
-                Group::Plane(layer) => layers[*layer].row(y, columns, &mut own),
-                Group::World(group) => {
-                    depth.clear();
-                    depth.resize(width, f64::INFINITY);
-                    group.iter().for_each(|layer| layers[*layer].surface(y, columns, &mut depth, &mut own));
-                }
-            }
-            out.iter_mut().zip(&own).for_each(|(beneath, &color)| *beneath = over(color, *beneath));
+    for group in &synth.stage.groups {
+        let (shown, width) = (Shown { layers: &layers, group, columns }, width.max(1));
+        let out = picture.cells_mut();
+        if group.layers().iter().any(|&layer| synth.layers[layer].has_sprites()) {
+            // Sprites reach over many rows: all of these at once.
+            let (own, depth) = shown.surfaces(rows, width);
+            let own = shown.sprites(rows, &depth, own);
+            out.par_iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(color, *beneath));
+            continue;
         }
-    });
+        let lines = out.par_chunks_mut(width).zip(rows.par_iter());
+        lines.for_each_init(
+            || (vec![[0.0; 4]; width], vec![f64::INFINITY; width]),
+            |(own, depth), (out, &y)| {
+                own.fill([0.0; 4]);
+                shown.row(y, depth, own);
+                out.iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(*color, *beneath));
+            },
+        );
+    }
     picture
+}
+
+/// A group of layers at one time.
+struct Shown<'a> {
+    layers: &'a [Box<dyn Still + 'a>],
+    group: &'a Group,
+    columns: Columns<'a>,
+}
+
+impl Shown<'_> {
+    /// Writes row `y` of what is no sprite to `own`, transparent before, and how far away it is to `depth`.
+    fn row(&self, y: usize, depth: &mut [f64], own: &mut [Rgba]) {
+        match self.group {
+            Group::Plane(layer) => self.layers[*layer].row(y, self.columns, own),
+            Group::World(group) => {
+                depth.fill(f64::INFINITY);
+                group.iter().for_each(|layer| self.layers[*layer].surface(y, self.columns, depth, own));
+            }
+        }
+    }
+
+    /// The same for these rows.
+    fn surfaces(&self, rows: &[usize], width: usize) -> (Vec<Rgba>, Vec<f64>) {
+        let mut own = vec![[0.0; 4]; rows.len() * width];
+        let mut depth = vec![f64::INFINITY; own.len()];
+        let lines = own.par_chunks_mut(width).zip(depth.par_chunks_mut(width)).zip(rows.par_iter());
+        lines.for_each(|((own, depth), &y)| self.row(y, depth, own));
+        (own, depth)
+    }
+
+    /// Draws sprites over surfaces, layer by layer.
+    fn sprites(&self, rows: &[usize], depth: &[f64], mut own: Vec<Rgba>) -> Vec<Rgba> {
+        let layers = self.group.layers().iter();
+        layers.for_each(|&layer| self.layers[layer].sprites(rows, self.columns, depth, &mut own));
+        own
+    }
+}
+
+/// How far away the surfaces of a group are, in meters, pixel by pixel; infinite where there is none.
+#[cfg(feature = "window")]
+pub fn depths(synth: &Synth, group: &Group, moment: &Moment) -> Vec<f64> {
+    let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(moment)).collect();
+    let rows: Vec<usize> = (0..synth.size.1).collect();
+    Shown { layers: &layers, group, columns: Columns::All }.surfaces(&rows, synth.size.0).1
 }
 
 /// How many pixels are in memory as light at a time: light takes four times the memory of codes.

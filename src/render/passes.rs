@@ -113,7 +113,10 @@ fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]
             let Group::World(layers) = group else { continue };
             let mut depth = vec![f64::INFINITY; width];
             let mut own = vec![[0.0; 4]; width];
-            for &layer in layers {
+            // Sprites come after surfaces, as in the frame.
+            let is_sprites = |layer: &&usize| synth.layers[**layer].has_sprites();
+            let (sprites, surfaces): (Vec<&usize>, Vec<&usize>) = layers.iter().partition(is_sprites);
+            for &layer in surfaces.into_iter().chain(sprites) {
                 let before = depth.clone();
                 stills[layer].pass(pass, y, columns, &mut depth, &mut own);
                 if *pass == OBJECT {
@@ -122,7 +125,8 @@ fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]
                     nearer.for_each(|((cell, _), _)| *cell = [number, number, number, 1.0]);
                 }
             }
-            let covered = out.iter_mut().zip(own).zip(depth).filter(|(_, depth)| depth.is_finite());
+            let covered = out.iter_mut().zip(own).zip(depth);
+            let covered = covered.filter(|((_, own), depth)| depth.is_finite() || own[3] > 0.0);
             covered.for_each(|((cell, own), _)| *cell = own);
         }
     });

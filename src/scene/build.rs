@@ -299,9 +299,11 @@ impl<'a> Fresh<'a> {
         }
     }
 
-    /// The required fields of an object or of a variant.
+    /// The required fields of an object or of a variant, and those that it begins with.
     fn object(&self, shape: Shape, variant: &str) -> Value {
-        let required = shape.required().chain(shape.either().take(1)).filter_map(|name| {
+        let begins = |name: &&str| shape.property(None, name).is_some_and(Shape::begins);
+        let begins = shape.fields().into_iter().flat_map(Map::keys).map(String::as_str).filter(begins);
+        let required = shape.required().chain(shape.either().take(1)).chain(begins).filter_map(|name| {
             let field = shape.property(None, name)?;
             let start = || (self.kind?.starts.start)(variant, name, self.bounds);
             let start = shape.constant(name).cloned().or_else(start);

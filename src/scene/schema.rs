@@ -13,13 +13,18 @@ const LARGEST: f64 = 1e9;
 
 /// The units of numbers, each with the range of numbers that have no range of their own; `None` if they may be any
 /// finite number. The schema has the unit of every number.
-const UNITS: [(&str, Option<(f64, f64)>); 10] = [
+const UNITS: [(&str, Option<(f64, f64)>); 15] = [
     (PLAIN, Some((-LARGEST, LARGEST))),
     ("px", Some((-LARGEST, LARGEST))),
     ("m", Some((-LARGEST, LARGEST))),
     ("degrees", Some((-LARGEST, LARGEST))),
     ("cycles", Some((-LARGEST, LARGEST))),
     ("s", Some((-LARGEST, LARGEST))),
+    ("m/s", Some((-LARGEST, LARGEST))),
+    ("m/s2", Some((-LARGEST, LARGEST))),
+    ("1/s", Some((-LARGEST, LARGEST))),
+    ("texels", Some((-LARGEST, LARGEST))),
+    ("percent", Some((0.0, 100.0))),
     ("fps", Some((-LARGEST, LARGEST))),
     ("frames", Some((-LARGEST, LARGEST))),
     ("passes", None),
@@ -53,7 +58,11 @@ fn bound(node: &mut Value, unit: Option<&str>) {
     let own = node.get("unit").and_then(Value::as_str).map(str::to_owned);
     let unit = own.as_deref().or(unit);
     if let Value::Object(map) = node {
-        let numeric = map.get("type").and_then(Value::as_str);
+        // What may be missing may be null too.
+        let numeric = match map.get("type") {
+            Some(Value::Array(names)) => names.iter().filter_map(Value::as_str).find(|name| *name != "null"),
+            name => name.and_then(Value::as_str),
+        };
         if let Some(range) = numeric.and_then(|kind| widest(kind, unit)) {
             map.entry("minimum").or_insert(range[0].clone());
             map.entry("maximum").or_insert(range[1].clone());
@@ -140,6 +149,11 @@ impl Shape {
                 return shape;
             }
         }
+    }
+
+    /// Whether new objects have it, though it may be left out.
+    pub fn begins(self) -> bool {
+        self.site.get("begins") == Some(&Value::Bool(true))
     }
 
     /// Whether it is read-only.

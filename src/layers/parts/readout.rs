@@ -58,6 +58,8 @@ pub enum Value {
         /// The word if it is false.
         off: &'static str,
     },
+    /// Several things, each with its own entries.
+    Items(Vec<Vec<Entry>>),
 }
 
 /// A path from 0 to 1.

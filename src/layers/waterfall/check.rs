@@ -1,0 +1,174 @@
+//! What can be wrong with a waterfall layer: on its own, and with its clip and sheets.
+
+use super::automatic::Values;
+use super::births::Births;
+use super::hash::Random;
+use super::lines::{Line, lines, water};
+use super::look::Look;
+use super::model::WaterfallLayer;
+use super::sprites::bytes_of;
+use super::sprites::cut::Sources;
+use super::sprites::model::{Pick, Shows, Sprites};
+use crate::base::budget::size;
+use crate::base::clip::Clip;
+use crate::base::problem::Problem;
+use crate::layers::check as rules;
+
+/// The most sprites at once.
+const MOST_SPRITES: f64 = 2e6;
+/// The most bytes of keys.
+const MOST_BYTES: u64 = 1 << 30;
+/// Sides of keys are multiples of this, in texels.
+const PART: u32 = 16;
+
+/// The checks beyond shape.
+pub fn problems(layer: &WaterfallLayer) -> Vec<Problem> {
+    let mut problems = of_sprites(layer);
+    let flows = layer.lip.iter().any(|node| node.flow > 0.0);
+    if !flows {
+        problems.push(Problem::error("/lip", "no water flows at any node").hint("give a node a flow above 0"));
+    }
+    problems.extend(of_look(&layer.look, "/look"));
+    problems.extend(of_look(&layer.foam.look, "/foam/look"));
+    if flows {
+        problems.extend(of_lines(layer));
+    }
+    problems
+}
+
+fn of_sprites(layer: &WaterfallLayer) -> Vec<Problem> {
+    let sprites = &layer.sprites;
+    let mut problems = Vec::new();
+    let laid = sprites.sheets.iter().any(|sheet| sheet.kind == Shows::Water);
+    if layer.clip.is_none() && !(laid && sprites.picks.is_empty()) {
+        problems
+            .push(Problem::error("", "a waterfall needs a clip or sprites.sheets").hint("name a clip of the scene"));
+    }
+    let side = sprites.size;
+    if !side.is_multiple_of(PART) {
+        let near = [side / PART * PART, side.div_ceil(PART) * PART].map(|side| side.to_string());
+        let problem = Problem::error("/sprites/size", format!("{side} is no multiple of {PART}"));
+        problems.push(problem.hint(near.join(", ")));
+    }
+    if sprites.matte.low >= sprites.matte.high {
+        let (low, high) = (sprites.matte.low, sprites.matte.high);
+        let problem = Problem::error("/sprites/matte/low", format!("low is not below high ({low} and {high})"));
+        problems.push(problem.hint("make it smaller"));
+    }
+    let bytes = bytes_of(sprites);
+    if bytes > MOST_BYTES {
+        let message = format!("keys of {} (limit {}): lower size, keys or growth.max", size(bytes), size(MOST_BYTES));
+        problems.push(Problem::error("/sprites", message));
+    }
+    problems
+}
+
+fn of_look(look: &Look, path: &str) -> Vec<Problem> {
+    let at = |i: usize| format!("{path}/tint/{i}");
+    let ages = look.tint.iter().map(|tint| tint.at);
+    let ascending = rules::ascending("ages of colors", ages, |i| at(i) + "/at");
+    let colors = look.tint.iter().enumerate();
+    let colors = colors.filter_map(|(i, tint)| rules::color(&tint.color, &(at(i) + "/color")));
+    ascending.into_iter().chain(colors).collect()
+}
+
+fn of_lines(layer: &WaterfallLayer) -> Vec<Problem> {
+    let (values, random) = (Values::of(layer), Random(layer.seed));
+    let water = water(&values, random);
+    let mut problems = Vec::new();
+    if !water.iter().any(Line::carries) {
+        let highest = values.lip.iter().map(|node| node.at.y).fold(f64::NEG_INFINITY, f64::max);
+        let message = format!("no line leaves the lip: it lies under the pool (y {highest}, pool {})", layer.pool);
+        problems.push(Problem::warning("/lip", message).hint("raise the lip, or lower the pool"));
+    }
+    // Lines are short compared with the longest life; they are only looked at if that would be too many.
+    let [falling, springing] = &values.kinds;
+    let most = falling.rate * falling.life + f64::from(layer.foam.lines) * springing.rate * springing.life;
+    if most * f64::from(values.lines) > MOST_SPRITES {
+        let lines = lines(&values, &layer.foam, random);
+        let count: f64 = lines.iter().map(|line| line.life * values.kinds[usize::from(line.foam)].rate).sum();
+        problems.extend(too_many(count));
+    }
+    problems
+}
+
+/// The problem with so many sprites at once, if they are too many.
+fn too_many(count: f64) -> Option<Problem> {
+    let message = || {
+        let (count, most) = (count / 1e6, MOST_SPRITES / 1e6);
+        format!("{count:.1} million sprites at once (limit {most} million): lower lines, rate or life")
+    };
+    (count > MOST_SPRITES).then(|| Problem::error("/lines", message()))
+}
+
+/// The problem with what lines carry at once, if it is too much.
+pub fn crowd(lines: &[Line], births: &[Births; 2]) -> Option<Problem> {
+    let of = |line: &Line| {
+        let births = births[usize::from(line.foam)];
+        births.count as f64 * line.life / births.period
+    };
+    too_many(lines.iter().map(of).sum())
+}
+
+/// The problems that only show with the clip and the images of sheets.
+pub fn with_sources(layer: &WaterfallLayer, sources: &Sources) -> Vec<Problem> {
+    let sprites = &layer.sprites;
+    let side = sprites.size as usize;
+    let mut problems = Vec::new();
+    for (i, (sheet, image)) in sprites.sheets.iter().zip(&sources.sheets).enumerate() {
+        let (columns, rows) = (sheet.columns as usize, sheet.rows as usize);
+        if (image.width(), image.height()) != (columns * side, rows * side) {
+            let (width, height) = (image.width() as f64 / columns as f64, image.height() as f64 / rows as f64);
+            let message = format!("cells of {width} x {height}; sprites.size is {side}");
+            let hint = "give columns and rows as the image has them, or its size";
+            problems.push(Problem::error(format!("/sprites/sheets/{i}"), message).hint(hint));
+        }
+    }
+    let Some(clip) = &sources.clip else { return problems };
+    let (width, height) = clip.size_px();
+    if width < side || height < side {
+        let message = format!("sprites of {side} px do not fit in the clip's {width} x {height}");
+        problems.push(Problem::error("/sprites/size", message).hint("make them smaller"));
+        return problems;
+    }
+    let needed = (sprites.track_frames() - 1).max(sprites.step as usize) + 1;
+    if sprites.is_automatic() && clip.frames.len() < needed {
+        let (keys, step, name) = (sprites.keys, sprites.step, layer.clip.as_deref().unwrap_or_default());
+        let message = format!(
+            "{keys} keys {step} frames apart need {needed} frames; the clip \"{name}\" has {}",
+            clip.frames.len()
+        );
+        problems.push(Problem::error("/sprites", message).hint("lower keys or step"));
+    }
+    let picks = sprites.picks.iter().enumerate();
+    problems.extend(picks.flat_map(|(i, pick)| {
+        let path = format!("/sprites/picks/{i}");
+        of_pick(sprites, pick, clip).into_iter().map(move |problem| problem.under(&path))
+    }));
+    problems
+}
+
+fn of_pick(sprites: &Sprites, pick: &Pick, clip: &Clip) -> Vec<Problem> {
+    let side = f64::from(sprites.size);
+    let (width, height) = clip.size_px();
+    let mut problems = Vec::new();
+    let outside = pick.at.into_iter().zip([width, height]).find_map(|(at, size)| {
+        let edge = (at - side / 2.0 + 0.5).floor();
+        (edge < 0.0 || edge + side > size as f64).then_some((edge, edge + side, size))
+    });
+    if let Some((from, to, size)) = outside {
+        let message = format!("its window, {from} px to {to} px, leaves the clip's {size} px");
+        problems.push(Problem::error("", message).hint("move it inside"));
+    }
+    let (frame, count) = (pick.frame as usize, clip.frames.len());
+    let frames = if pick.track { sprites.track_frames() } else { 1 };
+    if frame + frames > count {
+        let what = if pick.track {
+            format!("frame {frame} and its track of {frames} frames pass the clip's end ({count})")
+        } else {
+            format!("frame {frame} passes the clip's end ({count})")
+        };
+        problems.push(Problem::error("", what).hint("take an earlier frame"));
+    }
+    problems
+}

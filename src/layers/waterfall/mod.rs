@@ -1,0 +1,141 @@
+//! Waterfalls of texture sprites (after Guan et al., "Video Input Synthesize Waterfall Scenes"): sprites cut from a clip of
+//! real water are carried along flow lines that obey gravity, drag and wind, change from one picture to the next on their
+//! way, and are splatted from any viewpoint.
+
+pub mod automatic;
+pub mod between;
+pub mod births;
+pub mod check;
+pub mod drag;
+pub mod draw;
+pub mod frame;
+pub mod hash;
+pub mod lines;
+pub mod look;
+pub mod marks;
+pub mod model;
+pub mod noise;
+pub mod passes;
+pub mod path;
+pub mod plan;
+pub mod probe;
+pub mod ready;
+pub mod splat;
+pub mod sprites;
+pub mod synth;
+
+use std::sync::Arc;
+
+use kurbo::Rect;
+use serde_json::{Value, json};
+
+use self::model::WaterfallLayer;
+use super::parts::materials::{List, Materials, Of, Use, What};
+use super::parts::moment::{Moment, Space};
+use super::parts::readout::ReadOut;
+use super::ready::{Making, Ready};
+use super::technique::{Checked, Kind, Starts, Technique, halfway};
+use crate::base::problem::Problem;
+
+/// The technique.
+pub static KIND: Kind = Kind {
+    name: "waterfall",
+    space: Space::World,
+    programs: &[&plan::PROGRAM],
+    bundle: None,
+    counted: &[],
+    overlays: marks::OVERLAYS,
+    passes: &[passes::LINES, passes::SPRITES],
+    looks: marks::LOOKS,
+    template: None,
+    starts: Starts { start, ascending, item, ..Starts::PLAIN },
+    example: include_str!("example.json"),
+};
+
+impl Technique for WaterfallLayer {
+    fn kind(&self) -> &'static Kind {
+        &KIND
+    }
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn check(&self, _before: Option<(&dyn Technique, &Checked)>) -> Checked {
+        Checked(vec![check::problems(self).into()])
+    }
+
+    fn memory(&self) -> Vec<(String, u64)> {
+        vec![("/sprites".into(), sprites::bytes_of(&self.sprites))]
+    }
+
+    fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
+        let sources = synth::sources(self, materials);
+        sources.map_or_else(|_| Vec::new(), |sources| check::with_sources(self, &sources))
+    }
+
+    fn uses(&self) -> Vec<Use<'_>> {
+        let clip =
+            self.clip.iter().map(|clip| Use { at: "/clip".into(), of: Of::Name(List::Clips, clip), what: What::Clip });
+        let sheets = self.sprites.sheets.iter().enumerate().map(|(i, sheet)| {
+            let at = format!("/sprites/sheets/{i}/image");
+            Use { at, of: Of::Name(List::Images, &sheet.image), what: What::Picture }
+        });
+        clip.chain(sheets).collect()
+    }
+
+    /// Where a window lies in the clip's first corner.
+    fn bounds(&self, _path: &str) -> Rect {
+        let side = f64::from(self.sprites.size);
+        Rect::new(0.0, 0.0, side, side)
+    }
+
+    fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {
+        probe::probe(self, making, pixel, moment).map(Some)
+    }
+
+    fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {
+        let previous = previous.and_then(|previous| previous.downcast::<synth::Synth>());
+        Ok(Arc::new(synth::Synth::new(self, making, previous)?))
+    }
+}
+
+fn start(_variant: &str, field: &str, bounds: Rect) -> Option<Value> {
+    match field {
+        "at" => Some(json!([bounds.center().x, bounds.center().y])),
+        "color" => Some(json!("#ffffff")),
+        _ => None,
+    }
+}
+
+fn ascending(_variant: &str, list: &str) -> Option<&'static str> {
+    (list == "tint").then_some("/at")
+}
+
+/// A color half way between its neighbors; a node half way between them, or as far beyond the last as that is from the one
+/// before.
+fn item(_variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
+    match list {
+        "tint" if items.is_empty() => Some((0, json!({ "at": 0, "color": "#ffffff" }))),
+        "tint" => halfway(items, index, "/at"),
+        "lip" => Some((index, node(items, index))),
+        _ => None,
+    }
+}
+
+fn node(items: &[Value], index: usize) -> Value {
+    let at = |i: usize| -> Option<[f64; 3]> { serde_json::from_value(items.get(i)?.get("at")?.clone()).ok() };
+    let mix = |a: [f64; 3], b: [f64; 3], share: f64| [0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * share);
+    let place = match (index.checked_sub(1).and_then(at), at(index)) {
+        (Some(before), Some(after)) => mix(before, after, 0.5),
+        (None, Some(first)) => at(1).map_or(mix(first, first, 0.0), |second| mix(first, second, -1.0)),
+        (Some(last), None) => {
+            let before = index.checked_sub(2).and_then(at);
+            before.map_or([last[0] + 1.0, last[1], last[2]], |before| mix(before, last, 2.0))
+        }
+        (None, None) => [0.0, 2.0, 0.0],
+    };
+    let mut node = index.checked_sub(1).and_then(|i| items.get(i)?.as_object().cloned()).unwrap_or_default();
+    node.insert("at".into(), json!(place));
+    Value::Object(node)
+}

@@ -1,0 +1,62 @@
+//! What a waterfall layer gives once it is ready.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::frame::Seen;
+use super::synth::Synth;
+use super::{marks, plan};
+use crate::base::reduce::Reduced;
+use crate::layers::parts::marks::{Mark, View};
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::plan::Plan;
+use crate::layers::ready::{Ready, Still};
+use crate::layers::space::fit::Bounds;
+
+/// Places of a line that are looked at for where it is.
+const PLACES: usize = 16;
+
+impl Ready for Synth {
+    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
+        Box::new(Seen::new(self, moment))
+    }
+
+    fn plan(&self, moment: &Moment) -> Plan {
+        self.plan_before(moment, &vec![f64::INFINITY; moment.size_px.0 * moment.size_px.1])
+    }
+
+    fn plan_before(&self, moment: &Moment, depth: &[f64]) -> Plan {
+        plan::plan(self, moment, depth)
+    }
+
+    fn has_sprites(&self) -> bool {
+        true
+    }
+
+    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
+        Arc::new(Synth { still: true, ..(*self).clone() })
+    }
+
+    fn reduced(&self, _pictures: &mut Reduced) -> Arc<dyn Ready> {
+        Arc::new(self.clone())
+    }
+
+    fn marks(&self, view: &View, moment: &Moment) -> Vec<Mark> {
+        marks::marks(self, view, moment)
+    }
+
+    /// All lines, as wide as what they carry.
+    fn bounds(&self, _t: f64) -> Option<Bounds> {
+        let places = self.lines.iter().filter(|line| line.carries()).flat_map(|line| {
+            let wide = DVec3::splat(self.values.kinds[usize::from(line.foam)].look.widest() / 2.0);
+            let at = move |i: usize| self.values.laws.at(&line.path, line.life * i as f64 / PLACES as f64).0;
+            (0..=PLACES).flat_map(move |i| [at(i) - wide, at(i) + wide])
+        });
+        Bounds::around(places)
+    }
+
+    fn largest_texture(&self) -> usize {
+        self.pictures.side
+    }
+}

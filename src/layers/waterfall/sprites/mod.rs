@@ -1,0 +1,98 @@
+//! The pictures of sprites: keys in tracks, from sheets, windows picked by hand, and windows chosen automatically.
+
+pub mod choose;
+pub mod cut;
+pub mod growth;
+pub mod luma;
+pub mod matte;
+pub mod model;
+pub mod pyramid;
+pub mod residue;
+
+use std::sync::Arc;
+
+use self::model::{Shows, Sprites};
+use self::pyramid::Pyramid;
+use super::hash::Random;
+use crate::base::pixels::Rgba;
+
+/// Bytes that a texel of a key takes with its smaller levels, and one of a residue.
+const TEXEL_BYTES: [u64; 2] = [22, 6];
+
+/// Where a track comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// An image with keys side by side.
+    Sheet,
+    /// A window picked by hand.
+    Pick,
+    /// A window chosen automatically.
+    Auto,
+}
+
+/// Keys that follow one another.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// What it shows.
+    pub kind: Shows,
+    /// Where it comes from.
+    pub source: Source,
+    /// Its keys, at least one.
+    pub keys: Vec<Key>,
+}
+
+/// A picture of a sprite.
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// Its frame in the clip, and left column and top row of its window, if it comes from there.
+    pub window: Option<(usize, (usize, usize))>,
+    /// Its texels.
+    pub texels: Arc<Pyramid<4>>,
+}
+
+/// All pictures of a layer.
+#[derive(Clone, Debug)]
+pub struct Pictures {
+    /// Texels of a side.
+    pub side: usize,
+    /// The tracks, by number.
+    pub tracks: Vec<Track>,
+}
+
+/// The place of a key: its track, and its number in it.
+pub type Place = (usize, usize);
+
+impl Pictures {
+    /// The tracks that sprites of a kind show; foam without its own shows water.
+    pub fn of(&self, foam: bool) -> Vec<usize> {
+        let all = |kind: Shows| (0..self.tracks.len()).filter(move |&i| self.tracks[i].kind == kind).collect();
+        let own: Vec<usize> = if foam { all(Shows::Foam) } else { Vec::new() };
+        if own.is_empty() { all(Shows::Water) } else { own }
+    }
+
+    /// A key.
+    pub fn key(&self, (track, key): Place) -> &Pyramid<4> {
+        &self.tracks[track].keys[key].texels
+    }
+
+    /// The random numbers between keys, for each track and up to `most` intervals of it.
+    pub fn residues(&self, random: Random, most: usize) -> Vec<Vec<Pyramid<1>>> {
+        use rayon::prelude::*;
+        let of = |track: usize| {
+            (0..most).map(move |interval| residue::residue(random, track as u32, interval as u32, self.side))
+        };
+        (0..self.tracks.len()).into_par_iter().map(|track| of(track).collect()).collect()
+    }
+}
+
+/// How many bytes keys and residues take at most.
+pub fn bytes_of(sprites: &Sprites) -> u64 {
+    let (tracks, keys, longest) = sprites.most();
+    let side = u64::from(sprites.size);
+    side * side * (keys * TEXEL_BYTES[0] + tracks * longest * TEXEL_BYTES[1])
+}
+
+/// A key from its texels.
+fn key(side: usize, texels: Vec<Rgba>, window: Option<(usize, (usize, usize))>) -> Key {
+    Key { window, texels: Arc::new(Pyramid::new(side, texels)) }
+}
