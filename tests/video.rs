@@ -177,3 +177,88 @@ fn what_ffmpeg_says_is_told() {
     assert!(run.status.code() == Some(1) && said.contains("ffmpeg: Unknown encoder 'libx264'"), "{said}");
     assert!(!folder.path().join("a.mp4").exists());
 }
+
+/// Frames of a clip fill the whole picture, one a frame.
+fn of_clip(clip: &str) -> String {
+    format!(
+        r#"{{ "plica": 1, "timeline": {{ "duration": 0.6, "fps": 10 }}, "images": {{ "cat": {{ "path": "cat.png" }} }},
+        "clips": {{ "v": {clip} }}, "layers": [{{ "kind": "picture", "name": "l", "image": "cat", "zones": [{{ "name": "z",
+        "outline": {{ "kind": "rectangle", "x": 0, "y": 0, "width": 32, "height": 16 }}, "sampler": {{ "clip": "v" }} }}] }}] }}"#
+    )
+}
+
+#[test]
+fn a_video_is_a_clip_and_is_decoded_once() {
+    if !has_ffmpeg("ffv1") {
+        return;
+    }
+    let folder = folder((32, 16));
+    let ffmpeg = |line: &str| {
+        let mut command = Command::new("ffmpeg");
+        command.args(["-v", "error", "-nostdin"]).args(line.split_whitespace()).current_dir(folder.path());
+        command.output().unwrap()
+    };
+    let made = ffmpeg("-f lavfi -i testsrc2=size=32x16:rate=10 -frames:v 6 -c:v ffv1 v.mkv");
+    assert!(made.status.success(), "{made:?}");
+    let all = ffmpeg("-i v.mkv -f rawvideo -pix_fmt rgb24 -").stdout;
+    let wanted: Vec<&[u8]> = all.chunks(32 * 16 * 3).collect();
+    assert_eq!(wanted.len(), 6);
+    fs::write(folder.path().join("no.mp4"), "no video").unwrap();
+    // A list of other files is no video, whatever it is called.
+    fs::write(folder.path().join("list.mp4"), "ffconcat version 1.0\nfile v.mkv\n").unwrap();
+    let run = |line: &str, path: Option<&str>, cache: &str| {
+        let mut command = plica(folder.path(), line);
+        command.env("XDG_CACHE_HOME", folder.path().join(cache));
+        path.map(|path| command.env("PATH", path));
+        command.output().unwrap()
+    };
+    let write = |clip: &str| fs::write(folder.path().join("s.plica.json"), of_clip(clip)).unwrap();
+    // The clip, and the frames of the video that are shown.
+    for (clip, frames) in [
+        (r#"{ "path": "v.mkv", "fps": 10 }"#, [0, 1, 2, 3, 4, 5]),
+        (r#"{ "path": "v.mkv", "fps": 10, "first": 2, "count": 3 }"#, [2, 3, 4, 2, 3, 4]),
+        (r#"{ "path": "v.mkv", "fps": 5, "first": 4 }"#, [4, 4, 5, 5, 4, 4]),
+    ] {
+        write(clip);
+        // The second time, there is no ffmpeg to decode it again.
+        for path in [None, Some("")] {
+            let done = run("render s.plica.json -o %d.png", path, "cache");
+            assert!(done.status.success(), "{clip}: {done:?}");
+            for (k, frame) in frames.into_iter().enumerate() {
+                let shown = image::open(folder.path().join(format!("{k}.png"))).unwrap().to_rgb8();
+                assert!(shown.as_raw() == wanted[frame], "{clip}: frame {k} is not {frame}");
+            }
+        }
+    }
+    for (clip, path, said) in [
+        (
+            r#"{ "path": "v.mkv" }"#,
+            Some(""),
+            "v.mkv: ffmpeg reads videos, and there is none on the PATH (install ffmpeg",
+        ),
+        (r#"{ "path": "no.mp4" }"#, None, "no.mp4: ffmpeg: "),
+        (r#"{ "path": "list.mp4" }"#, None, "list.mp4: ffmpeg: "),
+        (r#"{ "path": "cat.png" }"#, None, "cat.png: ffmpeg: "),
+        (r#"{ "path": "gone.mp4" }"#, None, "gone.mp4: there is no such file"),
+        (r#"{ "path": "v.mkv", "first": 6 }"#, None, "v.mkv: has no frame 6 (lower first)"),
+        (
+            r#"{ "path": "v.mkv", "first": 4, "count": 3 }"#,
+            None,
+            "v.mkv: has 2 frames from number 4 on, and 3 are wanted",
+        ),
+        (r#"{ "path": "v.mkv" } "#, None, "v.mkv: its frames have 2048 pixels or more together, at most 2000 are"),
+    ] {
+        write(clip);
+        let limit = if clip.ends_with(' ') { " --limit clip=2000" } else { "" };
+        let line = if limit.is_empty() {
+            "check s.plica.json".to_owned()
+        } else {
+            format!("render s.plica.json --frames 0{limit} -o x.png")
+        };
+        let told = run(&line, path, "other");
+        let told = String::from_utf8([told.stdout, told.stderr].concat()).unwrap();
+        assert!(told.contains(said), "{clip}: {told}");
+    }
+    let kept = fs::read_dir(folder.path().join("cache/plica/clips")).unwrap().count();
+    assert_eq!(kept, 3, "nothing half done stays");
+}

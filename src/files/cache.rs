@@ -10,7 +10,7 @@ use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
 
-use super::originals::{Contents, contents};
+use super::hash::{Contents, contents};
 use super::write::Atomic;
 use super::{Limits, paths, temporary};
 use crate::base::error::{Error, Result};

@@ -25,6 +25,7 @@ pub mod scene;
 pub mod session;
 pub mod temporary;
 mod through;
+pub mod video;
 pub mod watch;
 pub mod write;
 

@@ -4,20 +4,21 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{Read, Seek};
+use std::io::Seek;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
+use super::hash::contents;
 use super::materials::{self, Stamp};
 use super::{Options, mesh, paths};
 use crate::base::budget::size;
 use crate::base::error::{Error, Result};
-use crate::base::text::hex;
 use crate::scene::Scene;
+
+pub use super::hash::Contents;
 
 /// The most bytes of a piece: other messages can go between two pieces.
 pub const PIECE: usize = 8 << 10;
@@ -30,16 +31,6 @@ pub struct Original {
     pub path: String,
     /// What is in it, or why it cannot be read.
     pub file: std::result::Result<Contents, String>,
-}
-
-/// What is in a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contents {
-    /// SHA-256 of all its bytes, in hexadecimal.
-    pub hash: String,
-    /// The number of bytes.
-    pub bytes: u64,
 }
 
 /// All files that one scene names, open.
@@ -132,21 +123,6 @@ fn why(error: Error) -> String {
         Error::Failed { what, cure: None, .. } => what,
         Error::Failed { what, cure: Some(cure), .. } => format!("{what} ({cure})"),
         other => other.to_string(),
-    }
-}
-
-/// The contents of a file.
-pub(super) fn contents(file: &mut File) -> std::io::Result<Contents> {
-    file.rewind()?;
-    let (mut hash, mut bytes, mut buffer) = (Sha256::new(), 0, vec![0; 64 << 10]);
-    loop {
-        match file.read(&mut buffer)? {
-            0 => return Ok(Contents { hash: hex(&hash.finalize()), bytes }),
-            n => {
-                hash.update(&buffer[..n]);
-                bytes += n as u64;
-            }
-        }
     }
 }
 

@@ -10,10 +10,10 @@ use crate::base::problem::{Problem, quoted};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Clip {
-    /// Numbered pictures of one size, relative to the scene: falls/%04d.jpg.
+    /// Numbered pictures of one size, relative to the scene, as falls/%04d.jpg; or a video, which ffmpeg reads.
     #[schemars(length(min = 1))]
     pub path: String,
-    /// The number of the first frame.
+    /// The number of the first frame; of a video, from 0.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1000000000), extend("unit" = "frames"))]
     pub first: u32,
@@ -51,16 +51,16 @@ impl Clip {
         let wrong = |what: &str| Problem::error("/path", format!("{}: {what}", quoted(&self.path)));
         let (folder, name) = self.path.split_at(self.path.rfind('/').map_or(0, |slash| slash + 1));
         let name = Pattern::of(name).map_err(|what| wrong(&what).hint("as in falls/%04d.jpg; %% is a %"))?;
-        if !name.is_numbered() {
-            let cure =
-                "name numbered pictures, as falls/%04d.jpg; ffmpeg -i VIDEO -start_number 0 falls/%04d.png makes them";
-            return Err(wrong("the name has no frame number").hint(cure));
-        }
         Ok(Frames { folder, name, first: self.first.into() })
     }
 }
 
 impl Frames<'_> {
+    /// Whether all frames are in one file, a video.
+    pub fn is_video(&self) -> bool {
+        !self.name.is_numbered()
+    }
+
     /// The path of frame `index`, from 0.
     pub fn path(&self, index: u64) -> String {
         format!("{}{}", self.folder, self.name.name(self.first + index))

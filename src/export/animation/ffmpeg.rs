@@ -18,6 +18,7 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::files::draft;
 use crate::files::outputs::Place;
+use crate::files::video;
 use crate::files::write::{self, Atomic};
 
 /// How one container is written.
@@ -119,9 +120,7 @@ fn convert(show: &Show) -> String {
 /// # Errors
 /// If there is none; the message says what can be done instead.
 pub fn find(codec: &Codec, show: &Show) -> Result<PathBuf> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let found = std::env::split_paths(&path).map(|folder| folder.join("ffmpeg")).find(|file| file.is_file());
-    found.ok_or_else(|| {
+    video::program().ok_or_else(|| {
         let what = format!("ffmpeg writes .{}, and there is none on the PATH", codec.container);
         Error::at(&show.place, what).cure(format!("install ffmpeg; where there is one: {}", codec.line(show)))
     })

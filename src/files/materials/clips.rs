@@ -17,13 +17,14 @@ use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
 use crate::base::problem::Problem;
 use crate::files::limits::within;
-use crate::files::{mesh, paths, picture};
+use crate::files::{mesh, paths, picture, video};
 use crate::scene::{self, Scene, pointer};
 
 /// The clips that were loaded before, and their frames.
 #[derive(Debug, Default)]
 pub(super) struct Clips {
     frames: Store<Picture>,
+    videos: Store<Vec<Arc<Picture>>>,
     made: HashMap<String, Made>,
 }
 
@@ -48,10 +49,30 @@ impl Sources<'_> {
         for (key, clip) in &scene.clips {
             let named = Named { key, path: &clip.path, at: pointer::join("/clips", key) + "/path" };
             let old = cache.made.get(key);
+            if let Some(path) = clip.frames().ok().filter(|frames| frames.is_video()).map(|frames| frames.path(0)) {
+                let file = self.key(&path).join(format!("{} {:?}", clip.first, clip.count));
+                let known = kept.videos.get(&file).or_else(|| cache.videos.get(&file));
+                let made = match self.load_one(&path, allowed, &video(clip), known) {
+                    Ok(video) => {
+                        let made = made(clip.fps, &video.value, [video.share.clone()].into(), old);
+                        kept.videos.insert(file, video);
+                        Some(made)
+                    }
+                    Err(error) => {
+                        problems.push(problem(&named, error));
+                        old.cloned()
+                    }
+                };
+                kept.made.extend(made.map(|made| (key.clone(), made)));
+                continue;
+            }
             let loaded = self.clip(clip, allowed, [&cache.frames, &kept.frames], &named, problems);
             let whole: std::result::Result<Vec<_>, _> = loaded.iter().map(|(_, frame)| frame.as_ref()).collect();
             let made = match whole {
-                Ok(frames) => Some(made(clip.fps, &frames, old)),
+                Ok(frames) => {
+                    let pictures: Vec<_> = frames.iter().map(|frame| frame.value.clone()).collect();
+                    Some(made(clip.fps, &pictures, frames.iter().map(|frame| frame.share.clone()).collect(), old))
+                }
                 Err(error) => {
                     problems.push(problem(&named, error));
                     old.cloned()
@@ -111,15 +132,24 @@ impl Sources<'_> {
 }
 
 /// A clip of these frames; the `old` one if it has the same.
-fn made(fps: f64, frames: &[&Loaded<Picture>], old: Option<&Made>) -> Made {
+fn made(fps: f64, frames: &[Arc<Picture>], shares: Arc<[Arc<Share>]>, old: Option<&Made>) -> Made {
     let same = |old: &&Made| {
         let pairs = || old.clip.frames.iter().zip(frames);
-        old.clip.fps == fps && old.clip.frames.len() == frames.len() && pairs().all(|(a, b)| Arc::ptr_eq(a, &b.value))
+        old.clip.fps == fps && old.clip.frames.len() == frames.len() && pairs().all(|(a, b)| Arc::ptr_eq(a, b))
     };
-    old.filter(same).cloned().unwrap_or_else(|| Made {
-        clip: Arc::new(Clip { fps, frames: frames.iter().map(|frame| frame.value.clone()).collect() }),
-        _shares: frames.iter().map(|frame| frame.share.clone()).collect(),
-    })
+    let new = || Made { clip: Arc::new(Clip { fps, frames: frames.to_vec() }), _shares: shares };
+    old.filter(same).cloned().unwrap_or_else(new)
+}
+
+/// Reads the frames of a video that a clip names.
+fn video(
+    clip: &scene::Clip,
+) -> impl Fn(File, &str, Allowed, mesh::Opener) -> Result<(Vec<Arc<Picture>>, Vec<String>, Share)> {
+    let wanted = video::Wanted { first: clip.first, count: clip.count };
+    move |file, place, Allowed { limits, budget, stop }, _| {
+        let (frames, share) = video::decode(file, place, wanted, video::Allowed { limits, budget, stop })?;
+        Ok((frames, Vec::new(), share))
+    }
 }
 
 /// Refuses a clip that is too long or too large, before its frames are read; `new` of them have not been before.

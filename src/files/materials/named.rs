@@ -39,9 +39,12 @@ pub(super) fn fields(scene: &Scene) -> Vec<Named<'_>> {
     fields.collect()
 }
 
-/// The paths of a clip's frames; without a count, as many as are there one after the other, and at least the first.
+/// The paths of a clip's frames, or of its video; without a count, as many as are there one after the other, and at least the first.
 pub(super) fn frames(clip: &Clip, is_there: impl Fn(&str) -> bool) -> Vec<String> {
     let Ok(frames) = clip.frames() else { return Vec::new() };
+    if frames.is_video() {
+        return vec![frames.path(0)];
+    }
     let paths = (0..clip.count.map_or(Clip::MOST, u64::from)).map(|index| frames.path(index));
     match clip.count {
         Some(_) => paths.collect(),
@@ -52,7 +55,7 @@ pub(super) fn frames(clip: &Clip, is_there: impl Fn(&str) -> bool) -> Vec<String
 /// The path of the frame that would make a clip longer if it were there.
 fn next(clip: &Clip, is_there: impl Fn(&str) -> bool) -> Option<String> {
     let count = frames(clip, is_there).len() as u64;
-    clip.frames().ok().filter(|_| clip.count.is_none()).map(|frames| frames.path(count))
+    clip.frames().ok().filter(|frames| clip.count.is_none() && !frames.is_video()).map(|frames| frames.path(count))
 }
 
 /// The clips, each with the paths of its frames beside the scene.

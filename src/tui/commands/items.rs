@@ -146,7 +146,7 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
 
 fn ask_for_path(state: &mut State, pointer: &str) -> Done {
     let what = match pointer.split('/').nth(1) {
-        Some("clips") => "the clip's files as falls/%04d.jpg",
+        Some("clips") => "the clip's files as falls/%04d.jpg, or a video",
         Some("meshes") => "the mesh's file",
         _ => "the picture's file",
     };
@@ -337,6 +337,9 @@ fn unused(document: &Document, path: &str) -> Done {
     }
 }
 
+/// The extensions of files with videos.
+const VIDEOS: [&str; 9] = ["mp4", "mov", "m4v", "webm", "mkv", "avi", "mpg", "ogv", "y4m"];
+
 /// The extensions of files with meshes; `model.glb#0` is a picture in one.
 const MESHES: [&str; 3] = ["obj", "glb", "gltf"];
 
@@ -347,6 +350,7 @@ fn list_for(path: &str) -> List {
     match Pattern::of(name) {
         Ok(pattern) if pattern.is_numbered() => List::Clips,
         _ if MESHES.contains(&extension.as_str()) => List::Meshes,
+        _ if VIDEOS.contains(&extension.as_str()) => List::Clips,
         _ => List::Images,
     }
 }
@@ -354,7 +358,7 @@ fn list_for(path: &str) -> List {
 /// What a file is called in a scene: its name without extension, or for numbered files what is before the number, or their
 /// folder.
 fn called(path: &str) -> &str {
-    if list_for(path) != List::Clips {
+    if list_for(path) != List::Clips || !path.contains('%') {
         return stem(path);
     }
     let before = stem(path).split('%').next().unwrap_or_default().trim_end_matches(['-', '_', ' ']);

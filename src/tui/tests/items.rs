@@ -19,6 +19,7 @@ pub fn pictures_and_names_come_and_go() {
         (": \"add falls/%04d.jpg\" Enter", "/clips/falls/path", json!("falls/%04d.jpg")),
         (": \"add b/fire-%d.png\" Enter", "/clips/fire/path", json!("b/fire-%d.png")),
         (": \"add a.%d.png\" Enter R Ctrl-w \"c\" Enter", "/clips/c/path", json!("a.%d.png")),
+        (": \"add b/fire.MP4\" Enter", "/clips/fire/path", json!("b/fire.MP4")),
         (": \"add 100%.png\" Enter", "/images/100%/path", json!("100%.png")),
         (&format!("{images} o \"dog.png\" Enter d"), "/images/dog", Value::Null),
         (&format!("{images} d"), "/images/cat/path", json!("cat.png")),
