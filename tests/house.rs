@@ -23,7 +23,6 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["std::fs"], &["files/", "base/system", "preview/wire/socket"]),
     (&["std::net", "std::os::unix::net"], &["preview/wire/"]),
     (&["rustix", "signal_hook"], &["base/system"]),
-    (&["naga"], &["render/wgsl"]),
     (&["image", "png", "gif", "webp"], &["files/", "export/"]),
     (&["moxcms", "exr", "tiff", "zune_core", "zune_jpeg"], &["files/picture"]),
     (&["tiny_skia"], &["export/field"]),
@@ -38,6 +37,20 @@ const SHARED: &str = "parts";
 /// The only list of them.
 const LIST: &str = "layers/mod.rs";
 
+/// Tests and benches of one technique, which go with it.
+const OF_ONE_TECHNIQUE: &[&str] = &[
+    "benches/frames.rs",
+    "benches/keys.rs",
+    "benches/scenes/mod.rs",
+    "benches/synthesis.rs",
+    "tests/display/mod.rs",
+    "tests/gpu.rs",
+    "tests/profiles.rs",
+    "tests/properties.rs",
+    "tests/show/mod.rs",
+    "tests/window.rs",
+];
+
 /// The slots of a technique: each file or folder in one of these is named by the folder's `mod.rs` alone.
 const SLOTS: &[&str] = &["layers/mesh/surface/"];
 
@@ -48,9 +61,6 @@ const ORDER_TUI: [&str; 11] =
 const MOST_LINES: usize = 500;
 
 const MOST_LINES_OF_A_FUNCTION: usize = 60;
-
-/// Folders that still have longer functions.
-const LONG_LEFT: &[&str] = &[];
 
 struct Source {
     /// Relative to `src`, with `/`.
@@ -81,7 +91,11 @@ impl Source {
 }
 
 fn sources() -> Vec<Source> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    sources_in("src")
+}
+
+fn sources_in(folder: &str) -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut found = Vec::new();
     files(&root, &mut found);
     found.sort();
@@ -116,12 +130,8 @@ struct Named {
 /// The paths in `text` without its tests. Braces in `use` are expanded.
 fn named(text: &str) -> Vec<Named> {
     let mut found = Vec::new();
-    let mut lines = text.lines().enumerate();
+    let mut lines = program(text).into_iter();
     while let Some((at, line)) = lines.next() {
-        if line.trim() == "#[cfg(test)]" {
-            skip_item(line, &mut lines);
-            continue;
-        }
         let code = uncommented(line);
         let public = code.trim_start().starts_with("pub");
         let mut words =
@@ -162,6 +172,26 @@ fn paths(text: &str) -> Vec<(usize, String)> {
         path
     };
     all.iter().map(|named| (named.line, whole(bound(&named.path).0))).collect()
+}
+
+/// The lines of `text` without its tests.
+fn program(text: &str) -> Vec<(usize, &str)> {
+    let mut lines = text.lines().enumerate();
+    let mut found = Vec::new();
+    while let Some((at, line)) = lines.next() {
+        match line.trim() {
+            "#[cfg(test)]" => skip_item(line, &mut lines),
+            _ => found.push((at, line)),
+        }
+    }
+    found
+}
+
+/// The string literals in `text` without its tests, each with its line; those with escapes or over several lines are left
+/// out.
+fn literals(text: &str) -> Vec<(usize, &str)> {
+    let lines = program(text).into_iter().map(|(at, line)| (at + 1, uncommented(line)));
+    lines.flat_map(|(at, line)| line.split('"').skip(1).step_by(2).map(move |literal| (at, literal))).collect()
 }
 
 /// Skips the item after the attribute `line`, as rustfmt lays it out: one line, or all up to the first line at the same
@@ -468,10 +498,9 @@ fn techniques_name_neither_one_another_nor_their_list() {
     report("deleting a technique's folder breaks its list and nothing else of layers/", &broken);
 }
 
-#[test]
-fn nobody_outside_names_a_technique() {
-    let sources = sources();
-    let techniques = techniques(&sources);
+/// How the list calls the layers of the techniques: `Layer::Picture`.
+fn variants(sources: &[Source]) -> Vec<String> {
+    let techniques = techniques(sources);
     let list = sources.iter().find(|source| source.path == LIST).map_or("", |source| &source.text);
     // `    Picture(folding::model::PictureLayer),`
     let variant = |line: &str| {
@@ -481,16 +510,69 @@ fn nobody_outside_names_a_technique() {
     };
     let variants: Vec<String> = list.lines().filter_map(variant).collect();
     assert_eq!(variants.len(), techniques.len(), "{variants:?}");
+    variants
+}
+
+/// Where a file names a technique: its folder, or its variant.
+fn names_of_techniques(source: &Source, techniques: &[&str], variants: &[String]) -> Vec<(usize, String)> {
+    let named = |(_, path): &(usize, String)| {
+        let folder = |technique: &&str| path.split_once("layers::").is_some_and(|(_, rest)| within(rest, technique));
+        techniques.iter().any(folder) || variants.iter().any(|variant| path.ends_with(variant.as_str()))
+    };
+    paths(&source.text).into_iter().filter(named).collect()
+}
+
+#[test]
+fn nobody_outside_names_a_technique() {
+    let sources = sources();
+    let (techniques, variants) = (techniques(&sources), variants(&sources));
     let mut broken = Vec::new();
-    for source in sources.iter().filter(|source| !source.path.starts_with(SLICES)) {
-        for (line, path) in source.paths() {
-            let folder = techniques.iter().any(|technique| path.contains(&format!("layers::{technique}")));
-            if folder || variants.iter().any(|variant| path.ends_with(variant.as_str())) {
-                broken.push(format!("src/{}:{line} names {path}", source.path));
+    let own = |source: &Source| source.slice().is_some_and(|slice| techniques.contains(&slice));
+    for source in sources.iter().filter(|source| source.is_program() && source.path != LIST && !own(source)) {
+        let named = names_of_techniques(source, &techniques, &variants);
+        broken.extend(named.into_iter().map(|(line, path)| format!("src/{}:{line} names {path}", source.path)));
+    }
+    report("only layers/mod.rs names a technique", &broken);
+}
+
+#[test]
+fn few_tests_and_benches_name_a_technique() {
+    let sources = sources();
+    let (techniques, variants) = (techniques(&sources), variants(&sources));
+    let mut found = BTreeSet::new();
+    for folder in ["tests", "benches"] {
+        // The names in this file are examples.
+        for source in sources_in(folder).into_iter().filter(|source| source.path != "house.rs") {
+            if !names_of_techniques(&source, &techniques, &variants).is_empty() {
+                found.insert(format!("{folder}/{}", source.path));
             }
         }
     }
-    report("only layers/mod.rs names a technique", &broken);
+    let excepted: BTreeSet<String> = OF_ONE_TECHNIQUE.iter().map(|&file| file.to_owned()).collect();
+    assert_eq!(found, excepted, "OF_ONE_TECHNIQUE lists the files that break if a technique is deleted");
+}
+
+#[test]
+fn nobody_outside_writes_what_a_technique_calls_its_own() {
+    let sources = sources();
+    let techniques = techniques(&sources);
+    let own = |source: &&Source| source.slice().is_some_and(|slice| techniques.contains(&slice));
+    // Overlays and programs by their form, looks by where they are made; single words ("normal") mean other things too.
+    let mut names = BTreeSet::new();
+    for source in sources.iter().filter(own).filter(|source| source.is_program()) {
+        let overlays = literals(&source.text).into_iter().map(|(_, literal)| literal);
+        names.extend(overlays.filter(|name| name.starts_with("view-") || name.ends_with(".wgsl")));
+        let looks = source.text.split("Look::new(").skip(1);
+        let looks = looks.filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next());
+        names.extend(looks.filter(|name| name.contains(' ')));
+    }
+    assert!(["view-outlines", "frame.wgsl", "fold region"].iter().all(|name| names.contains(name)), "{names:?}");
+    let mut broken = Vec::new();
+    for source in sources.iter().filter(|source| source.is_program() && !own(source)) {
+        let named = literals(&source.text).into_iter().filter(|(_, literal)| names.contains(literal));
+        broken.extend(named.map(|(line, name)| format!("src/{}:{line} writes \"{name}\"", source.path)));
+    }
+    report("the names of overlays, looks and programs stay with their technique", &broken);
 }
 
 #[test]
@@ -551,8 +633,7 @@ fn files_stay_short_and_say_what_they_are() {
 fn functions_stay_short() {
     let mut broken = Vec::new();
     let sources = sources();
-    let left = |source: &&Source| source.is_program() && !LONG_LEFT.iter().any(|left| source.path.starts_with(left));
-    for source in sources.iter().filter(left) {
+    for source in sources.iter().filter(|source| source.is_program()) {
         let text = source.text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
         let long = functions(text).into_iter().filter(|&(.., lines)| lines > MOST_LINES_OF_A_FUNCTION);
         broken.extend(long.map(|(at, name, lines)| format!("src/{}:{at} {name}: {lines} lines", source.path)));

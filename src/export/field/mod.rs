@@ -7,9 +7,9 @@ use crate::base::maths::{atan2, nice};
 use crate::base::oklab::hue;
 use crate::base::pixels::Frame;
 use crate::base::text::short;
-use crate::layers::parts::marks::{self, Dot, Shape, View};
+use crate::layers::parts::marks::{self, Dot, InPlots, Shape, View};
 use crate::layers::parts::readout::{VectorField, vector};
-use crate::render::overlay::overlay;
+use crate::render::overlay::{overlay, overlays};
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
@@ -127,11 +127,11 @@ pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) ->
     let stretch = if longest > 0.0 { 1.4 * step as f64 * scale / longest } else { 1.0 };
     let plot_from_image = |p: Point| frame.origin() + (p - shown.origin()) * scale;
 
-    let mut marks = outlines(scene, &plot_from_image);
+    let mut marks = marks_of(scene, InPlots::Beneath, &plot_from_image);
     for arrow in &arrows {
         draw_arrow(plot_from_image(arrow.at), arrow.vector() * stretch, step as f64 * scale, &mut marks);
     }
-    marks.extend(anchors(scene, &plot_from_image));
+    marks.extend(marks_of(scene, InPlots::Above, &plot_from_image));
     let height = frame.y1 + LEGEND;
     let width = (frame.x1 + MARGIN).max(360.0);
     marks.extend(margins(frame, Rect::new(0.0, 0.0, width, height)));
@@ -173,16 +173,10 @@ fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = Mark> {
     sides.into_iter().map(move |side| fill(corners(side), [255; 4]))
 }
 
-/// Zone outlines and fold regions, in the look they have everywhere.
-fn outlines(scene: &Scene, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
-    marks_of(scene, &View::of(&["view-outlines", "view-regions"]), plot_from_image)
-}
-
-fn anchors(scene: &Scene, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
-    marks_of(scene, &View::of(&["view-anchors"]), plot_from_image)
-}
-
-fn marks_of(scene: &Scene, view: &View, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
+/// What the techniques want to be drawn there, in the look that it has everywhere.
+fn marks_of(scene: &Scene, place: InPlots, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
+    let shown = overlays().filter(|overlay| overlay.in_plots == Some(place)).map(|overlay| overlay.name);
+    let view = View::of(&shown.collect::<Vec<_>>());
     let mark = |mark: marks::Mark| {
         let look = mark.look;
         let dash = look.dash_px.map(|(on, off)| (f64::from(on), f64::from(off)));
@@ -196,7 +190,7 @@ fn marks_of(scene: &Scene, view: &View, plot_from_image: &impl Fn(Point) -> Poin
             Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) | Shape::Cell(..) => None,
         }
     };
-    overlay(scene, None, view).into_iter().filter_map(mark).collect()
+    overlay(scene, None, &view).into_iter().filter_map(mark).collect()
 }
 
 fn dot(at: Point, shape: Dot, radius: f64) -> Vec<Point> {

@@ -1,11 +1,7 @@
 //! The overlays of folding, and how their marks look. The colors are distinguishable for color-blind eyes (after Okabe
 //! and Ito).
 
-use crate::layers::parts::marks::{Dot, Look, Overlay, VECTOR_COLORS, VECTORS, When};
-
-const fn overlay(name: &'static str, key: &'static str, help: &'static str, when: When) -> Overlay {
-    Overlay { name, key, help, when, hidden: false }
-}
+use crate::layers::parts::marks::{Dot, InPlots, Legend, Look, Overlay, VECTOR_COLORS, VECTORS, When};
 
 pub(super) const OUTLINES: &str = "view-outlines";
 pub(super) const REGIONS: &str = "view-regions";
@@ -21,17 +17,17 @@ pub(super) const LABELS: &str = "view-labels";
 
 /// Every overlay.
 pub static OVERLAYS: &[Overlay] = &[
-    overlay(OUTLINES, "o", "Zone outlines", When::Document),
-    overlay(REGIONS, "r", "Fold regions", When::Document),
-    overlay(ANCHORS, "a", "Anchors and their jump vectors", When::Document),
-    overlay(CURVES, "c", "Curves, lassos and handles", When::Document),
-    overlay(LABELS, "n", "Names and numbers", When::Document),
-    overlay(FIELD, "v", "The vector field as arrows", When::Synthesis),
-    overlay(WHEEL, "d", "The vector field as colors of directions", When::Synthesis),
-    overlay(PATHS, "p", "Jump paths", When::Synthesis),
-    overlay(THRESHOLDS, "x", "Where jump paths meet fold regions", When::Synthesis),
-    overlay(SAMPLERS, "e", "Samplers, at their effective places", When::EveryFrame),
-    overlay(ONION, "i", "Where the samplers were before", When::EveryFrame),
+    Overlay::new(OUTLINES, "o", "Zone outlines", When::Document).plotted(InPlots::Beneath),
+    Overlay::new(REGIONS, "r", "Fold regions", When::Document).plotted(InPlots::Beneath),
+    Overlay::new(ANCHORS, "a", "Anchors and their jump vectors", When::Document).plotted(InPlots::Above),
+    Overlay::new(CURVES, "c", "Curves, lassos and handles", When::Document),
+    Overlay::new(LABELS, "n", "Names and numbers", When::Document),
+    Overlay::new(FIELD, "v", "The vector field as arrows", When::Synthesis).explained(Legend::Arrows),
+    Overlay::new(WHEEL, "d", "The vector field as colors of directions", When::Synthesis).explained(Legend::Colors),
+    Overlay::new(PATHS, "p", "Jump paths", When::Synthesis),
+    Overlay::new(THRESHOLDS, "x", "Where jump paths meet fold regions", When::Synthesis),
+    Overlay::new(SAMPLERS, "e", "Samplers, at their effective places", When::EveryFrame),
+    Overlay::new(ONION, "i", "Where the samplers were before", When::EveryFrame),
 ];
 
 /// The outline of a zone.

@@ -19,7 +19,7 @@ const NORMALS: &str = "view-normals";
 const BACKS: &str = "view-backs";
 
 const fn overlay(name: &'static str, key: &'static str, help: &'static str, hidden: bool) -> Overlay {
-    Overlay { name, key, help, when: When::EveryFrame, hidden }
+    Overlay { hidden, ..Overlay::new(name, key, help, When::EveryFrame) }
 }
 
 /// Every overlay.

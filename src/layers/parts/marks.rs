@@ -22,6 +22,45 @@ pub struct Overlay {
     pub when: When,
     /// Whether surfaces in space hide its marks.
     pub hidden: bool,
+    /// Where plots of vector fields draw it; `None` if they leave it out.
+    pub in_plots: Option<InPlots>,
+    /// The legend that explains it in the window, if it needs one.
+    pub legend: Option<Legend>,
+}
+
+impl Overlay {
+    /// An overlay that no surface hides, that is in no plot and needs no legend.
+    pub const fn new(name: &'static str, key: &'static str, help: &'static str, when: When) -> Overlay {
+        Overlay { name, key, help, when, hidden: false, in_plots: None, legend: None }
+    }
+
+    /// The same, drawn in plots too.
+    pub const fn plotted(self, place: InPlots) -> Overlay {
+        Overlay { in_plots: Some(place), ..self }
+    }
+
+    /// The same with a legend.
+    pub const fn explained(self, legend: Legend) -> Overlay {
+        Overlay { legend: Some(legend), ..self }
+    }
+}
+
+/// Where a plot of a vector field draws an overlay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InPlots {
+    /// Beneath the arrows of the field.
+    Beneath,
+    /// Above them.
+    Above,
+}
+
+/// A legend of the vector field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Legend {
+    /// The color of each direction and length.
+    Colors,
+    /// The length of an arrow.
+    Arrows,
 }
 
 /// What the marks of an overlay depend on.

@@ -14,21 +14,10 @@ const GROUND: &str = "view-ground";
 const CAMERA: &str = "view-camera";
 
 /// The ground and the axes: an overlay of every technique in space.
-pub const GROUND_OVERLAY: Overlay = Overlay {
-    name: GROUND,
-    key: "G",
-    help: "The ground and the axes of the world",
-    when: When::EveryFrame,
-    hidden: false,
-};
+pub const GROUND_OVERLAY: Overlay = Overlay::new(GROUND, "G", "The ground and the axes of the world", When::EveryFrame);
 /// The scene's camera: an overlay of every technique in space.
-pub const CAMERA_OVERLAY: Overlay = Overlay {
-    name: CAMERA,
-    key: "C",
-    help: "What the scene's camera sees, looked at from elsewhere",
-    when: When::EveryFrame,
-    hidden: false,
-};
+pub const CAMERA_OVERLAY: Overlay =
+    Overlay::new(CAMERA, "C", "What the scene's camera sees, looked at from elsewhere", When::EveryFrame);
 
 /// A line on the ground.
 pub static GRID: Look = Look::new("ground", 20, [150, 160, 175, 120], 0.8);

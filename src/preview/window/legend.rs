@@ -11,7 +11,8 @@ use super::style::{MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::text::{Letters, Text};
 use crate::base::maths::{TAU, cos, nice, sin};
 use crate::base::text::short;
-use crate::layers::parts::marks::{VECTORS, vector_color};
+use crate::layers::parts::marks::{Legend, VECTORS, vector_color};
+use crate::render::overlay::overlays;
 
 /// Radius of the wheel of colors and of its dots, in logical pixels, and how many rings it has.
 const WHEEL_PX: f64 = 34.0;
@@ -27,8 +28,9 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
     if !state.has_picture() || !state.shows("view-legends") {
         return;
     }
-    let wheel = state.shows("view-wheel").then(|| Wheel::new(state, letters));
-    let bar = state.shows("view-field").then(|| ScaleBar::new(state, letters)).flatten();
+    let needs = |legend| overlays().any(|overlay| overlay.legend == Some(legend) && state.shows(overlay.name));
+    let wheel = needs(Legend::Colors).then(|| Wheel::new(state, letters));
+    let bar = needs(Legend::Arrows).then(|| ScaleBar::new(state, letters)).flatten();
     let sizes = [wheel.as_ref().map(|wheel| wheel.size), bar.as_ref().map(|bar| bar.size)];
     let [wheel_at, bar_at] = places(sizes, free, MARGIN_PX * state.scale);
     wheel.zip(wheel_at).into_iter().for_each(|(wheel, at)| wheel.draw(canvas, state, at));

@@ -15,7 +15,7 @@ use super::{labels, marks};
 use crate::layers::parts::marks::View;
 use crate::layers::space::camera::Camera;
 use crate::render::Synth;
-use crate::render::overlay::{longest, overlay};
+use crate::render::overlay::{longest, overlay, overlays};
 use crate::render::reduce::reduced;
 use crate::scene::{Scene, words::item_of};
 
@@ -146,7 +146,7 @@ impl Cached {
         }
         self.fixed.strokes.extend(marks::draw(&found, &state.viewport, state.area(), state.scale).strokes);
         self.labels = labels::draw(&found, &state.viewport, state.area(), state.scale, letters);
-        let legends = state.shows("view-field") || state.shows("view-wheel");
+        let legends = overlays().any(|overlay| overlay.legend.is_some() && state.shows(overlay.name));
         self.longest = if legends { longest(&show.synth) } else { 0.0 };
         self.arrow_scale = View { longest_px: self.longest, ..view }.arrow_scale();
     }

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::*;
+use crate::layers::KINDS;
 use crate::scene::schema::{Body, Shape};
 
 /// Calls `each` with every field of the schema and its name, once per type.
@@ -175,7 +176,8 @@ fn children_also_list_what_is_not_written() {
 
 #[test]
 fn a_row_of_several_kinds_is_told_by_its_columns() {
-    let document = Document::parse(include_str!("../../layers/fill/example.json")).unwrap();
+    let fill = KINDS.iter().find(|kind| kind.name == "fill").unwrap();
+    let document = Document::parse(fill.example).unwrap();
     let stop = "/layers/0/gradient/stops/1";
     let children: Vec<_> = children(&document, stop).into_iter().map(|child| (child.name, child.pointer)).collect();
     let [along, color] = ["0", "1"].map(|token| format!("{stop}/{token}"));

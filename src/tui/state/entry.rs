@@ -168,7 +168,7 @@ fn variables(
 fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> {
     in_range(&cell.field, cell.part, value)?;
     if cell.part == Part::Degrees && cell.number(document) != Some(value) && length(document, cell) == 0.0 {
-        let length = if cell.field.name == "jump" { "|J|" } else { "r" };
+        let length = cell.field.symbol.map_or("r".to_owned(), |symbol| format!("|{symbol}|"));
         return Err(format!("a vector without a length has no direction: set {length} first"));
     }
     let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
