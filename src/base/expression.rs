@@ -70,11 +70,6 @@ pub fn functions() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|f| f.name)
 }
 
-/// Whether `text` changes the old value (`+=3`, `*1.1`) instead of giving a new one.
-pub fn is_relative(text: &str) -> bool {
-    relative(text.trim()).is_some()
-}
-
 /// The value of an entry. `variables` holds the old value as `v`. The result is finite.
 pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
     if text.len() > LIMIT_BYTES {
@@ -369,14 +364,5 @@ mod tests {
             assert!(evaluate(&text, &VARIABLES).is_err());
         }
         assert!(evaluate(&format!("{}1{}", "(".repeat(60), ")".repeat(60)), &VARIABLES).is_ok());
-    }
-
-    #[test]
-    fn relative_entries_are_told_apart() {
-        for (text, expected) in
-            [("*2", true), ("+=1", true), ("-=1", true), ("-1", false), ("+1", false), ("v*2", false)]
-        {
-            assert_eq!(is_relative(text), expected, "{text}");
-        }
     }
 }

@@ -14,6 +14,7 @@ pub mod keys;
 pub mod mask;
 pub mod maths;
 pub mod mesh;
+pub mod number;
 pub mod numbered;
 pub mod oklab;
 pub mod picture;

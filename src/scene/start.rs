@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use super::build::unique_name;
 use super::{Document, FRAME, VERSION};
 use crate::base::maths;
+use crate::base::number;
 use crate::base::problem::Problem;
 use crate::layers::KINDS;
 use crate::layers::space::camera::Camera;
@@ -96,13 +97,8 @@ fn camera(bounds: Option<Bounds>, frame: (usize, usize)) -> Value {
     let [position, target] = fit(&bounds, [BACK, DVec3::Y], Camera::default().fov, frame);
     let distance = position.distance(target);
     let fine = (0..10).map(maths::ten_to).find(|parts| distance * parts >= 1e4).unwrap_or(1e9);
-    let short = |point: DVec3| point.to_array().map(|v| whole((v * fine).round() / fine));
+    let short = |point: DVec3| point.to_array().map(|v| number::json((v * fine).round() / fine));
     json!({ "position": short(position), "target": short(target) })
-}
-
-/// A number without a point where it needs none.
-fn whole(number: f64) -> Value {
-    if number.fract() == 0.0 && number.abs() < 1e15 { (number as i64).into() } else { number.into() }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use kurbo::{Point, Rect};
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
+use crate::base::number;
 
 /// Used in place of a zone where there is none yet.
 const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
@@ -158,6 +159,5 @@ fn pair(x: f64, y: f64) -> Value {
 
 /// A number as a person would write it: at most three decimals, none if it is whole.
 fn neat(x: f64) -> Value {
-    let x = (x * 1000.0).round() / 1000.0;
-    if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) }
+    number::json((x * 1000.0).round() / 1000.0)
 }

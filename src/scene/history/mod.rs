@@ -281,17 +281,6 @@ impl History {
         }
     }
 
-    /// How many steps the last save is away from the current state, as (back, forward); `None` if neither leads there.
-    pub fn since_saved(&self) -> Option<(usize, usize)> {
-        let saved = self.saved?;
-        let route = self.tree.route(saved)?;
-        match (route.back, route.on.len()) {
-            (back, 0) => Some((back, 0)),
-            (0, on) if self.tree.ahead().take(on).eq(route.on.iter().copied()) => Some((0, on)),
-            _ => None,
-        }
-    }
-
     /// The state that is in the file; `None` if it is not known.
     pub fn saved(&self) -> Option<usize> {
         self.saved

@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
+use crate::base::number;
 use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{Bounds, fit};
 use crate::render::Synth;
-use crate::tui::document::sheet::tidy_json;
 use crate::tui::state::State;
 use crate::tui::text::numbers::short;
 
@@ -72,7 +72,7 @@ fn see_all(state: &mut State, call: &Call) -> Done {
     let shows_meshes = !state.document().scene().meshes.is_empty();
     let Some((bounds, size)) = state.picture.synth.as_ref().and_then(|synth| Some((bounds(synth)?, synth.size))) else {
         if shows_meshes || before.is_some() {
-            return Err("no mesh is ready to be seen: :camera fit can be given once one is".into());
+            return Err("no mesh is loaded yet: try :camera fit again in a moment".into());
         }
         // A layer in space asks for a camera before there is anything to see.
         return write(
@@ -119,7 +119,7 @@ fn rounded(value: Value) -> Value {
     const PARTS: f64 = 1e6;
     match value {
         Value::Number(number) => {
-            number.as_f64().map_or(Value::Number(number), |n| tidy_json((n * PARTS).round() / PARTS))
+            number.as_f64().map_or(Value::Number(number), |n| number::json((n * PARTS).round() / PARTS))
         }
         Value::Array(all) => all.into_iter().map(rounded).collect(),
         Value::Object(all) => all.into_iter().map(|(key, value)| (key, rounded(value))).collect(),

@@ -8,11 +8,12 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::yanking::{counted, too_many};
+use crate::base::number;
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
 use crate::tui::document::csv;
 use crate::tui::document::rows::{self, is_polar};
-use crate::tui::document::sheet::{Cell, Part, Row, tidy_json};
+use crate::tui::document::sheet::{Cell, Part, Row};
 use crate::tui::state::State;
 use crate::tui::text::numbers;
 
@@ -103,7 +104,7 @@ impl Filled<'_> {
             let at = |i: usize| old.as_ref().and_then(|old| old.get(i)).and_then(Value::as_f64).unwrap_or(0.0);
             Vec2::new(at(0), at(1))
         };
-        let pair = |v: Vec2| Value::from(vec![tidy_json(v.x), tidy_json(v.y)]);
+        let pair = |v: Vec2| Value::from(vec![number::json(v.x), number::json(v.y)]);
         let value = match cell.part {
             Part::Whole => read,
             Part::Number(i) => {

@@ -10,7 +10,8 @@ use kurbo::Vec2;
 use serde_json::{Value, json};
 
 use super::csv::{Record, number, records, values};
-use super::sheet::{Cell, Part, Sheet, in_range, tidy_json};
+use super::sheet::{Cell, Part, Sheet, in_range};
+use crate::base::number;
 use crate::base::problem::{nearest, quoted};
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, pointer};
@@ -268,7 +269,7 @@ impl Specimen {
             let length = length.ok_or_else(|| format!("line {line}: ° needs |J| beside it"))?;
             let Vec2 { x, y } = numbers::cartesian(length, degrees.unwrap_or(0.0));
             given.extend([(path, Part::Number(0)), (path, Part::Number(1))]);
-            set_whole(&mut item, path, json!([tidy_json(x), tidy_json(y)]));
+            set_whole(&mut item, path, json!([number::json(x), number::json(y)]));
         }
         let missing = self.required.iter().map(|&i| &self.columns[i]);
         match missing.into_iter().find(|column| !given.contains(&(column.path.as_str(), column.cell.part))) {
@@ -283,7 +284,7 @@ pub fn read(cell: &Cell, text: &str) -> Result<Value, String> {
     let Cell { field, part, .. } = cell;
     if cell.is_number() {
         let value = number(text).ok_or_else(|| format!("{} is not a number", quoted(text)))?;
-        return in_range(field, *part, value).map(|()| tidy_json(value));
+        return in_range(field, *part, value).map(|()| number::json(value));
     }
     match &field.kind {
         Kind::Text | Kind::Reference(_) => Ok(text.into()),

@@ -2,6 +2,7 @@
 //! unnamed items inside a form is shown in it row by row. The panes draw a sheet and the commands edit its cells; neither
 //! knows a field by name, so a new parameter appears by itself.
 
+use crate::base::number;
 use crate::tui::text::plain;
 use std::ops::Range;
 use std::sync::Arc;
@@ -103,9 +104,9 @@ impl Cell {
     pub fn with_number(&self, document: &Document, number: f64) -> Option<(String, Value)> {
         let json = |number: f64| match self.field.kind {
             Kind::Number { integer: true } if number == number.trunc() => Value::from(number as i64),
-            _ => tidy_json(number),
+            _ => number::json(number),
         };
-        let both = |v: Vec2| Some((self.pointer.clone(), Value::from(vec![tidy_json(v.x), tidy_json(v.y)])));
+        let both = |v: Vec2| Some((self.pointer.clone(), Value::from(vec![number::json(v.x), number::json(v.y)])));
         let old = field::value(document, &self.pointer)?;
         match self.part {
             Part::Whole => Some((self.pointer.clone(), json(number))),
@@ -118,11 +119,6 @@ impl Cell {
             Part::Degrees => both(numbers::cartesian(numbers::polar(vector(&old)?).0, number)),
         }
     }
-}
-
-/// A JSON number, an integer if it is whole.
-pub fn tidy_json(number: f64) -> Value {
-    if number == number.trunc() && number.abs() < 1e15 { Value::from(number as i64) } else { Value::from(number) }
 }
 
 /// Whether something of this kind is a node.

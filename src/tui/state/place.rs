@@ -1,5 +1,6 @@
 //! Placing things on the picture with its cursor. What has a place, and which lists take points, is read from the schema.
 
+use crate::base::number;
 use crate::tui::document::pointers::upward;
 use kurbo::{Point, Vec2};
 use serde_json::Value;
@@ -7,7 +8,6 @@ use serde_json::Value;
 use super::State;
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
-use crate::tui::document::sheet::tidy_json;
 use crate::tui::text::numbers::tidy;
 
 /// Whether a field is a pair of lengths with these names.
@@ -44,7 +44,7 @@ fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
 }
 
 fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
-    let (x, y) = (tidy_json(tidy(to.x)), tidy_json(tidy(to.y)));
+    let (x, y) = (number::json(tidy(to.x)), number::json(tidy(to.y)));
     match place {
         Place::Pair(pointer) => Edit::set(document, pointer, Value::from(vec![x, y])),
         Place::Apart(pointer) => Edit::all(
@@ -97,7 +97,7 @@ pub fn aim_here(state: &State) -> Result<Edit, String> {
             (dragged.ok_or("what is selected has no jump vector")?, cursor)
         }
     };
-    let value = vec![tidy_json(tidy(value.x)), tidy_json(tidy(value.y))];
+    let value = vec![number::json(tidy(value.x)), number::json(tidy(value.y))];
     Ok(Edit::set(document, &target.pointer, Value::from(value)))
 }
 
@@ -121,7 +121,7 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
             }
         }
     }
-    Err("no list in focus takes points: go to a zone's motion, outline or fold first".into())
+    Err("no list in focus takes points: go to one that does first".into())
 }
 
 /// The lists directly inside the node at `pointer`.

@@ -3,6 +3,7 @@
 
 use kurbo::Vec2;
 
+pub use crate::base::number::text as exact;
 use crate::base::{maths, text};
 
 /// The most decimals that a table shows; an entry shows all of them.
@@ -40,11 +41,6 @@ pub fn fitted(text: &str, room: usize) -> String {
     let rounded = (0..DECIMALS).rev().map(|decimals| format!("~{value:.decimals$}"));
     let rounded = rounded.chain([2, 0].map(|decimals| format!("~{value:.decimals$e}")));
     rounded.into_iter().find(|text| text.len() <= room).unwrap_or_else(|| "…".into())
-}
-
-/// `value` with all its decimals, as in the file.
-pub fn exact(value: f64) -> String {
-    if value == value.trunc() && value.abs() < 1e15 { format!("{value:.0}") } else { value.to_string() }
 }
 
 /// Length and direction of a vector, in degrees; the direction is 0 if the length is.

@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
+use crate::base::number;
 use crate::base::text::short;
 use crate::layers::technique::Turned;
 
@@ -46,8 +47,7 @@ fn ratio(x: f64) -> Value {
 fn rounded(x: f64, per: f64) -> Value {
     let near = (x * per).round() / per;
     // Larger numbers have no meaningful decimals that far down.
-    let x = if near.is_finite() && x.abs() < 1e6 { near } else { x };
-    if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) }
+    number::json(if near.is_finite() && x.abs() < 1e6 { near } else { x })
 }
 
 fn pair(p: impl Into<(f64, f64)>) -> Value {

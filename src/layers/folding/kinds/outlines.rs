@@ -9,6 +9,7 @@ use crate::base::crossings::self_crossing;
 use crate::base::geometry::Xy;
 use crate::base::geometry::{FLATNESS_PX, Polygon};
 use crate::base::maths::{self, TAU};
+use crate::base::number;
 use crate::layers::folding::outline::{Outline, bezier, point};
 
 /// How far the straight sides may be from the curve that they replace.
@@ -62,8 +63,7 @@ fn kind(outline: &Outline) -> &'static str {
 
 /// A position, kept to the last bit.
 fn exact([x, y]: Xy) -> Value {
-    let number = |x: f64| if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) };
-    json!([number(x), number(y)])
+    json!([number::json(x), number::json(y)])
 }
 
 /// The bounding box of an outline; exact for ellipses and curves.

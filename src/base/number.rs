@@ -1,0 +1,34 @@
+//! Numbers as a person writes them: no point where they are whole.
+
+use serde_json::Value;
+
+/// Whole numbers below this have all their digits.
+const MOST_WHOLE: f64 = 1e15;
+
+fn is_whole(number: f64) -> bool {
+    number == number.trunc() && number.abs() < MOST_WHOLE
+}
+
+/// A JSON number, an integer if it is whole; `null` if it is not finite.
+pub fn json(number: f64) -> Value {
+    if is_whole(number) { Value::from(number as i64) } else { Value::from(number) }
+}
+
+/// A number as text with all its decimals.
+pub fn text(number: f64) -> String {
+    if is_whole(number) { format!("{number:.0}") } else { number.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_have_no_point() {
+        for (number, expected) in [(3.0, "3"), (-0.5, "-0.5"), (-7.0, "-7"), (1e14, "100000000000000"), (0.1, "0.1")] {
+            assert_eq!((json(number).to_string(), text(number)), (expected.to_owned(), expected.to_owned()));
+        }
+        assert_eq!(json(1e15).to_string(), "1e+15".parse::<f64>().map(Value::from).unwrap().to_string());
+        assert_eq!(json(f64::NAN), Value::Null);
+    }
+}
