@@ -379,6 +379,22 @@ fn textures_have_names_that_every_file_system_takes() {
 }
 
 #[test]
+fn a_scene_that_has_nothing_to_write_says_so() {
+    let folder = folder();
+    let dir = folder.path();
+    fs::write(dir.join("s.plica.json"), r#"{"plica": 1, "layers": [{"kind": "fill", "name": "ground"}]}"#).unwrap();
+    for (line, said) in [
+        ("field s.plica.json -o a.svg", "no layer has a vector field"),
+        ("field s.plica.json -o a.svg --zone x", "the scene has no zones"),
+        ("synth s.plica.json -o out", "no layer has textures"),
+        ("synth s.plica.json -o out", "out, 1 file"),
+    ] {
+        let stderr = String::from_utf8(run(dir, line).stderr).unwrap();
+        assert!(stderr.contains(said) && !stderr.contains("1 files"), "{line}: {stderr}");
+    }
+}
+
+#[test]
 fn what_cannot_be_written_has_its_cure() {
     let folder = folder();
     let dir = folder.path();

@@ -63,6 +63,9 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let rows = (synth.size.0 as u64).div_ceil(every) * (synth.size.1 as u64).div_ceil(every);
     let _share = opened.materials.budget.take(rows.saturating_mul(ROW), args.output.display())?;
     let plot = || plot(&scene, &synth, step, !args.no_picture);
+    if synth.layers.iter().all(|layer| layer.fields().is_empty()) {
+        context.messages.say("no layer has a vector field, so there are no arrows and no rows");
+    }
     let bytes = match kind {
         Kind::Svg => svg(&plot())?.into_bytes(),
         Kind::Png => png(&plot())?,
@@ -114,6 +117,7 @@ fn only_zone(document: &Document, name: &str) -> Result<Scene> {
     }
     match found {
         1 => Scene::deserialize(json).map_err(|error| Error::at("--zone", error)),
+        0 if names.is_empty() => Err(Error::Usage(format!("--zone {name}: the scene has no zones"))),
         0 => Err(Error::Usage(format!("--zone {name}: there is no such zone, only {}", names.join(", ")))),
         _ => Err(Error::Usage(format!("--zone {name}: several layers have one; write LAYER.ZONE"))),
     }

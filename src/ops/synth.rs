@@ -56,7 +56,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         ));
     }
     let files: Vec<_> = written.names.iter().map(|name| args.output.join(name)).collect();
-    let what = format!("{}, {} files", args.output.display(), files.len());
+    if opened.document.scene().layers.iter().all(|layer| layer.technique().kind().bundle.is_none()) {
+        context.messages.say("no layer has textures for other engines, so there is only the manifest");
+    }
+    let count = if files.len() == 1 { "1 file".to_owned() } else { format!("{} files", files.len()) };
+    let what = format!("{}, {count}", args.output.display());
     context.done(&what, outputs::size(files.iter().map(PathBuf::as_path)), begun);
     Ok(())
 }

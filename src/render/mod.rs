@@ -86,7 +86,7 @@ fn places(n: u32) -> impl Iterator<Item = Vec2> {
 }
 
 fn no_layers() -> Problem {
-    Problem::error("/layers", "a scene without layers has nothing to show").hint("add a picture layer")
+    Problem::error("/layers", "a scene without layers has nothing to show").hint("add a layer")
 }
 
 fn synth_at(scene: &Scene, making: (&Materials, &Textures, Vec2), previous: Option<&Synth>) -> Result<Synth, Problem> {

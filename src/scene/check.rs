@@ -132,7 +132,7 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems.extend(view(scene));
     if scene.layers.is_empty() {
         let problem = Problem::warning("/layers", "a scene without layers has nothing to show");
-        problems.push(problem.hint("add a picture layer"));
+        problems.push(problem.hint("add a layer"));
     }
     problems.extend(names(scene));
     problems.extend(paths(scene, rules));

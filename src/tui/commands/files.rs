@@ -101,6 +101,7 @@ fn image(state: &mut State, call: &Call) -> Done {
     let images = &state.document().scene().images;
     let names = || images.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
     let image = match (name, images.len()) {
+        (_, 0) => return Err("the scene has no pictures".into()),
         ("", 1) => images.values().next(),
         ("", _) => return Err(format!("which picture: {}", names())),
         (name, _) => images.get(name),

@@ -150,7 +150,7 @@ impl OpenScene {
         match self.offered() {
             None => Ok(()),
             Some(offer) => Err(format!(
-                "{} left behind: :recovery keep takes them, :recovery drop leaves them to undo",
+                "{} left behind: :recovery keep applies what was changed, :recovery drop leaves it to undo",
                 offer.in_words()
             )),
         }

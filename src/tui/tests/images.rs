@@ -14,6 +14,7 @@ pub fn a_picture_of_the_scene_is_opened_and_nothing_else() {
         (two, "image edit cow", "no picture cow: cat, dog"),
         (two, "image edit dog", "no such file"),
         (two, "image", "image edit NAME"),
+        (r#"{"plica": 1}"#, "image edit cat", "the scene has no pictures"),
     ] {
         let mut state = state_of(scene);
         run(&mut state, line, None);
