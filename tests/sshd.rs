@@ -1,11 +1,7 @@
 //! Across a real ssh: an sshd on 127.0.0.1 with throw-away keys, an editor in a terminal through it, and a window
 //! opened by the line that the editor shows. If sshd is missing the reason is printed; in CI that is a failure.
 #![cfg(all(feature = "tui", feature = "window"))]
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test that cannot go on fails, and says what it leaves out"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -34,7 +30,7 @@ fn find(tool: &str) -> Option<PathBuf> {
     let found = folders.map(|folder| folder.join(tool)).find(|path| path.exists());
     if found.is_none() {
         assert!(std::env::var_os("CI").is_none(), "in CI {tool} has to be installed");
-        println!("not run: {tool} is not installed");
+        let _ = writeln!(std::io::stderr(), "not run: {tool} is not installed");
     }
     found
 }

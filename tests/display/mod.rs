@@ -1,8 +1,8 @@
 //! A private display (Xvfb), a scene in its own folder, and a real `plica view` on them, driven by keys (xdotool) and
 //! observed by screenshots (ImageMagick's import).
-#![allow(dead_code, clippy::print_stdout, reason = "each test program uses a part of it, and says what it leaves out")]
+#![allow(dead_code, reason = "each test program uses a part of it")]
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
@@ -30,7 +30,7 @@ impl Display {
             let found = Command::new("sh").args(["-c", &format!("command -v {tool}")]).output().unwrap();
             if !found.status.success() {
                 assert!(std::env::var_os("CI").is_none(), "in CI {tool} has to be installed");
-                println!("not run: {tool} is not installed");
+                let _ = writeln!(std::io::stderr(), "not run: {tool} is not installed");
                 return None;
             }
         }
