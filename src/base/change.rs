@@ -6,11 +6,11 @@ use serde_json::{Map, Value};
 /// How a value differs from the one that stood in its place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// Not at all: to the last sign, the order of keys included.
+    /// Identical, byte for byte, including key order.
     Same,
     /// It is another value.
     Other,
-    /// An object of which these fields differ: changed, added (the old one has them not) or taken away.
+    /// An object of which these fields differ: changed, added (absent from the old one) or removed.
     Fields(Vec<(String, Change)>),
     /// A list that differs in one stretch.
     Items(Items),
@@ -55,7 +55,7 @@ impl Items {
     }
 }
 
-/// Whether two values are the same to the last sign, the order of keys included (`==` on objects does not look at it).
+/// Whether two values are the same byte for byte, including key order (`==` on objects does not look at it).
 pub fn same(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Object(a), Value::Object(b)) => {

@@ -4,7 +4,7 @@ use kurbo::Point;
 
 use super::geometry::Polygon;
 
-/// Pairs of sides that are looked at before the search for a crossing gives up: it serves a warning only.
+/// Pairs of sides that are looked at before the search for a crossing gives up: it is only used for a warning.
 const MAX_PAIRS: usize = 2_000_000;
 
 /// Areas below this share of the squared size count as none.

@@ -14,7 +14,7 @@ pub struct KeyRow {
     pub help: &'static str,
 }
 
-/// The rows as a Markdown table, one section a context, in the order of the table.
+/// The rows as a Markdown table, one section per context, in the order of the table.
 pub fn markdown(rows: &[KeyRow]) -> String {
     let mut text = String::new();
     let mut context = "";

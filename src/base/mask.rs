@@ -3,7 +3,7 @@
 use super::picture::{Channels, Picture, Samples};
 use super::pixels::{Rgba, encode};
 
-/// Whether the mask has the size of the picture; one that has not is told of, and taken as it is.
+/// Whether the mask has the size of the picture; a mask of another size is reported and used as it is.
 pub fn fits(own: &Picture, mask: &Picture) -> bool {
     (own.width(), own.height()) == (mask.width(), mask.height())
 }

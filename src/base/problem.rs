@@ -106,7 +106,7 @@ pub fn there_are<'a>(known: impl Iterator<Item = &'a str>) -> String {
     format!("there {} {}", if names.len() == 1 { "is" } else { "are" }, names.join(", "))
 }
 
-/// `text` in quotes, with control characters escaped, and not longer than a line bears.
+/// `text` in quotes, with control characters escaped, truncated to 60 characters.
 pub fn quoted(text: &str) -> String {
     const LONGEST: usize = 60;
     let short: String = text.chars().take(LONGEST).collect();

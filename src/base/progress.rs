@@ -1,9 +1,9 @@
-//! How far long work is: counted where it is done, told in whole per cent.
+//! How far long work is: counted where it is done, reported in whole percent.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
-/// Counts pieces of work on any number of threads, and tells each new per cent once.
+/// Counts pieces of work on any number of threads, and reports each new percentage once.
 pub struct Progress {
     all: AtomicU64,
     done: AtomicU64,
@@ -12,7 +12,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Work of which nothing is known yet. `tell` is given per cents, 1 to 100, on the threads that do the work.
+    /// Work of which nothing is known yet. `tell` is given percentages, 1 to 100, on the threads that do the work.
     pub fn new(tell: impl Fn(u8) + Send + Sync + 'static) -> Progress {
         let (all, done, told) = (AtomicU64::new(0), AtomicU64::new(0), AtomicU8::new(0));
         Progress { all, done, told, tell: Box::new(tell) }

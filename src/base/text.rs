@@ -34,7 +34,7 @@ pub fn took(milliseconds: u64) -> String {
     }
 }
 
-/// The same in one line: a name with a line end in it cannot forge a line of ours.
+/// As [`printable`], on one line: a name with a line end in it cannot forge a line of ours.
 pub fn line(text: &str) -> Cow<'_, str> {
     if !text.contains(['\n', '\t']) {
         return printable(text);

@@ -133,7 +133,7 @@ impl Incoming {
     pub fn add(&mut self, bytes: &[u8]) -> Result<()> {
         self.have += bytes.len() as u64;
         if self.have > self.wanted.bytes {
-            return Err(Error::at("link", "a file that is longer than announced"));
+            return Err(Error::at("link", "the file is longer than announced"));
         }
         self.hash.update(bytes);
         self.file.write_all(bytes).map_err(|error| Error::at(self.path.display(), error))

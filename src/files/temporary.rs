@@ -162,7 +162,7 @@ mod tests {
         let rebooted = Identity { boot: FAR.into(), ..own.clone() };
         let far = Identity { host: "far".into(), ..rebooted.clone() };
         let since_boot = process::boot_time().and_then(|boot| SystemTime::now().duration_since(boot).ok());
-        // Whose it is, how long ago it changed, whether it is locked, whether it is removed.
+        // Owner, age, whether it is locked, whether it is removed.
         let mut cases = vec![
             (own, minutes(9999), false, false),
             (&dead, minutes(0), false, true),

@@ -49,7 +49,7 @@ pub fn called(picture: &Path) -> String {
 }
 
 /// Writes a scene of pictures and models at `path`, which must not exist yet. They are read completely, so that no scene
-/// starts with a broken one. Returns the scene, and notes on what in them could not be honored.
+/// starts with a broken one. Returns the scene, and notes on what in them is not supported.
 ///
 /// # Errors
 /// If the scene, or another file with a picture's name, exists already; if a picture cannot be read or copied.

@@ -23,7 +23,7 @@ pub fn copy_attributes(from: impl AsFd, to: impl AsFd) {
     let Ok(length) = rustix::fs::flistxattr(&from, &mut names[..]) else { return };
     for name in names[..length].split(|byte| *byte == 0).filter(|name| !name.is_empty()) {
         if let Ok(length) = rustix::fs::fgetxattr(&from, name, &mut value[..]) {
-            // Some belong to the system alone; the file is as good without them.
+            // Some attributes are reserved for the system; losing them does no harm.
             let _ = rustix::fs::fsetxattr(&to, name, &value[..length], rustix::fs::XattrFlags::empty());
         }
     }
@@ -75,10 +75,10 @@ pub fn no_wait() -> i32 {
     (rustix::fs::OFlags::NONBLOCK | rustix::fs::OFlags::NOCTTY).bits() as i32
 }
 
-/// Opens what is no regular file to write to it, without waiting for whoever reads it.
+/// Opens a special file (FIFO, device) for writing, without waiting for a reader.
 ///
 /// # Errors
-/// `WouldBlock` if it is a FIFO that nobody reads; or it cannot be opened.
+/// `WouldBlock` if nobody reads the FIFO; otherwise the error of opening it.
 pub fn open_special(path: &std::path::Path) -> io::Result<std::fs::File> {
     use rustix::fs::{Mode, OFlags};
     let flags = OFlags::WRONLY | OFlags::CLOEXEC | OFlags::NOCTTY;
@@ -124,7 +124,7 @@ pub fn user_name() -> String {
     told.into_iter().find(|name| !name.is_empty()).or_else(listed).unwrap_or_else(|| format!("user {}", user()))
 }
 
-/// The name of a user in a list like `/etc/passwd`: `name:password:number:...`, a line each.
+/// The name of a user in a list like `/etc/passwd`: `name:password:number:...`, one per line.
 fn name_in(list: &str, user: u32) -> Option<String> {
     let of = |line: &str| {
         let mut fields = line.split(':');

@@ -45,7 +45,7 @@ impl Identity {
         })
     }
 
-    /// Whether it runs; `None` where that cannot be told from here.
+    /// Whether it runs; `None` if that cannot be told from here.
     pub fn runs(&self) -> Option<bool> {
         let own = Identity::own();
         if (&self.host, &self.boot, self.namespace) != (&own.host, &own.boot, own.namespace) {
@@ -74,7 +74,7 @@ fn namespace() -> u64 {
     digits.parse().unwrap_or(0)
 }
 
-/// When a process began; `None` where the system does not tell. One that has ended and is only waited for began never.
+/// When a process began; `None` if the system does not tell, and for a zombie.
 fn start_of(pid: u32) -> Option<u64> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     // The name of the program stands in parentheses and may hold anything.
@@ -84,7 +84,7 @@ fn start_of(pid: u32) -> Option<u64> {
     Some(if ended { u64::MAX } else { start })
 }
 
-/// When this machine was started, as well as the clock tells.
+/// When this machine was started, to the accuracy of the clock.
 pub fn boot_time() -> Option<SystemTime> {
     let uptime = std::fs::read_to_string("/proc/uptime").ok()?;
     let seconds: f64 = uptime.split_whitespace().next()?.parse().ok()?;

@@ -86,7 +86,7 @@ impl Write for Lent {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(out) => out.write(bytes),
-            None => Ok(bytes.len()), // the encoder's farewell after the file is in its place
+            None => Ok(bytes.len()), // what the encoder writes after `finish` (its trailer) is discarded
         }
     }
 

@@ -54,7 +54,7 @@ pub fn around(a: &Frame, b: &Frame, differ: impl Fn([u8; 4], [u8; 4]) -> bool) -
     found
 }
 
-/// The least rectangle that turns `a` into `b`. Where nothing moved one pixel stands for it, as every frame must be there.
+/// The least rectangle that turns `a` into `b`. If nothing changed, a single pixel, because every frame must have one.
 pub fn moved(a: &Frame, b: &Frame) -> Rect {
     around(a, b, |a, b| a != b).unwrap_or(Rect { x0: 0, y0: 0, x1: 1, y1: 1 })
 }

@@ -5,7 +5,7 @@
 use super::palette::{Palette, is_opaque};
 use crate::base::pixels::Frame;
 
-/// How much of an error its neighbours make good. With all of it they look grainier, for a mean that no eye tells apart.
+/// How much of an error its neighbours make good. With all of it they look grainier, without a visible gain in the mean.
 const STRENGTH: f32 = 0.9;
 /// Errors up to this many codes are ignored.
 const UNSEEN: f32 = 0.5;

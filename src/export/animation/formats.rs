@@ -146,7 +146,7 @@ pub const FORMATS: &[Format] = &[
 const STILLS: [(&str, &str, Keeps); 2] = [
     (
         "%04d.png",
-        "a file a frame, numbered; each is there as soon as it is done",
+        "one numbered file per frame, each written as soon as it is done",
         Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "none", ending: "none" },
     ),
     (".png", "a single frame", Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "none", ending: "none" }),

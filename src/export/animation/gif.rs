@@ -20,7 +20,7 @@ const UNITS: u64 = 100;
 const WAITING: usize = 1 << 26;
 /// A frame whose colors err more than this many times what the palette was made for gets its own.
 const FAILS: f64 = 4.0;
-/// The mean square error, in codes, that nobody sees.
+/// The largest mean square error, in codes, that is invisible.
 const UNSEEN: f64 = 6.0;
 
 /// Begins a GIF.

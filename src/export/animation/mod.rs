@@ -32,7 +32,7 @@ use formats::{FORMATS, Format, Writer};
 use matrix::Matrix;
 use rate::Rate;
 
-/// What is told about an animation before its first frame.
+/// What an encoder knows before the first frame.
 #[derive(Clone, Debug)]
 pub struct Show {
     /// What messages call the output.
@@ -59,7 +59,7 @@ pub struct Show {
 pub trait Sink {
     /// Takes the next frame, of the show's size; `number` is its number in the scene.
     fn frame(&mut self, number: u64, frame: Frame) -> Result<()>;
-    /// Puts the whole of it in its place. Returns what a person should know about it, a line each.
+    /// Puts the whole of it in its place. Returns what a person should know about it, one item per line.
     fn finish(self: Box<Self>) -> Result<Vec<String>>;
 }
 

@@ -14,7 +14,7 @@ use crate::export::still;
 /// The plot as a PNG file.
 ///
 /// # Errors
-/// The plot is too large, or the encoder's.
+/// If the plot is too large; otherwise the encoder's error.
 pub fn png(plot: &Plot) -> Result<Vec<u8>> {
     let failed = |what: &str| Error::at("the plot", what);
     let (width, height) = (plot.width.ceil() as u32, plot.height.ceil() as u32);

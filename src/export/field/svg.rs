@@ -13,7 +13,7 @@ use crate::export::still;
 /// The plot as an SVG document.
 ///
 /// # Errors
-/// The picture's encoder's.
+/// Returns the error of the picture's encoder.
 pub fn svg(plot: &Plot) -> Result<String> {
     let (width, height) = (short(plot.width), short(plot.height));
     let mut text = format!(

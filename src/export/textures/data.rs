@@ -48,7 +48,7 @@ impl Texture {
     /// The bytes of the file called `file`, and its line in the manifest.
     ///
     /// # Errors
-    /// The encoder's.
+    /// Returns the encoder's error.
     pub fn encode(&self, file: String, depth: Depth) -> Result<(Vec<u8>, TextureNote)> {
         let codes = self.codes(depth);
         let failed = |e: &dyn std::fmt::Display| Error::at(&file, e);

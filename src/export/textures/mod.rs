@@ -61,7 +61,7 @@ struct Manifest {
 /// an earlier run are removed. `step` is called with the steps done and their number, and ends the work by an error.
 ///
 /// # Errors
-/// The folder cannot be written, a depth cannot hold the scene, or `step`'s.
+/// The folder cannot be written, a depth cannot hold the scene, or `step` returns an error.
 pub fn write(
     scene: &Scene,
     synth: &Synth,
@@ -113,7 +113,7 @@ struct Folder<'a> {
 impl Folder<'_> {
     fn put(&mut self, name: String, bytes: &[u8]) -> Result<()> {
         if !self.may.may_be(&name) {
-            return Err(Error::at(name, "is a name that nobody has looked at before the work"));
+            return Err(Error::at(name, "is a name that was not checked beforehand"));
         }
         self.draft.write(&name, bytes)?;
         self.names.push(name);

@@ -139,7 +139,7 @@ pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Probl
             problems.push(Problem::error(path, message).hint("a mask is a copy of the picture, of its size"));
         } else if !mask.channels().have_alpha() {
             let message = format!("the mask {} has no alpha: its brightness is taken for it", quoted(name));
-            problems.push(Problem::warning(path, message).hint("black is where pixels keep their own color"));
+            problems.push(Problem::warning(path, message).hint("paint it black where pixels keep their own color"));
         }
     }
     problems
@@ -153,7 +153,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
         && ring > radius
     {
         let message = format!("the ring of {ring} px is wider than the radius of {radius} px");
-        problems.push(Problem::warning("/interpolation/ring", message).hint("every anchor counts by chance"));
+        problems.push(Problem::warning("/interpolation/ring", message).hint("make the ring narrower than the radius"));
     }
     if matches!(zone.fold, Some(Fold::Mask { .. })) && zone.sampler.is_some() {
         let hint = "remove either the fold or the sampler";
@@ -287,7 +287,7 @@ fn telling(position: &Position) -> Vec<f64> {
 /// Checks of numbers in a position function that depend on each other.
 fn position(position: &Position) -> Vec<Problem> {
     if let Position::Exponential { rate: 0.0 } | Position::ExponentialInverse { rate: 0.0 } = position {
-        return vec![Problem::error("/rate", "a rate of 0 has no curve").hint("the nearest is the function linear")];
+        return vec![Problem::error("/rate", "a rate of 0 has no curve").hint("use the function linear")];
     }
     match position.pieces() {
         Pieces::Whole => Vec::new(),

@@ -70,7 +70,7 @@ pub fn probe(
     Ok(None)
 }
 
-/// A probe as everybody reads it; `None` is a pixel outside every zone.
+/// A probe as the data that panes and commands print; `None` is a pixel outside every zone.
 pub fn read_out(probe: Option<Probe>) -> ReadOut {
     let entry = |key, label, value| Entry { key, label, value };
     let Some(probe) = probe else {

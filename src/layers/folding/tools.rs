@@ -164,9 +164,9 @@ fn one() -> f64 {
 
 /// What a tool gives.
 pub enum Gives {
-    /// So many anchors.
+    /// This many anchors.
     Anchors(f64),
-    /// Anchors along the zone's outline, so many pixels apart.
+    /// Anchors along the zone's outline, this many pixels apart.
     AnchorsAlong(f64),
     /// A dense field.
     Field,

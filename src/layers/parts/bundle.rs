@@ -1,4 +1,4 @@
-//! Textures for other engines: what a technique gives of its layers, and what it hears of what became of it.
+//! Textures for other engines: what a technique gives of its layers, and what the exporter reports back.
 
 use serde::Serialize;
 
@@ -95,13 +95,13 @@ pub trait Sink {
     /// The largest code of a number; `None` if numbers are floats.
     fn largest_code(&self) -> Option<u16>;
 
-    /// So many of so many steps are done.
+    /// `done` of `total` steps are done.
     ///
     /// # Errors
     /// The work is to end.
     fn step(&mut self, done: u64, all: u64) -> Result<()>;
 
-    /// What the names of the textures of an item begin with: one of the names that were told before, and such that there is
+    /// What the names of the textures of an item begin with: one of the declared names, and such that there is
     /// no texture that ends in `end` yet.
     fn stem(&self, layer: Option<&str>, item: &str, end: &str) -> String;
 
@@ -111,7 +111,7 @@ pub trait Sink {
     /// The file cannot be written, or is not among the names that were told before.
     fn texture(&mut self, name: &str, texture: &Texture) -> Result<TextureNote>;
 
-    /// Writes a picture in linear light, premultiplied by alpha; `finish` has the last word about its codes.
+    /// Writes a picture in linear light, premultiplied by alpha; `finish` may still change the 8-bit codes.
     ///
     /// # Errors
     /// As [`Sink::texture`].

@@ -112,12 +112,12 @@ impl Materials {
         self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 
-    /// So many pixels are still to be made.
+    /// `pixels` more pixels are to be made.
     pub fn expect(&self, pixels: u64) {
         self.progress.iter().for_each(|progress| progress.expect(pixels));
     }
 
-    /// So many pixels are made.
+    /// `pixels` more pixels have been made.
     pub fn made(&self, pixels: u64) {
         self.progress.iter().for_each(|progress| progress.done(pixels));
     }

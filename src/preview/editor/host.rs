@@ -188,7 +188,7 @@ impl Shared {
                 }
                 if state.connections == MAX_PEERS || caller.is_err() {
                     drop(state);
-                    // Out of file handles, most likely: not a reason to spin.
+                    // Most likely out of file handles: wait, so as not to spin.
                     std::thread::sleep(Duration::from_millis(50));
                     continue;
                 }

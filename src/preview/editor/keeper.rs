@@ -63,7 +63,7 @@ struct State {
 }
 
 impl Keeper {
-    /// Runs what `command` makes, anew for each start, unless it is not `wanted` (which may take its time to find out).
+    /// Calls `command` for each start, if `wanted` (which may be slow) says so.
     /// `tell` is called on the keeper's thread with each change of its life; with `None` if it was not wanted.
     pub fn start(
         wanted: impl FnOnce() -> bool + Send + 'static,

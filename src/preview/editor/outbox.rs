@@ -56,14 +56,14 @@ impl Latest {
         Some(kind)
     }
 
-    /// Takes an overlay or zoom command; returns it as windows are to be told it.
+    /// Takes an overlay or zoom command; returns it as it is to be sent to windows.
     pub fn view(&mut self, command: &str) -> String {
         let told = self.views.take(command);
         self.say(FromEditor::Views(self.views.list()));
         told
     }
 
-    /// Takes the overlay and zoom commands in force where the scene is followed; returns what windows are to be told.
+    /// Takes the overlay and zoom commands in force where the scene is followed; returns what is to be sent to windows.
     pub fn catch_up(&mut self, commands: &[String]) -> FromEditor {
         self.views.catch_up(commands);
         FromEditor::Views(self.views.list())

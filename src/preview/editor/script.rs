@@ -72,5 +72,5 @@ impl Joined {
 }
 
 fn gone() -> Error {
-    Error::at("editor", "it left without an answer").cure("look whether the edit is there, then try again")
+    Error::at("editor", "it left without an answer").cure("check whether the edit was made, then try again")
 }

@@ -1,4 +1,4 @@
-//! What is told of a scene that is followed, and how it becomes what a window shows.
+//! Updates of a scene that is followed, and how they become what a window shows.
 
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
@@ -26,7 +26,7 @@ pub enum Update {
     Progress(String),
 }
 
-/// What is told of a scene that is followed.
+/// An update of a scene that is followed.
 pub(in crate::preview) enum News {
     /// The document of this revision.
     Document {

@@ -1,5 +1,5 @@
-//! What stands around the picture and over it that is no part of the scene: the bar, lists, legends, the border of before and
-//! after. Nothing of it lies on anything else of it.
+//! What stands around the picture and over it that is not part of the scene: the bar, lists, legends, the border of before and
+//! after. No two of these overlap.
 
 use kurbo::{Point, Vec2};
 

@@ -1,5 +1,5 @@
 //! What winit does not do on X11, over a connection of our own: a window that opens without taking the keyboard, and takes it
-//! where no window manager gives it; whether the window can be seen at all, and how the wheel is told of.
+//! where no window manager gives it; whether the window can be seen at all, and how wheel events are reported.
 
 use winit::raw_window_handle::{HasWindowHandle, RawWindowHandle};
 use winit::window::Window;

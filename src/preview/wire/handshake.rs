@@ -72,7 +72,7 @@ fn check_peer(stream: &UnixStream) -> Result<()> {
     match system::peer_user(stream) {
         Ok(user) if user == system::user() => Ok(()),
         Ok(user) => Err(Error::at("link", format!("the other end belongs to user {user}"))),
-        Err(e) => Err(Error::at("link", format!("cannot tell whose the other end is: {e}"))),
+        Err(e) => Err(Error::at("link", format!("cannot determine which user is at the other end: {e}"))),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::layers::parts::plan::{Format, Packed, Upload};
 
 /// At most this many bytes are uploaded at a time.
 const BAND_BYTES: usize = 32 << 20;
-/// In so many pieces is counted how far one thing is.
+/// Progress of one upload is counted in this many steps.
 const PIECES: u64 = 1000;
 
 /// A texture on the device.
@@ -23,7 +23,7 @@ pub struct Texture {
     pub format: Format,
 }
 
-/// Textures that were made beside whoever draws, on any thread, to be taken over.
+/// Textures that were made on another thread than the one that draws, which takes them over.
 pub struct Uploaded {
     device: wgpu::Device,
     rows: Vec<Row>,

@@ -107,7 +107,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Draws with everything that they need; those that no pixel is left of are left out.
+    /// Draws with everything that they need; draws that cover no pixel are skipped.
     fn ready(
         &mut self,
         device: &Device,

@@ -61,7 +61,7 @@ impl Call<'_> {
     /// # Errors
     /// It is too large.
     pub fn times_of(&self, name: &str) -> Result<usize, String> {
-        /// So many that a key never has to wait long.
+        /// At most this many, so that no key waits long.
         const MOST: usize = 10_000;
         let times = self.count.unwrap_or(1);
         if times > MOST { Err(format!("{name} repeats {MOST} times at most, not {times}")) } else { Ok(times) }

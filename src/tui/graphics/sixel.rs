@@ -99,7 +99,7 @@ impl Palette {
 mod tests {
     use super::*;
 
-    /// Draws a sequence as a terminal would; `None` where nothing was drawn.
+    /// Draws a sequence as a terminal would; `None` if nothing was drawn.
     fn decoded(text: &str) -> (usize, usize, Vec<Option<[u32; 3]>>) {
         let body = text.split_once('q').unwrap().1.strip_suffix("\x1b\\").unwrap();
         let numbers = |text: &str| text.split(';').map(|n| n.parse::<usize>().unwrap()).collect::<Vec<_>>();

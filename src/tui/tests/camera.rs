@@ -69,7 +69,7 @@ fn a_key_shows_at_its_time_what_the_window_shows() {
 #[test]
 fn all_meshes_are_seen_at_all_times() {
     let mut state = state_of(SCENE);
-    assert!(run(&mut state, "camera fit").starts_with("no mesh is ready"));
+    assert!(run(&mut state, "camera fit").starts_with("no mesh is loaded yet"));
     let corners = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0]];
     let vertices = corners.map(|at| Vertex { position: DVec3::from(at), ..Vertex::default() }).to_vec();
     let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2]], ..Mesh::default() });

@@ -8,7 +8,7 @@ use cosmic_text::fontdb::{Database, Source};
 /// The name of the window's own font.
 pub const OWN: &str = "DejaVu Sans";
 
-/// Fonts, and for whom: one and the same character looks otherwise in Chinese and in Japanese.
+/// Fonts, and for whom: the same character is drawn differently in Chinese and Japanese.
 pub struct Fonts {
     database: Database,
     locale: String,
@@ -36,7 +36,7 @@ pub fn own() -> Fonts {
     Fonts { database, locale: locale(language.as_deref().unwrap_or_default()) }
 }
 
-/// All fonts of the system too. Looks through every one of them.
+/// All fonts of the system too. Scans all font files.
 pub fn of_system() -> Fonts {
     let mut fonts = own();
     fonts.database.load_system_fonts();
