@@ -12,11 +12,8 @@ use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OV
 const LINES: &str = "view-lines";
 
 /// Every overlay.
-pub static OVERLAYS: &[Overlay] = &[
-    GROUND_OVERLAY,
-    CAMERA_OVERLAY,
-    Overlay { name: LINES, key: "S", help: "The flow lines of waterfalls", when: When::EveryFrame, hidden: false },
-];
+pub static OVERLAYS: &[Overlay] =
+    &[GROUND_OVERLAY, CAMERA_OVERLAY, Overlay::new(LINES, "S", "The flow lines of waterfalls", When::EveryFrame)];
 
 /// A flow line of water.
 static WATER: Look = Look::new("flow line", 28, [120, 200, 255, 160], 1.0).dots(Dot::Disc, 1.5);
