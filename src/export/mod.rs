@@ -1,5 +1,6 @@
 //! What leaves the program: animations, textures for engines, plots. Codecs live here and in `files`.
 
+pub mod album;
 pub mod animation;
 pub mod field;
 mod floats;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
+use super::parts::album::Album;
 use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
 use super::parts::moment::{CENTRE, Columns, Moment};
@@ -92,6 +93,11 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// The box of the world that holds it at scene time `t`; `None` for layers in the frame.
     fn bounds(&self, _t: f64) -> Option<Bounds> {
+        None
+    }
+
+    /// The pictures of its sprites, with so many between each two keys; `None` if it has none.
+    fn album(&self, _between: usize) -> Option<Album> {
         None
     }
 

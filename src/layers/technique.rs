@@ -13,7 +13,7 @@ use super::parts::materials::{Materials, Use};
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::plan::Program;
-use super::parts::readout::{Curve, ReadOut};
+use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::timeline::{Timeline, Wrap};
@@ -86,6 +86,11 @@ pub trait Technique: Any + Send + Sync {
     /// As [`Technique::synth`].
     fn probe(&self, _making: &Making, _pixel: (usize, usize), _moment: &Moment) -> Result<Option<ReadOut>, Problem> {
         Ok(None)
+    }
+
+    /// Calls `each` with every flow line, in order, with so many places along it; whether there can be any.
+    fn flow_lines(&self, _samples: usize, _each: &mut dyn FnMut(Vec<Entry>)) -> bool {
+        false
     }
 
     /// What the view shows of the document alone, in any order.

@@ -22,6 +22,7 @@ pub mod demo;
 pub mod edit;
 pub mod field;
 pub mod get;
+pub mod lines;
 pub mod man;
 pub mod new;
 pub mod opened;
@@ -30,6 +31,7 @@ pub mod render;
 pub mod scene_options;
 pub mod schema;
 pub mod set;
+pub mod sprites;
 pub mod synth;
 pub mod tutor;
 #[cfg(feature = "window")]
@@ -48,6 +50,8 @@ pub enum Command {
     Get(get::Args),
     Check(check::Args),
     Probe(probe::Args),
+    Lines(lines::Args),
+    Sprites(sprites::Args),
     Render(render::Args),
     Synth(synth::Args),
     #[cfg(feature = "window")]
@@ -71,6 +75,8 @@ impl Command {
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),
+            Command::Lines(args) => lines::run(args, context),
+            Command::Sprites(args) => sprites::run(args, context),
             Command::Render(args) => render::run(args, context),
             Command::Synth(args) => synth::run(args, context),
             Command::Field(args) => field::run(args, context),

@@ -104,7 +104,8 @@ fn line(read: Option<&ReadOut>, color: [u8; 4]) -> String {
     line.to_string()
 }
 
-fn object(entries: &[Entry]) -> Json {
+/// Entries as a JSON object.
+pub fn object(entries: &[Entry]) -> Json {
     Json::Object(entries.iter().map(|entry| (entry.key.to_owned(), value(&entry.value))).collect())
 }
 

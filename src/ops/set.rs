@@ -45,41 +45,54 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         lost.replace(told);
         Ok(edit)
     };
-    let options = args.reading.options()?;
+    let elsewhere = change(&args.scene, (&args.recovery, &args.reading), make)?;
+    lost.take().iter().for_each(|line| context.messages.say(line));
+    if elsewhere {
+        context.messages.say("set in the editor that has the scene open; save it there");
+    }
+    Ok(())
+}
+
+/// Applies the edit that `make` gives for a scene; whether that was in the editor that has it open, otherwise in the file.
+///
+/// # Errors
+/// As `make`; if the scene cannot be read or written.
+pub fn change(
+    scene: &Path,
+    (recovery, reading): (&RecoveryOptions, &SceneOptions),
+    make: impl Fn(&Document) -> Result<Edit>,
+) -> Result<bool> {
+    let options = reading.options()?;
     let begun = Instant::now();
     let mut session = loop {
-        if let Some(done) = script::edit(&args.scene, make) {
-            done?;
-            lost.take().iter().for_each(|line| context.messages.say(line));
-            context.messages.say("set in the editor that has the scene open; save it there");
-            return Ok(());
+        if let Some(done) = script::edit(scene, &make) {
+            return done.map(|_| true);
         }
-        let session = Session::open(&args.scene, &options, Mode::EditOrLook)?;
+        let session = Session::open(scene, &options, Mode::EditOrLook)?;
         match session.held_by() {
             None => break session,
             Some(other) if !other.certain || begun.elapsed() > PATIENCE || other.has_been_there(BRIEF_MS) => {
-                break Session::open(&args.scene, &options, Mode::Edit)?;
+                break Session::open(scene, &options, Mode::Edit)?;
             }
             Some(_) => std::thread::sleep(LOOK_EVERY),
         }
     };
-    settle(&mut session, &args)?;
+    settle(&mut session, scene, recovery)?;
     let edit = make(session.document())?;
     session.refuse_protected()?;
-    let applied = session.apply(edit, false).map_err(|problems| refused(&args.scene, problems))?;
+    let applied = session.apply(edit, false).map_err(|problems| refused(scene, problems))?;
     session.save(Overwrite::No).inspect_err(|_| {
         // An edit that could not be saved is not left behind for recovery either.
         applied.and_then(|_| session.undo());
     })?;
-    lost.take().iter().for_each(|line| context.messages.say(line));
-    Ok(())
+    Ok(false)
 }
 
 /// Takes over or discards unsaved edits that a session left behind; without the option that says which, it is an error.
-fn settle(session: &mut Session, args: &Args) -> Result<()> {
+fn settle(session: &mut Session, scene: &Path, recovery: &RecoveryOptions) -> Result<()> {
     let Some(offer) = session.recovery() else { return Ok(()) };
-    let place = args.scene.display();
-    match args.recovery.keep() {
+    let place = scene.display();
+    match recovery.keep() {
         None => {
             let error = Error::at(place, format!("{} left behind, and nothing is set", offer.in_words()));
             Err(error.cure("--after-recovery keep takes them, drop leaves them; plica edit shows them"))

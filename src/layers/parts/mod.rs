@@ -1,6 +1,7 @@
 //! The data that techniques and the rest of the program exchange. Names no technique, and nothing of what shows or
 //! draws.
 
+pub mod album;
 pub mod bundle;
 pub mod marks;
 pub mod materials;

@@ -2,6 +2,7 @@
 //! real water are carried along flow lines that obey gravity, drag and wind, change from one picture to the next on their
 //! way, and are splatted from any viewpoint.
 
+pub mod album;
 pub mod automatic;
 pub mod between;
 pub mod births;
@@ -11,6 +12,7 @@ pub mod draw;
 pub mod frame;
 pub mod hash;
 pub mod lines;
+pub mod listing;
 pub mod look;
 pub mod marks;
 pub mod model;
@@ -32,7 +34,7 @@ use serde_json::{Value, json};
 use self::model::WaterfallLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
-use super::parts::readout::ReadOut;
+use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::technique::{Checked, Kind, Starts, Technique, halfway};
 use crate::base::problem::Problem;
@@ -92,6 +94,11 @@ impl Technique for WaterfallLayer {
 
     fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {
         probe::probe(self, making, pixel, moment).map(Some)
+    }
+
+    fn flow_lines(&self, samples: usize, each: &mut dyn FnMut(Vec<Entry>)) -> bool {
+        listing::list(self, samples, each);
+        true
     }
 
     fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {

@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{marks, plan};
+use super::{album, marks, plan};
 use crate::base::reduce::Reduced;
+use crate::layers::parts::album::Album;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
@@ -54,6 +55,10 @@ impl Ready for Synth {
             (0..=PLACES).flat_map(move |i| [at(i) - wide, at(i) + wide])
         });
         Bounds::around(places)
+    }
+
+    fn album(&self, between: usize) -> Option<Album> {
+        Some(album::album(self, between))
     }
 
     fn largest_texture(&self) -> usize {

@@ -7,7 +7,7 @@ use super::between::{Mix, catmull, hermite, residue};
 use super::births::Alive;
 use super::lines::Line;
 use super::look::Shown;
-use super::model::{Order, Tangents};
+use super::model::{Between, Order, Tangents};
 use super::sprites::Place;
 use super::sprites::pyramid::Pyramid;
 use super::synth::Synth;
@@ -191,37 +191,40 @@ fn keys(synth: &Synth, line: &Line, alive: &Alive) -> Vec<Place> {
 /// What a sprite shows; `direction` tells where its line runs at an age, in the sprite's own axes.
 fn mixed(synth: &Synth, line: &Line, alive: &Alive, direction: impl Fn(f64) -> DVec2) -> ((usize, f64), Mix) {
     let keys = keys(synth, line, alive);
-    let between = &synth.between;
     let last = keys.len() - 1;
     if last == 0 {
-        return ((0, 0.0), Mix { keys: vec![(keys[0], 1.0)], ..Mix::default() });
+        return ((0, 0.0), mix(&synth.between, &keys, (0, 0.0), |_| DVec2::Y));
     }
-    let s = alive.age / line.life;
-    let pass = (between.passes * s).rem_euclid(2.0);
+    let pass = (synth.between.passes * alive.age / line.life).rem_euclid(2.0);
     let x = if pass > 1.0 { 2.0 - pass } else { pass } * last as f64;
     let i = (x.floor() as usize).min(last - 1);
-    let u = x - i as f64;
-    let [a, b, leaving, reaching] = hermite(u);
-    let mut mix = Mix { keys: vec![(keys[i], a as f32), (keys[i + 1], b as f32)], ..Mix::default() };
-    match between.tangents {
-        Tangents::Zero => {}
-        Tangents::Catmull => {
-            let (before, after) = (i.checked_sub(1).map(|i| keys[i]), keys.get(i + 2));
-            let weights = catmull(u, before.is_some(), after.is_some()).map(|weight| weight as f32);
-            mix.keys = vec![(keys[i], weights[1]), (keys[i + 1], weights[2])];
-            mix.keys.extend(before.map(|key| (key, weights[0])));
-            mix.keys.extend(after.map(|key| (*key, weights[3])));
+    let key = (i, x - i as f64);
+    (key, mix(&synth.between, &keys, key, |k| direction(k as f64 * line.life / last as f64)))
+}
+
+/// What is shown between key `i` and the next, `u` of the way; `ahead` tells where the line runs at a key.
+pub fn mix(between: &Between, keys: &[Place], (i, u): (usize, f64), ahead: impl Fn(usize) -> DVec2) -> Mix {
+    let [first] = keys else {
+        let [a, b, leaving, reaching] = hermite(u);
+        let mut mix = Mix { keys: vec![(keys[i], a as f32), (keys[i + 1], b as f32)], ..Mix::default() };
+        match between.tangents {
+            Tangents::Zero => {}
+            Tangents::Catmull => {
+                let (before, after) = (i.checked_sub(1).map(|i| keys[i]), keys.get(i + 2));
+                let weights = catmull(u, before.is_some(), after.is_some()).map(|weight| weight as f32);
+                mix.keys = vec![(keys[i], weights[1]), (keys[i + 1], weights[2])];
+                mix.keys.extend(before.map(|key| (key, weights[0])));
+                mix.keys.extend(after.map(|key| (*key, weights[3])));
+            }
+            Tangents::Advect => {
+                let slope = |k: usize, weight: f64| (ahead(k) * (-between.drift * weight)).to_array().map(|v| v as f32);
+                mix.slopes = [slope(i, leaving), slope(i + 1, reaching)];
+            }
         }
-        Tangents::Advect => {
-            let slope = |k: usize, weight: f64| {
-                let ahead = direction(k as f64 * line.life / last as f64) * (-between.drift * weight);
-                ahead.to_array().map(|v| v as f32)
-            };
-            mix.slopes = [slope(i, leaving), slope(i + 1, reaching)];
+        if between.noise > 0.0 {
+            mix.residue = Some((keys[i].0, i, (between.noise * residue(u)) as f32));
         }
-    }
-    if between.noise > 0.0 {
-        mix.residue = Some((keys[i].0, i, (between.noise * residue(u)) as f32));
-    }
-    ((i, u), mix)
+        return mix;
+    };
+    Mix { keys: vec![(*first, 1.0)], ..Mix::default() }
 }

@@ -1,0 +1,92 @@
+//! `plica sprites`: the pictures that the sprites of a layer show, as files; or the automatic choice of them as picks.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::writing::Replacing;
+use super::{Context, opened::Unloaded, scene_options::SceneOptions};
+use super::{scene_options::RecoveryOptions, set};
+use crate::base::error::{Error, Result};
+use crate::export::album;
+use crate::files::outputs;
+use crate::layers::parts::album::Album;
+use crate::scene::{Document, Edit};
+
+/// Write the pictures of a waterfall's sprites, or take their automatic choice into the scene
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; - is standard input
+    scene: PathBuf,
+    /// Name of the layer [default: the first with sprites]
+    #[arg(long, value_name = "LAYER")]
+    layer: Option<String>,
+    /// The folder for the pictures, sheet.png and sprites.json; created if missing
+    #[arg(short, long, value_name = "DIR", required_unless_present = "take", conflicts_with = "take")]
+    output: Option<PathBuf>,
+    /// So many pictures between each two keys as well
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..100))]
+    between: u32,
+    /// Write the automatic choice into the scene as picks, to be changed by hand
+    #[arg(long)]
+    take: bool,
+    #[command(flatten)]
+    replacing: Replacing,
+    #[command(flatten)]
+    recovery: RecoveryOptions,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+/// Writes the pictures, or the picks.
+pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    let begun = Instant::now();
+    let read = Unloaded::read(&args.scene, &args.options, context)?;
+    let mut place = None;
+    if let Some(folder) = &args.output {
+        let mut guard = args.replacing.guard(&args.scene, read.document.scene(), context);
+        place = Some(guard.folder(folder, &album::may_be, album::earlier(folder))?);
+        context.say_all(&guard.notes());
+    }
+    let opened = read.load(context)?;
+    let synth = opened.synth()?;
+    context.check_cancelled()?;
+    let layers = opened.document.scene().layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers);
+    let named = layers.enumerate().filter(|(_, (name, _))| args.layer.as_deref().is_none_or(|layer| layer == *name));
+    let mut albums = named.filter_map(|(i, (_, ready))| Some((i, ready.album(args.between as usize)?)));
+    let (layer, found) = albums.next().ok_or_else(|| none(args.layer.as_deref(), "sprites"))?;
+    match (&args.output, place) {
+        (Some(folder), Some(place)) => {
+            let names = album::write(&found, &place)?;
+            let files: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
+            let what = format!("{}, {} files", folder.display(), files.len());
+            context.done(&what, outputs::size(files.iter().map(PathBuf::as_path)), begun);
+            Ok(())
+        }
+        _ => take(&args, layer, &found, context),
+    }
+}
+
+/// The error that no layer, or not the one that is named, has something.
+pub fn none(name: Option<&str>, what: &str) -> Error {
+    match name {
+        Some(name) => Error::at("--layer", format!("there is no layer {name} with {what}")),
+        None => Error::Usage(format!("no layer of the scene has {what}")),
+    }
+}
+
+fn take(args: &Args, layer: usize, album: &Album, context: &mut Context) -> Result<()> {
+    if album.taken.is_empty() {
+        context.messages.say("nothing to take: sprites.picks and sprites.sheets have all sprites already");
+        return Ok(());
+    }
+    let make = |document: &Document| {
+        let edit = |(path, value): &(String, serde_json::Value)| {
+            Edit::set(document, &format!("/layers/{layer}{path}"), value.clone())
+        };
+        Ok(Edit::all(album.taken.iter().map(edit)))
+    };
+    if set::change(&args.scene, (&args.recovery, &args.options), make)? {
+        context.messages.say("taken in the editor that has the scene open; save it there");
+    }
+    Ok(())
+}
