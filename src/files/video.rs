@@ -163,15 +163,8 @@ impl Frames<'_> {
         let (place, limits) = (self.place, self.allowed.limits);
         let (count, pixels) = (self.all.len() as u64 + 1, width as u64 * height as u64);
         within(place, "its frames have", "pixels", "pixels", pixels, limits.pixels)?;
-        within(place, "it has", "frames or more,", "frames", count, limits.frames)?;
-        within(
-            place,
-            "its frames have",
-            "pixels or more together,",
-            "clip",
-            pixels.saturating_mul(count),
-            limits.clip,
-        )?;
+        within(place, "it has", "frames or more", "frames", count, limits.frames)?;
+        within(place, "its frames have", "pixels or more together", "clip", pixels.saturating_mul(count), limits.clip)?;
         self.allowed.budget.take(pixels.saturating_mul(3), place)
     }
 
