@@ -121,6 +121,19 @@ pub fn value_of_half(bits: u16) -> f32 {
     }
 }
 
+/// The bits of the half float that is nearest to a value, of two the even one; what is too large becomes the largest.
+pub fn half_of_value(value: f32) -> u16 {
+    /// The largest half float, and the smallest that is not subnormal.
+    const LARGEST: f32 = 65504.0;
+    const NORMAL: f32 = 6.103_515_6e-5;
+    let (sign, size) = ((value.to_bits() >> 16) as u16 & 0x8000, value.abs());
+    if size < NORMAL {
+        return sign | (size * (1 << 24) as f32).round_ties_even() as u16;
+    }
+    let bits = size.min(LARGEST).to_bits();
+    sign | ((bits + 0xfff + (bits >> 13 & 1) - (112 << 23)) >> 13) as u16
+}
+
 /// The linear, premultiplied RGBA of pixel `i`.
 trait Texels {
     fn at(&self, i: usize) -> Rgba;
@@ -369,5 +382,16 @@ mod tests {
         }
         assert!(value_of_half(0x7c00).is_infinite() && value_of_half(0x7e00).is_nan());
         assert!(value_of_half(0x8000).is_sign_negative());
+    }
+
+    #[test]
+    fn halves_are_the_nearest_and_of_two_the_even() {
+        let finite = (0..=u16::MAX).filter(|bits| bits & 0x7c00 != 0x7c00);
+        assert!(finite.clone().all(|bits| half_of_value(value_of_half(bits)) == bits));
+        for bits in finite.filter(|bits| bits & 0x7fff < 0x7bff) {
+            let middle = (value_of_half(bits) + value_of_half(bits + 1)) / 2.0;
+            assert_eq!(half_of_value(middle), bits + (bits & 1), "{bits:x}");
+        }
+        assert_eq!([half_of_value(1e9), half_of_value(-f32::INFINITY)], [0x7bff, 0xfbff]);
     }
 }

@@ -64,12 +64,6 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// The layer at one time, for the GPU: looks the same as [`Ready::at`].
     fn plan(&self, moment: &Moment) -> Plan;
 
-    /// The same, as one of a group whose surfaces are at these depths in meters, pixel by pixel. What is no sprite is
-    /// tested against them on the device.
-    fn plan_before(&self, moment: &Moment, _depth: &[f64]) -> Plan {
-        self.plan(moment)
-    }
-
     /// Whether it has sprites: they are drawn after all surfaces of their group.
     fn has_sprites(&self) -> bool {
         false

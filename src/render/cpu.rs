@@ -9,8 +9,6 @@ use super::Synth;
 use super::stage::Group;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
 use crate::layers::parts::moment::Columns;
-#[cfg(feature = "window")]
-use crate::layers::parts::moment::Moment;
 use crate::layers::ready::Still;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
@@ -89,14 +87,6 @@ impl Shown<'_> {
         layers.for_each(|&layer| self.layers[layer].sprites(rows, self.columns, depth, &mut own));
         own
     }
-}
-
-/// How far away the surfaces of a group are, in meters, pixel by pixel; infinite where there is none.
-#[cfg(feature = "window")]
-pub fn depths(synth: &Synth, group: &Group, moment: &Moment) -> Vec<f64> {
-    let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(moment)).collect();
-    let rows: Vec<usize> = (0..synth.size.1).collect();
-    Shown { layers: &layers, group, columns: Columns::All }.surfaces(&rows, synth.size.0).1
 }
 
 /// How many pixels are in memory as light at a time: light takes four times the memory of codes.

@@ -64,7 +64,7 @@ fn shown(synth: &Synth, track: usize, key: usize, u: f64) -> Linear {
     let place = if key + 1 == keys.len() { (key.saturating_sub(1), 1.0) } else { (key, u) };
     let mix = mix(&synth.between, &keys, place, |_| DVec2::Y);
     let mut own = Vec::new();
-    texels(&synth.pictures, &synth.residues, &mix, 0, &mut own);
+    texels(&synth.pictures, &synth.residues.0, &mix, 0, &mut own);
     let cells: Vec<Rgba> = own.as_chunks::<4>().0.iter().map(|texel| shaded(*texel, [1.0; 3])).collect();
     Linear::from_cells(synth.pictures.side, synth.pictures.side, cells)
 }

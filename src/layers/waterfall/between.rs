@@ -132,7 +132,7 @@ mod tests {
     fn shown(u: f64, kind: &str, level: usize) -> Vec<f32> {
         let pictures = pictures(4);
         let mut out = Vec::new();
-        texels(&pictures, &pictures.residues(Random(1), 3), &mix(u, kind), level, &mut out);
+        texels(&pictures, &pictures.residues(Random(1), 3).0, &mix(u, kind), level, &mut out);
         out
     }
 

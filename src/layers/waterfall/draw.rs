@@ -61,6 +61,15 @@ pub fn inside(splat: &Splat, x: f64, y: f64) -> Option<[f64; 2]> {
     (across.abs() < 0.5 && along.abs() < 0.5).then_some([if splat.mirrored { -across } else { across }, along])
 }
 
+/// The sprites that are seen, in the order in which they are drawn.
+pub fn in_order(blend: Mixing, splats: &[Splat]) -> Vec<&Splat> {
+    let mut order: Vec<&Splat> = splats.iter().filter(|splat| splat.opacity > 0.0).collect();
+    if blend == Mixing::Over {
+        order.sort_by_key(|splat| std::cmp::Reverse((1024.0 * splat.depth + 0.5).floor() as i64));
+    }
+    order
+}
+
 /// Draws sprites that are in order.
 pub fn draw(synth: &Synth, splats: &[Splat], canvas: Canvas) {
     let Canvas { places, depth, out } = canvas;
@@ -68,11 +77,10 @@ pub fn draw(synth: &Synth, splats: &[Splat], canvas: Canvas) {
     if width == 0 || out.is_empty() {
         return;
     }
-    let mut order: Vec<&Splat> = splats.iter().filter(|splat| splat.opacity > 0.0).collect();
-    if synth.blend == Mixing::Over {
-        order.sort_by_key(|splat| std::cmp::Reverse((1024.0 * splat.depth + 0.5).floor() as i64));
-    }
-    let mut found = order.into_iter().filter_map(|splat| Some((splat, covered(splat, &places)?))).peekable();
+    let mut found = in_order(synth.blend, splats)
+        .into_iter()
+        .filter_map(|splat| Some((splat, covered(splat, &places)?)))
+        .peekable();
     let strip = (out.len() / width).div_ceil(4 * rayon::current_num_threads()).max(ROWS);
     while found.peek().is_some() {
         let (mut chunk, mut count) = (Vec::new(), 0);
@@ -83,7 +91,7 @@ pub fn draw(synth: &Synth, splats: &[Splat], canvas: Canvas) {
         }
         let made = chunk.into_par_iter().map(|(splat, [columns, rows], side)| {
             let mut own = Vec::new();
-            texels(&synth.pictures, &synth.residues, &splat.mix, splat.level, &mut own);
+            texels(&synth.pictures, &synth.residues.0, &splat.mix, splat.level, &mut own);
             Drawn { splat, columns, rows, texels: own, side }
         });
         let made: Vec<Drawn> = made.collect();

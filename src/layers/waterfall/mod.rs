@@ -25,6 +25,7 @@ pub mod ready;
 pub mod splat;
 pub mod sprites;
 pub mod synth;
+pub mod upload;
 
 use std::sync::Arc;
 

@@ -54,7 +54,7 @@ pub fn probe(
 /// What a sprite adds to a place: linear light, premultiplied.
 fn color(synth: &Synth, splat: &Splat, [x, y]: [f64; 2]) -> Rgba {
     let mut own = Vec::new();
-    texels(&synth.pictures, &synth.residues, &splat.mix, splat.level, &mut own);
+    texels(&synth.pictures, &synth.residues.0, &splat.mix, splat.level, &mut own);
     let Some(place) = inside(splat, x, y) else { return [0.0; 4] };
     let opacity = splat.opacity * before(f64::INFINITY, splat.depth, synth.values.soft);
     shaded(read(&own, synth.pictures.side >> splat.level, place), splat.tint).map(|v| v * opacity as f32)

@@ -24,11 +24,7 @@ impl Ready for Synth {
     }
 
     fn plan(&self, moment: &Moment) -> Plan {
-        self.plan_before(moment, &vec![f64::INFINITY; moment.size_px.0 * moment.size_px.1])
-    }
-
-    fn plan_before(&self, moment: &Moment, depth: &[f64]) -> Plan {
-        plan::plan(self, moment, depth)
+        plan::plan(self, moment)
     }
 
     fn has_sprites(&self) -> bool {

@@ -13,7 +13,7 @@ use super::model::{Between, Mixing, WaterfallLayer};
 use super::noise::Noise;
 use super::sprites::cut::{Sources, pictures};
 use super::sprites::model::{Sheet, Shows, Sprites};
-use super::sprites::pyramid::Pyramid;
+use super::sprites::residue::Residues;
 use super::sprites::{Pictures, Place, bytes_of};
 use crate::base::budget::Share;
 use crate::base::problem::Problem;
@@ -41,11 +41,13 @@ pub struct Synth {
     /// What they show.
     pub pictures: Arc<Pictures>,
     /// The residues, by track and interval.
-    pub residues: Arc<Vec<Vec<Pyramid<1>>>>,
+    pub residues: Arc<Residues>,
     /// The tracks of water, and of foam.
     pub tracks: [Vec<usize>; 2],
     /// All their keys.
     pub keys: [Vec<Place>; 2],
+    /// How many residues each track has.
+    pub intervals: usize,
     /// Keys of a shuffled sprite.
     pub shuffled: usize,
     /// The place in each pixel that is looked at.
@@ -82,6 +84,10 @@ impl Synth {
         let shuffled = layer.sprites.keys as usize;
         let longest = pictures.tracks.iter().map(|track| track.keys.len()).max().unwrap_or(0).max(shuffled);
         let intervals = if layer.between.noise > 0.0 { longest.saturating_sub(1) } else { 0 };
+        let residues = match kept.filter(|before| (before.random, before.intervals) == (random, intervals)) {
+            Some(before) => before.residues.clone(),
+            None => Arc::new(pictures.residues(random, intervals)),
+        };
         let surge = &values.surge;
         let lines = lines(&values, &layer.foam, random);
         let births = [0, 1].map(|kind| Births::new(values.kinds[kind].rate, period));
@@ -95,11 +101,12 @@ impl Synth {
             noise: Noise::new(random, [surge.width, surge.time], period),
             between: layer.between.clone(),
             blend: layer.blend,
-            residues: Arc::new(pictures.residues(random, intervals)),
+            residues,
             pictures,
             tracks,
             keys,
             shuffled,
+            intervals,
             place: making.place,
             still: false,
             made_of,

@@ -6,7 +6,7 @@ use super::kept::{Kept, check_size, texture};
 use super::run::{FRAME, Runner};
 use crate::base::error::Result;
 use crate::layers::parts::plan::{Blend, COMMON, Plan, Program};
-use crate::render::{Synth, cpu};
+use crate::render::Synth;
 
 /// The format of encoded frames.
 const ENCODED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -41,15 +41,8 @@ impl Painter {
         let stage = &synth.stage;
         self.runner.clear(&mut encoder, &frame, stage.background);
         let plans = stage.groups.iter().map(|group| {
-            let has_sprites = |layer: &usize| synth.layers[*layer].has_sprites();
-            let (sprites, surfaces): (Vec<usize>, Vec<usize>) =
-                group.layers().iter().partition(|layer| has_sprites(layer));
-            let mut draws: Vec<_> = surfaces.iter().flat_map(|&i| synth.layers[i].plan(&moment).draws).collect();
-            if !sprites.is_empty() {
-                let depth = cpu::depths(synth, group, &moment);
-                draws.extend(sprites.iter().flat_map(|&i| synth.layers[i].plan_before(&moment, &depth).draws));
-            }
-            Plan { draws }
+            let draws = group.layers().iter().flat_map(|&layer| synth.layers[layer].plan(&moment).draws);
+            Plan { draws: draws.collect() }
         });
         for (i, plan) in plans.enumerate() {
             // Beneath the first layer there is often nothing.

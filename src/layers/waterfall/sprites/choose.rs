@@ -97,8 +97,8 @@ fn score(now: &Grid<u8>, then: &Grid<u8>, at: (usize, usize), side: usize) -> u3
     let size = (then.width(), then.height());
     let by = (-REACH..=REACH).flat_map(|dy| (-REACH..=REACH).map(move |dx| (dx, dy)));
     let places = by.filter_map(|by| moved(at, by, side, size));
-    let still = difference(now, at, then, at, side);
-    let least = places.map(|to| difference(now, at, then, to, side)).min().unwrap_or(still);
+    let still = difference(now, at, then, at, (side, u32::MAX));
+    let least = places.fold(still, |least, to| least.min(difference(now, at, then, to, (side, least))));
     MOTION * (still - least) + still
 }
 
@@ -106,9 +106,16 @@ fn score(now: &Grid<u8>, then: &Grid<u8>, at: (usize, usize), side: usize) -> u3
 pub fn followed(now: &Grid<u8>, then: &Grid<u8>, at: (usize, usize), side: usize, reach: i32) -> (usize, usize) {
     let size = (then.width(), then.height());
     let by = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
-    let places = by.filter_map(|by| Some((by, moved(at, by, side, size)?)));
-    let found = places.min_by_key(|&((dx, dy), to)| (difference(now, at, then, to, side), dx * dx + dy * dy, dy, dx));
-    found.map_or(at, |(_, to)| to)
+    let mut least = (u32::MAX, 0, 0, 0);
+    let mut found = at;
+    for (dx, dy) in by {
+        let Some(to) = moved(at, (dx, dy), side, size) else { continue };
+        let rank = (difference(now, at, then, to, (side, least.0)), dx * dx + dy * dy, dy, dx);
+        if rank < least {
+            (least, found) = (rank, to);
+        }
+    }
+    found
 }
 
 #[cfg(test)]

@@ -37,19 +37,24 @@ pub fn halved(full: &Grid<u8>) -> Grid<u8> {
     Grid::from_cells(width, height, places.map(|at| ((sum(at) + 2) >> 2) as u8).collect())
 }
 
-/// The sum of absolute differences between a square at `at` in one frame and one at `to` in another.
+/// The sum of absolute differences between a square at `at` in one frame and one at `to` in another; more than `most` as
+/// soon as that is certain.
 pub fn difference(
     from: &Grid<u8>,
     (x, y): (usize, usize),
     into: &Grid<u8>,
     (to_x, to_y): (usize, usize),
-    side: usize,
+    (side, most): (usize, u32),
 ) -> u32 {
-    let row = |j: usize| {
+    let mut sum = 0;
+    for j in 0..side {
         let (a, b) = (&from.row(y + j)[x..x + side], &into.row(to_y + j)[to_x..to_x + side]);
-        a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>()
-    };
-    (0..side).map(row).sum()
+        sum += a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum::<u32>();
+        if sum > most {
+            break;
+        }
+    }
+    sum
 }
 
 /// The place `from` moved by a displacement, if a square there is inside a frame.

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use self::model::{Shows, Sprites};
 use self::pyramid::Pyramid;
+use self::residue::Residues;
 use super::hash::Random;
 use crate::base::pixels::Rgba;
 
@@ -75,13 +76,18 @@ impl Pictures {
         &self.tracks[track].keys[key].texels
     }
 
+    /// The number of a key among all.
+    pub fn number(&self, (track, key): Place) -> usize {
+        self.tracks[..track].iter().map(|track| track.keys.len()).sum::<usize>() + key
+    }
+
     /// The random numbers between keys, for each track and up to `most` intervals of it.
-    pub fn residues(&self, random: Random, most: usize) -> Vec<Vec<Pyramid<1>>> {
+    pub fn residues(&self, random: Random, most: usize) -> Residues {
         use rayon::prelude::*;
         let of = |track: usize| {
             (0..most).map(move |interval| residue::residue(random, track as u32, interval as u32, self.side))
         };
-        (0..self.tracks.len()).into_par_iter().map(|track| of(track).collect()).collect()
+        Residues((0..self.tracks.len()).into_par_iter().map(|track| of(track).collect()).collect())
     }
 }
 

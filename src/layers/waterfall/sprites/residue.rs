@@ -10,6 +10,17 @@ const RESIDUE: u32 = 512;
 /// Rows of the lattice are so far apart in the hash.
 const ROW: u32 = 256;
 
+/// The residues of all tracks, of each for as many intervals as of the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Residues(pub Vec<Vec<Pyramid<1>>>);
+
+impl Residues {
+    /// The number of an interval of a track among all.
+    pub fn number(&self, track: usize, interval: usize) -> usize {
+        track * self.0.first().map_or(0, Vec::len) + interval
+    }
+}
+
 /// The residue of the interval after a key of a track, for sprites of this side.
 pub fn residue(random: Random, track: u32, interval: u32, side: usize) -> Pyramid<1> {
     let across = side / LATTICE + 1;
