@@ -15,7 +15,7 @@ use plica::layers::folding::synth::Synth;
 use plica::scene::Document;
 use show::{Show, TIMES, at, no_seam, step, still_outside};
 
-#[path = "../profiles/draw/meshes.rs"]
+#[path = "../profiles/draw/meshes/mod.rs"]
 mod meshes;
 #[path = "../profiles/draw/pictures/mod.rs"]
 mod pictures;
@@ -52,6 +52,25 @@ fn pictures_are_what_the_program_draws() {
         };
         assert!(same, "{path} is not what its program draws: PLICA_UPDATE=1 draws it anew");
         assert!(std::fs::metadata(&file).unwrap().len() < 300_000, "{path} is large");
+    }
+}
+
+#[test]
+fn clips_are_what_the_program_draws() {
+    for (pattern, count, draw) in pictures::CLIPS {
+        for number in 0..*count {
+            let (file, canvas) = (root().join(pictures::frame_file(pattern, number)), draw(number));
+            if updating() {
+                std::fs::write(&file, canvas.to_png().unwrap()).unwrap();
+            }
+            let committed = image::open(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+            assert!(
+                committed.to_rgb8().into_raw() == canvas.to_bytes().0,
+                "{}: PLICA_UPDATE=1 draws it anew",
+                file.display()
+            );
+            assert!(std::fs::metadata(&file).unwrap().len() < 40_000, "{} is large", file.display());
+        }
     }
 }
 

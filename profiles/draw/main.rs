@@ -14,6 +14,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (path, draw) in pictures::PICTURES.iter().filter(|(path, _)| wanted(path)) {
         std::fs::write(file(path), draw().to_png()?)?;
     }
+    for (pattern, count, draw) in pictures::CLIPS.iter().filter(|(path, ..)| wanted(path)) {
+        for number in 0..*count {
+            std::fs::write(file(&pictures::frame_file(pattern, number)), draw(number).to_png()?)?;
+        }
+    }
     for (path, write) in meshes::MESHES.iter().filter(|(path, _)| wanted(path)) {
         std::fs::write(file(path), write())?;
     }

@@ -6,11 +6,23 @@ mod beach;
 mod cat;
 mod chest;
 mod eye;
+mod fire;
 mod kit;
-mod noise;
+pub mod noise;
 mod road;
 mod skin;
+mod water;
 mod wound;
+
+/// A clip: the files of its frames, relative to the project's root, with `%04d` for their number; how many there are; and the
+/// function that draws one.
+pub const CLIPS: &[(&str, usize, fn(usize) -> Canvas)] =
+    &[("profiles/falls/water-%04d.png", 20, water::frame), ("profiles/fire/fire-%04d.png", 20, fire::frame)];
+
+/// A file of a clip.
+pub fn frame_file(pattern: &str, number: usize) -> String {
+    pattern.replace("%04d", &format!("{number:04}"))
+}
 
 /// The file, relative to the project's root, and the function that draws it.
 pub const PICTURES: &[(&str, fn() -> Canvas)] = &[

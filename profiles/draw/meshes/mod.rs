@@ -3,11 +3,19 @@
 
 use std::fmt::Write;
 
+mod terrain;
+
 use plica::base::maths::{TAU, cos, sin};
 
 /// The file, relative to the project's root, and the function that writes it.
-pub const MESHES: &[(&str, fn() -> String)] =
-    &[("profiles/ball/ball.obj", ball), ("profiles/mug/mug.obj", mug), ("profiles/mug/print.obj", print)];
+pub const MESHES: &[(&str, fn() -> String)] = &[
+    ("profiles/ball/ball.obj", ball),
+    ("profiles/mug/mug.obj", mug),
+    ("profiles/mug/print.obj", print),
+    ("profiles/falls/cliff.obj", terrain::cliff),
+    ("profiles/falls/pool.obj", terrain::pool),
+    ("profiles/falls/stones.obj", terrain::stones),
+];
 
 /// Half a turn.
 const HALF: f64 = TAU / 2.0;
