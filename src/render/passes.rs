@@ -9,7 +9,7 @@ use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
 use crate::base::problem::{nearest, quoted};
 use crate::layers::KINDS;
-use crate::layers::parts::moment::Columns;
+use crate::layers::parts::moment::{Columns, Space};
 use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass};
 use crate::layers::ready::Still;
 use crate::scene::Scene;
@@ -64,7 +64,13 @@ impl Asked {
             };
             names().position(|name| name == layer).ok_or_else(unknown)
         };
-        Ok(Asked { pass, layer: layer.map(index).transpose()? })
+        let layer = layer.map(index).transpose()?;
+        let flat = layer.map(|i| scene.layers[i].technique()).filter(|layer| layer.kind().space != Space::World);
+        if let Some(flat) = flat.filter(|_| *pass != COLOR) {
+            let (name, flat) = (quoted(name), quoted(flat.name()));
+            return Err(format!("the layer {flat} is not in space and has no pass {name} (name a layer in space)"));
+        }
+        Ok(Asked { pass, layer })
     }
 
     /// What it is, as [`Asked::parse`] reads it.
@@ -155,11 +161,14 @@ pub fn thinned(asked: &Asked, synth: &Synth, time: f64, most: usize) -> (Linear,
 
 /// The numbers of a pass as colors to look at.
 pub fn view(pass: &Pass, picture: &Linear) -> Frame {
-    let cells = picture.cells().par_iter().map(|cell| color(pass, *cell)).collect();
+    let covered = picture.cells().iter().filter(|cell| cell[3] != 0.0).map(|cell| cell[0]);
+    let range = covered.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    let cells = picture.cells().par_iter().map(|cell| color(pass, *cell, range)).collect();
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 
-fn color(pass: &Pass, cell: Rgba) -> [u8; 4] {
+/// The color of a number that lies in a range over the whole picture.
+fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
     let [x, y, z, covered] = cell;
     let code = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
     match pass.holds {
@@ -174,9 +183,10 @@ fn color(pass: &Pass, cell: Rgba) -> [u8; 4] {
             let [r, g, b] = hue(x as u32);
             [r, g, b, 255]
         }
-        // What is near is bright, whatever the scale of the scene.
+        // The nearest is white and the farthest is not yet black, whatever the scale of the scene.
         Holds::Number => {
-            let near = code(1.0 / (1.0 + x.max(0.0)));
+            let far = if high > low { (x - low) / (high - low) } else { 0.0 };
+            let near = code(1.0 - 0.9 * far);
             [near, near, near, 255]
         }
     }
@@ -187,4 +197,27 @@ fn hue(number: u32) -> [u8; 3] {
     let mixed = number.wrapping_mul(0x9E37_79B1).rotate_left(15).wrapping_mul(0x85EB_CA77);
     let [_, r, g, b] = mixed.to_be_bytes();
     [r | 0x40, g | 0x40, b | 0x40]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Document;
+
+    #[test]
+    fn depth_to_look_at_uses_all_grays_between_the_nearest_and_the_farthest() {
+        let cells = [0.0, 5.0, 5.1, 5.2].map(|v: f32| [v, v, v, if v > 0.0 { 1.0 } else { 0.0 }]);
+        let shown = view(&pass::DEPTH, &Linear::from_cells(4, 1, cells.to_vec()));
+        let codes: Vec<[u8; 2]> = shown.cells().iter().map(|[r, _, _, a]| [*r, *a]).collect();
+        assert_eq!(codes, [[0, 0], [255, 255], [140, 255], [26, 255]]);
+    }
+
+    #[test]
+    fn a_layer_that_is_not_in_space_has_only_its_color() {
+        let fill = r##"{ "kind": "fill", "name": "veil", "color": "#ff000080" }"##;
+        let document = Document::parse(&format!(r#"{{ "plica": 1, "layers": [{fill}] }}"#)).unwrap();
+        let told = Asked::parse("depth:veil", document.scene()).unwrap_err();
+        assert!(told.contains("\"veil\" is not in space"), "{told}");
+        assert!(Asked::parse("color:veil", document.scene()).is_ok());
+    }
 }

@@ -6,9 +6,10 @@ use serde_json::{Map, Value, json};
 
 use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
-use super::{Document, field, pointer, shape};
+use super::{Document, FRAME, field, pointer, shape};
 use crate::layers::KINDS;
 use crate::layers::parts::materials::List;
+use crate::layers::parts::moment::Space;
 use crate::layers::space::camera;
 use crate::layers::technique::{Kind, Starts, Technique, Turned};
 
@@ -51,7 +52,9 @@ impl Edit {
     /// ascending list allows; also returns its pointer. `None` if there is no such list.
     pub fn insert_new(document: &Document, list: &str, index: usize) -> Option<(Edit, String)> {
         let (index, item) = new_item(document, list, index)?;
-        Some((Edit::insert(document, list, index, item), pointer::join(list, index)))
+        let camera = camera_for(document, list, std::slice::from_ref(&item));
+        let insert = Edit::insert(document, list, index, item);
+        Some((Edit::all(camera.into_iter().chain([insert])), pointer::join(list, index)))
     }
 
     /// Adds a copy of the item at `path` after it, under a unique name; also returns its pointer. `None` if `path` is
@@ -87,6 +90,15 @@ impl Edit {
     }
 }
 
+/// The camera that the first layers in space need, if these are some and the scene has none.
+pub(super) fn camera_for(document: &Document, list: &str, items: &[Value]) -> Option<Edit> {
+    let in_space = |item: &Value| {
+        KINDS.iter().any(|kind| kind.space == Space::World && item.get("kind").is_some_and(|name| name == kind.name))
+    };
+    let needed = list == "/layers" && document.scene().camera.is_none() && items.iter().any(in_space);
+    needed.then(|| write(document, "/camera", json!({})))
+}
+
 /// Turns the thing at `path` into another kind.
 fn turn(document: &Document, path: &str, place: Place, to: (&str, &str, Shape)) -> (Edit, Option<String>) {
     let (tag, name, variant) = to;
@@ -104,7 +116,9 @@ fn turn(document: &Document, path: &str, place: Place, to: (&str, &str, Shape)) 
     let new = Fresh::at(document, path).converted(variant, name, old);
     let same = old.and_then(|old| old.get(tag)) == Some(&Value::from(name));
     let lost = old.and_then(|old| lost(tag, old, &new)).filter(|_| !same);
-    (write(document, path, new), lost)
+    let list = pointer::split(path).map_or("", |(list, _)| list);
+    let camera = camera_for(document, list, std::slice::from_ref(&new));
+    (Edit::all(camera.into_iter().chain([write(document, path, new)])), lost)
 }
 
 /// What was written in the `old` thing and is not in the new one, in words.
@@ -143,6 +157,9 @@ pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
             let Some(place) = Place::of(json, parent) else { return Edit::add(path, value) };
             let fresh = Fresh::at(document, parent);
             let default = place.value.filter(|value| !value.is_null());
+            // Half of a size alone would make a frame that is one pixel wide or high.
+            let frame = (parent == "/size").then(|| json!([FRAME.0, FRAME.1]));
+            let default = default.or(frame.as_ref());
             let mut holder = default.map_or_else(|| fresh.value(place.shape), |default| barest(place.shape, default));
             match &mut holder {
                 Value::Object(map) => {
@@ -188,7 +205,10 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     if let Some(between) = (starts.item)(variant, &name, items, index) {
         return Some(between);
     }
-    let mut value = Fresh::at(document, &pointer::join(list, index)).value(item);
+    let fresh = Fresh::at(document, &pointer::join(list, index));
+    let like = items.get(index.saturating_sub(1)).filter(|_| list == "/layers");
+    let like = like.and_then(|like| like.get("kind")?.as_str()).filter(|kind| fresh.lacks(item, kind) == 0);
+    let mut value = like.and_then(|kind| fresh.variant(item, kind)).unwrap_or_else(|| fresh.value(item));
     if value.get("name").is_some() {
         value["name"] = unique(name.trim_end_matches('s'), items).into();
     }
@@ -281,7 +301,12 @@ impl<'a> Fresh<'a> {
 
     /// A new value of a shape, with only the required fields.
     fn value(&self, shape: Shape) -> Value {
-        let least = |(min, max): (f64, f64)| if (min..=max).contains(&0.0) { json!(0) } else { json!(min) };
+        let whole = shape.has_whole_numbers();
+        let least = |(min, max): (f64, f64)| match (min..=max).contains(&0.0) {
+            true => json!(0),
+            false if whole => json!(min as u64),
+            false => json!(min),
+        };
         match shape.body() {
             Body::Number { .. } => shape.range().map_or(json!(0), least),
             Body::Text => json!(shape.reference().and_then(|list| self.first(list)).unwrap_or_default()),
@@ -293,10 +318,24 @@ impl<'a> Fresh<'a> {
             Body::Map(_) => json!({}),
             Body::Object => self.object(shape, ""),
             Body::Tagged(_) => {
-                let first = shape.choices().next().and_then(|(name, _)| Some((name, shape.variant(name)?)));
-                first.map_or(Value::Null, |(name, variant)| self.within(name).object(variant, name))
+                let best = shape.choices().map(|(name, _)| name).min_by_key(|name| self.lacks(shape, name));
+                best.and_then(|name| self.variant(shape, name)).unwrap_or_default()
             }
         }
+    }
+
+    /// A new value of one variant of a tagged type.
+    fn variant(&self, shape: Shape, name: &str) -> Option<Value> {
+        Some(self.within(name).object(shape.variant(name)?, name))
+    }
+
+    /// How much a variant lacks of what it has to name: nothing; for a layer, that it shows nothing of the scene's lists;
+    /// or what it names is not there.
+    fn lacks(&self, shape: Shape, name: &str) -> u8 {
+        let Some(variant) = shape.variant(name) else { return 3 };
+        let mut lists = variant.required().filter_map(|name| variant.property(None, name)?.reference()).peekable();
+        let shows_nothing = self.layers && lists.peek().is_none();
+        if lists.all(|list| self.first(list).is_some()) { u8::from(shows_nothing) } else { 2 }
     }
 
     /// The required fields of an object or of a variant, and those that it begins with.

@@ -86,8 +86,10 @@ pub struct Child {
 /// The field at `pointer`, whether written or not; `None` if the schema knows no such place.
 pub fn field(document: &Document, pointer: &str) -> Option<Field> {
     let place = Place::of(document.json(), pointer)?;
-    let last = pointer::split(pointer).map(|(_, last)| last).unwrap_or_default();
-    let name = name_of(place.value).unwrap_or(last);
+    let (holder, last) = pointer::split(pointer).unwrap_or_default();
+    let holder = Place::of(document.json(), holder);
+    let column = holder.and_then(|holder| column(holder, &last));
+    let name = name_of(place.value).or(column.map(str::to_owned)).unwrap_or(last);
     Some(Field::new(name, place))
 }
 
@@ -161,13 +163,17 @@ pub fn child<'a>(place: Place<'a>, pointer: &str, token: &str) -> Option<(Child,
 }
 
 fn described(parent: Place, pointer: &str, token: &str, place: Place) -> Child {
-    let column = match parent.shape.body() {
-        Body::Row(_) => pointer::index(token).and_then(|i| parent.shape.column(i)),
-        _ => None,
-    };
-    let name = name_of(place.value).unwrap_or_else(|| column.unwrap_or(token).to_owned());
+    let name = name_of(place.value).unwrap_or_else(|| column(parent, token).unwrap_or(token).to_owned());
     let field = Field::new(name.clone(), place);
     Child { name, pointer: pointer::join(pointer, token), set: place.set, field }
+}
+
+/// The name of one of a fixed number of values, if it has one.
+fn column(parent: Place, token: &str) -> Option<&'static str> {
+    match parent.shape.body() {
+        Body::Row(_) | Body::Numbers(_) => parent.shape.column(pointer::index(token)?),
+        _ => None,
+    }
 }
 
 /// How many items the list at a place has.

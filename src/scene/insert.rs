@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use serde_json::{Map, Value};
 
-use super::build::{Fresh, unique_name, variant_of, write};
+use super::build::{Fresh, camera_for, unique_name, variant_of, write};
 use super::edit::Edit;
 use super::schema::{Body, Place};
 use super::{Document, field, pointer, shape};
@@ -48,13 +48,14 @@ impl Edit {
         if items.is_empty() {
             return None;
         }
+        let camera = camera_for(document, list, &items).into_iter();
         if items.len() <= ONE_BY_ONE && document.json().pointer(list).is_some_and(Value::is_array) {
             let each = items.into_iter().enumerate();
             let edits = each.map(|(i, item)| Edit::add(&pointer::join(list, index + i), item));
-            return Some((Edit::all(edits), first));
+            return Some((Edit::all(camera.chain(edits)), first));
         }
         let all: Vec<Value> = old[..index].iter().cloned().chain(items).chain(old[index..].iter().cloned()).collect();
-        Some((write(document, list, all.into()), first))
+        Some((Edit::all(camera.chain([write(document, list, all.into())])), first))
     }
 
     /// Adds entries to the map at `map` under unique names. Returns the edit and the pointer to the first entry; `None`

@@ -265,12 +265,22 @@ impl Shape {
         self.body.get("either").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
     }
 
-    /// The names of the numbers of a pair, if they have any: x and y for anything in pixels.
+    /// The names of a fixed number of numbers, if they have any: x and y for anything in pixels, x, y and z for three.
     pub fn column(self, index: usize) -> Option<&'static str> {
         match self.meta("columns") {
             Some(names) => names.get(index).and_then(Value::as_str),
+            None if matches!(self.body(), Body::Numbers(3)) => ["x", "y", "z"].get(index).copied(),
             None if self.unit() == Some("px") => ["x", "y"].get(index).copied(),
             None => None,
+        }
+    }
+
+    /// Whether its numbers must be whole.
+    pub fn has_whole_numbers(self) -> bool {
+        match self.body() {
+            Body::Number { integer } => integer,
+            Body::Numbers(_) => Shape::of(&self.body["items"], None).has_whole_numbers(),
+            _ => false,
         }
     }
 

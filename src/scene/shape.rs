@@ -107,8 +107,11 @@ impl Walk {
                 self.report(format!("{} is not known here", quoted(word)), nearest(word, shape.choices().map(|c| c.0)));
             }
             (Body::Numbers(count), Value::Array(items)) if items.len() == count => {
-                let range = shape.range();
+                let (range, whole) = (shape.range(), shape.has_whole_numbers());
                 self.items(items, |walk, item| match item {
+                    Value::Number(number) if whole && number.is_f64() => {
+                        walk.report(format!("expected a whole number, found {number}"), None);
+                    }
                     Value::Number(number) => walk.in_range(number, range, shape.unit()),
                     _ => walk.report(format!("expected a number, found {}", found(item)), None),
                 });
@@ -215,6 +218,7 @@ pub fn expected(shape: Shape) -> String {
         Body::Number { integer: true } => format!("a whole number{range}"),
         Body::Text => shape.reference().map_or("text".into(), |list| format!("a name of the scene's {list}")),
         Body::Bool => "true or false".into(),
+        Body::Choice if shape.choices().next().is_none() => "null".into(),
         Body::Choice => {
             shape.choices().map(|(name, _)| quoted(name)).collect::<Vec<_>>().join(", ").replace(", ", " or ")
         }

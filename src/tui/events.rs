@@ -1,5 +1,6 @@
 //! What comes into the editor and what it asks for: types only.
 
+use crate::base::problem::Problem;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ pub enum Event {
     /// This much time has passed while playing, in seconds.
     Tick(f64),
     /// A synthesis has ended: what it made, or why it failed.
-    Synthesised(Result<Synthesis, String>),
+    Synthesised(Result<Synthesis, Problem>),
     /// A synthesis has begun.
     Synthesising,
     /// What a pixel does.
@@ -64,7 +65,7 @@ pub struct Synthesis {
     /// The longest vector of every field, by its pointer.
     pub longest: Vec<(String, f64)>,
     /// A warning about the scene's pictures.
-    pub warning: Option<String>,
+    pub warning: Option<Problem>,
 }
 
 /// A change of the document, as it is sent to windows.

@@ -43,7 +43,7 @@ pub enum Strokes {}
 
 /// The schema of what can only be null.
 fn nothing(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": ["string", "null"], "enum": [null] })
+    json_schema!({ "type": ["string", "null"], "enum": [null], "readOnly": true })
 }
 
 /// Which sides of triangles are seen.

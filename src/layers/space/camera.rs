@@ -144,9 +144,16 @@ impl Camera {
         if !problems.is_empty() {
             return problems;
         }
+        let empty = |key: &Key| key.position.is_none() && key.target.is_none() && key.fov.is_none();
+        let empty = self.keys.iter().enumerate().filter(|(_, key)| empty(key));
+        problems.extend(empty.map(|(i, _)| {
+            let problem = Problem::warning(format!("/keys/{i}"), "the key names nothing, so nothing moves by it");
+            problem.hint("give it a position, a target or fov, or delete it")
+        }));
         if self.keys.is_empty() {
             let wrong = view_problem(self.view(0.0).0);
-            problems.extend(wrong.map(|(what, cure)| Problem::error("/position", what).hint(cure)));
+            let path = if DVec3::from(self.up).length() == 0.0 { "/up" } else { "/position" };
+            problems.extend(wrong.map(|(what, cure)| Problem::error(path, what).hint(cure)));
             return problems;
         }
         let mut times = self.keys.iter().map(|key| key.at).chain(frames);
@@ -201,6 +208,13 @@ mod tests {
         let ([position, ..], _) = camera.view(0.5);
         assert!((position - DVec3::new(4.0, 2.0, 0.0)).length() < 1e-12, "{position}");
         assert_eq!(camera.view(0.0).0[0], DVec3::new(0.0, 2.0, 4.0));
+    }
+
+    #[test]
+    fn a_key_that_names_nothing_is_told() {
+        let problems = camera(r#"{"keys": [{"at": 0, "fov": 30}, {"at": 0.5}]}"#).check([0.0].into_iter());
+        let paths: Vec<_> = problems.iter().map(|problem| problem.path.as_str()).collect();
+        assert_eq!(paths, ["/keys/1"], "{problems:?}");
     }
 
     #[test]

@@ -370,3 +370,45 @@ fn a_document_takes_no_more_memory_than_is_allowed() {
     document.apply(&title(10)).unwrap();
     assert!(document.apply(&title(most as usize)).unwrap_err()[0].message.contains("of memory"));
 }
+
+fn of_meshes(layers: &str, camera: &str) -> Document {
+    let meshes = r#""meshes": { "cow": { "path": "cow.obj" } }"#;
+    Document::parse(&format!(r#"{{ "plica": 1, {camera} {meshes}, "layers": {layers} }}"#)).unwrap()
+}
+
+#[test]
+fn a_new_layer_shows_what_the_scene_has_and_is_like_the_one_before() {
+    let fill = r##"{ "kind": "fill", "name": "sky", "color": "#8899aa" }"##;
+    let cow = r#"{ "kind": "mesh", "name": "cow", "mesh": "cow" }"#;
+    let camera = r#""camera": {},"#;
+    for (layers, camera, kind) in [
+        ("[]".to_owned(), "", "mesh"),
+        (format!("[{cow}]"), camera, "mesh"),
+        (format!("[{cow}, {fill}]"), camera, "fill"),
+    ] {
+        let document = of_meshes(&layers, camera);
+        let (edit, at) = Edit::insert_new(&document, "/layers", 9).unwrap();
+        let after = document.apply(&edit).unwrap();
+        assert_eq!(after.json().pointer(&at).unwrap()["kind"], kind, "{layers}");
+        assert!(after.scene().camera.is_some(), "{layers}: a layer in space brings a camera");
+    }
+}
+
+#[test]
+fn a_layer_that_becomes_a_mesh_brings_a_camera() {
+    let document = of_meshes(r##"[{ "kind": "fill", "name": "sky", "color": "#8899aa" }]"##, "");
+    let after = document.apply(&Edit::set(&document, "/layers/0/kind", "mesh".into())).unwrap();
+    assert_eq!((after.json()["layers"][0]["mesh"].as_str(), &after.json()["camera"]), (Some("cow"), &json!({})));
+}
+
+#[test]
+fn triples_have_x_y_and_z_and_sizes_are_whole() {
+    let document = of_meshes("[]", r#""camera": {},"#);
+    let at = address::resolve(&document, "camera.position.y").unwrap();
+    assert_eq!((at.as_str(), field::field(&document, &at).unwrap().name.as_str()), ("/camera/position/1", "y"));
+    assert_eq!(address::address(&document, "/camera/target/2"), "camera.target.z");
+    let problems = document.apply(&Edit::set(&document, "/size", json!([100.5, 100]))).unwrap_err();
+    assert_eq!(problems[0].to_string(), "/size/0: expected a whole number, found 100.5");
+    let after = document.apply(&Edit::set(&document, "/size/0", 200.into())).unwrap();
+    assert_eq!(after.json()["size"], json!([200, 720]));
+}

@@ -1,14 +1,19 @@
 //! The scene's camera: from what a window shows, and so that all meshes are seen.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
 use crate::base::number;
+use crate::files::materials::{self, Cache};
+use crate::layers::parts::moment::Space;
+use crate::layers::ready::{Making, Ready};
 use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{Bounds, fit};
-use crate::render::Synth;
+use crate::render::frame_size;
 use crate::tui::state::State;
 use crate::tui::text::numbers::short;
 
@@ -37,7 +42,10 @@ fn camera(state: &mut State, call: &Call) -> Done {
 
 fn take(state: &mut State, call: &Call) -> Done {
     let own = state.outside.camera.clone();
-    let own = own.ok_or("the window shows the scene's camera: move its own first (drag with the middle button)")?;
+    let own = own.ok_or(match state.outside.window.is_empty() {
+        true => "there is no window to take the camera from: :view opens one",
+        false => "the window shows the scene's camera: move its own first (drag with the middle button)",
+    })?;
     write(state, call, &own, "the window's camera is the scene's now")
 }
 
@@ -69,18 +77,19 @@ fn key(state: &mut State, call: &Call) -> Done {
 
 fn see_all(state: &mut State, call: &Call) -> Done {
     let before = state.document().scene().camera.clone();
-    let shows_meshes = !state.document().scene().meshes.is_empty();
-    let Some((bounds, size)) = state.picture.synth.as_ref().and_then(|synth| Some((bounds(synth)?, synth.size))) else {
-        if shows_meshes || before.is_some() {
-            return Err("no mesh is loaded yet: try :camera fit again in a moment".into());
-        }
+    let made = state.picture.synth.as_ref().and_then(|synth| Some((bounds(&synth.layers)?, synth.size)));
+    let seen = match made {
+        Some(made) => Ok(made),
+        None => unmade(state),
+    };
+    let (bounds, size) = match (seen, &before) {
+        (Ok(seen), _) => seen,
+        (Err(why), Some(_)) => return Err(why),
         // A layer in space asks for a camera before there is anything to see.
-        return write(
-            state,
-            call,
-            &Camera::default(),
-            "the scene has a camera; once there is a mesh, :camera fit sees it",
-        );
+        (Err(why), None) => {
+            let said = format!("the scene has a camera, but {why}");
+            return write(state, call, &Camera::default(), &said);
+        }
     };
     let of = before.clone().unwrap_or_default();
     let ([position, target, up], fov) = of.view(state.play.time);
@@ -90,10 +99,29 @@ fn see_all(state: &mut State, call: &Call) -> Done {
 }
 
 /// The box around all that is in space, over the whole timeline.
-fn bounds(synth: &Synth) -> Option<Bounds> {
+fn bounds(layers: &[Arc<dyn Ready>]) -> Option<Bounds> {
     let times = (0..TIMES).map(|k| f64::from(k) / f64::from(TIMES));
-    let all = times.flat_map(|t| synth.layers.iter().filter_map(move |layer| layer.bounds(t)));
+    let all = times.flat_map(|t| layers.iter().filter_map(move |layer| layer.bounds(t)));
     all.reduce(|a, b| a.and(&b))
+}
+
+/// The box around all layers in space, or without any around all meshes, and the size of frames, read from the files: where
+/// nothing is shown, or not yet. Otherwise why there is none.
+fn unmade(state: &State) -> Result<(Bounds, (usize, usize)), String> {
+    let scene = state.document().scene();
+    if scene.meshes.is_empty() {
+        return Err("it has no mesh: :add MODEL.obj adds one, and :camera fit sees it".into());
+    }
+    let (materials, problems) =
+        materials::gather(state.scene.path(), scene, state.scene.options(), &mut Cache::default());
+    let in_space = scene.layers.iter().map(|layer| layer.technique());
+    let in_space = in_space.filter(|layer| layer.kind().space == Space::World);
+    let making = Making::plain(scene.timeline.wrap, &materials);
+    let layers: Vec<_> = in_space.filter_map(|layer| layer.synth(&making, None).ok()).collect();
+    let meshes = || materials.meshes.values().flat_map(|mesh| mesh.bounds()).flat_map(<[_; 2]>::from);
+    let seen = if layers.is_empty() { Bounds::around(meshes()) } else { bounds(&layers) };
+    let why = || problems.first().map_or("nothing is in space".to_owned(), |problem| problem.message.clone());
+    Ok((seen.ok_or_else(why)?, frame_size(scene, &materials)))
 }
 
 /// Makes a camera that stands still the scene's; says so, and what is lost by it.

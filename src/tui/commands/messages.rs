@@ -30,14 +30,14 @@ fn messages(state: &mut State, _: &Call) -> Done {
 
 /// The problems, each as a place and a message; the place of the whole scene is empty.
 fn found(state: &State) -> Vec<(String, String)> {
-    let unseen = state.outside.problem.iter().map(|problem| (String::new(), plain(problem)));
+    let unseen = state.outside.problem.iter();
     let warnings = state.document().warnings().iter();
     let told = |problem: &Problem| {
         let kind = if problem.severity == Severity::Warning { "" } else { "error: " };
         let hint = problem.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
         plain(&format!("{kind}{}{hint}", problem.message))
     };
-    unseen.chain(warnings.map(|problem| (problem.path.clone(), told(problem)))).collect()
+    unseen.chain(warnings).map(|problem| (problem.path.clone(), told(problem))).collect()
 }
 
 fn problems(state: &mut State, _: &Call) -> Done {

@@ -1,5 +1,7 @@
 //! `update` handles an event: it changes the state and returns the effects that others perform.
 
+use crate::base::problem::Problem;
+use crate::scene::{Document, address};
 use crate::tui::commands::contexts::contexts;
 use crate::tui::commands::pasting;
 use crate::tui::events::{Effect, Event, Synthesis};
@@ -90,8 +92,18 @@ fn hear(state: &mut State, said: editor::Event) {
 }
 
 /// Handles the result of a synthesis.
-fn synthesised(state: &mut State, result: Result<Synthesis, String>) {
+fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
     state.picture.synthesising = false;
+    let (problem, warning) = match &result {
+        Ok(made) => (None, made.warning.as_ref()),
+        Err(problem) => (Some(problem), None),
+    };
+    // What is wrong from the start would go unseen below the greeting.
+    if state.picture.synth_ms.is_none() && state.outside.problem.is_none() {
+        if let Some(problem) = problem.or(warning) {
+            state.complain(told(state.document(), problem));
+        }
+    }
     match result {
         Ok(Synthesis { synth, ms, longest, warning }) => {
             state.picture.longest = longest;
@@ -102,6 +114,11 @@ fn synthesised(state: &mut State, result: Result<Synthesis, String>) {
         }
         Err(problem) => state.outside.problem = Some(problem),
     }
+}
+
+/// A problem of the files that a scene names, with the address of its place.
+fn told(document: &Document, problem: &Problem) -> String {
+    Problem { path: address::told(document, &problem.path), ..problem.clone() }.to_string()
 }
 
 /// Applies an edit that a script asks for.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::base::error::Error;
 use crate::base::fault;
-use crate::base::problem::Severity;
+use crate::base::problem::{Problem, Severity};
 use crate::files::{self, temporary};
 use crate::layers::parts::materials::Materials;
 use crate::ops;
@@ -46,7 +46,7 @@ impl Worker {
                     Err(fault) => {
                         // Its state may be incomplete, so start again with an empty one.
                         studio = Studio::new(studio.options, studio.running);
-                        if events.send(Event::Synthesised(Err(fault))).is_err() {
+                        if events.send(Event::Synthesised(Err(Problem::error("", fault)))).is_err() {
                             return;
                         }
                     }
@@ -143,21 +143,25 @@ impl Studio {
     }
 
     /// The synthesis, with a warning if there is one.
-    fn synthesise(&mut self, request: &Request, stop: Arc<AtomicBool>) -> Result<(Arc<Synth>, Option<String>), String> {
+    fn synthesise(
+        &mut self,
+        request: &Request,
+        stop: Arc<AtomicBool>,
+    ) -> Result<(Arc<Synth>, Option<Problem>), Problem> {
         self.cache.stop = Some(stop);
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
         let previous = self.made.as_ref().map(|made| &*made.synth);
         let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
             // Why a picture could not be read says more than that it is missing.
-            problems.first().unwrap_or(&problem).to_string()
+            problems.first().unwrap_or(&problem).clone()
         })?;
         let synth = Arc::new(synth);
         materials.stop = None;
         self.made = Some(Made { scene: request.scene.clone(), synth: synth.clone(), materials });
         match problems.first() {
-            Some(error) if error.severity == Severity::Error => Err(error.to_string()),
-            warning => Ok((synth, warning.map(ToString::to_string))),
+            Some(error) if error.severity == Severity::Error => Err(error.clone()),
+            warning => Ok((synth, warning.cloned())),
         }
     }
 }
@@ -326,10 +330,10 @@ mod tests {
             events.iter().find_map(ends).unwrap()
         };
         worker.ask(request("a fault"));
-        let told = ended().unwrap_err();
+        let told = ended().unwrap_err().to_string();
         assert!(told.starts_with("a fault of its own: ") && told.contains("what a test asked for"), "{told}");
         worker.ask(request("no/scene"));
-        let told = ended().unwrap_err();
+        let told = ended().unwrap_err().to_string();
         assert!(told.contains("no such file"), "{told}");
     }
 

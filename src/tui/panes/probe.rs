@@ -26,7 +26,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let place = write(buffer, area, 0, 0, &format!("pixel {x},{y}   "), style);
     let entries = probed.read.iter().flat_map(|read| &read.entries);
     let Some(Some(of)) = entries.clone().find_map(of) else {
-        let outside = entries.map(|entry| format!("in no {}: it stays as it is", entry.label)).next();
+        let outside = entries.map(|entry| format!("in no {}", entry.label)).next();
         write(buffer, area, place, 0, &outside.unwrap_or_default(), style);
         write(buffer, area, 0, 1, &shows(probed), style);
         return;
@@ -36,6 +36,9 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let axis = probed.read.as_ref().and_then(|read| read.axis.as_ref());
     if let Some(axis) = axis {
         draw_path(axis, Rect { y: area.y + 2, height: area.height.saturating_sub(2).min(2), ..area }, style, buffer);
+    }
+    for (row, line) in (1..).zip(places(entries.clone(), usize::from(area.width))) {
+        write(buffer, area, 0, row, &line, style);
     }
     let lines = [
         (1, joined(entries.clone().filter_map(vector))),
@@ -92,6 +95,27 @@ fn list(entry: &Entry) -> Option<String> {
     }
 }
 
+/// Where the pixel is in space, in at most three lines of this many cells.
+fn places<'a>(entries: impl Iterator<Item = &'a Entry>, cells: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for entry in entries {
+        let part = match &entry.value {
+            Value::Index(index) => format!("{} {index}", entry.label),
+            Value::Coordinates(numbers, unit) => {
+                let numbers: Vec<String> = numbers.iter().map(|&number| short(number)).collect();
+                format!("{} {} {unit}", entry.label, numbers.join(", ")).trim_end().to_owned()
+            }
+            _ => continue,
+        };
+        let full = lines.len() == 3;
+        match lines.last_mut() {
+            Some(line) if full || line.len() + 3 + part.len() <= cells => *line += &format!("   {part}"),
+            _ => lines.push(part),
+        }
+    }
+    lines
+}
+
 /// The numbers, first those that are places on the path, and the time.
 fn numbers<'a>(entries: impl Iterator<Item = &'a Entry>, axis: Option<&Axis>, time: f64) -> String {
     let points = axis.map_or(&[] as &[_], |axis| &axis.points);
@@ -144,4 +168,25 @@ fn draw_path(axis: &Axis, area: Rect, style: Style, buffer: &mut Buffer) {
     beyond(first).into_iter().for_each(|(x, glyph)| {
         write(buffer, area, x, 1, glyph, style);
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_in_space_takes_at_most_three_lines() {
+        let entry = |label, value| Entry { key: label, label, value };
+        let entries = [
+            entry("layer", Value::Of(Some("cow".into()))),
+            entry("triangle", Value::Index(7)),
+            entry("position", Value::Coordinates(vec![0.5, 1.0, -2.0], "m")),
+            entry("normal", Value::Coordinates(vec![0.0, 0.0, 1.0], "")),
+            entry("depth", Value::Coordinates(vec![2.25], "m")),
+        ];
+        let wide = ["triangle 7   position 0.5, 1, -2 m   normal 0, 0, 1   depth 2.25 m"];
+        assert_eq!(places(entries.iter(), 80), wide);
+        let narrow = ["triangle 7", "position 0.5, 1, -2 m", "normal 0, 0, 1   depth 2.25 m"];
+        assert_eq!(places(entries.iter(), 24), narrow);
+    }
 }

@@ -1,6 +1,7 @@
 //! What the editor knows of the file, the window and long work, and its questions about unsaved edits that were left behind
 //! and about somebody else who is editing the scene.
 
+use crate::base::problem::Problem;
 use crate::layers::space::camera::Camera;
 use crate::tui::document::choice::{About, Choice, Question, Then};
 use crate::tui::document::open_scene::OpenScene;
@@ -17,7 +18,7 @@ pub struct Outside {
     /// What is wrong with the file, for the status line.
     pub file: Option<&'static str>,
     /// Why the scene cannot be shown.
-    pub problem: Option<String>,
+    pub problem: Option<Problem>,
     /// The long work that is running, and its progress.
     pub work: Option<String>,
     /// The state of the window, for the status line.

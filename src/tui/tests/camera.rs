@@ -7,12 +7,16 @@ use serde_json::{Value, json};
 
 use super::support::{press, said, state, state_of};
 use crate::base::mesh::{Mesh, Vertex};
+use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::camera::Camera;
 use crate::preview::wire::message::ToEditor;
 use crate::render;
 use crate::tui::commands::update::update;
+use crate::tui::document::open_scene::OpenScene;
+use crate::tui::events::Event;
 use crate::tui::state::State;
+use crate::tui::text::color::Depth;
 
 const SCENE: &str = r#"{
   "plica": 1, "size": [200, 100], "camera": { "turn": 90, "fov": 30 },
@@ -37,7 +41,8 @@ fn own() -> Camera {
 fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
     let mut state = state_of(SCENE);
     let told = run(&mut state, "camera take");
-    assert!(told.starts_with("the window shows the scene's camera"), "{told}");
+    assert!(told.starts_with("there is no window"), "{told}");
+    state.outside.window = "window".into();
     update(&mut state, said(ToEditor::Camera(Some(own()))));
     let told = run(&mut state, "camera take");
     assert!(told.contains("without its turn"), "{told}");
@@ -69,7 +74,8 @@ fn a_key_shows_at_its_time_what_the_window_shows() {
 #[test]
 fn all_meshes_are_seen_at_all_times() {
     let mut state = state_of(SCENE);
-    assert!(run(&mut state, "camera fit").starts_with("no mesh is loaded yet"));
+    let told = run(&mut state, "camera fit");
+    assert!(told.contains("no such file"), "{told}");
     let corners = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0]];
     let vertices = corners.map(|at| Vertex { position: DVec3::from(at), ..Vertex::default() }).to_vec();
     let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2]], ..Mesh::default() });
@@ -94,4 +100,29 @@ fn a_scene_without_a_mesh_gets_the_camera_that_a_mesh_layer_asks_for() {
     assert!(run(&mut state, "camera key").starts_with("the scene has no camera"));
     run(&mut state, "camera fit");
     assert_eq!(state.document().scene().camera, Some(Camera::default()));
+}
+
+#[test]
+fn meshes_are_seen_before_anything_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.plica.json");
+    let obj = "v -1 0 5\nv 1 0 5\nv 0 2 5\nf 1 2 3\n";
+    std::fs::write(folder.path().join("m.obj"), obj).unwrap();
+    let scene = r#"{ "plica": 1, "meshes": { "m": { "path": "m.obj" } }, "layers": [] }"#;
+    std::fs::write(&path, scene).unwrap();
+    let mut state = State::new(OpenScene::in_memory(&path), (80, 24), Depth::None);
+    let told = run(&mut state, "camera fit");
+    assert!(told.starts_with("the camera sees all meshes"), "{told}");
+    assert_eq!(camera(&state)["target"], json!([0, 1, 5]));
+}
+
+#[test]
+fn a_file_that_is_missing_from_the_start_is_told_and_found() {
+    let mut state = state_of(SCENE);
+    let problem = Problem::error("/meshes/m/path", "m.obj: there is no such file");
+    update(&mut state, Event::Synthesised(Err(problem)));
+    let told = state.message.clone().unwrap();
+    assert!(told.bad && told.text.contains("meshes.m.path") && told.text.contains("no such file"), "{}", told.text);
+    press(&mut state, "g d");
+    assert_eq!(state.focused(), "/meshes/m/path");
 }
