@@ -9,7 +9,7 @@ use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
 use crate::base::problem::{nearest, quoted};
 use crate::layers::KINDS;
-use crate::layers::parts::moment::{Columns, Space};
+use crate::layers::parts::moment::Columns;
 use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass};
 use crate::layers::ready::Still;
 use crate::scene::Scene;
@@ -64,13 +64,7 @@ impl Asked {
             };
             names().position(|name| name == layer).ok_or_else(unknown)
         };
-        let layer = layer.map(index).transpose()?;
-        let flat = layer.map(|i| scene.layers[i].technique()).filter(|layer| layer.kind().space != Space::World);
-        if let Some(flat) = flat.filter(|_| *pass != COLOR) {
-            let (name, flat) = (quoted(name), quoted(flat.name()));
-            return Err(format!("the layer {flat} is not in space and has no pass {name} (name a layer in space)"));
-        }
-        Ok(Asked { pass, layer })
+        Ok(Asked { pass, layer: layer.map(index).transpose()? })
     }
 
     /// What it is, as [`Asked::parse`] reads it.
@@ -202,7 +196,6 @@ fn hue(number: u32) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Document;
 
     #[test]
     fn depth_to_look_at_uses_all_grays_between_the_nearest_and_the_farthest() {
@@ -210,14 +203,5 @@ mod tests {
         let shown = view(&pass::DEPTH, &Linear::from_cells(4, 1, cells.to_vec()));
         let codes: Vec<[u8; 2]> = shown.cells().iter().map(|[r, _, _, a]| [*r, *a]).collect();
         assert_eq!(codes, [[0, 0], [255, 255], [140, 255], [26, 255]]);
-    }
-
-    #[test]
-    fn a_layer_that_is_not_in_space_has_only_its_color() {
-        let fill = r##"{ "kind": "fill", "name": "veil", "color": "#ff000080" }"##;
-        let document = Document::parse(&format!(r#"{{ "plica": 1, "layers": [{fill}] }}"#)).unwrap();
-        let told = Asked::parse("depth:veil", document.scene()).unwrap_err();
-        assert!(told.contains("\"veil\" is not in space"), "{told}");
-        assert!(Asked::parse("color:veil", document.scene()).is_ok());
     }
 }

@@ -207,7 +207,7 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     }
     let fresh = Fresh::at(document, &pointer::join(list, index));
     let like = items.get(index.saturating_sub(1)).filter(|_| list == "/layers");
-    let like = like.and_then(|like| like.get("kind")?.as_str()).filter(|kind| fresh.lacks(item, kind) == 0);
+    let like = like.and_then(|like| like.get("kind")?.as_str()).filter(|kind| fresh.lacks(item, kind) < 2);
     let mut value = like.and_then(|kind| fresh.variant(item, kind)).unwrap_or_else(|| fresh.value(item));
     if value.get("name").is_some() {
         value["name"] = unique(name.trim_end_matches('s'), items).into();

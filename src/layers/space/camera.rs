@@ -222,7 +222,7 @@ mod tests {
         for (json, path, what) in [
             (r#"{"position": [1, 2, 3], "target": [1, 2, 3]}"#, "/position", "the camera stands where it looks"),
             (r#"{"position": [0, 2, 0], "target": [0, 0, 0]}"#, "/position", "the camera looks along its up"),
-            (r#"{"up": [0, 0, 0]}"#, "/position", "the camera has no direction that is up"),
+            (r#"{"up": [0, 0, 0]}"#, "/up", "the camera has no direction that is up"),
             (
                 r#"{"keys": [{"at": 0, "position": [1, 0, 0]}, {"at": 1, "position": [0, 0.8, 0]}]}"#,
                 "/keys/1",
