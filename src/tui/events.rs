@@ -27,7 +27,7 @@ pub enum Event {
     /// This much time has passed while playing, in seconds.
     Tick(f64),
     /// A synthesis has ended: what it made, or why it failed.
-    Synthesised(Result<Synthesis, Problem>),
+    Synthesised(Box<Result<Synthesis, Problem>>),
     /// A synthesis has begun.
     Synthesising,
     /// What a pixel does.

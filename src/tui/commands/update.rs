@@ -37,7 +37,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Tick(seconds) => state.pass(seconds),
         Event::Synthesising => state.picture.synthesising = true,
         Event::Probed(probed) => state.picture.probed = Some(probed),
-        Event::Synthesised(result) => synthesised(state, result),
+        Event::Synthesised(result) => synthesised(state, *result),
         Event::Picture(shown) => state.picture.latest = Some(shown),
         Event::Progress(line) => state.outside.work = Some(line),
         Event::Done(result) => {
@@ -99,10 +99,11 @@ fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
         Err(problem) => (Some(problem), None),
     };
     // What is wrong from the start would go unseen below the greeting.
-    if state.picture.synth_ms.is_none() && state.outside.problem.is_none() {
-        if let Some(problem) = problem.or(warning) {
-            state.complain(told(state.document(), problem));
-        }
+    if state.picture.synth_ms.is_none()
+        && state.outside.problem.is_none()
+        && let Some(problem) = problem.or(warning)
+    {
+        state.complain(told(state.document(), problem));
     }
     match result {
         Ok(Synthesis { synth, ms, longest, warning }) => {

@@ -46,7 +46,7 @@ impl Worker {
                     Err(fault) => {
                         // Its state may be incomplete, so start again with an empty one.
                         studio = Studio::new(studio.options, studio.running);
-                        if events.send(Event::Synthesised(Err(Problem::error("", fault)))).is_err() {
+                        if events.send(Event::Synthesised(Box::new(Err(Problem::error("", fault))))).is_err() {
                             return;
                         }
                     }
@@ -123,7 +123,7 @@ impl Studio {
                 let longest = probed::longest(&synth);
                 Synthesis { synth, ms, longest, warning }
             });
-            if events.send(Event::Synthesised(made)).is_err() {
+            if events.send(Event::Synthesised(Box::new(made))).is_err() {
                 return false;
             }
         }

@@ -120,7 +120,7 @@ fn meshes_are_seen_before_anything_is_shown() {
 fn a_file_that_is_missing_from_the_start_is_told_and_found() {
     let mut state = state_of(SCENE);
     let problem = Problem::error("/meshes/m/path", "m.obj: there is no such file");
-    update(&mut state, Event::Synthesised(Err(problem)));
+    update(&mut state, Event::Synthesised(Box::new(Err(problem))));
     let told = state.message.clone().unwrap();
     assert!(told.bad && told.text.contains("meshes.m.path") && told.text.contains("no such file"), "{}", told.text);
     press(&mut state, "g d");

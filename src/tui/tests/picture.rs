@@ -291,7 +291,7 @@ fn long_work_says_how_far_it_is_and_how_to_end_it() {
     let mut state = opened((80, 24));
     update(&mut state, Event::Synthesising);
     assert!(screen(&state).contains("field ..."));
-    update(&mut state, Event::Synthesised(Err(Problem::error("", "no"))));
+    update(&mut state, Event::Synthesised(Box::new(Err(Problem::error("", "no")))));
     assert!(!screen(&state).contains("field ..."));
 }
 

@@ -61,7 +61,10 @@ pub fn see(state: &mut State) {
     let request = picture::request(state);
     let synth = Arc::new(crate::render::synth(&request.scene, &materials, None).unwrap());
     let longest = probed::longest(&synth);
-    update(state, Event::Synthesised(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest, warning: None })));
+    update(
+        state,
+        Event::Synthesised(Box::new(Ok(Synthesis { synth: synth.clone(), ms: 12.0, longest, warning: None }))),
+    );
     if let Some(asked) = request.probe {
         let probed = Probed::new(asked, &request.scene, &synth, &materials).unwrap();
         update(state, Event::Probed(Arc::new(probed)));
