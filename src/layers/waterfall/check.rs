@@ -5,7 +5,7 @@ use super::births::Births;
 use super::hash::Random;
 use super::lines::{Line, lines, water};
 use super::look::Look;
-use super::model::WaterfallLayer;
+use super::model::{Node, WaterfallLayer};
 use super::sprites::bytes_of;
 use super::sprites::cut::Sources;
 use super::sprites::model::{Pick, Shows, Sprites};
@@ -24,16 +24,27 @@ const PART: u32 = 16;
 /// The checks beyond shape.
 pub fn problems(layer: &WaterfallLayer) -> Vec<Problem> {
     let mut problems = of_sprites(layer);
-    let flows = layer.lip.iter().any(|node| node.flow > 0.0);
-    if !flows {
-        problems.push(Problem::error("/lip", "no water flows at any node").hint("give a node a flow above 0"));
-    }
+    let dry = dry(&layer.lip);
+    let flows = dry.is_none();
+    problems.extend(dry);
     problems.extend(of_look(&layer.look, "/look"));
     problems.extend(of_look(&layer.foam.look, "/foam/look"));
     if flows {
         problems.extend(of_lines(layer));
     }
     problems
+}
+
+/// The problem with a lip that no water leaves.
+fn dry(lip: &[Node]) -> Option<Problem> {
+    if !lip.iter().any(|node| node.flow > 0.0) {
+        return Some(Problem::error("/lip", "no water flows at any node").hint("give a node a flow above 0"));
+    }
+    // Nodes at one place are a point, where it is enough that one of them has a flow.
+    let mut pieces = lip.windows(2).filter(|pair| pair[0].at != pair[1].at).peekable();
+    let flows = pieces.peek().is_none() || pieces.any(|pair| pair[0].flow + pair[1].flow > 0.0);
+    let dry = || Problem::error("/lip", "no water flows between any two nodes that are apart");
+    (!flows).then(|| dry().hint("give one of such two a flow above 0"))
 }
 
 fn of_sprites(layer: &WaterfallLayer) -> Vec<Problem> {

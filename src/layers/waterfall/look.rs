@@ -12,7 +12,7 @@ use crate::base::pixels::decode;
 pub struct Look {
     /// Its width at birth and at death.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1e-6), extend("unit" = "m"))]
+    #[schemars(inner(range(min = 1e-6)), extend("unit" = "m"))]
     pub width: Option<[f64; 2]>,
     /// Widths differ by up to this share.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,7 @@ pub struct Look {
     pub opacity: Option<f64>,
     /// The shares of a life in which it appears and vanishes.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 1.0), extend("unit" = "1"))]
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("unit" = "1"))]
     pub fade: Option<[f64; 2]>,
     /// How many times brighter it is; its opacity stays.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -61,7 +61,7 @@ pub struct WaterfallLayer {
     pub spread: Option<f64>,
     /// How far sprites stray from their line: at birth, and more each second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0), extend("unit" = "m"))]
+    #[schemars(inner(range(min = 0.0)), extend("unit" = "m"))]
     pub scatter: Option<[f64; 2]>,
     /// The acceleration downwards; negative is buoyancy, as of smoke.
     #[serde(default = "gravity")]
