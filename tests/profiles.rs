@@ -110,9 +110,10 @@ fn shipped_frames_are_golden() {
 #[test]
 fn shipped_scenes_are_still_outside_their_zones_and_have_no_seam() {
     for profile in profiles::TABLE {
-        let show = shipped(profile.name);
         // In space there is no picture to compare with: its own scene is compared.
-        if show.document.scene().camera.is_none() {
+        let scene = profile.files.iter().find(|(file, _)| *file == profile.scene_file()).unwrap().1;
+        if Document::parse(std::str::from_utf8(scene).unwrap()).unwrap().scene().camera.is_none() {
+            let show = shipped(profile.name);
             still_outside(profile.name, &show);
             no_seam(profile.name, &show);
         }
