@@ -39,6 +39,7 @@ impl Device {
             .using_resolution(own);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("plica"),
+            required_features: adapter.features() & wgpu::Features::FLOAT32_BLENDABLE,
             required_limits: limits,
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
@@ -76,6 +77,11 @@ impl Device {
     /// The largest side of a picture, in pixels.
     pub fn max_side(&self) -> usize {
         self.raw.limits().max_texture_dimension_2d as usize
+    }
+
+    /// Whether floats of 32 bits can be blended.
+    pub fn blends_floats(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::FLOAT32_BLENDABLE)
     }
 
     /// Runs `work`; an error that it causes on the device becomes the result.

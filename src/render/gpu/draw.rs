@@ -8,6 +8,8 @@ use crate::base::error::Result;
 use crate::layers::parts::plan::{Blend, COMMON, Plan, Program};
 use crate::render::Synth;
 
+/// The format of layers that are blended from much.
+const FINE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// The format of encoded frames.
 const ENCODED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -24,6 +26,7 @@ pub struct Painter {
     runner: Runner,
     frames: [Target; 2],
     layer: Target,
+    fine: Target,
 }
 
 impl Painter {
@@ -35,7 +38,7 @@ impl Painter {
         number: usize,
         (synth, scene_time): (&Synth, f64),
     ) -> Result<wgpu::Texture> {
-        let frame = self.frames[number].get(device, synth.size)?;
+        let frame = self.frames[number].get(device, synth.size, FRAME)?;
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         let moment = synth.moment(scene_time);
         let stage = &synth.stage;
@@ -45,12 +48,15 @@ impl Painter {
             Plan { draws: draws.collect() }
         });
         for (i, plan) in plans.enumerate() {
+            // Halves lose too much where much is blended.
+            let fine = device.blends_floats() && plan.draws.iter().any(|draw| draw.instances > 1);
             // Beneath the first layer there is often nothing.
-            if i == 0 && stage.background == [0.0; 4] {
+            if i == 0 && stage.background == [0.0; 4] && !fine {
                 self.runner.run(device, &mut encoder, &frame, &plan)?;
                 continue;
             }
-            let into = self.layer.get(device, synth.size)?;
+            let (target, format) = if fine { (&mut self.fine, FINE) } else { (&mut self.layer, FRAME) };
+            let into = target.get(device, synth.size, format)?;
             self.runner.run(device, &mut encoder, &into, &plan)?;
             self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, &frame))?;
         }
@@ -84,13 +90,18 @@ impl Painter {
 struct Target(Option<wgpu::Texture>);
 
 impl Target {
-    fn get(&mut self, device: &Device, (width, height): (usize, usize)) -> Result<wgpu::Texture> {
+    fn get(
+        &mut self,
+        device: &Device,
+        (width, height): (usize, usize),
+        format: wgpu::TextureFormat,
+    ) -> Result<wgpu::Texture> {
         if let Some(kept) = self.0.as_ref().filter(|t| (t.width() as usize, t.height() as usize) == (width, height)) {
             return Ok(kept.clone());
         }
         check_size(device, width, height)?;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        let made = texture(device, (width, height), FRAME, usage)?;
+        let made = texture(device, (width, height), format, usage)?;
         Ok(self.0.insert(made).clone())
     }
 }
