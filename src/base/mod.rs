@@ -19,6 +19,7 @@ pub mod numbered;
 pub mod oklab;
 pub mod picture;
 pub mod pixels;
+pub mod pointer;
 pub mod problem;
 pub mod progress;
 pub mod quantise;

@@ -133,11 +133,6 @@ impl Linear {
     pub fn read(&self, x: f64, y: f64, beyond: Beyond) -> Rgba {
         bilinear((self.width, self.height), (x, y), beyond, |i| self.cells[i])
     }
-
-    /// Encodes to sRGB with straight alpha.
-    pub fn to_frame(&self) -> Frame {
-        Grid { width: self.width, height: self.height, cells: self.cells.iter().map(|&c| encode(c)).collect() }
-    }
 }
 
 impl Frame {
@@ -150,6 +145,11 @@ impl Frame {
 /// sRGB code value in 0 to 1 to linear light (IEC 61966-2-1).
 pub fn linear_from_srgb(code: f64) -> f64 {
     if code <= 0.04045 { code / 12.92 } else { crate::base::maths::pow((code + 0.055) / 1.055, 2.4) }
+}
+
+/// The sRGB code, 0 to 1, of linear light.
+pub fn srgb_from_linear(light: f64) -> f64 {
+    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * crate::base::maths::pow(light, 1.0 / 2.4) - 0.055 }
 }
 
 /// 8-bit sRGB with straight alpha to linear, premultiplied.

@@ -10,7 +10,7 @@ use crate::base::pixels::Linear;
 /// The channels R, G, B and A.
 ///
 /// # Errors
-/// The encoder's.
+/// Returns the encoder's error.
 pub fn rgba(picture: &Linear) -> Result<Vec<u8>, ImageError> {
     encode(picture, bytemuck::cast_slice(picture.cells()), ExtendedColorType::Rgba32F)
 }
@@ -18,7 +18,7 @@ pub fn rgba(picture: &Linear) -> Result<Vec<u8>, ImageError> {
 /// The channels R, G and B.
 ///
 /// # Errors
-/// The encoder's.
+/// Returns the encoder's error.
 pub fn rgb(picture: &Linear) -> Result<Vec<u8>, ImageError> {
     let cells: Vec<[f32; 3]> = picture.cells().iter().map(|&[r, g, b, _]| [r, g, b]).collect();
     encode(picture, bytemuck::cast_slice(&cells), ExtendedColorType::Rgb32F)

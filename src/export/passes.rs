@@ -9,7 +9,7 @@ use super::{floats, still};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
 use crate::files::draft::DraftFile;
-use crate::files::outputs::{Guard, Kind, Place};
+use crate::files::outputs::{self, Guard, Kind, Place};
 use crate::files::write;
 
 const ENDINGS: [&str; 2] = [".exr", ".png"];
@@ -28,8 +28,8 @@ impl Files {
     pub fn new(path: &Path, numbers: &[u64], guard: &mut Guard) -> Result<Files> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let kind = match extension.as_str() {
-            "exr" => Kind::Exr,
-            "png" => Kind::Png,
+            "exr" => outputs::EXR,
+            "png" => outputs::PNG,
             _ => {
                 return Err(Error::Usage(format!(
                     "{}: a pass is written as .exr or, to look at, .png",
@@ -64,10 +64,10 @@ impl Files {
             return Err(Error::at(format!("frame {number}"), "has no place"));
         };
         let failed = |error: &(dyn std::error::Error + 'static)| write::failed(place.path().display(), error);
-        let bytes = match self.kind {
-            Kind::Exr if alpha => floats::rgba(picture).map_err(|e| failed(&e))?,
-            Kind::Exr => floats::rgb(picture).map_err(|e| failed(&e))?,
-            _ => still::frame(&view()).map_err(|e| failed(&e))?,
+        let bytes = match self.kind == outputs::EXR {
+            true if alpha => floats::rgba(picture).map_err(|e| failed(&e))?,
+            true => floats::rgb(picture).map_err(|e| failed(&e))?,
+            false => still::frame(&view()).map_err(|e| failed(&e))?,
         };
         let mut draft = DraftFile::create(place)?;
         draft.write_all(&bytes).map_err(|e| failed(&e))?;

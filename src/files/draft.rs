@@ -144,10 +144,10 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    use crate::files::outputs::{Guard, Kind};
+    use crate::files::outputs::{self, Guard};
 
     fn begin(path: &Path) -> Result<DraftFile> {
-        DraftFile::create(&Guard::new(true).file(path, Kind::Gif)?)
+        DraftFile::create(&Guard::new(true).file(path, outputs::PNG)?)
     }
 
     fn names(folder: &Path) -> Vec<String> {

@@ -19,7 +19,7 @@ pub struct Model {
     pub picture: Option<String>,
     /// The files that it is in, besides its own.
     pub beside: Vec<String>,
-    /// What in it could not be honored, in words.
+    /// What in it is not supported, in words.
     pub notes: Vec<String>,
 }
 

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use super::hash::contents;
 use super::materials::{self, Stamp};
 use super::{Options, mesh, paths};
-use crate::base::budget::size;
 use crate::base::error::{Error, Result};
+use crate::base::text;
 use crate::scene::Scene;
 
 pub use super::hash::Contents;
@@ -103,7 +103,7 @@ fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found
     }
     let length = file.metadata().map_err(place)?.len();
     if length > options.limits.memory {
-        let what = format!("is {} long, at most {} are sent", size(length), size(options.limits.memory));
+        let what = format!("is {} long, at most {} are sent", text::bytes(length), text::bytes(options.limits.memory));
         return Err(Error::at(path, what).cure("make it smaller, or give --limit memory=BYTES"));
     }
     let contents = contents(&mut file).map_err(place)?;

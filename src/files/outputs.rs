@@ -12,31 +12,29 @@ use super::{disk, holder, journal, materials, paths, temporary};
 use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 
-/// A kind of file, recognized by its first bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// PNG, animated or not.
-    Png,
-    /// GIF.
-    Gif,
-    /// WebP, animated or not.
-    WebP,
-    /// YUV4MPEG2.
-    Y4m,
-    /// Bare pixels, which have no signature: a file with that extension that does not begin like another kind.
-    Rgba,
-    /// MPEG-4 video.
-    Mp4,
-    /// QuickTime video.
-    Mov,
-    /// WebM or Matroska video.
-    WebM,
-    /// A drawing.
-    Svg,
-    /// A table of jump vectors, as `plica field` writes it.
-    Csv,
-    /// OpenEXR.
-    Exr,
+/// A kind of file that is written. Encoders bring theirs; those that several parts of the program write are here.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// What messages call it.
+    pub name: &'static str,
+    /// Whether a file that is there already is of this kind.
+    pub is: fn(&Found) -> bool,
+}
+
+impl PartialEq for Kind {
+    fn eq(&self, other: &Kind) -> bool {
+        self.name == other.name
+    }
+}
+
+/// A file that is there already.
+pub struct Found<'a> {
+    /// Its path.
+    pub path: &'a Path,
+    /// Its length in bytes.
+    pub length: u64,
+    /// Its first bytes.
+    pub head: &'a [u8],
 }
 
 /// How many first bytes are looked at.
@@ -45,40 +43,28 @@ const HEAD: usize = 512;
 /// The first line of a table of jump vectors.
 pub const CSV_HEADER: &str = "x,y,dx,dy,length,degrees";
 
-/// A kind, its name in messages, and a test of a file's first bytes.
-type Row = (Kind, &'static str, fn(&[u8]) -> bool);
+/// PNG, animated or not.
+pub const PNG: Kind = Kind { name: "PNG", is: |found| found.head.starts_with(b"\x89PNG\r\n\x1a\n") };
+/// A drawing.
+pub const SVG: Kind = Kind {
+    name: "SVG drawing",
+    is: |found| found.head.starts_with(b"<") && found.head.windows(4).any(|four| four == b"<svg"),
+};
+/// A table of jump vectors, as `plica field` writes it.
+pub const CSV: Kind =
+    Kind { name: "table that plica field wrote", is: |found| found.head.starts_with(CSV_HEADER.as_bytes()) };
+/// OpenEXR.
+pub const EXR: Kind = Kind { name: "OpenEXR picture", is: |found| found.head.starts_with(b"\x76\x2f\x31\x01") };
 
-const KINDS: &[Row] = &[
-    (Kind::Png, "PNG", |head| head.starts_with(b"\x89PNG\r\n\x1a\n")),
-    (Kind::Gif, "GIF", |head| head.starts_with(b"GIF87a") || head.starts_with(b"GIF89a")),
-    (Kind::WebP, "WebP", |head| head.starts_with(b"RIFF") && head.get(8..12) == Some(b"WEBP")),
-    (Kind::Y4m, "y4m video", |head| head.starts_with(b"YUV4MPEG2 ")),
-    (Kind::Mov, "QuickTime video", |head| head.get(4..12) == Some(b"ftypqt  ")),
-    (Kind::Mp4, "MP4 video", |head| head.get(4..8) == Some(b"ftyp") && head.get(8..12) != Some(b"qt  ")),
-    (Kind::WebM, "WebM video", |head| head.starts_with(b"\x1a\x45\xdf\xa3")),
-    (Kind::Svg, "SVG drawing", |head| head.starts_with(b"<") && head.windows(4).any(|four| four == b"<svg")),
-    (Kind::Csv, "table that plica field wrote", |head| head.starts_with(CSV_HEADER.as_bytes())),
-    (Kind::Exr, "OpenEXR picture", |head| head.starts_with(b"\x76\x2f\x31\x01")),
-];
+/// The kinds above.
+pub const KINDS: [Kind; 4] = [PNG, SVG, CSV, EXR];
 
 impl Kind {
-    fn of(head: &[u8]) -> Option<Kind> {
-        KINDS.iter().find(|(_, _, begins)| begins(head)).map(|(kind, ..)| *kind)
-    }
-
-    fn name(self) -> &'static str {
-        KINDS.iter().find(|(kind, ..)| *kind == self).map_or("file of bare pixels", |(_, name, _)| name)
-    }
-
     /// Whether the file at `path` is of this kind.
     fn is_of(self, path: &Path, length: u64) -> std::io::Result<bool> {
         let mut head = Vec::new();
         File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
-        let bare = || length.is_multiple_of(4) && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("rgba"));
-        Ok(match Kind::of(&head) {
-            Some(kind) => kind == self,
-            None => self == Kind::Rgba && bare(),
-        })
+        Ok((self.is)(&Found { path, length, head: &head }))
     }
 }
 
@@ -208,7 +194,7 @@ impl Guard {
         }
         match kind.is_of(path, found.len()) {
             Ok(true) => Ok(place),
-            Ok(false) => Err(in_the_way(path, format!("is there already and is no {}", kind.name()))),
+            Ok(false) => Err(in_the_way(path, format!("is there already and is no {}", kind.name))),
             Err(error) => Err(in_the_way(path, format!("is there already and cannot be read: {error}"))),
         }
     }
@@ -321,7 +307,7 @@ mod tests {
     use crate::scene::Document;
     use std::os::unix::fs::symlink;
 
-    const PNG: &[u8] = b"\x89PNG\r\n\x1a\n and more";
+    const PNG_FILE: &[u8] = b"\x89PNG\r\n\x1a\n and more";
 
     /// A scene that reads `sub/cat.png`, `missing.flo`, `layers.exr#beauty` and a clip of two frames, in a folder with links
     /// to them.
@@ -330,7 +316,7 @@ mod tests {
         let root = folder.path();
         fs::create_dir(root.join("sub")).unwrap();
         for name in ["sub/cat.png", "layers.exr", "other.png", "sub/0007.png", "sub/0008.png"] {
-            fs::write(root.join(name), PNG).unwrap();
+            fs::write(root.join(name), PNG_FILE).unwrap();
         }
         let text = r#"{"plica": 1, "images": {"cat": {"path": "sub/cat.png"}, "exr": {"path": "layers.exr#beauty"}},
             "clips": {"falls": {"path": "sub/%04d.png", "first": 7}},
@@ -375,7 +361,7 @@ mod tests {
             ("new.png", None),
             ("sub/cat2.png", None),
         ] {
-            let refused = guard.file(&folder.path().join(name), Kind::Png).err().map(|error| error.to_string());
+            let refused = guard.file(&folder.path().join(name), PNG).err().map(|error| error.to_string());
             match what {
                 None => assert_eq!(refused, None, "{name}"),
                 Some(what) => assert!(refused.as_ref().is_some_and(|said| said.contains(what)), "{name}: {refused:?}"),
@@ -386,7 +372,7 @@ mod tests {
         assert_eq!(missing(&folder.path().join("copy.json"), document.scene()), ["missing.flo"]);
         assert_eq!(missing(&folder.path().join("sub/copy.json"), document.scene()).len(), 4);
         let names = ["new.png".to_owned(), "link.png".into()];
-        assert!(guard.files(folder.path(), &names, Kind::Png).is_err());
+        assert!(guard.files(folder.path(), &names, PNG).is_err());
         assert!(guard.folder(folder.path(), &|name| name == "hard.png", BTreeSet::new()).is_err());
         assert!(guard.folder(folder.path(), &|_| false, BTreeSet::from(["hard.png".to_owned()])).is_err());
         guard.folder(folder.path(), &|name| name == "other.png", BTreeSet::new()).unwrap();
@@ -395,47 +381,37 @@ mod tests {
     #[test]
     fn other_files_are_replaced_by_their_own_kind_only() {
         let folder = tempfile::tempdir().unwrap();
-        let heads: [(&[u8], Option<Kind>); 13] = [
-            (PNG, Some(Kind::Png)),
-            (b"GIF89a..", Some(Kind::Gif)),
-            (b"RIFF\0\0\0\0WEBPVP8X", Some(Kind::WebP)),
-            (b"RIFF\0\0\0\0WAVEfmt ", None),
-            (b"YUV4MPEG2 W3 H2", Some(Kind::Y4m)),
-            (b"\0\0\0\x18ftypisom", Some(Kind::Mp4)),
-            (b"\0\0\0\x14ftypqt  ", Some(Kind::Mov)),
-            (b"\x1a\x45\xdf\xa3....webm", Some(Kind::WebM)),
-            (b"<?xml version=\"1.0\"?>\n<svg>", Some(Kind::Svg)),
-            (b"x,y,dx,dy,length,degrees\n", Some(Kind::Csv)),
+        let heads: [(&[u8], Option<Kind>); 6] = [
+            (PNG_FILE, Some(PNG)),
+            (b"<?xml version=\"1.0\"?>\n<svg>", Some(SVG)),
+            (b"x,y,dx,dy,length,degrees\n", Some(CSV)),
             (b"x,y\n1,2\n", None),
-            (b"\x76\x2f\x31\x01....", Some(Kind::Exr)),
+            (b"\x76\x2f\x31\x01....", Some(EXR)),
             (b"{\"plica\": 1}", None),
         ];
         for (head, kind) in heads {
-            let path = folder.path().join("there.rgba");
+            let path = folder.path().join("there");
             fs::write(&path, head).unwrap();
-            assert_eq!(Kind::of(head), kind);
-            for (own, name, _) in KINDS {
-                let gives = Guard::new(false).file(&path, *own);
-                assert_eq!(gives.is_ok(), kind == Some(*own), "{name} over {:?}", String::from_utf8_lossy(head));
-                assert!(Guard::new(true).file(&path, *own).is_ok());
+            for own in KINDS {
+                let gives = Guard::new(false).file(&path, own);
+                assert_eq!(gives.is_ok(), kind == Some(own), "{} over {:?}", own.name, String::from_utf8_lossy(head));
+                assert!(Guard::new(true).file(&path, own).is_ok());
                 if let Err(error) = gives {
                     assert!(error.to_string().contains("--force"), "{error}");
                 }
             }
-            let pixels = kind.is_none() && head.len() % 4 == 0;
-            assert_eq!(Guard::new(false).file(&path, Kind::Rgba).is_ok(), pixels, "{head:?}");
         }
         let empty = folder.path().join("empty.gif");
         fs::write(&empty, "").unwrap();
-        Guard::new(false).file(&empty, Kind::Gif).unwrap();
-        Guard::new(false).file(Path::new("/dev/null"), Kind::Gif).unwrap();
+        Guard::new(false).file(&empty, PNG).unwrap();
+        Guard::new(false).file(Path::new("/dev/null"), PNG).unwrap();
     }
 
     #[test]
     fn a_folder_gives_its_earlier_output_only() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["colour.png", "mine.png"] {
-            fs::write(folder.path().join(name), PNG).unwrap();
+            fs::write(folder.path().join(name), PNG_FILE).unwrap();
         }
         let earlier = || BTreeSet::from(["colour.png".to_owned()]);
         let gives = |force: bool, name: &'static str| {

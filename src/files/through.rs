@@ -21,7 +21,7 @@ pub fn refuse_protected(path: &Path) -> Result<()> {
         Some(found) if found.mode() & 0o222 == 0 || system::is_denied_to_write(path) => {
             let user = system::user();
             Err(if user == 0 || found.uid() == user {
-                Error::at(path.display(), "is read-only").cure("allow to write it first: chmod u+w")
+                Error::at(path.display(), "is read-only").cure("make it writable first: chmod u+w")
             } else {
                 let error = Error::at(path.display(), "is another user's, and read-only for you");
                 error.cure("save a copy of it: plica edit, then :w PATH")
@@ -177,7 +177,7 @@ mod tests {
             refuse_protected(&path)
                 .unwrap_err()
                 .to_string()
-                .ends_with("is read-only (allow to write it first: chmod u+w)")
+                .ends_with("is read-only (make it writable first: chmod u+w)")
         );
     }
 }

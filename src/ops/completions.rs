@@ -7,7 +7,7 @@ use super::Context;
 use super::command_line::CommandLine;
 use crate::base::error::Result;
 
-/// Print the completions for a shell
+/// Print a completion script for a shell
 #[derive(clap::Args)]
 pub struct Args {
     /// The shell

@@ -10,10 +10,10 @@ use crate::files::profiles::{self, Profile};
 /// Open a built-in demo scene
 #[derive(clap::Args)]
 pub struct Args {
-    /// Which one
+    /// The demo to open
     #[arg(default_value = profiles::TABLE[0].name)]
     name: String,
-    /// Where to unpack it; a scene that is there already is opened as it is
+    /// Where to unpack it; an existing scene there is opened unchanged
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// List the demo scenes

@@ -31,7 +31,7 @@ pub struct Args {
     /// Leave the faint picture out of a plot
     #[arg(long)]
     no_picture: bool,
-    /// Where to: .svg and .png are plots, .csv is x,y,dx,dy,length,degrees, - is that table on standard output
+    /// Where to: .svg and .png are plots, .csv is x,y,dx,dy,length,degrees, - writes the table to standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
@@ -59,17 +59,19 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let step = args.step.map(|step| step as usize);
     // Bytes per row of the table, as numbers and as text.
     const ROW: u64 = 160;
-    let every = if matches!(kind, Kind::Csv) { step.unwrap_or(1) as u64 } else { u64::MAX };
+    let every = if kind == outputs::CSV { step.unwrap_or(1) as u64 } else { u64::MAX };
     let rows = (synth.size.0 as u64).div_ceil(every) * (synth.size.1 as u64).div_ceil(every);
     let _share = opened.materials.budget.take(rows.saturating_mul(ROW), args.output.display())?;
     let plot = || plot(&scene, &synth, step, !args.no_picture);
     if synth.layers.iter().all(|layer| layer.fields().is_empty()) {
         context.messages.say("no layer has a vector field, so there are no arrows and no rows");
     }
-    let bytes = match kind {
-        Kind::Svg => svg(&plot())?.into_bytes(),
-        Kind::Png => png(&plot())?,
-        _ => csv(&arrows(&synth, step.unwrap_or(1))).into_bytes(),
+    let bytes = if kind == outputs::CSV {
+        csv(&arrows(&synth, step.unwrap_or(1))).into_bytes()
+    } else if kind == outputs::SVG {
+        svg(&plot())?.into_bytes()
+    } else {
+        png(&plot())?
     };
     context.check_cancelled()?;
     match place {
@@ -89,12 +91,12 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 
 fn kind(path: &Path) -> Result<Kind> {
     if path == Path::new("-") {
-        return Ok(Kind::Csv);
+        return Ok(outputs::CSV);
     }
     match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
-        Some("svg") => Ok(Kind::Svg),
-        Some("png") => Ok(Kind::Png),
-        Some("csv") => Ok(Kind::Csv),
+        Some("svg") => Ok(outputs::SVG),
+        Some("png") => Ok(outputs::PNG),
+        Some("csv") => Ok(outputs::CSV),
         _ => Err(Error::Usage(format!("{}: a field is written as .svg, .png or .csv", path.display()))),
     }
 }

@@ -9,5 +9,5 @@ pub struct Args {}
 
 /// Prints the schema.
 pub fn run(_: Args, context: &mut Context) -> Result<()> {
-    context.print(format_args!("{:#}", crate::scene::schema::json_schema()))
+    context.print(format_args!("{:#}", crate::scene::json_schema::json_schema()))
 }

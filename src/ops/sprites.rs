@@ -23,7 +23,7 @@ pub struct Args {
     /// The folder for the pictures, sheet.png and sprites.json; created if missing
     #[arg(short, long, value_name = "DIR", required_unless_present = "take", conflicts_with = "take")]
     output: Option<PathBuf>,
-    /// So many pictures between each two keys as well
+    /// Also write this many pictures between each two keys
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..100))]
     between: u32,
     /// Write the automatic choice into the scene as picks, to be changed by hand

@@ -22,7 +22,7 @@ pub struct Args {
     /// The scene, here or on another machine
     #[arg(value_name = "SCENE | ssh://[USER@]HOST[:PORT]/PATH")]
     pub scene: PathBuf,
-    /// The plica program on the other machine, if it is not found by itself [env: PLICA_REMOTE]
+    /// The plica program on the other machine, if it cannot be found [env: PLICA_REMOTE]
     #[arg(long, value_name = "PATH")]
     pub remote_plica: Option<String>,
     /// Close with the editor that opened the window

@@ -1,4 +1,4 @@
-//! How windows show the picture: a value, so that a window that joins late is told it, and one that comes back is told only
+//! How windows show the picture: a value, so that it can be sent to a window that joins late, and one that comes back is told only
 //! what it does not show yet. Switches are told as what they are set to (`view-field on`), so that windows cannot drift apart.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -49,7 +49,7 @@ impl Switches {
         self.0.contains(name)
     }
 
-    /// Takes a command that sets a switch, or turns it over; returns it as windows are to be told it, if it is one.
+    /// Takes a command that sets a switch, or turns it over; returns it as it is sent to windows, if it is one.
     pub fn take(&mut self, command: &str) -> Option<String> {
         let (name, wanted) = wanted(command);
         self.set(name, wanted).map(|on| set(name, on))
@@ -81,7 +81,7 @@ pub(super) struct Views {
 }
 
 impl Views {
-    /// Takes a command; returns it as windows are to be told it: a switch is set. Commands that leave nothing behind, as
+    /// Takes a command; returns it as it is sent to windows: a switch is set. Commands that leave nothing behind, as
     /// `view-full-screen`, pass through.
     pub fn take(&mut self, command: &str) -> String {
         if let Some(told) = self.switches.take(command) {

@@ -23,6 +23,8 @@ pub mod part;
 pub mod passes;
 #[cfg(feature = "window")]
 pub mod reduce;
+#[cfg(test)]
+pub mod samples;
 pub mod seams;
 pub mod stage;
 

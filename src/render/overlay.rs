@@ -8,6 +8,7 @@ use kurbo::Point;
 
 use super::Synth;
 use super::stage::Group;
+use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::ready::Ready;
@@ -50,7 +51,9 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let ready = synth.iter().flat_map(|(synth, moment)| {
         let nearest = nearest(synth, moment, &view);
         let marks = |(i, layer): (usize, &Arc<dyn Ready>)| {
-            let view = View { nearest: nearest.get(&i).cloned(), ..view.clone() };
+            let selected = view.selection.as_deref().and_then(|path| Pointer(path).below(&format!("/layers/{i}")));
+            let selection = selected.map(str::to_owned);
+            let view = View { nearest: nearest.get(&i).cloned(), selection, ..view.clone() };
             layer.marks(&view, moment).into_iter().map(move |mark| (i, mark))
         };
         synth.layers.iter().enumerate().flat_map(marks).collect::<Vec<_>>()
@@ -109,11 +112,9 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
 /// A mark is selected if the selection is in it, or if it is in the selection and that is an item of the layer or
 /// something smaller.
 fn is_selected(mark: &str, selection: &str) -> bool {
-    let within =
-        |inner: &str, outer: &str| inner.strip_prefix(outer).is_some_and(|r| r.is_empty() || r.starts_with('/'));
     // `/layers/0/zones/2` and deeper.
-    let is_item = selection.split('/').count() > 4;
-    within(selection, mark) || (is_item && within(mark, selection))
+    let is_item = Pointer(selection).tokens().count() >= 4;
+    Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection))
 }
 
 #[cfg(test)]
@@ -137,17 +138,7 @@ mod tests {
 
     #[test]
     fn a_mesh_hides_the_edges_of_another_behind_it() {
-        use crate::base::mesh::{Mesh, Vertex};
-        use crate::layers::parts::materials::Materials;
-        let scene = r#"{ "plica": 1, "size": [60, 60], "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
-            "meshes": {"m": {"path": "m.obj"}}, "layers": [{"kind": "mesh", "name": "far", "mesh": "m",
-            "pose": {"position": [0.5, 0, -1]}}, {"kind": "mesh", "name": "near", "mesh": "m"}] }"#;
-        let scene: Scene = serde_json::from_str(scene).unwrap();
-        let corner = |[x, y]: [f64; 2]| Vertex { position: [x, y, 0.0].into(), ..Vertex::default() };
-        let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
-        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-        let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
-        let synth = crate::render::synth(&scene, &materials, None).unwrap();
+        let (scene, synth) = crate::render::samples::two_squares();
         // One edge of the far square is hidden, and parts of three.
         for (shown, edges) in [(&["view-wires"][..], 9), (&["view-wires", "view-backs"], 10), (&["view-backs"], 0)] {
             let marks = overlay(&scene, Some(&synth), &View { cell_px: 4.0, ..View::of(shown) });

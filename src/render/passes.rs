@@ -35,7 +35,7 @@ pub fn next(now: Option<&str>) -> &'static str {
     all().skip_while(|pass| pass.name != name).nth(1).map_or(COLOR.name, |pass| pass.name)
 }
 
-/// The table of passes, a line each.
+/// The table of passes, one per line.
 pub fn table() -> String {
     let widest = all().map(|pass| pass.name.len()).max().unwrap_or(0);
     let mut text = String::new();

@@ -4,10 +4,11 @@
 
 use serde_json::Value;
 
+use super::Document;
 use super::field::name_of;
 use super::schema::{Body, Place, Shape};
-use super::{Document, pointer};
 use crate::base::error::{Error, Result};
+use crate::base::pointer::{self, Pointer};
 use crate::base::problem::{nearest, quoted};
 
 /// The JSON pointer of an address.
@@ -16,7 +17,7 @@ use crate::base::problem::{nearest, quoted};
 /// If a part of it is unknown; the message names it, and the nearest known one.
 pub fn resolve(document: &Document, address: &str) -> Result<String> {
     if address.is_empty() || address.starts_with('/') {
-        let tokens = pointer::tokens(address).map(|text| Token { text, quoted: false });
+        let tokens = Pointer(address).tokens().map(|text| Token { text, quoted: false });
         return follow(document, address, tokens.collect());
     }
     follow(document, address, split(address)?)
@@ -26,7 +27,7 @@ pub fn resolve(document: &Document, address: &str) -> Result<String> {
 pub fn address(document: &Document, pointer: &str) -> String {
     let mut place = Place::root(document.json());
     let mut address = String::new();
-    for token in pointer::tokens(pointer) {
+    for token in Pointer(pointer).tokens() {
         let Some(below) = place.step(&token) else { return pointer.to_owned() };
         address = self::below(&address, (place.shape, place.shape.body()), &token, below);
         place = below;
@@ -36,10 +37,10 @@ pub fn address(document: &Document, pointer: &str) -> String {
 
 /// The address of a JSON pointer, even if only its beginning leads anywhere: the rest is then written token by token.
 pub fn told(document: &Document, pointer: &str) -> String {
-    let tokens: Vec<String> = pointer::tokens(pointer).collect();
+    let tokens: Vec<String> = Pointer(pointer).tokens().collect();
     let known = (0..=tokens.len())
         .rev()
-        .map(|n| (n, tokens[..n].iter().fold(String::new(), |at, token| pointer::join(&at, token))));
+        .map(|n| (n, tokens[..n].iter().fold(String::new(), |at, token| Pointer(&at).join(token))));
     let there =
         known.map(|(n, at)| (n, address(document, &at))).find(|(n, address)| *n == 0 || !address.starts_with('/'));
     let (n, address) = there.unwrap_or_default();

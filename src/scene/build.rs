@@ -6,7 +6,8 @@ use serde_json::{Map, Value, json};
 
 use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
-use super::{Document, FRAME, field, pointer, shape};
+use super::{Document, FRAME, field, shape};
+use crate::base::pointer::{self, Pointer};
 use crate::layers::KINDS;
 use crate::layers::parts::materials::List;
 use crate::layers::parts::moment::Space;
@@ -28,7 +29,7 @@ impl Edit {
         if value.is_null() && (place.shape.allows_null() || !place.required) {
             return (if place.set { Edit::remove(path) } else { Edit::default() }, None);
         }
-        if let (Some((parent, last)), Some(name)) = (pointer::split(path), value.as_str())
+        if let (Some((parent, last)), Some(name)) = (Pointer(path).split(), value.as_str())
             && let Some(holder) = Place::of(json, parent)
             && matches!(holder.shape.body(), Body::Tagged(tag) if tag == last)
             && let Some(variant) = holder.shape.variant(name)
@@ -42,7 +43,7 @@ impl Edit {
     /// Adds `item` to the list at `list`, before the one at `index` (or at the end).
     pub fn insert(document: &Document, list: &str, index: usize, item: Value) -> Edit {
         if document.json().pointer(list).is_some_and(Value::is_array) {
-            Edit::add(&pointer::join(list, index), item)
+            Edit::add(&Pointer(list).join(index), item)
         } else {
             write(document, list, json!([item]))
         }
@@ -54,13 +55,13 @@ impl Edit {
         let (index, item) = new_item(document, list, index)?;
         let camera = camera_for(document, list, std::slice::from_ref(&item));
         let insert = Edit::insert(document, list, index, item);
-        Some((Edit::all(camera.into_iter().chain([insert])), pointer::join(list, index)))
+        Some((Edit::all(camera.into_iter().chain([insert])), Pointer(list).join(index)))
     }
 
     /// Adds a copy of the item at `path` after it, under a unique name; also returns its pointer. `None` if `path` is
     /// not an item of a list.
     pub fn duplicate(document: &Document, path: &str) -> Option<(Edit, String)> {
-        let (list, last) = pointer::split(path)?;
+        let (list, last) = Pointer(path).split()?;
         let index = pointer::index(&last)?;
         let copy = document.json().pointer(list)?.as_array()?.get(index)?.clone();
         Edit::insert_all(document, list, index + 1, vec![copy])
@@ -69,17 +70,17 @@ impl Edit {
     /// Moves the item at `path` to `index` in its list; also returns its new pointer. `None` if either is not an item
     /// of a list.
     pub fn move_item(document: &Document, path: &str, index: usize) -> Option<(Edit, String)> {
-        let (list, last) = pointer::split(path)?;
+        let (list, last) = Pointer(path).split()?;
         let items = document.json().pointer(list)?.as_array()?;
         let from = pointer::index(&last)?;
-        let to = pointer::join(list, index);
+        let to = Pointer(list).join(index);
         (from < items.len() && index < items.len()).then(|| (Edit::moved(path, &to), to))
     }
 
     /// Renames an image, a mesh or a clip of the scene, everywhere.
     pub fn rename(document: &Document, list: List, from: &str, to: &str) -> Edit {
         let named = document.scene().users_of(list, from).map(|path| Edit::replace(&path, to.into()));
-        let at = |name| pointer::join(&format!("/{}", list.words().0), name);
+        let at = |name| Pointer(&format!("/{}", list.words().0)).join(name);
         Edit::all(std::iter::once(Edit::moved(&at(from), &at(to))).chain(named))
     }
 
@@ -109,14 +110,14 @@ fn turn(document: &Document, path: &str, place: Place, to: (&str, &str, Shape)) 
         let mut items = items.into_iter();
         let first = write(document, path, items.next().unwrap_or_default());
         let more: Vec<Value> = items.collect();
-        let list = pointer::split(path).and_then(|(list, last)| Some((list, pointer::index(&last)?)));
+        let list = Pointer(path).split().and_then(|(list, last)| Some((list, pointer::index(&last)?)));
         let more = list.and_then(|(list, index)| Edit::insert_all(document, list, index + 1, more));
         return (Edit::all(std::iter::once(first).chain(more.map(|(edit, _)| edit))), lost);
     }
     let new = Fresh::at(document, path).converted(variant, name, old);
     let same = old.and_then(|old| old.get(tag)) == Some(&Value::from(name));
     let lost = old.and_then(|old| lost(tag, old, &new)).filter(|_| !same);
-    let list = pointer::split(path).map_or("", |(list, _)| list);
+    let list = Pointer(path).split().map_or("", |(list, _)| list);
     let camera = camera_for(document, list, std::slice::from_ref(&new));
     (Edit::all(camera.into_iter().chain([write(document, path, new)])), lost)
 }
@@ -136,11 +137,11 @@ fn lost(tag: &str, old: &Value, new: &Value) -> Option<String> {
 
 /// The places that are written and that a `value` at `path` excludes.
 fn others<'a>(document: &'a Document, path: &'a str, value: &Value) -> impl Iterator<Item = String> + 'a {
-    let (holder, last) = pointer::split(path).filter(|_| !value.is_null()).unwrap_or_default();
+    let (holder, last) = Pointer(path).split().filter(|_| !value.is_null()).unwrap_or_default();
     let place = Place::of(document.json(), holder);
     let either = place.into_iter().flat_map(|place| place.shape.either());
     let excluded = either.clone().any(|name| name == last).then_some(either).into_iter().flatten();
-    let others = excluded.filter(move |name| *name != last).map(move |name| pointer::join(holder, name));
+    let others = excluded.filter(move |name| *name != last).map(move |name| Pointer(holder).join(name));
     others.filter(|other| document.json().pointer(other).is_some())
 }
 
@@ -150,7 +151,7 @@ pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
     if json.pointer(path).is_some() {
         return Edit::replace(path, value);
     }
-    let Some((parent, last)) = pointer::split(path) else { return Edit::replace("", value) };
+    let Some((parent, last)) = Pointer(path).split() else { return Edit::replace("", value) };
     match json.pointer(parent) {
         Some(there) if !there.is_null() => Edit::add(path, value),
         _ => {
@@ -199,13 +200,13 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
     let Body::List(item, ..) = place.shape.body() else { return None };
     let items = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
     let index = index.min(items.len());
-    let (holder, name) = pointer::split(list)?;
+    let (holder, name) = Pointer(list).split()?;
     let variant = variant_of(Place::of(json, holder)?);
     let starts = Fresh::starts(document, list);
     if let Some(between) = (starts.item)(variant, &name, items, index) {
         return Some(between);
     }
-    let fresh = Fresh::at(document, &pointer::join(list, index));
+    let fresh = Fresh::at(document, &Pointer(list).join(index));
     let like = items.get(index.saturating_sub(1)).filter(|_| list == "/layers");
     let like = like.and_then(|like| like.get("kind")?.as_str()).filter(|kind| fresh.lacks(item, kind) < 2);
     let mut value = like.and_then(|kind| fresh.variant(item, kind)).unwrap_or_else(|| fresh.value(item));
@@ -257,17 +258,16 @@ impl<'a> Fresh<'a> {
         let bounds = layer.as_ref().map(|(layer, rest)| layer.bounds(rest));
         let bounds = bounds.unwrap_or(Rect::new(0.0, 0.0, 100.0, 100.0));
         let inside = layer.filter(|(_, rest)| !rest.is_empty());
-        let layers = inside.is_none() && (path == "/layers" || path.starts_with("/layers/"));
+        let layers = inside.is_none() && (Pointer(path).is_within("/layers"));
         let kind = inside.map(|(layer, _)| layer.kind());
-        let own = path.strip_prefix("/layers/").and_then(|rest| pointer::index(rest.split('/').next()?));
+        let own = Pointer(path).item_of("/layers").map(|(layer, _)| layer);
         Fresh { bounds, document, kind, own, layers }
     }
 
     /// The layer that a place is in, and the place relative to it.
     pub(super) fn layer(document: &'a Document, path: &str) -> Option<(&'a dyn Technique, String)> {
-        let (layer, rest) = path.strip_prefix("/layers/")?.split_once('/').unwrap_or((&path[8..], ""));
-        let layer = document.scene().layers.get(layer.parse::<usize>().ok()?)?;
-        Some((layer.technique(), if rest.is_empty() { String::new() } else { format!("/{rest}") }))
+        let (layer, way) = Pointer(path).item_of("/layers")?;
+        Some((document.scene().layers.get(layer)?.technique(), way.to_owned()))
     }
 
     /// How new things at a place begin.

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Scene, pointer, references, shape};
+use super::{Scene, references, shape};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
+use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
 use crate::layers::parts::materials::{List, Materials, Of};
 use crate::layers::parts::moment::Space;
@@ -125,8 +126,8 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
             layer.technique().problems(checked).into_iter().map(|problem| problem.under(&format!("/layers/{i}"))),
         );
     }
-    for list in [List::Images, List::Meshes, List::Clips] {
-        let at = |name: &str| pointer::join(&format!("/{}", list.words().0), name);
+    for list in List::NAMED {
+        let at = |name: &str| Pointer(&format!("/{}", list.words().0)).join(name);
         problems.extend(scene.names(list).into_iter().filter_map(|name| rules::plain_text(name, &at(name))));
     }
     problems.extend(view(scene));
@@ -183,7 +184,7 @@ fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
         problems.push(too_many("/timeline".into(), "frames", rules.frames));
     }
     let long = scene.clips.iter().filter(|(_, clip)| clip.count.is_some_and(|count| u64::from(count) > rules.frames));
-    problems.extend(long.map(|(name, _)| too_many(pointer::join("/clips", name) + "/count", "frames", rules.frames)));
+    problems.extend(long.map(|(name, _)| too_many(Pointer("/clips").join(name) + "/count", "frames", rules.frames)));
     problems
 }
 
@@ -215,7 +216,7 @@ fn names(scene: &Scene) -> Vec<Problem> {
 
 /// Problems with paths of files, judged by the text alone.
 fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
-    let path = |list: &str, name: &str| pointer::join(&format!("/{list}"), name) + "/path";
+    let path = |list: &str, name: &str| Pointer(&format!("/{list}")).join(name) + "/path";
     let images = scene.images.iter().map(|(name, image)| (path("images", name), &*image.path));
     let meshes = scene.meshes.iter().map(|(name, mesh)| (path("meshes", name), &*mesh.path));
     let files = scene.uses().filter_map(|used| match used.of {
@@ -226,7 +227,7 @@ fn paths(scene: &Scene, rules: &Rules) -> Vec<Problem> {
     let patterns = scene
         .clips
         .iter()
-        .filter_map(|(name, clip)| clip.frames().err().map(|problem| problem.under(&pointer::join("/clips", name))));
+        .filter_map(|(name, clip)| clip.frames().err().map(|problem| problem.under(&Pointer("/clips").join(name))));
     images
         .chain(meshes)
         .chain(clips)

@@ -17,7 +17,7 @@ pub struct Clip {
     #[serde(default)]
     #[schemars(range(min = 0, max = 1000000000), extend("unit" = "frames"))]
     pub first: u32,
-    /// How many frames; none: as many as follow one another.
+    /// How many frames; if left out, all that follow without a gap.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1000000), extend("unit" = "frames"))]
     pub count: Option<u32>,

@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::schema::Place;
-use super::{Document, json, pointer};
+use super::{Document, json};
 use crate::base::change::{Change, Items};
+use crate::base::pointer::{self, Pointer};
 use crate::base::problem::Problem;
 
 /// A change of a scene.
@@ -207,7 +208,7 @@ fn missing(path: &str) -> Problem {
 
 /// RFC 6902 `add`. A new key goes to its place in the schema.
 fn add(json: &mut Value, path: &str, value: Value) -> Result<Edit, Problem> {
-    let Some((parent, last)) = pointer::split(path) else {
+    let Some((parent, last)) = Pointer(path).split() else {
         return Ok(Edit::replace("", std::mem::replace(json, value)));
     };
     let place = key_place(json, parent, &last);
@@ -223,7 +224,7 @@ fn add(json: &mut Value, path: &str, value: Value) -> Result<Edit, Problem> {
             let index = if last == "-" { Some(items.len()) } else { pointer::index(&last) };
             let index = index.filter(|&index| index <= items.len()).ok_or_else(|| missing(path))?;
             items.insert(index, value);
-            Ok(Edit::remove(&pointer::join(parent, index)))
+            Ok(Edit::remove(&Pointer(parent).join(index)))
         }
         _ => Err(missing(path)),
     }
@@ -232,7 +233,8 @@ fn add(json: &mut Value, path: &str, value: Value) -> Result<Edit, Problem> {
 /// RFC 6902 `remove`; also returns what was there. The inverse is an `add` if that restores the key to its old place,
 /// otherwise the whole object as it was.
 fn remove(json: &mut Value, path: &str) -> Result<(Value, Edit), Problem> {
-    let (parent, last) = pointer::split(path).ok_or_else(|| Problem::error("", "the whole scene cannot be removed"))?;
+    let (parent, last) =
+        Pointer(path).split().ok_or_else(|| Problem::error("", "the whole scene cannot be removed"))?;
     let whole = json.pointer(parent).filter(|parent| parent.is_object()).cloned();
     let value = match json.pointer_mut(parent).ok_or_else(|| missing(parent))? {
         Value::Object(map) => map.shift_remove(&last).ok_or_else(|| missing(path))?,
@@ -275,7 +277,7 @@ fn difference(json: &Value, change: &Change, from: &Value, to: &Value, path: &st
         (Change::Same, ..) => {}
         (Change::Fields(fields), Value::Object(a), Value::Object(b)) if reachable(json, a, b, path) => {
             for (key, change) in fields {
-                let below = pointer::join(path, key);
+                let below = Pointer(path).join(key);
                 match (a.get(key), b.get(key)) {
                     (Some(from), Some(to)) => difference(json, change, from, to, &below, edits),
                     (None, Some(to)) => edits.push(Edit::add(&below, to.clone())),
@@ -285,7 +287,7 @@ fn difference(json: &Value, change: &Change, from: &Value, to: &Value, path: &st
         }
         (Change::Items(Items { ahead, behind, between }), Value::Array(a), Value::Array(b)) => {
             let (a, b) = (&a[*ahead..a.len() - behind], &b[*ahead..b.len() - behind]);
-            let at = |i: usize| pointer::join(path, ahead + i);
+            let at = |i: usize| Pointer(path).join(ahead + i);
             for (i, ((from, to), change)) in a.iter().zip(b).zip(between).enumerate() {
                 difference(json, change, from, to, &at(i), edits);
             }

@@ -4,8 +4,9 @@
 use serde_json::Value;
 
 use super::Document;
-use super::pointer;
-use super::schema::{Body, Place, Shape, range_text};
+use super::json_schema::range_text;
+use super::schema::{Body, Place, Shape};
+use crate::base::pointer::{self, Pointer};
 
 /// One place in a document.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,7 +87,7 @@ pub struct Child {
 /// The field at `pointer`, whether written or not; `None` if the schema knows no such place.
 pub fn field(document: &Document, pointer: &str) -> Option<Field> {
     let place = Place::of(document.json(), pointer)?;
-    let (holder, last) = pointer::split(pointer).unwrap_or_default();
+    let (holder, last) = Pointer(pointer).split().unwrap_or_default();
     let holder = Place::of(document.json(), holder);
     let column = holder.and_then(|holder| column(holder, &last));
     let name = name_of(place.value).or(column.map(str::to_owned)).unwrap_or(last);
@@ -165,7 +166,7 @@ pub fn child<'a>(place: Place<'a>, pointer: &str, token: &str) -> Option<(Child,
 fn described(parent: Place, pointer: &str, token: &str, place: Place) -> Child {
     let name = name_of(place.value).unwrap_or_else(|| column(parent, token).unwrap_or(token).to_owned());
     let field = Field::new(name.clone(), place);
-    Child { name, pointer: pointer::join(pointer, token), set: place.set, field }
+    Child { name, pointer: Pointer(pointer).join(token), set: place.set, field }
 }
 
 /// The name of one of a fixed number of values, if it has one.

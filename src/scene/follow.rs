@@ -4,13 +4,14 @@
 use json_patch::PatchOperation;
 use serde_json::Value;
 
-use super::{Document, Edit, pointer};
+use super::{Document, Edit};
+use crate::base::pointer::{self, Pointer};
 
 impl Edit {
     /// Where the place at `pointer` is after this edit, which led to `after`; `None` if it was removed.
     pub fn follow(&self, after: &Document, pointer: &str) -> Option<String> {
         let item = |path: &str| {
-            let (list, last) = pointer::split(path)?;
+            let (list, last) = Pointer(path).split()?;
             let is_list = after.json().pointer(list).is_some_and(Value::is_array);
             Some((list.to_owned(), pointer::index(&last).filter(|_| is_list)?))
         };
@@ -26,10 +27,10 @@ impl Edit {
             let path = operation.path().as_str();
             match operation {
                 PatchOperation::Add(_) | PatchOperation::Copy(_) => Some(added(place, path)),
-                PatchOperation::Remove(_) => (!is_within(&place, path)).then(|| removed(place, path)),
+                PatchOperation::Remove(_) => (!Pointer(&place).is_within(path)).then(|| removed(place, path)),
                 PatchOperation::Move(one) => {
                     let from = one.from.as_str();
-                    if is_within(&place, from) {
+                    if Pointer(&place).is_within(from) {
                         return Some(format!("{path}{}", &place[from.len()..]));
                     }
                     Some(added(removed(place, from), path))
@@ -40,18 +41,10 @@ impl Edit {
     }
 }
 
-/// Whether `place` is at or below `path`.
-fn is_within(place: &str, path: &str) -> bool {
-    place.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
-}
-
 /// `place` with its index in `list` changed, if it is in that list.
 fn shifted(place: &str, list: &str, index: impl Fn(usize) -> usize) -> String {
-    let below = place.strip_prefix(list).and_then(|rest| rest.strip_prefix('/'));
-    let Some(below) = below else { return place.to_owned() };
-    let (token, rest) = below.split_at(below.find('/').unwrap_or(below.len()));
-    match pointer::index(token) {
-        Some(old) => format!("{list}/{}{rest}", index(old)),
+    match Pointer(place).item_of(list) {
+        Some((old, way)) => format!("{list}/{}{way}", index(old)),
         None => place.to_owned(),
     }
 }

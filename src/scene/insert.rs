@@ -8,7 +8,8 @@ use serde_json::{Map, Value};
 use super::build::{Fresh, camera_for, unique_name, variant_of, write};
 use super::edit::Edit;
 use super::schema::{Body, Place};
-use super::{Document, field, pointer, shape};
+use super::{Document, field, shape};
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::layers::technique::Starts;
 
@@ -33,7 +34,7 @@ impl Edit {
         let place = Place::of(document.json(), list)?;
         let Body::List(..) = place.shape.body() else { return None };
         let old = place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
-        let (holder, name) = pointer::split(list)?;
+        let (holder, name) = Pointer(list).split()?;
         let variant = variant_of(Place::of(document.json(), holder)?);
         let (index, items) = (index.min(old.len()), named_apart(old, items));
         let starts = Fresh::starts(document, list);
@@ -42,16 +43,16 @@ impl Edit {
                 [one] => placed_alone(starts, (variant, &name), key, old, one, index)?,
                 _ => placed(key, old, items)?,
             };
-            return Some((write(document, list, placed.0.into()), pointer::join(list, placed.1)));
+            return Some((write(document, list, placed.0.into()), Pointer(list).join(placed.1)));
         }
-        let first = pointer::join(list, index);
+        let first = Pointer(list).join(index);
         if items.is_empty() {
             return None;
         }
         let camera = camera_for(document, list, &items).into_iter();
         if items.len() <= ONE_BY_ONE && document.json().pointer(list).is_some_and(Value::is_array) {
             let each = items.into_iter().enumerate();
-            let edits = each.map(|(i, item)| Edit::add(&pointer::join(list, index + i), item));
+            let edits = each.map(|(i, item)| Edit::add(&Pointer(list).join(index + i), item));
             return Some((Edit::all(camera.chain(edits)), first));
         }
         let all: Vec<Value> = old[..index].iter().cloned().chain(items).chain(old[index..].iter().cloned()).collect();
@@ -67,7 +68,7 @@ impl Edit {
         let mut first = None;
         for (name, value) in entries {
             let name = unique_name(&name, |name| all.contains_key(name));
-            first.get_or_insert_with(|| pointer::join(map, &name));
+            first.get_or_insert_with(|| Pointer(map).join(&name));
             all.insert(name, value);
         }
         Some((write(document, map, all.into()), first?))

@@ -5,8 +5,9 @@
 use serde_json::{Map, Value};
 
 use super::field::name_of;
-use super::{json, pointer};
+use super::json;
 use crate::base::change::same_ends;
+use crate::base::pointer::Pointer;
 
 /// One of the two versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,7 +94,7 @@ impl Merger {
         let mut merged = Map::new();
         for key in mine.keys().chain(theirs.keys().filter(|&key| !mine.contains_key(key))) {
             let old = base.and_then(|base| base.get(key));
-            if let Some(value) = self.value(old, mine.get(key), theirs.get(key), &pointer::join(at, key)) {
+            if let Some(value) = self.value(old, mine.get(key), theirs.get(key), &Pointer(at).join(key)) {
                 merged.insert(key.clone(), value);
             }
         }
@@ -117,7 +118,7 @@ impl Merger {
         let triples = lists.base.iter().zip(lists.mine).zip(lists.theirs).enumerate();
         triples
             .filter_map(|(i, ((base, mine), theirs))| {
-                self.value(Some(base), Some(mine), Some(theirs), &pointer::join(at, i))
+                self.value(Some(base), Some(mine), Some(theirs), &Pointer(at).join(i))
             })
             .collect()
     }
@@ -139,7 +140,7 @@ impl Merger {
             let one = |names: &[String], items: &[Value]| find(names, items, name);
             let (base, mine) = (one(&base, lists.base), one(&mine, lists.mine));
             let theirs = one(&theirs, lists.theirs);
-            self.value(base.as_ref(), mine.as_ref(), theirs.as_ref(), &pointer::join(at, here))
+            self.value(base.as_ref(), mine.as_ref(), theirs.as_ref(), &Pointer(at).join(here))
         });
         Some(merged.collect())
     }

@@ -1,91 +1,10 @@
-//! The schema of a scene, generated from its types, and the only walker over it: from a JSON pointer to the shape of
-//! what is there. The check of shape, forms, help, completion, edits and `plica schema` all use it.
-
-use std::sync::LazyLock;
+//! The only walker over the schema of a scene: from a JSON pointer to the shape of what is there. The check of shape,
+//! forms, help, completion and edits all use it.
 
 use serde_json::{Map, Value};
 
-use super::pointer;
-
-/// The limit for positions, vectors and plain numbers without a range of their own: every sum and product of a few of
-/// them stays finite.
-const LARGEST: f64 = 1e9;
-
-/// The units of numbers, each with the range of numbers that have no range of their own; `None` if they may be any
-/// finite number. The schema has the unit of every number.
-const UNITS: [(&str, Option<(f64, f64)>); 15] = [
-    (PLAIN, Some((-LARGEST, LARGEST))),
-    ("px", Some((-LARGEST, LARGEST))),
-    ("m", Some((-LARGEST, LARGEST))),
-    ("degrees", Some((-LARGEST, LARGEST))),
-    ("cycles", Some((-LARGEST, LARGEST))),
-    ("s", Some((-LARGEST, LARGEST))),
-    ("m/s", Some((-LARGEST, LARGEST))),
-    ("m/s2", Some((-LARGEST, LARGEST))),
-    ("1/s", Some((-LARGEST, LARGEST))),
-    ("texels", Some((-LARGEST, LARGEST))),
-    ("percent", Some((0.0, 100.0))),
-    ("fps", Some((-LARGEST, LARGEST))),
-    ("frames", Some((-LARGEST, LARGEST))),
-    ("passes", None),
-    ("timelines", None),
-];
-
-/// The unit of fractions, factors and counts; forms show no unit for it.
-const PLAIN: &str = "1";
-
-/// The range of whole numbers that have no range of their own.
-const WHOLE: (f64, f64) = (0.0, u32::MAX as f64);
-
-/// Whether a range is only the one for numbers without a range of their own; messages about other things leave it out.
-pub fn is_widest(range: (f64, f64)) -> bool {
-    range == WHOLE || UNITS.iter().any(|(_, widest)| *widest == Some(range))
-}
-
-static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
-    let mut schema = Value::from(schemars::schema_for!(super::Scene));
-    bound(&mut schema, None);
-    schema
-});
-
-/// The JSON Schema of a scene.
-pub fn json_schema() -> &'static Value {
-    &SCHEMA
-}
-
-/// Adds a range to every number in the schema that has none.
-fn bound(node: &mut Value, unit: Option<&str>) {
-    let own = node.get("unit").and_then(Value::as_str).map(str::to_owned);
-    let unit = own.as_deref().or(unit);
-    if let Value::Object(map) = node {
-        // What may be missing may be null too.
-        let numeric = match map.get("type") {
-            Some(Value::Array(names)) => names.iter().filter_map(Value::as_str).find(|name| *name != "null"),
-            name => name.and_then(Value::as_str),
-        };
-        if let Some(range) = numeric.and_then(|kind| widest(kind, unit)) {
-            map.entry("minimum").or_insert(range[0].clone());
-            map.entry("maximum").or_insert(range[1].clone());
-        }
-    }
-    let children: Box<dyn Iterator<Item = &mut Value>> = match node {
-        Value::Object(map) => Box::new(map.values_mut()),
-        Value::Array(items) => Box::new(items.iter_mut()),
-        _ => Box::new(std::iter::empty()),
-    };
-    children.for_each(|child| bound(child, unit));
-}
-
-fn widest(kind: &str, unit: Option<&str>) -> Option<[Value; 2]> {
-    match kind {
-        "integer" => Some([0.into(), u32::MAX.into()]),
-        "number" => {
-            let (least, most) = UNITS.iter().find(|(name, _)| Some(*name) == unit)?.1?;
-            Some([least.into(), most.into()])
-        }
-        _ => None,
-    }
-}
+use super::json_schema::{PLAIN, json_schema};
+use crate::base::pointer::{self, Pointer};
 
 /// A node of the schema with its references followed.
 #[derive(Clone, Copy, Debug)]
@@ -133,7 +52,7 @@ pub enum Body {
 impl Shape {
     /// The whole document.
     pub fn root() -> Shape {
-        Shape::of(&SCHEMA, None)
+        Shape::of(json_schema(), None)
     }
 
     fn of(site: &'static Value, outer: Option<&'static Value>) -> Shape {
@@ -144,7 +63,7 @@ impl Shape {
                 shape.optional |= !nulls.is_empty();
                 shape.body = others.first().copied().unwrap_or(&Value::Null);
             } else if let Some(name) = shape.body.get("$ref").and_then(Value::as_str) {
-                shape.body = SCHEMA.pointer(name.trim_start_matches('#')).unwrap_or(&Value::Null);
+                shape.body = json_schema().pointer(name.trim_start_matches('#')).unwrap_or(&Value::Null);
             } else {
                 return shape;
             }
@@ -242,12 +161,6 @@ impl Shape {
     /// The unit of its numbers; `None` if they have none.
     pub fn unit(self) -> Option<&'static str> {
         self.text("unit").filter(|unit| *unit != PLAIN)
-    }
-
-    /// Whether the schema has a known unit for its numbers, even if it is [`PLAIN`].
-    #[cfg(test)]
-    pub fn has_known_unit(self) -> bool {
-        self.text("unit").is_some_and(|unit| UNITS.iter().any(|(name, _)| *name == unit))
     }
 
     /// The letter for its vector in formulas.
@@ -411,7 +324,7 @@ impl<'a> Place<'a> {
         if !pointer.is_empty() && !pointer.starts_with('/') {
             return None;
         }
-        pointer::tokens(pointer).try_fold(Place::root(json), |place, token| place.step(&token))
+        Pointer(pointer).tokens().try_fold(Place::root(json), |place, token| place.step(&token))
     }
 
     /// One token deeper.
@@ -444,15 +357,4 @@ impl<'a> Place<'a> {
             }
         }
     }
-}
-
-/// A range with its unit in words.
-pub fn range_text(range: Option<(f64, f64)>, unit: Option<&str>) -> Option<String> {
-    let (min, max) = range?;
-    let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
-    Some(match (min.is_finite(), max.is_finite()) {
-        (true, false) => format!("at least {min}{unit}"),
-        (false, true) => format!("at most {max}{unit}"),
-        _ => format!("{min} to {max}{unit}"),
-    })
 }

@@ -4,9 +4,10 @@
 
 use serde_json::{Map, Number, Value};
 
-use super::pointer;
-use super::schema::{Body, Shape, is_widest, range_text};
+use super::json_schema::{is_widest, range_text};
+use super::schema::{Body, Shape};
 use crate::base::change::Change;
+use crate::base::pointer;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 
 /// At most this many problems are listed.

@@ -7,8 +7,8 @@ use serde_json::Value;
 use super::edit::Edit;
 use super::field::name_of;
 use super::merge::Conflict;
-use super::pointer;
 use super::schema::{Body, Place, Shape};
+use crate::base::pointer::{self, Pointer};
 
 /// The most characters of a value in words.
 const LONGEST: usize = 40;
@@ -30,7 +30,7 @@ pub fn describe(before: &Value, edit: &Edit) -> Vec<String> {
     lines
 }
 
-/// The same in one line: the first operation, and how many more there are.
+/// An edit as one line: its first operation, and how many more there are.
 pub fn in_short(before: &Value, edit: &Edit) -> String {
     let lines = describe(before, edit);
     match lines.as_slice() {
@@ -90,7 +90,7 @@ fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
         PatchOperation::Remove(_) => removal(json, path),
         PatchOperation::Move(moved) => {
             let from = moved.from.as_str();
-            let (old, new) = (pointer::split(from), pointer::split(path));
+            let (old, new) = (Pointer(from).split(), Pointer(path).split());
             match (old, new) {
                 (Some((a, _)), Some((b, last))) if a == b => match pointer::index(&last) {
                     Some(index) => format!("{} moved to place {}", place(json, from, None), index),
@@ -105,14 +105,14 @@ fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
 }
 
 fn is_item(json: &Value, path: &str) -> bool {
-    pointer::split(path).and_then(|(parent, _)| Place::of(json, parent)).is_some_and(|parent| {
+    Pointer(path).split().and_then(|(parent, _)| Place::of(json, parent)).is_some_and(|parent| {
         matches!(parent.shape.body(), Body::List(..)) && parent.value.is_some_and(Value::is_array)
     })
 }
 
 fn end_of(json: &Value, path: &str) -> String {
-    let parent = pointer::split(path).map_or("", |(parent, _)| parent);
-    pointer::join(parent, json.pointer(parent).and_then(Value::as_array).map_or(0, Vec::len))
+    let parent = Pointer(path).split().map_or("", |(parent, _)| parent);
+    Pointer(parent).join(json.pointer(parent).and_then(Value::as_array).map_or(0, Vec::len))
 }
 
 /// A value that changes, or that replaces its default.
@@ -147,7 +147,7 @@ fn place(json: &Value, path: &str, new: Option<&Value>) -> String {
     let mut here = Some(Place::root(json));
     let mut owner = "scene".to_owned();
     let mut steps: Vec<(String, bool)> = Vec::new();
-    let tokens: Vec<String> = pointer::tokens(path).collect();
+    let tokens: Vec<String> = Pointer(path).tokens().collect();
     for (depth, token) in tokens.iter().enumerate() {
         let below = here.and_then(|place| place.step(token));
         let last = depth + 1 == tokens.len();

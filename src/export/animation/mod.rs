@@ -10,25 +10,17 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::export::numbered::Pattern;
 use crate::files::draft::DraftFile;
-use crate::files::outputs::{Guard, Kind, Place};
+use crate::files::outputs::{Guard, Place};
 use crate::files::write;
 
-mod apng;
-mod delta;
-mod dither;
-mod ffmpeg;
 pub mod formats;
-mod gif;
 pub mod matrix;
-mod palette;
 pub mod range;
 pub mod rate;
-mod raw;
 pub mod scale;
 mod sequence;
-mod webp;
 
-use formats::{FORMATS, Format, Writer};
+use formats::{Begin, FORMATS, Format, Writer, ffmpeg};
 use matrix::Matrix;
 use rate::Rate;
 
@@ -110,8 +102,8 @@ pub struct Target(Goal);
 
 enum Goal {
     Sequence(sequence::Places),
-    File(Place, Kind, Writer),
-    Stream(Box<dyn Write + Send>, Kind, fn(Out, Show) -> Result<Box<dyn Sink>>),
+    File(Place, &'static Format),
+    Stream(Box<dyn Write + Send>, &'static Format, Begin),
 }
 
 impl Target {
@@ -127,20 +119,18 @@ impl Target {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         let extension = extension.as_deref().unwrap_or_default();
         let place = path.display();
-        let (kind, writer) = match (FORMATS.iter().find(|f| f.extensions.contains(&extension)), numbers.len()) {
-            (Some(Format { kind, writer, .. }), _) => (*kind, *writer),
-            (None, 1) if extension == "png" => (Kind::Png, Writer::Own(apng::begin)),
-            (None, n) if extension == "png" => {
-                return Err(Error::Usage(format!(
-                    "{place}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)"
-                )));
-            }
+        // An animation of one frame is a plain PNG.
+        let named = if extension == "png" && numbers.len() == 1 { "apng" } else { extension };
+        match (FORMATS.iter().find(|f| f.extensions.contains(&named)), numbers.len()) {
+            (Some(format), _) => Ok(Target(Goal::File(guard.file(path, format.kind)?, format))),
+            (None, n) if extension == "png" => Err(Error::Usage(format!(
+                "{place}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)"
+            ))),
             _ => {
                 let what = format!("{place}: the extension names no format; these do:\n{}", formats::table());
-                return Err(Error::Usage(what));
+                Err(Error::Usage(what))
             }
-        };
-        Ok(Target(Goal::File(guard.file(path, kind)?, kind, writer)))
+        }
     }
 
     /// To a stream, in the format called `name`.
@@ -149,8 +139,8 @@ impl Target {
     /// A wrong command line: the format needs a file.
     pub fn stream(name: &str, out: Box<dyn Write + Send>) -> Result<Self> {
         match FORMATS.iter().find(|f| f.name == name) {
-            Some(Format { streams: true, kind, writer: Writer::Own(begin), .. }) => {
-                Ok(Target(Goal::Stream(out, *kind, *begin)))
+            Some(format @ Format { streams: true, writer: Writer::Own(begin), .. }) => {
+                Ok(Target(Goal::Stream(out, format, *begin)))
             }
             _ => {
                 let streams: Vec<_> = FORMATS.iter().filter(|f| f.streams).map(|f| f.name).collect();
@@ -166,8 +156,7 @@ impl Target {
 
     /// Whether it is Y'CbCr, which has a matrix.
     pub fn has_matrix(&self) -> bool {
-        let (Goal::File(_, kind, _) | Goal::Stream(_, kind, _)) = &self.0 else { return false };
-        matches!(kind, Kind::Y4m | Kind::Mp4 | Kind::WebM | Kind::Mov)
+        matches!(&self.0, Goal::File(_, format) | Goal::Stream(_, format, _) if format.matrix)
     }
 
     /// Whether the numbered file is there already, whole and of this size.
@@ -179,7 +168,7 @@ impl Target {
     pub fn files(&self) -> Vec<Place> {
         match &self.0 {
             Goal::Sequence(places) => places.all(),
-            Goal::File(place, ..) => vec![place.clone()],
+            Goal::File(place, _) => vec![place.clone()],
             Goal::Stream(..) => Vec::new(),
         }
     }
@@ -190,18 +179,17 @@ impl Target {
     /// If a program is missing; the message says what can be done instead.
     pub fn ready(&self, show: &Show) -> Result<()> {
         match &self.0 {
-            Goal::File(_, _, Writer::Ffmpeg(codec)) => ffmpeg::find(codec, show).map(drop),
+            Goal::File(_, Format { writer: Writer::Ffmpeg(codec), .. }) => ffmpeg::find(codec, show).map(drop),
             _ => Ok(()),
         }
     }
 
     /// Bytes that the output keeps at the most, besides the frame that it is given.
     pub fn memory(&self, show: &Show) -> u64 {
-        let kind = match &self.0 {
-            Goal::Sequence(_) => return sequence::memory(show),
-            Goal::File(_, kind, _) | Goal::Stream(_, kind, _) => kind,
-        };
-        FORMATS.iter().find(|format| format.kind == *kind).map_or(0, |format| (format.memory)(show))
+        match &self.0 {
+            Goal::Sequence(_) => sequence::memory(show),
+            Goal::File(_, format) | Goal::Stream(_, format, _) => (format.memory)(show),
+        }
     }
 
     /// Begins to write.
@@ -211,8 +199,10 @@ impl Target {
     pub fn begin(self, show: Show) -> Result<Box<dyn Sink>> {
         match self.0 {
             Goal::Sequence(places) => sequence::begin(places, show),
-            Goal::File(place, _, Writer::Own(begin)) => begin(Out::File(DraftFile::create(&place)?), show),
-            Goal::File(place, _, Writer::Ffmpeg(codec)) => ffmpeg::begin(codec, &place, show),
+            Goal::File(place, format) => match format.writer {
+                Writer::Own(begin) => begin(Out::File(DraftFile::create(&place)?), show),
+                Writer::Ffmpeg(codec) => ffmpeg::begin(codec, &place, show),
+            },
             Goal::Stream(out, _, begin) => begin(Out::Stream(out), show),
         }
     }

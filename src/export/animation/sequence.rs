@@ -11,7 +11,7 @@ use crate::base::pixels::Frame;
 use crate::export::numbered::Pattern;
 use crate::export::still;
 use crate::files::draft::DraftFile;
-use crate::files::outputs::{self, Guard, Kind, Place};
+use crate::files::outputs::{self, Guard, Place};
 use crate::files::write;
 
 /// The files of a sequence, by their numbers.
@@ -24,7 +24,7 @@ impl Places {
     /// The folder does not exist, or the guard refuses a file.
     pub fn new(pattern: &Pattern, numbers: &[u64], guard: &mut Guard) -> Result<Places> {
         let names: Vec<String> = numbers.iter().map(|&number| pattern.name(number)).collect();
-        let places = guard.files(pattern.folder()?, &names, Kind::Png)?;
+        let places = guard.files(pattern.folder()?, &names, outputs::PNG)?;
         Ok(Places(numbers.iter().copied().zip(places).collect()))
     }
 

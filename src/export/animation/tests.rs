@@ -75,7 +75,8 @@ fn decoded<'a>(decoder: impl AnimationDecoder<'a>) -> (Vec<Frame>, Vec<f64>) {
 fn same(name: &str, wanted: &[Frame], got: &[Frame]) {
     assert_eq!(got.len(), wanted.len(), "{name}: number of frames");
     for (k, (wanted, got)) in wanted.iter().zip(got).enumerate() {
-        assert!(wanted == got, "{name}: frame {k} differs at {:?}", delta::moved(wanted, got));
+        let differs = wanted.cells().iter().zip(got.cells()).position(|(wanted, got)| wanted != got);
+        assert_eq!(differs, None, "{name}: frame {k}, by its first pixel");
     }
 }
 

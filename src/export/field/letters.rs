@@ -3,7 +3,7 @@
 
 use kurbo::{Point, Vec2};
 
-use super::{Mark, line};
+use super::strokes::{Mark, line};
 
 /// The size of a grid step, in pixels of the plot.
 const STEP: f64 = 1.55;

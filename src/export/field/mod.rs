@@ -3,41 +3,28 @@
 
 use kurbo::{Point, Rect, Vec2};
 
-use crate::base::maths::{atan2, nice};
-use crate::base::oklab::hue;
 use crate::base::pixels::Frame;
-use crate::base::text::short;
-use crate::layers::parts::marks::{self, Dot, InPlots, Shape, View};
+use crate::layers::parts::marks::{self, InPlots, Shape, View};
 use crate::layers::parts::readout::{VectorField, vector};
 use crate::render::overlay::{overlay, overlays};
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
+mod legend;
 mod letters;
 mod raster;
+mod strokes;
 mod svg;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use raster::png;
+pub use strokes::Mark;
 pub use svg::svg;
 pub use table::csv;
 
-/// A stroke or a fill, in pixels of the plot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
-    /// At least two points.
-    pub points: Vec<Point>,
-    /// Whether the last point joins the first.
-    pub closed: bool,
-    /// The width of the stroke; none fills the inside, even-odd.
-    pub stroke: Option<f64>,
-    /// sRGB with straight alpha.
-    pub color: [u8; 4],
-    /// Length of a dash and of the gap after it.
-    pub dash: Option<(f64, f64)>,
-}
+use strokes::{dot, draw_arrow, fill};
 
 /// A plot of a vector field.
 #[derive(Clone, Debug)]
@@ -65,9 +52,6 @@ const ARROWS: f64 = 42.0;
 const MARGIN: f64 = 14.0;
 /// Below the picture, for the legend.
 const LEGEND: f64 = 62.0;
-/// A length of the legend where no round one fits.
-const SHORTEST: f64 = 1e-6;
-const INK: [u8; 4] = [60, 64, 72, 255];
 
 /// A jump vector at the centre of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,11 +92,6 @@ fn arrows_of(field: &VectorField, step: usize) -> Vec<Arrow> {
     arrows
 }
 
-/// Degrees from the x axis toward the y axis: clockwise on the screen.
-fn degrees(vector: Vec2) -> f64 {
-    atan2(vector.y, vector.x).to_degrees()
-}
-
 /// Plots the field of `scene`, whose synthesis is `synth`: an arrow every `step` pixels, as many as fit without it. The
 /// plot shows the zones with a little around them; `picture` lays them over what they move.
 pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) -> Plot {
@@ -135,7 +114,7 @@ pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) ->
     let height = frame.y1 + LEGEND;
     let width = (frame.x1 + MARGIN).max(360.0);
     marks.extend(margins(frame, Rect::new(0.0, 0.0, width, height)));
-    legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), stretch, longest, scale, &mut marks);
+    legend::legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), stretch, longest, scale, &mut marks);
     let title =
         format!("Vector field: {} arrows, one every {step} px; the longest jump is {longest:.2} px", arrows.len());
     let picture = picture.then(|| (part(synth, shown), frame));
@@ -191,72 +170,4 @@ fn marks_of(scene: &Scene, place: InPlots, plot_from_image: &impl Fn(Point) -> P
         }
     };
     overlay(scene, None, &view).into_iter().filter_map(mark).collect()
-}
-
-fn dot(at: Point, shape: Dot, radius: f64) -> Vec<Point> {
-    let (corners, first) = match shape {
-        Dot::Disc => (16, 0.0),
-        Dot::Square => (4, 0.125),
-        Dot::Diamond => (4, 0.0),
-    };
-    (0..corners).map(|k| at + turned(first + f64::from(k) / f64::from(corners)) * radius).collect()
-}
-
-/// The unit vector `turns` of a turn from the x axis.
-fn turned(turns: f64) -> Vec2 {
-    let angle = turns * crate::base::maths::TAU;
-    Vec2::new(crate::base::maths::cos(angle), crate::base::maths::sin(angle))
-}
-
-fn fill(points: Vec<Point>, color: [u8; 4]) -> Mark {
-    Mark { points, closed: true, stroke: None, color, dash: None }
-}
-
-fn line(points: Vec<Point>, width: f64, color: [u8; 4]) -> Mark {
-    Mark { points, closed: false, stroke: Some(width), color, dash: None }
-}
-
-/// An arrow with its tail at `at`, colored by its direction; a dot where there is no jump. `room` is the distance of
-/// arrows, which bounds how heavy they look.
-fn draw_arrow(at: Point, vector: Vec2, room: f64, marks: &mut Vec<Mark>) {
-    let length = vector.hypot2().sqrt();
-    if length < 0.75 {
-        marks.push(fill(dot(at, Dot::Disc, 0.9), [120, 126, 136, 200]));
-        return;
-    }
-    let [r, g, b] = hue(degrees(vector) / 360.0);
-    let color = [r, g, b, 255];
-    let (along, across) = (vector / length, Vec2::new(-vector.y, vector.x) / length);
-    let width = (room * 0.075).clamp(0.8, 2.2);
-    let head = (width * 4.2).min(length * 0.6);
-    let (tip, neck) = (at + vector, at + along * (length - head));
-    marks.push(line(vec![at, at + along * (length - head * 0.8)], width, color));
-    marks.push(fill(vec![tip, neck + across * head * 0.42, neck - across * head * 0.42], color));
-}
-
-/// The wheel of directions, an arrow of a round length with what it stands for, and a bar for distances in the picture.
-fn legend(at: Point, stretch: f64, longest: f64, scale: f64, marks: &mut Vec<Mark>) {
-    let wheel = at + Vec2::new(22.0, 0.0);
-    const SPOKES: usize = 24;
-    for k in 0..SPOKES {
-        let (from, to) = ((k as f64 - 0.53) / SPOKES as f64, (k as f64 + 0.53) / SPOKES as f64);
-        let [r, g, b] = hue(k as f64 / SPOKES as f64);
-        let ring = [turned(from) * 20.0, turned(to) * 20.0, turned(to) * 10.0, turned(from) * 10.0];
-        marks.push(fill(ring.map(|v| wheel + v).to_vec(), [r, g, b, 255]));
-    }
-    if longest > 0.0 {
-        let jump = nice(longest.min(90.0 / stretch)).unwrap_or(SHORTEST);
-        let from = at + Vec2::new(66.0, 6.0);
-        let vector = Vec2::new(jump * stretch, 0.0);
-        draw_arrow(from, vector, 20.0, marks);
-        letters::write(&format!("jump {} px", short(jump, 6)), from + Vec2::new(0.0, -12.0), INK, marks);
-    }
-    let distance = nice(90.0 / scale).unwrap_or(SHORTEST);
-    let from = at + Vec2::new(200.0, 6.0);
-    let to = from + Vec2::new(distance * scale, 0.0);
-    let tick = Vec2::new(0.0, 4.0);
-    marks.push(line(vec![from - tick, from + tick], 1.4, INK));
-    marks.push(line(vec![to - tick, to + tick], 1.4, INK));
-    marks.push(line(vec![from, to], 1.4, INK));
-    letters::write(&format!("picture {} px", short(distance, 6)), from + Vec2::new(0.0, -12.0), INK, marks);
 }

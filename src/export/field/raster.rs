@@ -6,7 +6,8 @@ use tiny_skia::{
     Stroke, StrokeDash, Transform,
 };
 
-use super::{FAINT, Mark, Plot};
+use super::strokes::Mark;
+use super::{FAINT, Plot};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::export::still;

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 
-use super::{FAINT, Mark, Plot};
+use super::strokes::Mark;
+use super::{FAINT, Plot};
 use crate::base::error::{Error, Result};
 use crate::base::text::{self, hex};
 use crate::export::still;

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{Arrow, degrees};
+use super::Arrow;
+use super::strokes::degrees;
 use crate::files::outputs::CSV_HEADER;
 
 /// Comma-separated values with a head: the centre of each pixel, its jump vector, that vector's length, and its direction

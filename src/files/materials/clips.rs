@@ -15,10 +15,11 @@ use crate::base::budget::Share;
 use crate::base::clip::Clip;
 use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::files::limits::within;
 use crate::files::{mesh, paths, picture, video};
-use crate::scene::{self, Scene, pointer};
+use crate::scene::{self, Scene};
 
 /// The clips that were loaded before, and their frames.
 #[derive(Debug, Default)]
@@ -47,7 +48,7 @@ impl Sources<'_> {
     ) -> BTreeMap<String, Arc<Clip>> {
         let mut kept = Clips::default();
         for (key, clip) in &scene.clips {
-            let named = Named { key, path: &clip.path, at: pointer::join("/clips", key) + "/path" };
+            let named = Named { key, path: &clip.path, at: Pointer("/clips").join(key) + "/path" };
             let old = cache.made.get(key);
             if let Some(path) = clip.frames().ok().filter(|frames| frames.is_video()).map(|frames| frames.path(0)) {
                 let file = self.key(&path).join(format!("{} {:?}", clip.first, clip.count));
@@ -179,7 +180,7 @@ fn first_missing(error: Error, clip: &scene::Clip) -> Error {
     }
 }
 
-/// Warns of what could not be honored; what holds for several frames is told once.
+/// Warns of what is not supported; what holds for several frames is told once.
 fn notes<'a>(
     named: &Named,
     frames: impl Iterator<Item = (&'a String, &'a Result<Loaded<Picture>>)>,

@@ -254,7 +254,7 @@ struct Allowed<'a> {
 }
 
 /// Reads an open file; the path is its name in messages, and the last is for files that it names. Also returns what in
-/// it could not be honored, and the memory that it takes.
+/// is not supported in it, and the memory that it takes.
 type Decode<'a, T> = &'a (dyn Fn(File, &str, Allowed, mesh::Opener) -> Result<(T, Vec<String>, Share)> + Sync);
 
 fn decode_mesh(file: File, place: &str, allowed: Allowed, sibling: mesh::Opener) -> Result<(Mesh, Vec<String>, Share)> {

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::Stamp;
+use crate::base::pointer::Pointer;
 use crate::files::{self, Options, mesh};
 use crate::layers::parts::materials::{Of, Use, What};
-use crate::scene::{Clip, Scene, pointer};
+use crate::scene::{Clip, Scene};
 
 /// A file that a scene names.
 pub(super) struct Named<'a> {
@@ -27,7 +28,7 @@ pub(super) fn meshes(scene: &Scene) -> Vec<Named<'_>> {
 }
 
 fn listed<'a>(list: &str, key: &'a str, path: &'a str) -> Named<'a> {
-    Named { key, path, at: pointer::join(list, key) + "/path" }
+    Named { key, path, at: Pointer(list).join(key) + "/path" }
 }
 
 pub(super) fn fields(scene: &Scene) -> Vec<Named<'_>> {

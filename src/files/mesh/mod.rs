@@ -47,7 +47,7 @@ const FOREIGN: &[(&str, &[&[u8]], &str)] = &[
     (".gz", &[b"\x1f\x8b"], "compressed by gzip"),
 ];
 
-/// The mesh in an open file, what in it could not be honored in words, and the memory that it takes; `place` is its name
+/// The mesh in an open file, what in it is not supported in words, and the memory that it takes; `place` is its name
 /// in messages. `sibling` opens a file that the mesh names, by a path relative to it.
 ///
 /// # Errors
@@ -126,7 +126,7 @@ fn whole(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(K
     Ok((kind, bytes, share))
 }
 
-/// The kind of a file by how it begins, and by its name where that does not tell.
+/// The kind of a file by how it begins, and by its name if that does not decide.
 fn kind(start: &[u8], place: &str) -> Result<Kind> {
     const READ: &str = "Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf)";
     if start.is_empty() {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::base::maths::{exp, pow};
 use crate::base::picture::{Light, table};
-use crate::base::pixels::linear_from_srgb;
+use crate::base::pixels::{linear_from_srgb, srgb_from_linear};
 
 /// The most samples per pixel, and values per color.
 pub(super) const MOST: usize = 4;
@@ -267,11 +267,6 @@ pub(super) fn mix(place: &[f64], nodes: &[usize; MOST], mut each: impl FnMut(usi
         before = part;
     }
     each(at, before);
-}
-
-/// The sRGB code, 0 to 1, of linear light (IEC 61966-2-1).
-pub(super) fn srgb_from_linear(light: f64) -> f64 {
-    if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * pow(light, 1.0 / 2.4) - 0.055 }
 }
 
 /// From D50 XYZ to linear sRGB.

@@ -8,14 +8,14 @@ use kurbo::{Point, Rect, Vec2};
 use super::anchor::Anchor;
 use super::interpolation::Interpolation;
 use super::position::{Pieces, Position};
-use super::{counts, fold::Fold, outline::Outline};
+use super::{counts, fold::Fold, needs, outline::Outline};
 use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Problem, quoted};
 use crate::layers::check as rules;
-use crate::layers::parts::materials::{List, Materials, Of, Use, What};
-use crate::layers::technique::{Checked, Count};
+use crate::layers::parts::materials::{Materials, Of, Use, What};
+use crate::layers::technique::Checked;
 
 /// In zones with more anchors than this, coincident anchors are not looked for.
 const MAX_COMPARED: f64 = 20_000.0;
@@ -59,54 +59,6 @@ pub fn problems(checked: &Checked) -> Vec<Problem> {
     all
 }
 
-/// The pictures and files that the layer names: its own, then zone by zone.
-pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
-    let picture = |at, image| Use { at, of: Of::Name(List::Images, image), what: What::Picture };
-    let mut uses = vec![picture("/image".to_owned(), &layer.image)];
-    for (i, zone) in layer.zones.iter().enumerate() {
-        if let Some(image) = zone.fold.as_ref().and_then(|fold| fold.mask()) {
-            let at = format!("/zones/{i}/fold/image");
-            uses.push(Use { at, of: Of::Name(List::Images, image), what: What::Mask { on: &layer.image } });
-        }
-        let image = zone.sampler.as_ref().and_then(|sampler| sampler.image.as_deref());
-        uses.extend(image.map(|image| picture(format!("/zones/{i}/sampler/image"), image)));
-        let clip =
-            |clip| Use { at: format!("/zones/{i}/sampler/clip"), of: Of::Name(List::Clips, clip), what: What::Clip };
-        uses.extend(zone.clip().map(clip));
-        for (j, tool) in zone.motion.iter().enumerate() {
-            if let Some(path) = tool.file() {
-                uses.push(Use { at: format!("/zones/{i}/motion/{j}/path"), of: Of::Path(path), what: What::Vectors });
-            }
-        }
-    }
-    uses
-}
-
-/// The numbers of anchors and outline points that the layer asks for, place by place, before any are made.
-pub fn counts(layer: &PictureLayer, each: &mut dyn FnMut(Count)) {
-    for (i, zone) in layer.zones.iter().enumerate() {
-        let path = || format!("/zones/{i}/outline");
-        each(Count { what: "points", path: &path, count: counts::points(&zone.outline) });
-        for (k, region) in zone.fold.iter().flat_map(|fold| fold.regions()).enumerate() {
-            let path = || format!("/zones/{i}/fold/regions/{k}");
-            each(Count { what: "points", path: &path, count: counts::points(region) });
-        }
-        for (j, tool) in zone.motion.iter().enumerate() {
-            let path = || format!("/zones/{i}/motion/{j}");
-            each(Count { what: "anchors", path: &path, count: counts::anchors(tool, &zone.outline) });
-        }
-    }
-}
-
-/// Bytes that the equations of interpolations will take, before they are made.
-pub fn memory(layer: &PictureLayer) -> Vec<(String, u64)> {
-    let bytes = |(i, zone): (usize, &Zone)| {
-        let bytes = zone.interpolation.bytes(counts::all_anchors(zone) as u64);
-        (bytes > 0).then(|| (format!("/zones/{i}/interpolation"), bytes))
-    };
-    layer.zones.iter().enumerate().filter_map(bytes).collect()
-}
-
 /// Problems that only show with the pictures and fields: an outline outside its picture, a mask or a field of another
 /// size, a mask without alpha.
 pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Problem> {
@@ -130,7 +82,7 @@ pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Probl
             }
         }
     }
-    for Use { at: path, of, what } in uses(layer) {
+    for Use { at: path, of, what } in needs::uses(layer) {
         let (What::Mask { .. }, Of::Name(_, name)) = (what, of) else { continue };
         let Some(mask) = materials.pictures.get(name) else { continue };
         let (w, h) = (mask.width(), mask.height());
@@ -177,7 +129,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
 fn clock(zone: &Zone) -> Option<Problem> {
     let Zone { speed, shift, .. } = zone;
     if !(speed * (shift.abs() + 1.0)).is_finite() {
-        let message = format!("{speed:?} passes at a shift of {shift:?} timelines are no finite time");
+        let message = format!("{speed:?} passes at a shift of {shift:?} timelines give no finite time");
         return Some(Problem::error("/shift", message).hint("make the shift or the speed smaller"));
     }
     // NaN is not within bounds either.

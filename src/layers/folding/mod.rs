@@ -16,6 +16,7 @@ pub mod kinds;
 pub mod looks;
 pub mod marks;
 pub mod model;
+pub mod needs;
 pub mod outline;
 pub mod pick;
 pub mod pixel_marks;
@@ -89,11 +90,11 @@ impl Technique for PictureLayer {
     }
 
     fn counts(&self, each: &mut dyn FnMut(Count)) {
-        check::counts(self, each);
+        needs::counts(self, each);
     }
 
     fn memory(&self) -> Vec<(String, u64)> {
-        check::memory(self)
+        needs::memory(self)
     }
 
     fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
@@ -101,7 +102,7 @@ impl Technique for PictureLayer {
     }
 
     fn uses(&self) -> Vec<Use<'_>> {
-        check::uses(self)
+        needs::uses(self)
     }
 
     fn frame_of(&self) -> Option<&str> {

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::model::PictureLayer;
 use crate::base::number;
+use crate::base::pointer::Pointer;
 
 /// Used in place of a zone where there is none yet.
 const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
@@ -13,20 +14,15 @@ const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 /// The part of the picture for something new at `path` (relative to the layer): the outline itself, otherwise the
 /// outline of its zone, otherwise what all zones cover; new items in a list of zones or regions get the middle of it.
 pub fn bounds(layer: &PictureLayer, path: &str) -> Rect {
-    let mut tokens = path.split('/').skip(1);
-    let mut index_after = |list: &str| (tokens.next() == Some(list)).then(|| tokens.next()?.parse::<usize>().ok());
     let all = || layer.zones.iter().map(|zone| zone.outline.polygon().bounds()).reduce(|a, b| a.union(b));
-    let zone = match index_after("zones") {
-        Some(Some(zone)) => layer.zones.get(zone),
-        _ => None,
-    };
-    let Some(zone) = zone else { return middle(all().unwrap_or(NOWHERE)) };
+    let zone = Pointer(path).item_of("/zones").and_then(|(zone, way)| Some((layer.zones.get(zone)?, way)));
+    let Some((zone, way)) = zone else { return middle(all().unwrap_or(NOWHERE)) };
     let whole = zone.outline.polygon().bounds();
-    if tokens.next() != Some("fold") {
+    if !Pointer(way).is_within("/fold") {
         return whole;
     }
-    let region = tokens.nth(1).and_then(|region| region.parse::<usize>().ok());
-    let region = region.and_then(|region| zone.fold.as_ref()?.regions().get(region));
+    let region =
+        Pointer(way).item_of("/fold/regions").and_then(|(region, _)| zone.fold.as_ref()?.regions().get(region));
     region.map_or(middle(whole), |region| region.polygon().bounds())
 }
 

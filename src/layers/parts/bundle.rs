@@ -108,7 +108,7 @@ pub trait Sink {
     /// Writes numbers.
     ///
     /// # Errors
-    /// The file cannot be written, or is not among the names that were told before.
+    /// The file cannot be written, or is not among the names declared before.
     fn texture(&mut self, name: &str, texture: &Texture) -> Result<TextureNote>;
 
     /// Writes a picture in linear light, premultiplied by alpha; `finish` may still change the 8-bit codes.
@@ -118,7 +118,7 @@ pub trait Sink {
     fn picture(&mut self, name: &str, colors: &Linear, finish: &dyn Fn(&mut Frame)) -> Result<PictureNote>;
 }
 
-/// The names that the files of a bundle may have, told before anything is made.
+/// The names that the files of a bundle may have, declared before anything is made.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     /// Pictures, without the extension.

@@ -91,7 +91,7 @@ pub struct View {
     /// How near surfaces in space are that may hide marks of a layer, if marks are shown that are hidden; filled in when
     /// the marks of all layers are collected.
     pub nearest: Option<Arc<Depths>>,
-    /// JSON pointer of what is selected.
+    /// JSON pointer of what is selected; relative to the layer for the marks of a layer that is ready.
     pub selection: Option<String>,
 }
 

@@ -9,6 +9,7 @@ use crate::base::clip::Clip;
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::base::progress::Progress;
 
@@ -46,12 +47,15 @@ pub enum List {
 }
 
 impl List {
+    /// Those whose items have names of their own.
+    pub const NAMED: [List; 3] = [List::Images, List::Meshes, List::Clips];
+
     /// The list, and the name in it, that a pointer of the scene leads to; `None` for other places, and for layers, which
     /// are in a list by their order.
     pub fn entry(pointer: &str) -> Option<(List, String)> {
-        let (list, name) = pointer.strip_prefix('/')?.split_once('/').filter(|(_, name)| !name.contains('/'))?;
-        let list = [List::Images, List::Meshes, List::Clips].into_iter().find(|known| known.words().0 == list)?;
-        Some((list, name.replace("~1", "/").replace("~0", "~")))
+        let (list, name) = Pointer(pointer).split()?;
+        let list = List::NAMED.into_iter().find(|known| list.strip_prefix('/') == Some(known.words().0))?;
+        Some((list, name))
     }
 
     /// Its name in the document, and what an item of it is.

@@ -4,6 +4,7 @@ use kurbo::Point;
 
 use super::lines::Line;
 use super::synth::Synth;
+use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
@@ -81,8 +82,7 @@ fn finished(points: Vec<Point>, look: &'static Look, path: &str) -> Option<Mark>
 
 /// How far along the lip lines are next to the node that is selected.
 fn reach(synth: &Synth, selection: &str) -> Option<std::ops::RangeInclusive<f64>> {
-    let (_, rest) = selection.split_once("/lip/")?;
-    let node: usize = rest.split('/').next()?.parse().ok()?;
+    let (node, _) = Pointer(selection).item_of("/lip")?;
     let lip = &synth.values.lip;
     let before = |node: usize| lip.windows(2).take(node).map(|pair| pair[0].at.distance(pair[1].at)).sum::<f64>();
     (node < lip.len()).then(|| before(node.saturating_sub(1))..=before(node + 1))

@@ -43,10 +43,10 @@ pub struct Args {
     /// Skip numbered files that exist already, complete and of the right size
     #[arg(long)]
     skip_existing: bool,
-    /// Scale finished frames; a 0 keeps the ratio
+    /// Scale finished frames; 0 for one side keeps the aspect ratio
     #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     size: Option<String>,
-    /// Render what frames are made from, to .exr files (or .png, to look at); NAME:LAYER is that of one layer alone
+    /// Render what frames are made from, to .exr files (or .png, to look at); NAME:LAYER renders one layer only
     #[arg(long, value_name = "NAME")]
     pass: Option<String>,
     /// N x N samples per pixel: smooth edges of folds

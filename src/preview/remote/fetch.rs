@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::base::budget::size;
 use crate::base::error::Result;
+use crate::base::text;
 use crate::files::cache::{Cache, Incoming, MOST_FILES};
 use crate::files::materials::Copies;
 use crate::files::originals::{Contents, Original, PIECE};
@@ -67,14 +67,15 @@ impl Fetch {
                 Err(why) => why,
                 Ok(contents) if contents.bytes > self.most => {
                     format!(
-                        "is {} bytes long, at most {} are allowed (give --limit memory=BYTES)",
-                        contents.bytes, self.most
+                        "is {} long, at most {} are allowed (give --limit memory=BYTES)",
+                        text::bytes(contents.bytes),
+                        text::bytes(self.most)
                     )
                 }
                 Ok(contents) if !fits(&mut counted, &contents, self.cache.most()) => {
                     format!(
                         "the scene's files are more than {MOST_FILES}, or more than {} together (give --limit cache=BYTES)",
-                        size(self.cache.most())
+                        text::bytes(self.cache.most())
                     )
                 }
                 Ok(contents) if self.have.get(&path) == Some(&contents.hash) => continue,
@@ -195,7 +196,7 @@ impl Fetch {
         let Contents { hash, bytes } = incoming.wanted();
         let path = self.missing.get(hash)?.1.first()?;
         let percent = incoming.have() * 100 / (*bytes).max(1);
-        Some(format!("fetching {path}: {percent} % of {:.1} MB", *bytes as f64 / 1e6))
+        Some(format!("fetching {path}: {percent} % of {}", text::bytes(*bytes)))
     }
 }
 

@@ -1,4 +1,4 @@
-//! What of the overlays the window shows, and how densely: as much as the screen can bear.
+//! What of the overlays the window shows, and how densely: no more than stays legible.
 
 use super::state::State;
 use crate::base::maths::pow;

@@ -13,9 +13,10 @@ use super::style::GROUND;
 use super::text::Letters;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::linear_from_srgb;
+use crate::layers::parts::plan::COMMON;
 use crate::render::gpu::Gpu;
 
-const SHADER: &str = include_str!("screen.wgsl");
+const SHADER: [&str; 2] = [COMMON, include_str!("screen.wgsl")];
 
 const LIGHT: Color = [74, 77, 82, 255];
 const DARK: Color = [56, 59, 64, 255];
@@ -205,7 +206,7 @@ impl Pipelines {
             let bindings = bindings(raw);
             let module = raw.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("screen"),
-                source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+                source: wgpu::ShaderSource::Wgsl(SHADER.concat().into()),
             });
             let maker = Maker { device: raw, module: &module, bindings: &bindings, format };
             Pipelines {
@@ -252,7 +253,7 @@ impl Maker<'_> {
     /// `manner` is the constant of the shader that is set, where one is.
     fn frame(&self, manner: &'static str) -> wgpu::RenderPipeline {
         let constants = ["reduces", "differs"].map(|name| (name, f64::from(u8::from(name == manner))));
-        self.make(["whole_screen", "show_frame"], &constants, &[], None)
+        self.make(["whole_frame", "show_frame"], &constants, &[], None)
     }
 
     fn strokes(&self) -> wgpu::RenderPipeline {

@@ -22,11 +22,6 @@ struct Screen {
 
 const DIFFERENCE: f32 = 8.0; // how much stronger a difference is shown
 
-fn srgb_from_linear(light: vec3f) -> vec3f {
-    let l = clamp(light, vec3f(0.0), vec3f(1.0));
-    return select(1.055 * pow(l, vec3f(1.0 / 2.4)) - 0.055, 12.92 * l, l <= vec3f(0.0031308));
-}
-
 fn linear_from_srgb(code: vec3f) -> vec3f {
     return select(pow((code + 0.055) / 1.055, vec3f(2.4)), code / 12.92, code <= vec3f(0.04045));
 }
@@ -76,11 +71,6 @@ fn difference(at: vec2f) -> vec3f {
         }
     }
     return most * DIFFERENCE;
-}
-
-@vertex
-fn whole_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
 @fragment

@@ -12,6 +12,7 @@ use super::state::State;
 use super::text::Letters;
 use super::viewport::Viewport;
 use super::{labels, marks};
+use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::View;
 use crate::layers::space::camera::Camera;
 use crate::render::Synth;
@@ -73,12 +74,11 @@ pub fn under(scene: &Scene, synth: &Synth, t: f64, at: Point) -> Option<String> 
 /// What a JSON pointer leads to, by the names of the layer and of the item in it: `face/left
 /// eye/motion/3`; `None` for the scene itself.
 pub fn name(scene: &Scene, pointer: &str) -> Option<String> {
-    let mut tokens = pointer.split('/').skip(1);
-    let (list, Ok(layer)) = (tokens.next()?, tokens.next().unwrap_or_default().parse::<usize>()) else {
-        return Some(pointer.trim_start_matches('/').to_owned());
+    let Some((layer, way)) = Pointer(pointer).item_of("/layers") else {
+        return Some(pointer.strip_prefix('/')?.to_owned());
     };
-    let of_layer = format!("/layers/{layer}").len();
-    let layer = scene.layers.get(layer).filter(|_| list == "layers")?.technique();
+    let of_layer = pointer.len() - way.len();
+    let layer = scene.layers.get(layer)?.technique();
     let item = item_of(pointer).and_then(|item| Some((item.len(), layer.item_name(&item[of_layer..])?)));
     let rest = &pointer[item.map_or(of_layer, |(length, _)| length)..];
     Some([layer.name(), item.map_or("", |_| "/"), item.map_or("", |(_, name)| name), rest].concat())
@@ -185,17 +185,7 @@ mod tests {
 
     #[test]
     fn the_nearest_triangle_under_the_pointer_is_told() {
-        use crate::base::mesh::{Mesh, Vertex};
-        use crate::layers::parts::materials::Materials;
-        let scene = r#"{ "plica": 1, "size": [60, 60], "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
-            "meshes": {"m": {"path": "m.obj"}}, "layers": [{"kind": "mesh", "name": "near", "mesh": "m"},
-            {"kind": "mesh", "name": "far", "mesh": "m", "pose": {"position": [0.5, 0, -1]}}] }"#;
-        let scene: Scene = serde_json::from_str(scene).unwrap();
-        let corner = |[x, y]: [f64; 2]| Vertex { position: [x, y, 0.0].into(), ..Vertex::default() };
-        let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
-        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-        let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
-        let synth = crate::render::synth(&scene, &materials, None).unwrap();
+        let (scene, synth) = crate::render::samples::two_squares();
         for (x, told) in
             [(25.0, Some("near, triangle 1, 4.00 m")), (52.5, Some("far, triangle 0, 5.00 m")), (5.0, None)]
         {

@@ -70,7 +70,7 @@ impl Viewport {
         self.resized(picture, area);
     }
 
-    /// One pixel a pixel, around the place in the middle; a picture that has room is shown whole.
+    /// Actual size (1:1), around the place in the middle; a picture that has room is shown whole.
     pub fn one(&mut self, picture: Size, area: Size) {
         if picture.width <= area.width && picture.height <= area.height {
             self.center = (picture.to_vec2() / 2.0).to_point();

@@ -1,5 +1,6 @@
 //! Edits: what they do, their inverses, and that every tag, list and field can be edited.
 
+use crate::base::pointer::Pointer;
 use crate::layers::parts::materials::List;
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -83,7 +84,7 @@ fn every_tag_can_be_chosen_everywhere() {
     for (pointer, field) in places(&document) {
         let Kind::Tagged { tag, variants } = &field.kind else { continue };
         for variant in variants {
-            let edit = Edit::set(&document, &pointer::join(&pointer, tag), variant.name.into());
+            let edit = Edit::set(&document, &Pointer(&pointer).join(tag), variant.name.into());
             match there_and_back(&document, &edit) {
                 Ok(changed) => assert_eq!(changed.json().pointer(&pointer).unwrap()[tag], variant.name),
                 Err(problems) => {
@@ -137,7 +138,7 @@ fn items_are_duplicated_moved_and_taken_away() {
     assert!(Edit::duplicate(&document, "/title").is_none());
     let mut duplicated = 0;
     for (path, field) in places(&document) {
-        let in_list = pointer::split(&path).is_some_and(|(list, _)| !list.is_empty() && !list.ends_with("/matrix"));
+        let in_list = Pointer(&path).split().is_some_and(|(list, _)| !list.is_empty() && !list.ends_with("/matrix"));
         let Some((edit, _)) = Edit::duplicate(&document, &path).filter(|_| in_list) else { continue };
         if !matches!(field.kind, Kind::Number { .. }) {
             there_and_back(&document, &edit).unwrap_or_else(|problems| panic!("{path}: {problems:?}"));

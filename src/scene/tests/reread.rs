@@ -4,16 +4,15 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::*;
+use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
 
 /// Every place in a value.
 fn places(value: &Value, path: &str, all: &mut Vec<String>) {
     all.push(path.to_owned());
     match value {
-        Value::Object(map) => map.iter().for_each(|(key, value)| places(value, &pointer::join(path, key), all)),
-        Value::Array(items) => {
-            items.iter().enumerate().for_each(|(i, item)| places(item, &pointer::join(path, i), all))
-        }
+        Value::Object(map) => map.iter().for_each(|(key, value)| places(value, &Pointer(path).join(key), all)),
+        Value::Array(items) => items.iter().enumerate().for_each(|(i, item)| places(item, &Pointer(path).join(i), all)),
         _ => {}
     }
 }
@@ -32,7 +31,7 @@ fn operation(json: &Value, (what, at, from): (usize, usize, usize)) -> Edit {
         2 => Edit::replace(at, found()),
         3 | 4 => Edit::remove(at),
         5 => Edit::add(at, found()),
-        6 => Edit::add(&pointer::join(at, ["-", "0", "name", "fold", "speed", "at"][from % 6]), found()),
+        6 => Edit::add(&Pointer(at).join(["-", "0", "name", "fold", "speed", "at"][from % 6]), found()),
         _ => Edit::moved(other, at),
     }
 }

@@ -1,8 +1,9 @@
 //! Search in names and values, marks, the jump list, and going to the same place of the next item.
 
 use super::command::{Call, Command, Done, command};
+use crate::base::pointer::{self, Pointer};
 use crate::scene::schema::{Body, Place};
-use crate::scene::{address, field, pointer};
+use crate::scene::{address, field};
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::places::Sought;
 use crate::tui::document::sheet::{Part, is_node, summary};
@@ -203,7 +204,7 @@ pub fn reveal(state: &mut State, pointer: &str) {
 fn reveal_part(state: &mut State, at: &str, part: usize) {
     let kind = field::field(state.document(), at).map(|field| field.kind);
     let node = field::is_there(state.document(), at) && kind.is_some_and(|kind| is_node(&kind));
-    let parent = || pointer::split(at).map_or("", |(parent, _)| parent);
+    let parent = || Pointer(at).split().map_or("", |(parent, _)| parent);
     let in_table = if node { None } else { cell_in_table(state, parent(), at, part) };
     let (shown, row, column) = match in_table {
         Some((list, row, column)) => (list, Some(row), column),
@@ -225,11 +226,11 @@ fn reveal_part(state: &mut State, at: &str, part: usize) {
 
 /// The list, the row and the column that show a field of an item, if the item has no name and its row has such a column.
 fn cell_in_table(state: &State, item: &str, at: &str, part: usize) -> Option<(String, usize, usize)> {
-    let (list, index) = pointer::split(item)?;
+    let (list, index) = Pointer(item).split()?;
     let index = pointer::index(&index)?;
     let sheet = crate::tui::document::sheet::Sheet::of(state.document(), list);
     let row = sheet.row(index).filter(|row| sheet.table && row.pointer == item)?;
-    let named = field::is_there(state.document(), &pointer::join(item, "name"));
+    let named = field::is_there(state.document(), &Pointer(item).join("name"));
     Some((list.to_owned(), index, column_of(&row, at, part).filter(|_| !named)?))
 }
 
@@ -259,7 +260,7 @@ fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, Strin
     let json = state.document().json();
     let mut item = node;
     loop {
-        let (list, last) = pointer::split(item).ok_or("this is not in a list: go to a zone or a tool")?;
+        let (list, last) = Pointer(item).split().ok_or("this is not in a list: go to a zone or a tool")?;
         if let (Some(index), Some(items)) = (pointer::index(&last), json.pointer(list).and_then(|list| list.as_array()))
         {
             let tag = match Place::of(json, item).map(|place| place.shape.body()) {
@@ -270,7 +271,7 @@ fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, Strin
             let alike = |i: &usize| kind(*i) == kind(index);
             let there = if next { (index + 1..items.len()).find(alike) } else { (0..index).rev().find(alike) };
             let rest = &node[item.len()..];
-            let place = there.map(|i| format!("{}{rest}", pointer::join(list, i)));
+            let place = there.map(|i| format!("{}{rest}", Pointer(list).join(i)));
             return Ok(place.map(|place| nearest(state, place)));
         }
         item = list;

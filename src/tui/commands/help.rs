@@ -4,8 +4,9 @@
 use super::cells::number;
 use super::command::{Call, Command, Done, command};
 use super::contexts::contexts;
+use crate::base::pointer::Pointer;
+use crate::scene::address;
 use crate::scene::field::{self, Field, Kind};
-use crate::scene::{address, pointer};
 use crate::tui::document::sheet;
 use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::keys::OWN_FILE;
@@ -138,11 +139,11 @@ fn formula(state: &State, at: &str) -> Option<(String, String, String)> {
         let field = field::field(state.document(), at)?;
         if let Kind::Tagged { tag, variants } = &field.kind {
             let formula = field::formula(state.document(), at)?;
-            let word = field::value(state.document(), &pointer::join(at, tag))?;
+            let word = field::value(state.document(), &Pointer(at).join(tag))?;
             let help = variants.iter().find(|one| word == one.name).map_or("", |one| one.help);
             return Some(((*tag).to_owned(), format!("{}: {help}", word.as_str()?), formula.to_owned()));
         }
-        at = pointer::split(at)?.0;
+        at = Pointer(at).split()?.0;
     }
 }
 

@@ -1,5 +1,6 @@
 //! Adds, deletes, duplicates and moves rows and nodes as a whole.
 
+use crate::base::pointer::Pointer;
 use crate::scene::{Document, address};
 use crate::tui::document::pointers::item_of;
 use crate::tui::text::plain;
@@ -10,7 +11,7 @@ use crate::base::budget;
 use crate::base::numbered::Pattern;
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
-use crate::scene::{Edit, json, pointer};
+use crate::scene::{Edit, json};
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::sheet::Cell;
@@ -48,7 +49,7 @@ pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
         (Some(_), None) => Err("a count needs items of a list: go to one".into()),
         (Some(count), Some((list, index))) => {
             let items = state.document().json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
-            Ok((index..items.min(index + count.max(1))).map(|i| pointer::join(&list, i)).collect())
+            Ok((index..items.min(index + count.max(1))).map(|i| Pointer(&list).join(i)).collect())
         }
     }
 }
@@ -76,7 +77,7 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
     }
     let row = sheet.row(state.cursor.row)?;
     let list = |row: &crate::tui::document::sheet::Row| {
-        row.item.then(|| row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned())).flatten()
+        row.item.then(|| Pointer(&row.pointer).parent().map(str::to_owned)).flatten()
     };
     let own = list(&row);
     let like = |i: &usize| sheet.row(*i).is_some_and(|row| list(&row) == own);
@@ -145,7 +146,7 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
 }
 
 fn ask_for_path(state: &mut State, pointer: &str) -> Done {
-    let what = match pointer.split('/').nth(1) {
+    let what = match Pointer(pointer).tokens().next().as_deref() {
         Some("clips") => "the clip's files as falls/%04d.jpg, or a video",
         Some("meshes") => "the mesh's file",
         _ => "the picture's file",
@@ -184,7 +185,7 @@ pub fn go_to(state: &mut State, pointer: &str) {
         Some(row) => state.cursor.row = row,
         None if state.cursor.focus == Pane::Tree => state.show(pointer),
         None => {
-            let list = pointer.rsplit_once('/').map_or("", |(list, _)| list).to_string();
+            let list = Pointer(pointer).parent().unwrap_or_default().to_owned();
             state.show(list);
             state.cursor.row = state.sheet().position(pointer).unwrap_or(0);
         }
@@ -235,7 +236,7 @@ fn follow(state: &mut State, list: &str, at: usize, by: i64) {
             (state.cursor.selected_from, state.cursor.row) = (Some(moved(from)), moved(state.cursor.row));
             state.cursor.selected_to = state.cursor.selected_to.map(moved);
         }
-        None => go_to(state, &pointer::join(list, at)),
+        None => go_to(state, &Pointer(list).join(at)),
     }
     state.settle();
 }
@@ -276,7 +277,7 @@ pub fn insert_entries(
 fn duplicate(state: &mut State, call: &Call) -> Done {
     let times = call.times_of("duplicate")?;
     let path = target(state)?;
-    if let Some((map, name)) = pointer::split(&path).filter(|_| List::entry(&path).is_some()) {
+    if let Some((map, name)) = Pointer(&path).split().filter(|_| List::entry(&path).is_some()) {
         let value = field::value(state.document(), &path).unwrap_or(Value::Null);
         let entry = [(name, value)].into_iter().collect();
         let (edit, path) = insert_entries(state, map, &entry, times)?.ok_or("there is nothing to duplicate here")?;
@@ -314,7 +315,7 @@ fn reorder(state: &mut State, call: &Call) -> Done {
     }
     let passed = (0..by).filter_map(|k| {
         let (at, onto) = if up { (from - 1 - k, to - k) } else { (to + 1 + k, from + k) };
-        Edit::move_item(state.document(), &pointer::join(&list, at), onto).map(|(edit, _)| edit)
+        Edit::move_item(state.document(), &Pointer(&list).join(at), onto).map(|(edit, _)| edit)
     });
     let edit = Edit::all(passed);
     let by = if up { -(by as i64) } else { by as i64 };

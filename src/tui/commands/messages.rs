@@ -1,8 +1,9 @@
 //! Earlier messages, and the problems of the scene.
 
 use super::command::{Call, Command, Done, command};
+use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
-use crate::scene::{address, pointer};
+use crate::scene::address;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::plain;
@@ -80,7 +81,7 @@ fn problem(state: &mut State, call: &Call) -> Done {
 fn go(state: &mut State, call: &Call, path: &str) -> Done {
     let mut path = path.to_owned();
     while !path.is_empty() && !crate::scene::field::is_there(state.document(), &path) {
-        path = pointer::split(&path).map_or(String::new(), |(holder, _)| holder.to_owned());
+        path = Pointer(&path).split().map_or(String::new(), |(holder, _)| holder.to_owned());
     }
     call.obey(state, &format!("go {path}"))
 }

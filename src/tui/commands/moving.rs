@@ -2,6 +2,7 @@
 
 use super::command::{Call, Command, Done, command};
 use super::finding::leave as leave_place;
+use crate::base::pointer::Pointer;
 use crate::tui::document::tree;
 use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
@@ -133,7 +134,7 @@ fn expand_once(state: &mut State) -> Done {
 
 fn up(state: &mut State, call: &Call) -> Done {
     for _ in call.steps() {
-        let Some((parent, _)) = state.cursor.node.rsplit_once('/') else { break };
+        let Some(parent) = Pointer(&state.cursor.node).parent() else { break };
         let (parent, child) = (parent.to_string(), state.cursor.node.clone());
         state.show(parent);
         state.cursor.row = state.sheet().position(&child).unwrap_or(0);

@@ -2,9 +2,10 @@
 
 use super::command::{Call, Command, Done, command};
 use super::items::{go_to, target};
+use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
 use crate::layers::parts::materials::List;
-use crate::scene::{Edit, field, pointer};
+use crate::scene::{Edit, field};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::line::Line;
 use crate::tui::text::said::unquoted;
@@ -25,7 +26,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
         return Ok(());
     }
     let Some((list, _)) = entry else {
-        let edit = Edit::set(state.document(), &pointer::join(&path, "name"), name.into());
+        let edit = Edit::set(state.document(), &Pointer(&path).join("name"), name.into());
         return state.edit(edit, false);
     };
     let (map, item) = list.words();
@@ -34,7 +35,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
     }
     let edit = Edit::rename(state.document(), list, &old, &name);
     state.edit(edit, false)?;
-    go_to(state, &pointer::join(&format!("/{map}"), &name));
+    go_to(state, &Pointer(&format!("/{map}")).join(&name));
     Ok(())
 }
 

@@ -6,9 +6,10 @@ use serde_json::Value;
 use super::command::Done;
 use super::yanking::here;
 use super::{cells, obey};
+use crate::base::pointer::Pointer;
 use crate::scene::field::{self, Kind};
 use crate::tui::document::csv;
-use crate::tui::document::pointers::{item_of, upward};
+use crate::tui::document::pointers::item_of;
 use crate::tui::document::rows::Target;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::numbers;
@@ -55,7 +56,7 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
 fn target(state: &State) -> Option<Target<'_>> {
     let document = state.document();
     let here = here(state);
-    let lists = upward(&here).map(|path| item_of(document, path).map_or(path, |(list, _)| list).to_owned());
+    let lists = Pointer(&here).upward().map(|path| item_of(document, path).map_or(path, |(list, _)| list).to_owned());
     let inside = field::children(document, &state.cursor.node).into_iter();
     let inside = inside.filter(|child| matches!(child.field.kind, Kind::List(_))).map(|child| child.pointer);
     lists.chain(inside).find_map(|list| Target::of(document, &list))

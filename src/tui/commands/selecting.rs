@@ -2,6 +2,7 @@
 
 use super::command::{Call, Command, Done, command};
 use super::items::rows;
+use crate::base::pointer::Pointer;
 use crate::tui::state::State;
 use crate::tui::state::cursor::Selection;
 
@@ -32,9 +33,9 @@ fn select(state: &mut State, call: &Call) -> Done {
 fn all(state: &mut State) -> Done {
     let sheet = state.sheet();
     let row = sheet.row(state.cursor.row).ok_or("there are no rows here")?;
-    let list = row.pointer.rsplit_once('/').map(|(list, _)| list.to_owned()).filter(|_| row.item && !sheet.table);
-    let within = |row: usize| match &list {
-        Some(list) => sheet.pointer(row).is_some_and(|one| one.rsplit_once('/').is_some_and(|(own, _)| own == list)),
+    let list = Pointer(&row.pointer).parent().filter(|_| row.item && !sheet.table);
+    let within = |row: usize| match list {
+        Some(list) => sheet.pointer(row).is_some_and(|one| Pointer(&one).parent() == Some(list)),
         None => row < sheet.len(),
     };
     let first = (0..=state.cursor.row).rev().take_while(|&row| within(row)).last();

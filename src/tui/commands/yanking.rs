@@ -1,7 +1,8 @@
 //! Yanks a node or rows as JSON, or rows as CSV, and pastes them where they fit.
 
+use crate::base::pointer::Pointer;
 use crate::tui::commands::items::stem;
-use crate::tui::document::pointers::{is_item, item_of, upward};
+use crate::tui::document::pointers::{is_item, item_of};
 use crate::tui::text::plain;
 use serde_json::{Map, Value};
 
@@ -10,7 +11,7 @@ use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, tar
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::insert::misfit;
-use crate::scene::{Document, Edit, address, json, pointer};
+use crate::scene::{Document, Edit, address, json};
 use crate::tui::document::rows;
 use crate::tui::document::sheet::Sheet;
 use crate::tui::events::Effect;
@@ -90,7 +91,7 @@ fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
         several => return Ok((values(state, several), counted(several.len(), "row"))),
     };
     let value = there(state, &one).ok_or("there is nothing to yank here")?;
-    let name = in_map(state.document(), &one).then(|| pointer::split(&one).map(|(_, last)| last)).flatten();
+    let name = in_map(state.document(), &one).then(|| Pointer(&one).split().map(|(_, last)| last)).flatten();
     let said = field::field(state.document(), &one).map(|field| field.name).filter(|name| !name.is_empty());
     let said = said.map_or("the scene".into(), |name| match name.parse::<usize>() {
         Ok(_) => counted(1, "row"),
@@ -105,7 +106,7 @@ fn there(state: &State, pointer: &str) -> Option<Value> {
 
 /// The values of several rows: as a list if they are items, else as an object by their names.
 fn values(state: &State, rows: &[String]) -> Yanked {
-    let mut values = rows.iter().filter_map(|path| Some((pointer::split(path)?.1, there(state, path)?)));
+    let mut values = rows.iter().filter_map(|path| Some((Pointer(path).split()?.1, there(state, path)?)));
     let value = match rows {
         [one] if !in_map(state.document(), one) => values.next().map(|(_, value)| value).unwrap_or_default(),
         [first, ..] if is_item(state.document(), first) => values.map(|(_, value)| value).collect(),
@@ -115,7 +116,7 @@ fn values(state: &State, rows: &[String]) -> Yanked {
 }
 
 fn in_map(document: &Document, path: &str) -> bool {
-    let holder = pointer::split(path).and_then(|(holder, _)| field::field(document, holder));
+    let holder = Pointer(path).split().and_then(|(holder, _)| field::field(document, holder));
     holder.is_some_and(|field| matches!(field.kind, Kind::Map(_)))
 }
 
@@ -240,7 +241,7 @@ fn fits(state: &State) -> Vec<Fit> {
         Kind::Map(_) => fits.push(Fit::Map(path.to_owned())),
         _ => {}
     };
-    for path in upward(&here(state)) {
+    for path in Pointer(&here(state)).upward() {
         let item = item_of(document, path);
         fits.extend(item.map(|(list, index)| Fit::List(list.to_owned(), index + 1)));
         let Some(field) = field::field(document, path) else { continue };
@@ -285,7 +286,7 @@ fn over_cells(state: &State, value: &Value) -> Option<Way> {
 
 /// A value as one item of a list, or its parts as several.
 fn into_list(document: &Document, list: &str, index: usize, value: &Value, times: usize) -> Option<Way> {
-    let item = pointer::join(list, "-");
+    let item = Pointer(list).join("-");
     let fits = |value: &Value| misfit(document, &item, value).is_none();
     let items = match value {
         value if fits(value) => vec![value.clone()],
@@ -302,7 +303,7 @@ fn into_list(document: &Document, list: &str, index: usize, value: &Value, times
 /// A value as one entry of a map, under its old name or that of its file; or an object of such entries.
 fn into_map(state: &State, map: &str, yanked: &Yanked, times: usize) -> Result<Option<Way>, String> {
     let document = state.document();
-    let fits = |value: &Value| misfit(document, &pointer::join(map, "new"), value).is_none();
+    let fits = |value: &Value| misfit(document, &Pointer(map).join("new"), value).is_none();
     let entries = match &yanked.value {
         value if fits(value) => {
             let file = || value.get("path").and_then(Value::as_str).map(stem).map(str::to_owned);
@@ -321,8 +322,9 @@ fn into_map(state: &State, map: &str, yanked: &Yanked, times: usize) -> Result<O
 fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
     let object = value.as_object().filter(|object| !object.is_empty())?;
     let known = field::children(document, form);
-    let known =
-        |name: &String| known.iter().find(|child| pointer::split(&child.pointer).is_some_and(|(_, own)| own == **name));
+    let known = |name: &String| {
+        known.iter().find(|child| Pointer(&child.pointer).split().is_some_and(|(_, own)| own == **name))
+    };
     let edits = object.iter().map(|(name, value)| {
         let child = known(name).filter(|child| misfit(document, &child.pointer, value).is_none())?;
         Some(Edit::set(document, &child.pointer, value.clone()))
@@ -335,11 +337,11 @@ fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
 fn refusal(state: &State, value: &Value) -> String {
     let document = state.document();
     let here = here(state);
-    let list = upward(&here).find_map(|path| match field::field(document, path)?.kind {
+    let list = Pointer(&here).upward().find_map(|path| match field::field(document, path)?.kind {
         Kind::List(_) => Some(path.to_owned()),
         _ => item_of(document, path).map(|(list, _)| list.to_owned()),
     });
-    let wanted = list.as_ref().map_or(here.clone(), |list| pointer::join(list, "-"));
+    let wanted = list.as_ref().map_or(here.clone(), |list| Pointer(list).join("-"));
     let why = misfit(document, &wanted, value).map(|problem| problem.to_string()).unwrap_or_default();
     let name = address::address(document, list.as_deref().unwrap_or(&here));
     format!(

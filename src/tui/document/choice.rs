@@ -1,6 +1,7 @@
 //! A list to choose from: the words of a choice, the kinds of a tagged object, the scene's images.
 
 use super::sheet::Cell;
+use crate::base::pointer::Pointer;
 use crate::scene::Document;
 use crate::scene::field::{self, Kind};
 use crate::tui::text::plain;
@@ -75,7 +76,7 @@ pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
 pub fn of_cell(document: &Document, cell: &Cell, others: Vec<String>) -> Option<Choice> {
     let options = options(document, &cell.field.kind);
     let at = options.iter().position(|(word, _)| *word == cell.text).unwrap_or(0);
-    let parent = cell.pointer.rsplit_once('/').map(|(parent, _)| parent.to_string()).unwrap_or_default();
+    let parent = Pointer(&cell.pointer).parent().unwrap_or_default().to_owned();
     let tag = field::field(document, &parent).is_some_and(
         |field| matches!(field.kind, Kind::Tagged { tag, .. } if cell.pointer.ends_with(&format!("/{tag}"))),
     );

@@ -100,7 +100,7 @@ fn split(text: &str) -> Result<Vec<Record>, String> {
     Ok(records.filter(|record| record.fields.iter().any(|field| !field.is_empty())).collect())
 }
 
-/// So many values, in words.
+/// This many values, in words.
 pub fn values(count: usize) -> String {
     if count == 1 { "1 value".into() } else { format!("{count} values") }
 }

@@ -3,8 +3,9 @@
 
 use serde_json::Value;
 
+use crate::base::pointer::Pointer;
 use crate::scene::schema::{Body, Place};
-use crate::scene::{Document, address, field, pointer};
+use crate::scene::{Document, address, field};
 use crate::tui::text::numbers;
 
 /// One place of a scene.
@@ -59,7 +60,7 @@ fn below(place: Place, at: &str, address: &str, all: &mut Vec<Listed>) {
     let items = matches!(body, Body::List(..));
     for (token, inner) in field::steps(place) {
         let (pointer, address) =
-            (pointer::join(at, &token), address::below(address, (place.shape, body), &token, inner));
+            (Pointer(at).join(&token), address::below(address, (place.shape, body), &token, inner));
         let mut words = match field::name_of(inner.value) {
             Some(name) => name.to_lowercase(),
             None if items => String::new(),

@@ -1,7 +1,8 @@
 //! JSON pointers: the ancestors of a place, and the list that it is an item of.
 
+use crate::base::pointer::{self, Pointer};
+use crate::scene::Document;
 use crate::scene::field::{self, Kind};
-use crate::scene::{Document, pointer};
 
 /// Whether `path` is an item of a list.
 pub fn is_item(document: &Document, path: &str) -> bool {
@@ -10,12 +11,7 @@ pub fn is_item(document: &Document, path: &str) -> bool {
 
 /// The list and the index of an item.
 pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize)> {
-    let (list, last) = pointer::split(path)?;
+    let (list, last) = Pointer(path).split()?;
     let is_list = matches!(field::field(document, list)?.kind, Kind::List(_));
     Some((list, pointer::index(&last).filter(|_| is_list)?))
-}
-
-/// `path` and its ancestors, the innermost first.
-pub fn upward(path: &str) -> impl Iterator<Item = &str> {
-    std::iter::successors(Some(path), |path| path.rsplit_once('/').map(|(holder, _)| holder))
 }

@@ -12,9 +12,10 @@ use serde_json::{Value, json};
 use super::csv::{Record, number, records, values};
 use super::sheet::{Cell, Part, Sheet, in_range};
 use crate::base::number;
+use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
 use crate::scene::field::{self, Kind};
-use crate::scene::{Document, Edit, pointer};
+use crate::scene::{Document, Edit};
 use crate::tui::text::numbers;
 
 /// Other names of columns, in lower case.
@@ -215,7 +216,7 @@ impl Specimen {
         let (edit, path) = Edit::insert_new(document, list, 0)?;
         let mut with = document.apply(&edit).ok()?;
         if let Some((tag, word)) = kind {
-            with = with.apply(&Edit::set(&with, &pointer::join(&path, tag), word.into())).ok()?;
+            with = with.apply(&Edit::set(&with, &Pointer(&path).join(tag), word.into())).ok()?;
         }
         let mut item = with.json().pointer(&path)?.clone();
         let children = field::children(&with, &path);
@@ -223,7 +224,7 @@ impl Specimen {
             Kind::Tagged { tag, .. } => Some(tag),
             _ => None,
         };
-        let name = |child: &field::Child| pointer::split(&child.pointer).map(|(_, name)| name).unwrap_or_default();
+        let name = |child: &field::Child| Pointer(&child.pointer).split().map(|(_, name)| name).unwrap_or_default();
         let mut musts = vec![path.clone()];
         for child in &children {
             let number = matches!(child.field.kind, Kind::Number { .. } | Kind::Numbers(_));
@@ -311,7 +312,7 @@ fn set_number(item: &mut Value, path: &str, index: usize, cell: &Cell, number: V
 
 /// Writes a field of an item, or all of it.
 fn set_whole(item: &mut Value, path: &str, value: Value) {
-    match (pointer::split(path), item) {
+    match (Pointer(path).split(), item) {
         (Some((_, name)), Value::Object(map)) => drop(map.insert(name, value)),
         (_, item) => *item = value,
     }

@@ -3,6 +3,7 @@
 //! knows a field by name, so a new parameter appears by itself.
 
 use crate::base::number;
+use crate::base::pointer::Pointer;
 use crate::tui::text::plain;
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,9 +11,9 @@ use std::sync::Arc;
 use kurbo::Vec2;
 use serde_json::Value;
 
+use crate::scene::Document;
 use crate::scene::field::{self, Child, Field, Kind};
 use crate::scene::schema::{Body, Place};
-use crate::scene::{Document, pointer};
 use crate::tui::text::numbers;
 
 /// A node as rows. A row is made only when it is needed, so that a list of ten thousand is as quick as one of ten.
@@ -198,7 +199,7 @@ impl Sheet {
                 rows.extend(items.map(|(child, place)| item(child, place)));
             }
             None => {
-                let parent = pointer::split(&block.pointer);
+                let parent = Pointer(&block.pointer).split();
                 let place = parent.as_ref().and_then(|(parent, _)| Place::of(json, parent));
                 let (Some((parent, name)), Some(place)) = (parent, place) else { return };
                 let Some((child, place)) = field::child(place, parent, &name) else { return };
@@ -212,7 +213,7 @@ impl Sheet {
         let mut rest = index;
         for block in &self.blocks {
             match block.items {
-                Some(_) if rest < block.len() => return Some(pointer::join(&block.pointer, rest)),
+                Some(_) if rest < block.len() => return Some(Pointer(&block.pointer).join(rest)),
                 None if rest == 0 => return Some(block.pointer.clone()),
                 _ => rest -= block.len(),
             }
@@ -227,8 +228,8 @@ impl Sheet {
             match block.items {
                 None if block.pointer == pointer => return Some(first),
                 Some(count) => {
-                    let token = pointer.strip_prefix(&block.pointer).and_then(|rest| rest.strip_prefix('/'));
-                    if let Some(index) = token.and_then(pointer::index).filter(|&index| index < count) {
+                    let item = Pointer(pointer).item_of(&block.pointer).filter(|(_, way)| way.is_empty());
+                    if let Some((index, _)) = item.filter(|(index, _)| *index < count) {
                         return Some(first + index);
                     }
                 }
@@ -255,7 +256,7 @@ fn blocks(place: Place, node: &str) -> Vec<Block> {
 }
 
 fn item(child: Child, place: Place) -> Row {
-    let label = pointer::split(&child.pointer).map(|(_, token)| token).unwrap_or_default();
+    let label = Pointer(&child.pointer).split().map(|(_, token)| token).unwrap_or_default();
     let field = Arc::new(child.field);
     let cells = match &field.kind {
         Kind::Object | Kind::Tagged { .. } => {

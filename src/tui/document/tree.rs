@@ -1,6 +1,7 @@
 //! The tree of the scene: all nodes by name. Lists of named items (layers, zones) show as their items; other lists are leaves
 //! with a count, and their items are the rows of a table.
 
+use crate::base::pointer::Pointer;
 use crate::tui::text::plain;
 use std::collections::BTreeSet;
 
@@ -8,9 +9,9 @@ use kurbo::Point;
 use serde_json::Value;
 
 use super::sheet;
+use crate::scene::Document;
 use crate::scene::field::{self, Child, Kind};
 use crate::scene::schema::{Body, Place, Shape};
-use crate::scene::{Document, pointer};
 
 /// A row of the tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,8 +77,7 @@ fn named(value: &Value) -> bool {
 
 /// The row for the node at `pointer`: its own, else that of its nearest ancestor.
 pub fn row_of(rows: &[TreeRow], pointer: &str) -> usize {
-    let above =
-        |row: &TreeRow| pointer.strip_prefix(&row.pointer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+    let above = |row: &TreeRow| Pointer(pointer).is_within(&row.pointer);
     let deepest = rows.iter().enumerate().filter(|(_, row)| above(row)).max_by_key(|(_, row)| row.pointer.len());
     deepest.map_or(0, |(i, _)| i)
 }
@@ -96,7 +96,7 @@ const FIRST_LAYER: &str = "/layers/0";
 fn first_item(document: &Document) -> Option<String> {
     let fields = document.json().pointer(FIRST_LAYER)?.as_object()?;
     let (list, _) = fields.iter().find(|(_, value)| named(value))?;
-    Some(pointer::join(&pointer::join(FIRST_LAYER, list), 0))
+    Some(Pointer(&Pointer(FIRST_LAYER).join(list)).join(0))
 }
 
 /// The word for the named items of the layer that the node at `pointer` belongs to, as the schema has it: "zone". `None` if
@@ -113,7 +113,7 @@ pub fn item_word(document: &Document, pointer: &str) -> Option<&'static str> {
 
 /// The index of the layer that the node at `pointer` belongs to.
 pub fn layer_of(pointer: &str) -> Option<usize> {
-    pointer.strip_prefix("/layers/")?.split('/').next()?.parse().ok()
+    Pointer(pointer).item_of("/layers").map(|(layer, _)| layer)
 }
 
 /// Where the cursor of the picture starts: the center of the first named item in the first layer.

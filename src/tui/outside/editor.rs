@@ -1,10 +1,11 @@
 //! The running editor: its state, and the terminal, threads, files and windows around it. One of three loops feeds it events:
 //! on a screen (screen.rs), for a script (script.rs), or line by line (lines.rs).
 
+use super::job::Job;
 use super::options::Options;
 use super::scripts::Scripts;
 use super::throttle::Throttle;
-use super::worker::{Job, Worker};
+use super::worker::Worker;
 use super::{ask, input, pace, terminal};
 use crate::base::error::{Error, Result};
 use crate::files;

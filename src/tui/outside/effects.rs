@@ -4,8 +4,8 @@ use crate::tui::commands::own_keys;
 use std::path::Path;
 
 use super::editor::{Editor, listen};
+use super::job::Job;
 use super::options::Options;
-use super::worker::Job;
 use super::{image_editor, terminal};
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};

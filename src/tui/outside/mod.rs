@@ -5,6 +5,7 @@ pub mod editor;
 pub mod effects;
 pub mod image_editor;
 pub mod input;
+pub mod job;
 pub mod lines;
 pub mod offscreen;
 pub mod options;

@@ -2,6 +2,7 @@
 //! values are set in one edit.
 
 use crate::base::expression;
+use crate::base::pointer::Pointer;
 use crate::tui::document::entry::Entry;
 use crate::tui::document::sheet::in_range;
 use kurbo::Point;
@@ -23,12 +24,13 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
     let Some(model) = state.cursor.cell(&row) else { return Vec::new() };
     let like =
         |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
-    let list = row.pointer.rsplit_once('/').map(|(list, _)| list).filter(|_| row.item);
+    let list = Pointer(&row.pointer).parent().filter(|_| row.item);
     let inner = model.pointer.strip_prefix(&row.pointer).unwrap_or_default();
     let of_row = |i: usize| {
         let pointer = sheet.pointer(i)?;
         // Items of the same kind have the same cells, so the row need not be made.
-        let alike = list.is_some_and(|list| pointer.rsplit_once('/').is_some_and(|(own, _)| own == list))
+        let alike = list.is_some()
+            && Pointer(&pointer).parent() == list
             && kind_of(document, &row.field, &pointer) == kind_of(document, &row.field, &row.pointer);
         let cell = match alike {
             true => Cell { pointer: pointer + inner, ..model.clone() },

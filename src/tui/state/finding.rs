@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::cursor::{Cursor, Pane};
+use crate::base::pointer::Pointer;
 use crate::scene::Document;
 use crate::tui::document::places;
 use crate::tui::document::places::Listed;
@@ -108,12 +109,5 @@ impl Finding {
 }
 
 fn followed(pointer: &str, change: &Change) -> String {
-    let mut at = Some(pointer);
-    while let Some(pointer) = at {
-        if let Some(there) = change.edit.follow(&change.document, pointer) {
-            return there;
-        }
-        at = pointer.rsplit_once('/').map(|(parent, _)| parent);
-    }
-    String::new()
+    Pointer(pointer).upward().find_map(|at| change.edit.follow(&change.document, at)).unwrap_or_default()
 }

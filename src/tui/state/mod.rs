@@ -32,6 +32,7 @@ use super::document::tree;
 use super::events::{Change, Effect};
 use super::keys::Keymap;
 use super::text::color::Depth;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::layers::timeline::Timeline;
 use crate::preview::Transport;
@@ -185,7 +186,7 @@ impl State {
     /// Moves the cursor to something that exists, after the scene has changed.
     pub fn settle(&mut self) {
         while !self.cursor.node.is_empty() && !field::is_there(self.document(), &self.cursor.node) {
-            let parent = self.cursor.node.rsplit_once('/').map_or("", |(parent, _)| parent).to_string();
+            let parent = Pointer(&self.cursor.node).parent().unwrap_or_default().to_owned();
             self.show(parent);
         }
         let sheet = self.sheet();

@@ -1,7 +1,7 @@
 //! Placing things on the picture with its cursor. What has a place, and which lists take points, is read from the schema.
 
 use crate::base::number;
-use crate::tui::document::pointers::upward;
+use crate::base::pointer::Pointer;
 use kurbo::{Point, Vec2};
 use serde_json::Value;
 
@@ -57,7 +57,9 @@ fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
 fn placed(state: &State) -> Option<(String, Place, Point)> {
     let focused = state.focused();
     let document = state.document();
-    upward(&focused).find_map(|pointer| place(document, pointer).map(|(place, at)| (pointer.to_string(), place, at)))
+    Pointer(&focused)
+        .upward()
+        .find_map(|pointer| place(document, pointer).map(|(place, at)| (pointer.to_string(), place, at)))
 }
 
 /// Moves what has the focus to the cursor.
@@ -106,7 +108,7 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
     let document = state.document();
     let focused = state.focused();
     let mut inner = None;
-    for pointer in upward(&focused) {
+    for pointer in Pointer(&focused).upward() {
         let after = inner.replace(pointer).and_then(|child: &str| child[pointer.len() + 1..].parse::<usize>().ok());
         let is_list = field::field(document, pointer).is_some_and(|field| matches!(field.kind, Kind::List(_)));
         let lists = match is_list {

@@ -21,7 +21,7 @@ pub(super) use source::With;
 use document::{Material, Node, Primitive, TextureInfo};
 use source::Source;
 
-/// The lists and the triangles of a file, and what in it could not be honored.
+/// The lists and the triangles of a file, and what in it is not supported.
 pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>)> {
     let With { place, limits, budget, .. } = with;
     let source = Source::of(bytes, with)?;

@@ -45,7 +45,7 @@ fn a_read_only_file_is_written_only_when_told_so() {
     edit(&mut session, "new");
     mode(&place.scene, 0o444);
     let refused = session.save(Overwrite::No).unwrap_err().to_string();
-    assert!(refused.contains("is read-only (allow to write it"), "{refused}");
+    assert!(refused.contains("is read-only (make it writable"), "{refused}");
     assert_eq!((text(&place.scene).as_str(), session.safety().saved), (SCENE, false));
     session.save(Overwrite::Yes).unwrap();
     assert!(text(&place.scene).contains("new"));

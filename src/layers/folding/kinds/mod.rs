@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::model::PictureLayer;
 use crate::base::number;
+use crate::base::pointer::Pointer;
 use crate::base::text::short;
 use crate::layers::technique::Turned;
 
@@ -19,10 +20,10 @@ mod tools;
 /// The `old` thing at `path` (relative to the layer), turned into a `to`. `None` if there is nothing to do but keep
 /// fields with the same name.
 pub fn turned(layer: &PictureLayer, path: &str, old: &Value, to: &str) -> Option<Turned> {
-    let tokens: Vec<&str> = path.split('/').skip(1).collect();
-    let ["zones", zone, rest @ ..] = tokens.as_slice() else { return None };
-    let zone = layer.zones.get(zone.parse::<usize>().ok()?)?;
-    match rest {
+    let (zone, way) = Pointer(path).item_of("/zones")?;
+    let zone = layer.zones.get(zone)?;
+    let tokens: Vec<String> = Pointer(way).tokens().collect();
+    match tokens.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["outline"] | ["fold", "regions", _] => outlines::turned(&read(old)?, to),
         ["motion", _] => tools::turned(zone, &read(old)?, to),
         ["position"] | ["position", .., "ease"] => positions::turned(&read(old)?, to),

@@ -43,7 +43,7 @@ enum Shape {
     Alt(usize),
     Answer(usize),
     Paste,
-    /// So many bytes without a meaning.
+    /// This many bytes without a meaning.
     Broken(usize),
     /// Incomplete; if nothing follows within this time, it is the second.
     Begun(Duration, Box<Shape>),

@@ -9,10 +9,15 @@ use std::io::{Seek, SeekFrom, Write};
 use rayon::prelude::*;
 
 use super::delta::{Rect, moved};
-use super::{Out, Show, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::animation::{Out, Show, Sink};
 use crate::export::icc;
+use crate::files::outputs::Kind;
+
+/// What messages call a file of it, and how one is recognized.
+pub const KIND: Kind =
+    Kind { name: "WebP", is: |found| found.head.starts_with(b"RIFF") && found.head.get(8..12) == Some(b"WEBP") };
 
 /// The longest side of a WebP image.
 const MOST: usize = 16383;

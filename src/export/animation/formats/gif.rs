@@ -8,9 +8,14 @@ use gif::{DisposalMethod, Encoder, Repeat};
 use super::delta::{Rect, around};
 use super::dither::Dither;
 use super::palette::{Palette, is_opaque};
-use super::{Out, Show, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::animation::{Out, Show, Sink};
+use crate::files::outputs::Kind;
+
+/// What messages call a file of it, and how one is recognized.
+pub const KIND: Kind =
+    Kind { name: "GIF", is: |found| found.head.starts_with(b"GIF87a") || found.head.starts_with(b"GIF89a") };
 
 /// The longest side.
 const MOST: usize = 65535;

@@ -5,9 +5,13 @@
 
 use std::io::Write;
 
-use super::{Out, Show, Sink};
 use crate::base::error::Result;
 use crate::base::pixels::{Frame, decode, encode};
+use crate::export::animation::{Out, Show, Sink};
+use crate::files::outputs::Kind;
+
+/// What messages call a file of YUV4MPEG2, and how one is recognized.
+pub const Y4M: Kind = Kind { name: "y4m video", is: |found| found.head.starts_with(b"YUV4MPEG2 ") };
 
 /// Begins bare pixels: sRGB with straight alpha, 4 bytes a pixel.
 pub fn rgba(out: Out, show: Show) -> Result<Box<dyn Sink>> {

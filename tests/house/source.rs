@@ -1,100 +1,49 @@
-//! Enforces the rules of docs/architecture.md: which module may name which, one door per outside crate, no cycles,
-//! sizes.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+//! Reads the sources as far as the rules need: which paths a file names, where they lead, and which files lead to each
+//! other. Tests are not part of the program.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A room names only what stands to its left.
-const ORDER: [&str; 11] =
-    ["base", "layers", "scene", "files", "render", "export", "preview", "ops", "tui", "cli", "main"];
-
-/// Outside crates and where each may be named. Tests may use any.
-const DOORS: &[(&[&str], &[&str])] = &[
-    (&["wgpu"], &["render/gpu", "preview/window"]),
-    (&["winit", "raw_window_handle", "x11rb", "x11_dl", "xkbcommon_dl"], &["preview/window"]),
-    (&["cosmic_text", "dejavu"], &["preview/window/text"]),
-    (&["ratatui", "crossterm", "terminput", "tui_input", "nucleo_matcher"], &["tui/"]),
-    (&["toml", "csv"], &["tui/"]),
-    (&["base64"], &["export/field/svg", "files/mesh", "tui/"]),
-    (&["clap", "clap_complete", "clap_mangen"], &["ops/", "cli/"]),
-    // The link handles the file of its socket; `base/system` creates the user's folders.
-    (&["std::fs"], &["files/", "base/system", "preview/wire/socket"]),
-    (&["std::net", "std::os::unix::net"], &["preview/wire/"]),
-    (&["rustix", "signal_hook"], &["base/system"]),
-    (&["image", "png", "gif", "webp"], &["files/", "export/"]),
-    (&["moxcms", "exr", "tiff", "zune_core", "zune_jpeg"], &["files/picture"]),
-    (&["tiny_skia"], &["export/field"]),
-];
-
 /// A technique's folder: deleting it must break `layers/mod.rs` and no other slice.
-const SLICES: &str = "layers/";
+pub const SLICES: &str = "layers/";
 
 /// The data that slices and the rest exchange.
-const SHARED: &str = "parts";
+pub const SHARED: &str = "parts";
 
-/// The only list of them.
-const LIST: &str = "layers/mod.rs";
-
-/// Tests and benches of one technique, which go with it.
-const OF_ONE_TECHNIQUE: &[&str] = &[
-    "benches/frames.rs",
-    "benches/keys.rs",
-    "benches/scenes/mod.rs",
-    "benches/synthesis.rs",
-    "tests/display/mod.rs",
-    "tests/gpu.rs",
-    "tests/profiles.rs",
-    "tests/properties.rs",
-    "tests/show/mod.rs",
-    "tests/window.rs",
-];
-
-/// The slots of a technique: each file or folder in one of these is named by the folder's `mod.rs` alone.
-const SLOTS: &[&str] = &["layers/mesh/surface/"];
-
-/// The rungs of `tui/`: a file names only what stands in its own or to its left.
-const ORDER_TUI: [&str; 11] =
-    ["text", "graphics", "events", "keys", "document", "state", "tutor", "layout", "commands", "panes", "outside"];
-
-const MOST_LINES: usize = 500;
-
-const MOST_LINES_OF_A_FUNCTION: usize = 60;
-
-struct Source {
+pub struct Source {
     /// Relative to `src`, with `/`.
-    path: String,
-    text: String,
+    pub path: String,
+    pub text: String,
 }
 
 impl Source {
-    fn room(&self) -> &str {
+    pub fn room(&self) -> &str {
         self.path.split(['/', '.']).next().unwrap_or_default()
     }
 
-    fn slice(&self) -> Option<&str> {
+    pub fn slice(&self) -> Option<&str> {
         let slice = self.path.strip_prefix(SLICES)?.split_once('/').map(|(slice, _)| slice);
         slice.filter(|slice| *slice != SHARED)
     }
 
     /// Whether it belongs to the program: not a test, nor a shader.
-    fn is_program(&self) -> bool {
+    pub fn is_program(&self) -> bool {
         let tests = self.path.ends_with("tests.rs") || self.path.contains("/tests/");
         self.path.ends_with(".rs") && !tests
     }
 
     /// Every path that the program (not its tests) names, with its line.
-    fn paths(&self) -> Vec<(usize, String)> {
+    pub fn paths(&self) -> Vec<(usize, String)> {
         if self.is_program() { paths(&self.text) } else { Vec::new() }
     }
 }
 
-fn sources() -> Vec<Source> {
+pub fn sources() -> Vec<Source> {
     sources_in("src")
 }
 
-fn sources_in(folder: &str) -> Vec<Source> {
+pub fn sources_in(folder: &str) -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut found = Vec::new();
     files(&root, &mut found);
@@ -106,7 +55,7 @@ fn sources_in(folder: &str) -> Vec<Source> {
     found.into_iter().map(read).collect()
 }
 
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+pub fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
@@ -118,17 +67,17 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// A path in a text.
-struct Named {
-    line: usize,
-    path: String,
+pub struct Named {
+    pub line: usize,
+    pub path: String,
     /// Whether it stands in a `use`, which gives it a name in the file.
-    used: bool,
+    pub used: bool,
     /// Whether that name is for others too.
-    public: bool,
+    pub public: bool,
 }
 
 /// The paths in `text` without its tests. Braces in `use` are expanded.
-fn named(text: &str) -> Vec<Named> {
+pub fn named(text: &str) -> Vec<Named> {
     let mut found = Vec::new();
     let mut lines = program(text).into_iter();
     while let Some((at, line)) = lines.next() {
@@ -155,7 +104,7 @@ fn named(text: &str) -> Vec<Named> {
 
 /// The paths in `text`, each with its line, written out: what begins with a name that a `use` in it gives is the path of
 /// that `use` and the rest.
-fn paths(text: &str) -> Vec<(usize, String)> {
+pub fn paths(text: &str) -> Vec<(usize, String)> {
     let all = named(text);
     let uses = all.iter().filter(|named| named.used).map(|named| bound(&named.path));
     let names: BTreeMap<&str, &str> = uses.map(|(path, name)| (name, path)).collect();
@@ -175,7 +124,7 @@ fn paths(text: &str) -> Vec<(usize, String)> {
 }
 
 /// The lines of `text` without its tests.
-fn program(text: &str) -> Vec<(usize, &str)> {
+pub fn program(text: &str) -> Vec<(usize, &str)> {
     let mut lines = text.lines().enumerate();
     let mut found = Vec::new();
     while let Some((at, line)) = lines.next() {
@@ -189,14 +138,14 @@ fn program(text: &str) -> Vec<(usize, &str)> {
 
 /// The string literals in `text` without its tests, each with its line; those with escapes or over several lines are left
 /// out.
-fn literals(text: &str) -> Vec<(usize, &str)> {
+pub fn literals(text: &str) -> Vec<(usize, &str)> {
     let lines = program(text).into_iter().map(|(at, line)| (at + 1, uncommented(line)));
     lines.flat_map(|(at, line)| line.split('"').skip(1).step_by(2).map(move |literal| (at, literal))).collect()
 }
 
 /// Skips the item after the attribute `line`, as rustfmt lays it out: one line, or all up to the first line at the same
 /// indentation that closes it.
-fn skip_item<'a>(line: &str, lines: &mut impl Iterator<Item = (usize, &'a str)>) {
+pub fn skip_item<'a>(line: &str, lines: &mut impl Iterator<Item = (usize, &'a str)>) {
     let indent = &line[..line.len() - line.trim_start().len()];
     let mut open = false;
     for (_, line) in lines {
@@ -216,7 +165,7 @@ fn skip_item<'a>(line: &str, lines: &mut impl Iterator<Item = (usize, &'a str)>)
 }
 
 /// What modules pass on of others by `pub use`: module and name, and the path that this stands for.
-fn passed_on(sources: &[Source]) -> BTreeMap<Vec<String>, Vec<String>> {
+pub fn passed_on(sources: &[Source]) -> BTreeMap<Vec<String>, Vec<String>> {
     let mut all = BTreeMap::new();
     for source in sources.iter().filter(|source| source.is_program()) {
         let own = module(&source.path);
@@ -230,14 +179,14 @@ fn passed_on(sources: &[Source]) -> BTreeMap<Vec<String>, Vec<String>> {
 }
 
 /// The path of an item of a `use`, and the name that it gets.
-fn bound(path: &str) -> (&str, &str) {
+pub fn bound(path: &str) -> (&str, &str) {
     let (path, name) = path.split_once(" as ").unwrap_or((path, ""));
     let path = path.strip_suffix("::self").unwrap_or(path);
     (path, if name.is_empty() { path.rsplit("::").next().unwrap_or_default() } else { name })
 }
 
 /// The path from the root of the program that `path` means in the module `own`.
-fn absolute(own: &[&str], path: &str) -> Vec<String> {
+pub fn absolute(own: &[&str], path: &str) -> Vec<String> {
     let mut at: Vec<&str> = own.to_vec();
     for part in path.split("::") {
         match part {
@@ -251,7 +200,7 @@ fn absolute(own: &[&str], path: &str) -> Vec<String> {
 }
 
 /// The functions in `text`, as rustfmt lays them out: first line, name, number of lines.
-fn functions(text: &str) -> Vec<(usize, &str, usize)> {
+pub fn functions(text: &str) -> Vec<(usize, &str, usize)> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found = Vec::new();
     for (i, line) in lines.iter().enumerate() {
@@ -275,18 +224,18 @@ fn functions(text: &str) -> Vec<(usize, &str, usize)> {
     found
 }
 
-fn uncommented(line: &str) -> &str {
+pub fn uncommented(line: &str) -> &str {
     line.split("//").next().unwrap_or_default()
 }
 
 /// Paths of at least two parts in an ordinary line.
-fn spoken(code: &str) -> Vec<String> {
+pub fn spoken(code: &str) -> Vec<String> {
     let words = code.split(|c: char| !c.is_alphanumeric() && c != '_' && c != ':');
     words.filter(|word| word.contains("::")).map(|word| word.trim_matches(':').to_owned()).collect()
 }
 
 /// The paths in a `use` tree: `a::{b, c::{d, e}}` is `a::b`, `a::c::d`, `a::c::e`.
-fn spread(prefix: &str, tree: &str, found: &mut Vec<String>) {
+pub fn spread(prefix: &str, tree: &str, found: &mut Vec<String>) {
     let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
     for (at, c) in tree.char_indices().chain([(tree.len(), ',')]) {
         match c {
@@ -308,13 +257,13 @@ fn spread(prefix: &str, tree: &str, found: &mut Vec<String>) {
 }
 
 /// The module of a file: `layers/folding/mod.rs` is `layers::folding`.
-fn module(file: &str) -> Vec<&str> {
+pub fn module(file: &str) -> Vec<&str> {
     let stem = file.trim_end_matches(".rs");
     stem.strip_suffix("/mod").unwrap_or(stem).split('/').collect()
 }
 
 /// Where paths lead.
-struct Map<'a> {
+pub struct Map<'a> {
     /// The files of all modules.
     files: BTreeMap<Vec<String>, &'a str>,
     /// See [`passed_on`].
@@ -322,14 +271,14 @@ struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    fn new(sources: &'a [Source]) -> Self {
+    pub fn new(sources: &'a [Source]) -> Self {
         let program = sources.iter().filter(|source| source.path.ends_with(".rs"));
         let files = program.map(|source| (absolute(&[], &module(&source.path).join("::")), source.path.as_str()));
         Map { files: files.collect(), passed: passed_on(sources) }
     }
 
     /// The file that a path in a file leads to, past modules that only pass it on; `None` if it leads out of the program.
-    fn leads_to(&self, file: &str, path: &str) -> Option<&'a str> {
+    pub fn leads_to(&self, file: &str, path: &str) -> Option<&'a str> {
         let (own, head) = (module(file), path.split("::").next()?);
         let mut at = absolute(&own, path);
         // Otherwise a module inside this one, or what it passes on.
@@ -355,7 +304,7 @@ impl<'a> Map<'a> {
 
 /// Groups of files that all lead to each other, directly or through others in the group (strongly connected components,
 /// Tarjan 1972).
-fn circles(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<Vec<String>> {
+pub fn circles(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<Vec<String>> {
     #[derive(Default)]
     struct Walk<'a> {
         number: BTreeMap<&'a str, usize>,
@@ -396,249 +345,8 @@ fn circles(arrows: &BTreeMap<&str, BTreeSet<&str>>) -> Vec<Vec<String>> {
 }
 
 /// Whether `path` is `name` or something in it.
-fn within(path: &str, name: &str) -> bool {
+pub fn within(path: &str, name: &str) -> bool {
     path.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with("::") || rest.starts_with(' '))
-}
-
-/// The part of `path` after `prefix`.
-fn after<'a>(path: &'a str, prefix: &str) -> Option<&'a str> {
-    path.strip_prefix(prefix)?.split("::").next()
-}
-
-fn report(rule: &str, broken: &[String]) {
-    assert!(broken.is_empty(), "{rule}:\n  {}", broken.join("\n  "));
-}
-
-#[test]
-fn a_room_names_only_what_stands_to_its_left() {
-    let place = |room: &str| ORDER.iter().position(|&r| r == room);
-    let mut broken = Vec::new();
-    for source in sources().iter().filter(|source| source.path != "lib.rs") {
-        let Some(own) = place(source.room()) else {
-            broken.push(format!("src/{}: the room {} has no place in the order", source.path, source.room()));
-            continue;
-        };
-        for (line, path) in source.paths() {
-            let right = after(&path, "crate::").filter(|room| place(room).is_some_and(|there| there > own));
-            broken.extend(right.map(|room| format!("src/{}:{line} names {room}", source.path)));
-        }
-    }
-    report(&ORDER.join(" < "), &broken);
-}
-
-#[test]
-fn a_rung_of_the_editor_names_only_what_stands_to_its_left() {
-    let sources = sources();
-    let map = Map::new(&sources);
-    let rung = |path: &str| {
-        let name = path.strip_prefix("tui/")?.split(['/', '.']).next()?;
-        ORDER_TUI.iter().position(|rung| *rung == name)
-    };
-    let (mut seen, mut broken) = (0, Vec::new());
-    for source in sources.iter().filter(|source| source.room() == "tui" && source.path != "tui/mod.rs") {
-        for (line, path) in source.paths() {
-            let other = map.leads_to(&source.path, &path).filter(|other| other.starts_with("tui/"));
-            let Some(other) = other.filter(|other| !other.contains("/tests/")) else { continue };
-            seen += 1;
-            if rung(&source.path).is_none() || rung(other) > rung(&source.path) || rung(other).is_none() {
-                broken.push(format!("src/{}:{line} names {other}", source.path));
-            }
-        }
-    }
-    report(&ORDER_TUI.join(" < "), &broken);
-    assert!(seen > 200, "only {seen} seen");
-}
-
-#[test]
-fn an_outside_crate_has_one_door() {
-    let mut broken = Vec::new();
-    for source in sources() {
-        for (crates, doors) in DOORS {
-            if doors.iter().any(|door| source.path.starts_with(door)) {
-                continue;
-            }
-            for (line, path) in source.paths() {
-                let named = crates.iter().find(|name| within(&path, name));
-                broken
-                    .extend(named.map(|name| format!("src/{}:{line} names {name}: {}", source.path, doors.join(", "))));
-            }
-        }
-    }
-    report("one door an outside crate", &broken);
-}
-
-/// The folders that hold a technique.
-fn techniques(sources: &[Source]) -> Vec<&str> {
-    let holds = |source: &&Source| source.path.ends_with("/mod.rs") && source.text.contains("pub static KIND: Kind");
-    sources.iter().filter(holds).filter_map(Source::slice).collect()
-}
-
-#[test]
-fn techniques_name_neither_one_another_nor_their_list() {
-    let sources = sources();
-    let techniques = techniques(&sources);
-    assert!(techniques.len() > 1, "{techniques:?}");
-    let map = Map::new(&sources);
-    let mut broken = Vec::new();
-    for source in &sources {
-        // `parts` and what else stands beside them names none of them.
-        if !source.path.starts_with(SLICES) || source.path == LIST {
-            continue;
-        }
-        let own = source.slice().filter(|slice| techniques.contains(slice));
-        for (line, path) in source.paths() {
-            let Some(file) = map.leads_to(&source.path, &path) else { continue };
-            let to = file.strip_prefix(SLICES).and_then(|rest| rest.split_once('/')).map(|(slice, _)| slice);
-            let other = to.is_some_and(|to| techniques.contains(&to) && Some(to) != own);
-            if other || (own.is_some() && file == LIST) {
-                broken.push(format!("src/{}:{line} names {file}", source.path));
-            }
-        }
-    }
-    report("deleting a technique's folder breaks its list and nothing else of layers/", &broken);
-}
-
-/// How the list calls the layers of the techniques: `Layer::Picture`.
-fn variants(sources: &[Source]) -> Vec<String> {
-    let techniques = techniques(sources);
-    let list = sources.iter().find(|source| source.path == LIST).map_or("", |source| &source.text);
-    // `    Picture(folding::model::PictureLayer),`
-    let variant = |line: &str| {
-        let (name, rest) = line.trim().split_once('(')?;
-        let known = techniques.iter().any(|technique| rest.starts_with(&format!("{technique}::")));
-        (known && rest.ends_with("),")).then(|| format!("Layer::{name}"))
-    };
-    let variants: Vec<String> = list.lines().filter_map(variant).collect();
-    assert_eq!(variants.len(), techniques.len(), "{variants:?}");
-    variants
-}
-
-/// Where a file names a technique: its folder, or its variant.
-fn names_of_techniques(source: &Source, techniques: &[&str], variants: &[String]) -> Vec<(usize, String)> {
-    let named = |(_, path): &(usize, String)| {
-        let folder = |technique: &&str| path.split_once("layers::").is_some_and(|(_, rest)| within(rest, technique));
-        techniques.iter().any(folder) || variants.iter().any(|variant| path.ends_with(variant.as_str()))
-    };
-    paths(&source.text).into_iter().filter(named).collect()
-}
-
-#[test]
-fn nobody_outside_names_a_technique() {
-    let sources = sources();
-    let (techniques, variants) = (techniques(&sources), variants(&sources));
-    let mut broken = Vec::new();
-    let own = |source: &Source| source.slice().is_some_and(|slice| techniques.contains(&slice));
-    for source in sources.iter().filter(|source| source.is_program() && source.path != LIST && !own(source)) {
-        let named = names_of_techniques(source, &techniques, &variants);
-        broken.extend(named.into_iter().map(|(line, path)| format!("src/{}:{line} names {path}", source.path)));
-    }
-    report("only layers/mod.rs names a technique", &broken);
-}
-
-#[test]
-fn few_tests_and_benches_name_a_technique() {
-    let sources = sources();
-    let (techniques, variants) = (techniques(&sources), variants(&sources));
-    let mut found = BTreeSet::new();
-    for folder in ["tests", "benches"] {
-        // The names in this file are examples.
-        for source in sources_in(folder).into_iter().filter(|source| source.path != "house.rs") {
-            if !names_of_techniques(&source, &techniques, &variants).is_empty() {
-                found.insert(format!("{folder}/{}", source.path));
-            }
-        }
-    }
-    let excepted: BTreeSet<String> = OF_ONE_TECHNIQUE.iter().map(|&file| file.to_owned()).collect();
-    assert_eq!(found, excepted, "OF_ONE_TECHNIQUE lists the files that break if a technique is deleted");
-}
-
-#[test]
-fn nobody_outside_writes_what_a_technique_calls_its_own() {
-    let sources = sources();
-    let techniques = techniques(&sources);
-    let own = |source: &&Source| source.slice().is_some_and(|slice| techniques.contains(&slice));
-    // Overlays and programs by their form, looks by where they are made; single words ("normal") mean other things too.
-    let mut names = BTreeSet::new();
-    for source in sources.iter().filter(own).filter(|source| source.is_program()) {
-        let overlays = literals(&source.text).into_iter().map(|(_, literal)| literal);
-        names.extend(overlays.filter(|name| name.starts_with("view-") || name.ends_with(".wgsl")));
-        let looks = source.text.split("Look::new(").skip(1);
-        let looks = looks.filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next());
-        names.extend(looks.filter(|name| name.contains(' ')));
-    }
-    assert!(["view-outlines", "frame.wgsl", "fold region"].iter().all(|name| names.contains(name)), "{names:?}");
-    let mut broken = Vec::new();
-    for source in sources.iter().filter(|source| source.is_program() && !own(source)) {
-        let named = literals(&source.text).into_iter().filter(|(_, literal)| names.contains(literal));
-        broken.extend(named.map(|(line, name)| format!("src/{}:{line} writes \"{name}\"", source.path)));
-    }
-    report("the names of overlays, looks and programs stay with their technique", &broken);
-}
-
-#[test]
-fn only_its_list_names_what_is_in_a_slot() {
-    let sources = sources();
-    let map = Map::new(&sources);
-    let mut broken = Vec::new();
-    for slot in SLOTS {
-        let part = |file: &str| {
-            let name = file.strip_prefix(slot)?.split(['/', '.']).next()?.to_owned();
-            Some(name).filter(|name| name != "mod")
-        };
-        assert!(sources.iter().filter_map(|source| part(&source.path)).count() > 1, "{slot}");
-        for source in sources.iter().filter(|source| source.path != format!("{slot}mod.rs")) {
-            let own = part(&source.path);
-            for (line, path) in source.paths() {
-                let Some(to) = map.leads_to(&source.path, &path) else { continue };
-                if part(to).is_some_and(|to| own.as_ref() != Some(&to)) {
-                    broken.push(format!("src/{}:{line} names {path}", source.path));
-                }
-            }
-        }
-    }
-    report("deleting what is in a slot breaks its list and nothing else", &broken);
-}
-
-#[test]
-fn no_file_names_one_that_names_it() {
-    let sources = sources();
-    let map = Map::new(&sources);
-    let mut arrows: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for source in &sources {
-        let to = source.paths().into_iter().filter_map(|(_, path)| map.leads_to(&source.path, &path));
-        // A folder's files are part of its `mod.rs`: they may use what it declares.
-        let above = |file: &&str| file.strip_suffix("mod.rs").is_some_and(|folder| source.path.starts_with(folder));
-        arrows.insert(&source.path, to.filter(|file| !above(file)).collect());
-    }
-    let broken: Vec<String> = circles(&arrows).iter().map(|circle| circle.join(" <- ")).collect();
-    report("no circle of files", &broken);
-}
-
-#[test]
-fn files_stay_short_and_say_what_they_are() {
-    let mut broken = Vec::new();
-    for Source { path, text } in sources() {
-        let lines = text.lines().count();
-        if lines > MOST_LINES {
-            broken.push(format!("src/{path}: {lines} lines, {MOST_LINES} at most"));
-        }
-        if !text.starts_with("//") {
-            broken.push(format!("src/{path}: opens without a comment that says what it is"));
-        }
-    }
-    report("files", &broken);
-}
-
-#[test]
-fn functions_stay_short() {
-    let mut broken = Vec::new();
-    let sources = sources();
-    for source in sources.iter().filter(|source| source.is_program()) {
-        let text = source.text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-        let long = functions(text).into_iter().filter(|&(.., lines)| lines > MOST_LINES_OF_A_FUNCTION);
-        broken.extend(long.map(|(at, name, lines)| format!("src/{}:{at} {name}: {lines} lines", source.path)));
-    }
-    report(&format!("{MOST_LINES_OF_A_FUNCTION} lines a function"), &broken);
 }
 
 #[test]

@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::delta::{Rect, moved};
-use super::{Out, Show, Sink};
 use crate::base::error::Result;
 use crate::base::pixels::Frame;
+use crate::export::animation::{Out, Show, Sink};
 use crate::export::still;
 
 struct Apng {

@@ -13,16 +13,18 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::raw::opaque;
-use super::{Show, Sink};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
+use crate::export::animation::{Show, Sink};
 use crate::files::draft;
-use crate::files::outputs::Place;
+use crate::files::outputs::{Kind, Place};
 use crate::files::video;
 use crate::files::write::{self, Atomic};
 
 /// How one container is written.
 pub struct Codec {
+    /// What messages call a file of it, and how one is recognized.
+    pub(super) kind: Kind,
     /// What ffmpeg calls the container.
     container: &'static str,
     /// The pixels in it.
@@ -37,6 +39,10 @@ pub struct Codec {
 
 /// H.264.
 pub const MP4: Codec = Codec {
+    kind: Kind {
+        name: "MP4 video",
+        is: |found| found.head.get(4..8) == Some(b"ftyp") && found.head.get(8..12) != Some(b"qt  "),
+    },
     container: "mp4",
     pixels: "yuv420p",
     encoder: "-c:v libx264 -preset medium -crf 16 -movflags +faststart",
@@ -46,6 +52,7 @@ pub const MP4: Codec = Codec {
 
 /// VP9 with alpha.
 pub const WEBM: Codec = Codec {
+    kind: Kind { name: "WebM video", is: |found| found.head.starts_with(b"\x1a\x45\xdf\xa3") },
     container: "webm",
     pixels: "yuva420p",
     encoder: "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1",
@@ -55,6 +62,7 @@ pub const WEBM: Codec = Codec {
 
 /// ProRes 4444.
 pub const MOV: Codec = Codec {
+    kind: Kind { name: "QuickTime video", is: |found| found.head.get(4..12) == Some(b"ftypqt  ") },
     container: "mov",
     pixels: "yuva444p10le",
     encoder: "-c:v prores_ks -profile:v 4444 -alpha_bits 16 -vendor apl0",

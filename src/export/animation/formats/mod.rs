@@ -1,10 +1,19 @@
 //! The one table of formats: what each output is for, and what of a scene it keeps. `plica render --help`, the manual, the
 //! documentation (docs/outputs.md) and messages are made from it.
 
-use super::ffmpeg::{self, Codec};
-use super::{Out, Show, Sink, apng, gif, raw, webp};
+use self::ffmpeg::Codec;
 use crate::base::error::Result;
-use crate::files::outputs::Kind;
+use crate::export::animation::{Out, Show, Sink};
+use crate::files::outputs::{self, Found, Kind};
+
+mod apng;
+mod delta;
+mod dither;
+pub(super) mod ffmpeg;
+mod gif;
+mod palette;
+mod raw;
+mod webp;
 
 /// What an output keeps of a scene, in a few words each.
 pub struct Keeps {
@@ -18,11 +27,14 @@ pub struct Keeps {
     pub ending: &'static str,
 }
 
+/// Begins an animation.
+pub(super) type Begin = fn(Out, Show) -> Result<Box<dyn Sink>>;
+
 /// How a format is encoded.
 #[derive(Clone, Copy)]
 pub enum Writer {
     /// By an encoder of our own.
-    Own(fn(Out, Show) -> Result<Box<dyn Sink>>),
+    Own(Begin),
     /// By the person's ffmpeg.
     Ffmpeg(&'static Codec),
 }
@@ -39,11 +51,22 @@ pub struct Format {
     pub streams: bool,
     /// What it keeps.
     pub keeps: Keeps,
-    /// What messages call it, and how a file of it is recognised.
+    /// What messages call a file of it, and how one is recognized.
     pub kind: Kind,
+    /// Whether it is Y'CbCr, which has a matrix.
+    pub(super) matrix: bool,
     pub(super) writer: Writer,
     /// Bytes that its encoder keeps at the most, besides the frame that it is given.
     pub(super) memory: fn(&Show) -> u64,
+}
+
+/// Bare pixels have no signature: a file with their extension that begins like nothing else.
+const BARE: Kind = Kind { name: "file of bare pixels", is: is_bare };
+
+fn is_bare(found: &Found) -> bool {
+    let named = found.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rgba"));
+    let others = FORMATS.iter().map(|format| format.kind).filter(|kind| *kind != BARE);
+    named && found.length.is_multiple_of(4) && !others.chain(outputs::KINDS).any(|kind| (kind.is)(found))
 }
 
 const NO_ENDING: &str = "none: the player decides";
@@ -56,7 +79,8 @@ pub const FORMATS: &[Format] = &[
         help: "exact; browsers and most viewers play it",
         streams: false,
         keeps: Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "exact", ending: "loop or once" },
-        kind: Kind::Png,
+        kind: outputs::PNG,
+        matrix: false,
         writer: Writer::Own(apng::begin),
         memory: apng::memory,
     },
@@ -71,7 +95,8 @@ pub const FORMATS: &[Format] = &[
             timing: "whole ms, no drift",
             ending: "loop or once",
         },
-        kind: Kind::WebP,
+        kind: webp::KIND,
+        matrix: false,
         writer: Writer::Own(webp::begin),
         memory: webp::memory,
     },
@@ -86,7 +111,8 @@ pub const FORMATS: &[Format] = &[
             timing: "whole 1/100 s, no drift",
             ending: "loop or once",
         },
-        kind: Kind::Gif,
+        kind: gif::KIND,
+        matrix: false,
         writer: Writer::Own(gif::begin),
         memory: gif::memory,
     },
@@ -96,7 +122,8 @@ pub const FORMATS: &[Format] = &[
         help: "H.264 by your ffmpeg, for everything that plays video",
         streams: false,
         keeps: Keeps { alpha: "lost, on black", colors: "lossy 4:2:0, tagged", timing: "exact", ending: NO_ENDING },
-        kind: Kind::Mp4,
+        kind: ffmpeg::MP4.kind,
+        matrix: true,
         writer: Writer::Ffmpeg(&ffmpeg::MP4),
         memory: ffmpeg::memory,
     },
@@ -106,7 +133,8 @@ pub const FORMATS: &[Format] = &[
         help: "VP9 by your ffmpeg, for web pages",
         streams: false,
         keeps: Keeps { alpha: "kept, lossy", colors: "lossy 4:2:0, tagged", timing: "whole ms", ending: NO_ENDING },
-        kind: Kind::WebM,
+        kind: ffmpeg::WEBM.kind,
+        matrix: true,
         writer: Writer::Ffmpeg(&ffmpeg::WEBM),
         memory: ffmpeg::memory,
     },
@@ -116,7 +144,8 @@ pub const FORMATS: &[Format] = &[
         help: "ProRes 4444 by your ffmpeg, for video editors",
         streams: false,
         keeps: Keeps { alpha: "kept", colors: "10 bits 4:4:4, tagged", timing: "exact", ending: NO_ENDING },
-        kind: Kind::Mov,
+        kind: ffmpeg::MOV.kind,
+        matrix: true,
         writer: Writer::Ffmpeg(&ffmpeg::MOV),
         memory: ffmpeg::memory,
     },
@@ -126,7 +155,8 @@ pub const FORMATS: &[Format] = &[
         help: "uncompressed video for ffmpeg and other encoders",
         streams: true,
         keeps: Keeps { alpha: "lost, on black", colors: "8 bits Y'CbCr 4:4:4", timing: "exact", ending: NO_ENDING },
-        kind: Kind::Y4m,
+        kind: raw::Y4M,
+        matrix: true,
         writer: Writer::Own(raw::y4m),
         memory: raw::y4m_memory,
     },
@@ -136,7 +166,8 @@ pub const FORMATS: &[Format] = &[
         help: "bare pixels, row after row, frame after frame",
         streams: true,
         keeps: Keeps { alpha: "kept, straight", colors: "exact, 8 bits sRGB", timing: "none", ending: "none" },
-        kind: Kind::Rgba,
+        kind: BARE,
+        matrix: false,
         writer: Writer::Own(raw::rgba),
         memory: |_| 0,
     },
@@ -197,4 +228,36 @@ pub fn markdown() -> String {
     let mut lines: Vec<String> = cells().into_iter().zip(help).map(line).collect();
     lines.insert(1, format!("|{}\n", " --- |".repeat(6)));
     lines.concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn each_kind_of_file_is_recognized_as_itself_only() {
+        let heads: [(&[u8], Option<&str>); 10] = [
+            (b"\x89PNG\r\n\x1a\n and more", Some("PNG")),
+            (b"GIF89a..", Some("GIF")),
+            (b"RIFF\0\0\0\0WEBPVP8X", Some("WebP")),
+            (b"RIFF\0\0\0\0WAVEfmt ", None),
+            (b"YUV4MPEG2 W3 H2 ", Some("y4m video")),
+            (b"\0\0\0\x18ftypisom", Some("MP4 video")),
+            (b"\0\0\0\x14ftypqt  ", Some("QuickTime video")),
+            (b"\x1a\x45\xdf\xa3....webm", Some("WebM video")),
+            (b"\x76\x2f\x31\x01....", Some("OpenEXR picture")),
+            (b"{\"plica\": 1}", None),
+        ];
+        for (head, name) in heads {
+            let length = head.len() as u64;
+            for kind in FORMATS.iter().map(|format| format.kind).chain(outputs::KINDS) {
+                let (path, bare) = (Path::new("there.rgba"), name.is_none() && length.is_multiple_of(4));
+                let wanted = if kind == BARE { bare } else { name == Some(kind.name) };
+                assert_eq!((kind.is)(&Found { path, length, head }), wanted, "{} over {head:?}", kind.name);
+            }
+            assert!(!is_bare(&Found { path: Path::new("there.png"), length, head }));
+        }
+    }
 }
