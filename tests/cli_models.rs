@@ -160,10 +160,20 @@ fn what_of_a_model_cannot_be_read_is_told() {
     std::fs::write(at("from/bare.gltf"), gltf("parts/square.bin", "gone.png")).unwrap();
     std::fs::write(at("from/far.gltf"), gltf("../square.bin", "parts/skin.png")).unwrap();
     std::fs::write(at("square.bin"), square()).unwrap();
+    std::fs::write(at("a.ply"), "ply\nformat ascii 1.0\n").unwrap();
+    std::fs::write(at("b.STL"), [0; 84]).unwrap();
+    std::fs::write(at("huge.obj"), "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     for (args, told, succeeds) in [
         (&["new", "broken.obj"][..], "broken.obj: line 1", false),
         (&["new", "no.obj"], "no.obj: there is no such file", false),
-        (&["new", "lost.gltf"], "lost.bin: there is no such file", false),
+        (&["new", "lost.gltf"], "lost.gltf: its buffer lost.bin: there is no such file", false),
+        (&["new", "a.ply"], "a.ply: is a PLY mesh, which Plica does not read (export it as .glb or .obj", false),
+        (&["new", "b.STL"], "b.STL: is an STL mesh, which Plica does not read", false),
+        (
+            &["new", "huge.obj"],
+            "huge.obj: its coordinates reach 1e30 m, at most 1e8 m can be seen (scale it down",
+            false,
+        ),
         (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder", false),
         (
             &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::{Options, mesh, paths, picture};
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
 
 /// How the names of models end.
@@ -23,10 +23,14 @@ pub struct Model {
     pub notes: Vec<String>,
 }
 
-/// Whether the file at `path` is a model: by its name, unless it begins as a picture; a `.glb` by whatever name.
+/// A model whose coordinates go further cannot be seen by any camera: positions in a scene end at 1e9 m.
+const FARTHEST_M: f64 = 1e8;
+
+/// Whether the file at `path` is a model, also of a kind that is not read: by its name, unless it begins as a picture; a
+/// `.glb` by whatever name.
 pub fn is_one(path: &Path) -> bool {
     let name = path.to_string_lossy().to_ascii_lowercase();
-    let is_called = ENDS.iter().any(|end| name.ends_with(end));
+    let is_called = ENDS.iter().any(|end| name.ends_with(end)) || mesh::is_foreign(&name);
     let mut magic = [0; 4];
     let read = paths::open_named(path).ok().and_then(|mut file| file.read_exact(&mut magic).ok());
     read.is_some() && magic == *b"glTF" || is_called && !picture::is_one(path)
@@ -45,6 +49,11 @@ pub fn read(path: &Path, options: &Options) -> Result<Model> {
     let sibling = |name: &str| paths::open(&scene, name, options);
     let place = path.display().to_string();
     let (mesh, mut notes, _share) = mesh::decode(open()?, &place, limits, &limits.budget(), &sibling)?;
+    let reach = mesh.bounds().map_or(0.0, |(least, most)| least.abs().max(most.abs()).max_element());
+    if reach > FARTHEST_M {
+        let what = format!("its coordinates reach {reach:e} m, at most {FARTHEST_M:e} m can be seen");
+        return Err(Error::at(&place, what).cure("scale it down where it was made, and export it again"));
+    }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut beside = mesh::parts(open()?, &name, limits)?;
     let offered = mesh::pictures(open()?, &name, limits)?;

@@ -3,7 +3,7 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
 use super::Context;
 use super::scene_options::SceneOptions;
@@ -63,7 +63,10 @@ fn here(scene: &Path, joined: bool, options: Options) -> Result<Source> {
     }
     let link = client::follow(scene, &options, joined);
     let (path, mut cache) = (scene.to_owned(), materials::Cache::default());
-    let load = move |scene: &_| materials::gather(&path, scene, &options, &mut cache);
+    let load = move |scene: &_, progress| {
+        cache.progress = Some(Arc::new(progress));
+        materials::gather(&path, scene, &options, &mut cache)
+    };
     let name = scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Ok((name, link, Box::new(load)))
 }
@@ -80,7 +83,8 @@ fn there(way: Way, context: &Context) -> Result<Source> {
     let connected = way.connect(drop).or_else(|error| context.check_cancelled().and(Err(error)))?;
     let link = far::follow(way, connected, kept, copies.clone())?;
     let mut cache = materials::Cache::default();
-    let load = move |scene: &_| {
+    let load = move |scene: &_, progress| {
+        cache.progress = Some(Arc::new(progress));
         let copies = copies.lock().unwrap_or_else(PoisonError::into_inner).clone();
         materials::gather_copies(&copies, scene, &options, &mut cache)
     };

@@ -30,6 +30,8 @@ pub enum Event {
     Synthesised(Box<Result<Synthesis, Problem>>),
     /// A synthesis has begun.
     Synthesising,
+    /// So much of the scene's files is read, in percent, if that takes a while.
+    Reading(u8),
     /// What a pixel does.
     Probed(Arc<Probed>),
     /// The worker has made a picture.

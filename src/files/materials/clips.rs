@@ -113,8 +113,10 @@ impl Sources<'_> {
             let (found, share) = picture::decode_if(file, place, allowed.limits, allowed.budget, found)?;
             Ok((found.picture, found.notes, share))
         };
+        allowed.expect(rest.len());
         let load = |path: &String| {
             let loaded = one(path, &like_first);
+            allowed.progress.iter().for_each(|progress| progress.done(1));
             // What was read before, as the first of another clip, say, has not been compared.
             loaded.and_then(|frame| same_size(path, (frame.value.width(), frame.value.height()), size).map(|()| frame))
         };
@@ -147,7 +149,7 @@ fn video(
     clip: &scene::Clip,
 ) -> impl Fn(File, &str, Allowed, mesh::Opener) -> Result<(Vec<Arc<Picture>>, Vec<String>, Share)> {
     let wanted = video::Wanted { first: clip.first, count: clip.count };
-    move |file, place, Allowed { limits, budget, stop }, _| {
+    move |file, place, Allowed { limits, budget, stop, .. }, _| {
         let (frames, share) = video::decode(file, place, wanted, video::Allowed { limits, budget, stop })?;
         Ok((frames, Vec::new(), share))
     }

@@ -17,6 +17,7 @@ use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
+use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
 use crate::scene::{Scene, check};
 
@@ -49,6 +50,8 @@ pub struct Cache {
     budget: Option<Budget>,
     /// Cancels the loading.
     pub stop: Option<Arc<AtomicBool>>,
+    /// Counts the files that are read.
+    pub progress: Option<Arc<Progress>>,
 }
 
 impl Cache {
@@ -135,7 +138,9 @@ impl Sources<'_> {
         let mut problems = Vec::new();
         let budget = cache.budget.get_or_insert_with(|| self.options.limits.budget()).clone();
         let stop = cache.stop.clone();
-        let allowed = Allowed { limits: &self.options.limits, budget: &budget, stop: stop.as_deref() };
+        let progress = cache.progress.take();
+        let limits = &self.options.limits;
+        let allowed = Allowed { limits, budget: &budget, stop: stop.as_deref(), progress: progress.as_deref() };
         let pictures = self.load(&named::pictures(scene), allowed, &decode_picture, &mut cache.pictures, &mut problems);
         let meshes = self.load(&named::meshes(scene), allowed, &decode_mesh, &mut cache.meshes, &mut problems);
         let fields = self.load(&named::fields(scene), allowed, &decode_field, &mut cache.fields, &mut problems);
@@ -180,10 +185,12 @@ impl Sources<'_> {
     ) -> BTreeMap<String, Arc<T>> {
         // Each file is decoded once, however often it is named.
         let files: BTreeMap<PathBuf, &str> = named.iter().map(|named| (self.key(named.path), named.path)).collect();
+        allowed.expect(files.len());
         let loaded: HashMap<PathBuf, Result<Loaded<T>>> = files
             .into_par_iter()
             .map(|(file, path)| {
                 let loaded = self.load_one(path, allowed, decode, store.get(&file));
+                allowed.progress.iter().for_each(|progress| progress.done(1));
                 (file, loaded)
             })
             .collect();
@@ -245,12 +252,19 @@ impl Sources<'_> {
     }
 }
 
-/// What loading may consume, and the flag that cancels it.
+/// What loading may consume, the flag that cancels it, and how far it is.
 #[derive(Clone, Copy)]
 struct Allowed<'a> {
     limits: &'a Limits,
     budget: &'a Budget,
     stop: Option<&'a AtomicBool>,
+    progress: Option<&'a Progress>,
+}
+
+impl Allowed<'_> {
+    fn expect(&self, files: usize) {
+        self.progress.iter().for_each(|progress| progress.expect(files as u64));
+    }
 }
 
 /// Reads an open file; the path is its name in messages, and the last is for files that it names. Also returns what in

@@ -47,6 +47,12 @@ const FOREIGN: &[(&str, &[&[u8]], &str)] = &[
     (".gz", &[b"\x1f\x8b"], "compressed by gzip"),
 ];
 
+/// Whether a file called `name`, in lower case, is a mesh or a scene of a kind that is not read.
+pub fn is_foreign(name: &str) -> bool {
+    let archive = [".zip", ".gz"].iter().any(|end| name.ends_with(end));
+    !archive && FOREIGN.iter().any(|(end, ..)| name.ends_with(end))
+}
+
 /// The mesh in an open file, what in it is not supported in words, and the memory that it takes; `place` is its name
 /// in messages. `sibling` opens a file that the mesh names, by a path relative to it.
 ///

@@ -23,12 +23,13 @@ use crate::scene::Scene;
 
 /// How long after its beginning, and how often from then on, progress is told.
 const BETWEEN: Duration = Duration::from_millis(500);
+const READING: &str = "reading the files";
 const SYNTHESISING: &str = "synthesising";
 /// How often to check for a signal.
 const LOOK: Duration = Duration::from_millis(250);
 
-/// Loads what a scene names; returns that and what is wrong with it.
-pub type Load = Box<dyn FnMut(&Scene) -> (Materials, Vec<Problem>) + Send>;
+/// Loads what a scene names, and counts the files; returns what was loaded, and what is wrong with it.
+pub type Load = Box<dyn FnMut(&Scene, Progress) -> (Materials, Vec<Problem>) + Send>;
 
 /// What reaches the event loop.
 #[derive(Debug)]
@@ -179,9 +180,9 @@ fn synthesise(
     while let Ok(first) = work.recv() {
         let (scene, revision) = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
-        send(Event::Work(Work { what: "reading the pictures", percent: None }))?;
+        send(Event::Work(Work { what: READING, percent: None }))?;
         let made = fault::caught(|| {
-            let (mut materials, problems) = load(&scene);
+            let (mut materials, problems) = load(&scene, progress(READING, tell.clone()));
             send(Event::Work(Work { what: SYNTHESISING, percent: None }))?;
             materials.progress = Some(Arc::new(progress(SYNTHESISING, tell.clone())));
             Ok((render::synth(&scene, &materials, previous.as_ref()), problems))
@@ -222,7 +223,7 @@ mod tests {
     fn the_latest_scene_wins_and_the_rest_passes_in_order() {
         let (updates, receiver) = mpsc::channel();
         let (events, seen) = mpsc::channel();
-        let load = Box::new(|_: &Scene| {
+        let load = Box::new(|_: &Scene, _| {
             let picture = Arc::new(Picture::filled(2, 2, [1.0; 4]));
             (Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() }, Vec::new())
         });

@@ -36,6 +36,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Resize(width, height) => state.size = (width, height),
         Event::Tick(seconds) => state.pass(seconds),
         Event::Synthesising => state.picture.synthesising = true,
+        Event::Reading(percent) => state.picture.read = Some(percent).filter(|percent| *percent < 100),
         Event::Probed(probed) => state.picture.probed = Some(probed),
         Event::Synthesised(result) => synthesised(state, *result),
         Event::Picture(shown) => state.picture.latest = Some(shown),
@@ -93,7 +94,7 @@ fn hear(state: &mut State, said: editor::Event) {
 
 /// Handles the result of a synthesis.
 fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
-    state.picture.synthesising = false;
+    (state.picture.synthesising, state.picture.read) = (false, None);
     let (problem, warning) = match &result {
         Ok(made) => (None, made.warning.as_ref()),
         Err(problem) => (Some(problem), None),
@@ -135,14 +136,19 @@ fn answer(state: &mut State, asked: Asked) {
 
 /// Shows the result of work, in the line or, if it has several lines, in pages.
 fn report(state: &mut State, result: Result<String, String>) {
-    match result {
-        // While something is being typed no pages open; `:messages` has all lines.
-        Ok(text) if text.trim_end().contains('\n') && matches!(state.typing.mode, Mode::Normal | Mode::Pages(_)) => {
-            let lines = text.lines().map(plain).collect();
-            state.typing.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
-        }
-        Ok(text) => state.say(text.trim_end()),
-        Err(text) => state.complain(text),
+    let text = result.as_ref().unwrap_or_else(|text| text).trim_end();
+    let lines: Vec<&str> = text.lines().collect();
+    // While something is being typed no pages open; `:messages` has all lines.
+    let opens = lines.len() > 1 && matches!(state.typing.mode, Mode::Normal | Mode::Pages(_));
+    match &result {
+        Ok(_) if opens => {}
+        Ok(_) => state.say(text),
+        Err(_) if opens => state.complain(lines.last().copied().unwrap_or_default()),
+        Err(_) => state.complain(text),
+    }
+    if opens {
+        let lines = lines.into_iter().map(plain).collect();
+        state.typing.mode = Mode::Pages(Pages { title: "output".into(), lines, scroll: 0 });
     }
 }
 

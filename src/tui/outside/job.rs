@@ -36,7 +36,8 @@ impl Job {
             let result = match result {
                 Ok(Ok(())) => Ok(answer(&name, &out.text(), &said.text())),
                 Ok(Err(Error::Interrupted)) => Err(format!("{name}: interrupted, nothing half-written is left{also}")),
-                Ok(Err(error)) => Err(format!("{name}: {error}")),
+                // What it printed before (each problem, say) is above what went wrong.
+                Ok(Err(error)) => Err(format!("{}{name}: {error}", out.text())),
                 Err(fault) => Err(format!("{name}: {fault}")),
             };
             // Nobody listens once the editor has left.

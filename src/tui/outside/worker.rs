@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::base::fault;
 use crate::base::problem::{Problem, Severity};
+use crate::base::progress::Progress;
 use crate::files;
 use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth};
@@ -77,6 +78,16 @@ fn next((slot, wake): &(Mutex<Option<Request>>, Condvar)) -> Option<Request> {
     guard.take()
 }
 
+/// Tells how much of the files is read, once that takes a while.
+fn reading(begun: Instant, events: mpsc::Sender<Event>) -> Progress {
+    Progress::new(move |percent| {
+        if begun.elapsed() >= PATIENCE {
+            // Nobody listens once the editor has left.
+            let _ = events.send(Event::Reading(percent));
+        }
+    })
+}
+
 /// A scene and what was made of it.
 struct Made {
     scene: Arc<Scene>,
@@ -110,6 +121,7 @@ impl Studio {
             }
             let (begun, stop) = (Instant::now(), Arc::new(AtomicBool::new(false)));
             self.run(Some((request.scene.clone(), begun, stop.clone())));
+            self.cache.progress = Some(Arc::new(reading(begun, events.clone())));
             let result = self.synthesise(request, stop.clone());
             self.run(None);
             if stop.load(Ordering::Relaxed) && result.is_err() {

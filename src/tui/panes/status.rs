@@ -88,7 +88,7 @@ fn right(state: &State) -> String {
         parts.push(format!("{symbol} {}", short(value)));
     }
     if state.picture.synthesising {
-        parts.push("field ...".into());
+        parts.push(state.picture.read.map_or("field ...".into(), |percent| format!("files {percent} %")));
     } else if let Some(ms) = state.picture.synth_ms {
         parts.push(format!("field {ms:.0} ms"));
     }

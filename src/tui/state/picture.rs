@@ -34,6 +34,8 @@ pub struct Picture {
     pub probed: Option<Arc<Probed>>,
     /// Whether the worker is synthesising.
     pub synthesising: bool,
+    /// How much of the scene's files it has read, in percent, while that is what it waits for.
+    pub read: Option<u8>,
     /// The last synthesis.
     pub synth: Option<Arc<Synth>>,
     /// How long the last synthesis took, in milliseconds.
@@ -56,6 +58,7 @@ impl Picture {
             probing: false,
             probed: None,
             synthesising: false,
+            read: None,
             synth: None,
             synth_ms: None,
             longest: Vec::new(),

@@ -289,7 +289,15 @@ fn long_work_says_how_far_it_is_and_how_to_end_it() {
     }
     assert!(old.is_empty(), "PLICA_UPDATE=1 writes these anew:\n{}", old.join("\n"));
     let mut state = opened((80, 24));
+    update(&mut state, Event::Done(Err("/a: is wrong\n/b: too\ncheck: s: 2 errors".into())));
+    let text = screen(&state);
+    assert!(text.contains("/a: is wrong") && text.contains("/b: too") && text.contains("check: s: 2 errors"), "{text}");
+    let mut state = opened((80, 24));
     update(&mut state, Event::Synthesising);
+    assert!(screen(&state).contains("field ..."));
+    update(&mut state, Event::Reading(34));
+    assert!(screen(&state).contains("files 34 %"));
+    update(&mut state, Event::Reading(100));
     assert!(screen(&state).contains("field ..."));
     update(&mut state, Event::Synthesised(Box::new(Err(Problem::error("", "no")))));
     assert!(!screen(&state).contains("field ..."));

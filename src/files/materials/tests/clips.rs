@@ -136,6 +136,21 @@ fn loading_ends_when_it_is_cancelled() {
 }
 
 #[test]
+fn reading_tells_how_far_it_is() {
+    let (folder, path, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
+    (0..5).for_each(|number| frame(folder.path(), number, 2));
+    let told = Arc::new(std::sync::Mutex::new(Vec::new()));
+    let heard = told.clone();
+    let progress = Progress::new(move |percent| heard.lock().unwrap().push(percent));
+    let mut cache = Cache { progress: Some(Arc::new(progress)), ..Cache::default() };
+    assert!(look(&path, &scene, &Options::default(), &mut cache).0.is_some());
+    let mut told = told.lock().unwrap().clone();
+    told.sort_unstable();
+    assert_eq!(told.last(), Some(&100), "{told:?}");
+    assert!(told.iter().all(|percent| [25, 50, 75, 100].contains(percent)), "{told:?}");
+}
+
+#[test]
 fn copies_of_frames_make_a_clip_once_all_are_here() {
     let (folder, _, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
     (0..3).for_each(|number| frame(folder.path(), number, 2));

@@ -132,7 +132,9 @@ impl<'a> Source<'a> {
             return data(uri, place, budget).map(|(bytes, share)| (Cow::Owned(bytes), share));
         }
         let path = self.path(uri)?;
-        let (bytes, share) = input::whole(sibling(&path)?, &path, limits, budget)?;
+        let of_model = |error| Error::at(place, format!("its buffer {error}"));
+        let file = sibling(&path).map_err(of_model)?;
+        let (bytes, share) = input::whole(file, &path, limits, budget).map_err(of_model)?;
         Ok((Cow::Owned(bytes), share))
     }
 

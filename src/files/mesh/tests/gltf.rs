@@ -28,11 +28,14 @@ fn a_model_is_the_same_in_one_file_and_in_several() {
         let text = format!("\u{feff} {beside}");
         let found = read_with("a.gltf", text.as_bytes(), &[(path, &binary)], &Limits::default());
         assert_eq!(found.unwrap().0, mesh);
-        assert_eq!(read("a.gltf", text.as_bytes()).unwrap_err(), format!("{path}: there is no such file"));
+        assert_eq!(
+            read("a.gltf", text.as_bytes()).unwrap_err(),
+            format!("a.gltf: its buffer {path}: there is no such file")
+        );
         let limits = Limits { mesh: text.len() as u64, ..Limits::default() };
         let long = vec![0; text.len() + 1];
         let error = read_with("a.gltf", text.as_bytes(), &[(path, &long)], &limits).unwrap_err();
-        assert!(error.starts_with(&format!("{path}: has {} bytes", long.len())), "{error}");
+        assert!(error.starts_with(&format!("a.gltf: its buffer {path}: has {} bytes", long.len())), "{error}");
     }
 }
 
