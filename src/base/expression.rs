@@ -87,12 +87,12 @@ pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
     if let Some(found) = parser.peek() {
         return Err(parser.mistake(format!("expected an operator, found `{found}`")));
     }
-    let old = variables.get("v").unwrap_or(0.0);
+    let old = variables.get("v").ok_or(Mistake { column: 1, what: "there is no value to change".into() });
     let value = match operator {
-        Some('+') => old + right,
-        Some('-') => old - right,
-        Some('*') => old * right,
-        Some(_) => old / right,
+        Some('+') => old? + right,
+        Some('-') => old? - right,
+        Some('*') => old? * right,
+        Some(_) => old? / right,
         None => right,
     };
     if value.is_finite() {

@@ -8,6 +8,7 @@ use kurbo::{Point, Rect};
 use serde_json::{Map, Value};
 
 use super::parts::bundle::{Names, Sink};
+use super::parts::derived::Derived;
 use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{Materials, Use};
 use super::parts::moment::{Moment, Space};
@@ -72,6 +73,30 @@ pub trait Technique: Any + Send + Sync {
     /// The name of the item at `path`, if it is in a list whose items have names.
     fn item_name(&self, _path: &str) -> Option<&str> {
         None
+    }
+
+    /// The value that stands for the field at `path` while it is not set, if the layer has one for it that is not in
+    /// the schema.
+    fn automatic(&self, _path: &str) -> Option<Value> {
+        None
+    }
+
+    /// The columns that follow from the items of the list at `path`.
+    fn derived(&self, _path: &str) -> &'static [Derived] {
+        &[]
+    }
+
+    /// The number that an item, as it is in the document, has in a column of [`Technique::derived`], if it has one.
+    fn derive(&self, _column: &Derived, _item: &Value) -> Option<f64> {
+        None
+    }
+
+    /// The value of the field [`Derived::of`] with which the item has this number in the column.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn solve(&self, column: &Derived, _item: &Value, _to: f64) -> Result<Value, String> {
+        Err(format!("{} cannot be set", column.name))
     }
 
     /// What changes in the layer over the scene time, item by item.

@@ -3,6 +3,7 @@
 
 pub mod album;
 pub mod bundle;
+pub mod derived;
 pub mod marks;
 pub mod materials;
 pub mod moment;

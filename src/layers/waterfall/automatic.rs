@@ -77,19 +77,26 @@ pub struct Kind {
     pub look: Shown,
 }
 
+impl Node {
+    /// A node with everything set, of a fall of this height.
+    pub fn of(node: &super::model::Node, height: f64) -> Node {
+        let velocity = DVec3::new(0.0, 0.0, 0.4 * height / free_fall(height));
+        Node { at: node.at.into(), velocity: node.velocity.map_or(velocity, DVec3::from), flow: node.flow }
+    }
+}
+
+/// How long a free fall from this height takes, in seconds.
+fn free_fall(height: f64) -> f64 {
+    (2.0 * height / EARTH).sqrt()
+}
+
 impl Values {
     /// The layer with everything set.
     pub fn of(layer: &WaterfallLayer) -> Values {
         let highest = layer.lip.iter().map(|node| node.at[1]).fold(f64::NEG_INFINITY, f64::max) - layer.pool;
         let h = layer.height.unwrap_or(if highest > 0.1 { highest } else { 1.0 });
-        // What a free fall of that height takes.
-        let free = (2.0 * h / EARTH).sqrt();
-        let node = |node: &super::model::Node| Node {
-            at: node.at.into(),
-            velocity: node.velocity.map_or(DVec3::new(0.0, 0.0, 0.4 * h / free), DVec3::from),
-            flow: node.flow,
-        };
-        let lip: Vec<Node> = layer.lip.iter().map(node).collect();
+        let free = free_fall(h);
+        let lip: Vec<Node> = layer.lip.iter().map(|node| Node::of(node, h)).collect();
         let length: f64 = lip.windows(2).map(|pair| pair[0].at.distance(pair[1].at)).sum();
         let automatic = (120.0 * length / h + 0.5).floor().clamp(24.0, 4000.0) as u32;
         let Surge { amount, contrast, .. } = layer.surge;

@@ -12,7 +12,7 @@ use crate::base::maths::{TAU, cos, sin};
 /// Foam starts so far above the pool, in meters.
 const ABOVE: f64 = 1e-6;
 /// Lines with a shorter life carry nothing, in seconds.
-const LEAST_LIFE: f64 = 1e-3;
+pub const LEAST_LIFE: f64 = 1e-3;
 
 /// A flow line.
 #[derive(Clone, Copy, Debug, PartialEq)]

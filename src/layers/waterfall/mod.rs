@@ -11,6 +11,7 @@ pub mod drag;
 pub mod draw;
 pub mod frame;
 pub mod hash;
+pub mod landing;
 pub mod lines;
 pub mod listing;
 pub mod look;
@@ -33,6 +34,7 @@ use kurbo::Rect;
 use serde_json::{Value, json};
 
 use self::model::WaterfallLayer;
+use super::parts::derived::Derived;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Entry, ReadOut};
@@ -91,6 +93,23 @@ impl Technique for WaterfallLayer {
     fn bounds(&self, _path: &str) -> Rect {
         let side = f64::from(self.sprites.size);
         Rect::new(0.0, 0.0, side, side)
+    }
+
+    fn automatic(&self, path: &str) -> Option<Value> {
+        automatic::Values::of(self).field(path)
+    }
+
+    fn derived(&self, path: &str) -> &'static [Derived] {
+        if path == "/lip" { landing::COLUMNS } else { &[] }
+    }
+
+    fn derive(&self, column: &Derived, item: &Value) -> Option<f64> {
+        landing::Fall::of(self, item)?.value(column)
+    }
+
+    fn solve(&self, column: &Derived, item: &Value, to: f64) -> Result<Value, String> {
+        let fall = landing::Fall::of(self, item).ok_or("this is no node of the lip")?;
+        fall.solved(column, to).map(|velocity| json!(velocity.to_array()))
     }
 
     fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {

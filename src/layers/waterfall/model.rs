@@ -106,7 +106,7 @@ pub struct Node {
     pub at: Xyz,
     /// How fast water leaves there; between nodes it changes evenly.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("unit" = "m/s"))]
+    #[schemars(extend("unit" = "m/s", "columns" = ["vx", "vy", "vz"]))]
     pub velocity: Option<Xyz>,
     /// How much water leaves there, compared with other nodes; between nodes it changes evenly.
     #[serde(default = "unity")]

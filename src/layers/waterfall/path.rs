@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::drag::Fall;
-use crate::base::maths::expm1;
+use crate::base::maths::{exp, expm1};
 
 /// A weaker wind than this a second carries nothing along.
 const LEAST_RATE: f64 = 1e-4;
@@ -51,6 +51,24 @@ impl Laws {
         }
     }
 
+    /// The start speed along a level axis with this wind that takes something this far in that time.
+    pub fn reaching(&self, way: f64, wind: f64, age: f64) -> f64 {
+        match self.rate {
+            None => way / age - wind,
+            Some(rate) if rate < LEAST_RATE => way / age,
+            Some(rate) => wind + (way - wind * age) * rate / -expm1(-rate * age),
+        }
+    }
+
+    /// The start speed along a level axis with this wind that becomes `v` in that time.
+    pub fn becoming(&self, v: f64, wind: f64, age: f64) -> f64 {
+        match self.rate {
+            None => v - wind,
+            Some(rate) if rate < LEAST_RATE => v,
+            Some(rate) => wind + (v - wind) * exp(rate * age),
+        }
+    }
+
     /// The first age at which a path comes down through y = `pool`, otherwise `most`.
     pub fn life(&self, path: &Path, pool: f64, most: f64) -> f64 {
         let height = |age: f64| path.start.y + self.fall.after(path.velocity.y, age)[0];
@@ -74,8 +92,8 @@ impl Laws {
     }
 }
 
-/// Where between two ages something becomes true that stays so.
-fn first([mut before, mut after]: [f64; 2], is: impl Fn(f64) -> bool) -> f64 {
+/// Where between two ages, or speeds, something becomes true that stays so.
+pub fn first([mut before, mut after]: [f64; 2], is: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..HALVINGS {
         let middle = (before + after) / 2.0;
         if is(middle) {

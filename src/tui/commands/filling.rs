@@ -12,7 +12,7 @@ use crate::base::number;
 use crate::base::problem::quoted;
 use crate::scene::{Document, Edit, field};
 use crate::tui::document::csv;
-use crate::tui::document::rows::{self, is_polar};
+use crate::tui::document::rows::{self, follows};
 use crate::tui::document::sheet::{Cell, Part, Row};
 use crate::tui::state::State;
 use crate::tui::text::numbers;
@@ -49,12 +49,12 @@ fn fill(state: &mut State, call: &Call) -> Done {
             let cell = cell(&row, header, state.cursor.column, k).map_err(|why| format!("row {i}: {why}"))?;
             cells.push((k, cell, text));
         }
-        // A direction turns the given length, so it comes last. Length and direction are ignored if x and y are given.
+        // A direction turns the given length, so it comes last. What follows from numbers that are given too is ignored.
         cells.sort_by_key(|(_, cell, _)| cell.part == Part::Degrees);
         let given = |cell: &Cell| {
             cells.iter().any(|(_, other, _)| other.pointer == cell.pointer && matches!(other.part, Part::Number(_)))
         };
-        for (k, cell, text) in cells.iter().filter(|(_, cell, _)| !(is_polar(cell.part) && given(cell))) {
+        for (k, cell, text) in cells.iter().filter(|(_, cell, _)| !(follows(cell.part) && given(cell))) {
             filled.put(cell, text).map_err(|why| format!("row {i}, column {}: {why}", k + 1))?;
         }
     }
@@ -114,6 +114,9 @@ impl Filled<'_> {
             }
             Part::Length => pair(numbers::with_length(vector(), number)),
             Part::Degrees => pair(numbers::cartesian(numbers::polar(vector()).0, number)),
+            Part::Derived(column) => {
+                return Err(format!("{} follows from {}: paste that, or type it", column.name, column.of));
+            }
         };
         self.values.insert(cell.pointer.clone(), value);
         Ok(())

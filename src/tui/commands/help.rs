@@ -90,7 +90,9 @@ fn under_cursor(state: &State) -> Vec<String> {
     let cell = row.as_ref().and_then(|row| state.cursor.cell(row));
     let at = cell.map_or_else(|| state.cursor.node.clone(), |cell| cell.pointer.clone());
     let document = state.document();
-    let Some(field) = field::field(document, &at) else { return Vec::new() };
+    let derived = cell.filter(|cell| matches!(cell.part, Part::Derived(_)));
+    let field = derived.map(|cell| (*cell.field).clone()).or_else(|| field::field(document, &at));
+    let Some(field) = field else { return Vec::new() };
     let name = if at.is_empty() { "scene".to_owned() } else { plain(&field.name) };
     let part = cell.filter(|cell| cell.part != Part::Whole).map(|cell| cell.head.as_str()).unwrap_or_default();
     // Some columns begin with the name of their field.
@@ -155,7 +157,7 @@ pub fn entries() -> Vec<String> {
         ("+=3  -=3  *=2  /=2", "Change the old value; so do *2 and /2"),
         ("w/2  sqrt(2)*r", "Computed, with + - * / % ^ ( ); an = may come first"),
         ("v", "The old value, for each selected row its own"),
-        ("x y dx dy ...", "The other columns of the row, by their names"),
+        ("x y dx dy ...", "The other columns of the row, by their names (land x is land_x)"),
         ("r  a", "Length and direction of the row's jump vector, degrees counter-clockwise"),
         ("w  h", "Width and height of the picture"),
         ("i  n", "The row's index in the selection, from 0, and the number of selected rows"),

@@ -2,6 +2,7 @@
 
 pub mod choice;
 pub mod csv;
+pub mod derived;
 pub mod entry;
 pub mod open_scene;
 pub mod palette;

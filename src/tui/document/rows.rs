@@ -129,7 +129,7 @@ impl<'a> Target<'a> {
 
     /// The columns that are read without a header.
     fn plain(&self) -> Vec<&Column> {
-        self.specimen.columns.iter().filter(|column| column.cell.is_number() && !is_polar(column.cell.part)).collect()
+        self.specimen.columns.iter().filter(|column| column.cell.is_number() && !follows(column.cell.part)).collect()
     }
 
     fn wanted(&self) -> String {
@@ -240,7 +240,7 @@ impl Specimen {
         let column = |cell: Cell| Column { head: cell.head.clone(), path: cell.pointer[path.len()..].to_owned(), cell };
         let columns: Vec<Column> = row.cells.into_iter().map(column).collect();
         let must = |column: &Column| {
-            column.cell.is_number() && !is_polar(column.cell.part) && musts.contains(&column.cell.pointer)
+            column.cell.is_number() && !follows(column.cell.part) && musts.contains(&column.cell.pointer)
         };
         let required = (0..columns.len()).filter(|&i| must(&columns[i])).collect();
         Some(Specimen { item, columns, required })
@@ -260,6 +260,7 @@ impl Specimen {
                 (Part::Degrees, degrees) => polar.entry(&column.path).or_default().1 = degrees,
                 (Part::Number(i), _) => set_number(&mut item, &column.path, i, &column.cell, read),
                 (Part::Whole, _) => set_whole(&mut item, &column.path, read),
+                (Part::Derived(_), _) => {}
             }
         }
         for (path, (length, degrees)) in polar {
@@ -271,6 +272,15 @@ impl Specimen {
             let Vec2 { x, y } = numbers::cartesian(length, degrees.unwrap_or(0.0));
             given.extend([(path, Part::Number(0)), (path, Part::Number(1))]);
             set_whole(&mut item, path, json!([number::json(x), number::json(y)]));
+        }
+        let given_of = |path: &str, of: fn(Part) -> bool| given.iter().any(|(one, part)| *one == path && of(*part));
+        let is_alone = |column: &&Column| {
+            given.contains(&(&column.path, column.cell.part))
+                && matches!(column.cell.part, Part::Derived(_))
+                && !given_of(&column.path, |part| matches!(part, Part::Number(_)))
+        };
+        if let Some(column) = self.columns.iter().find(is_alone) {
+            return Err(format!("line {line}: {} follows from {}, which is missing", column.head, &column.path[1..]));
         }
         let missing = self.required.iter().map(|&i| &self.columns[i]);
         match missing.into_iter().find(|column| !given.contains(&(column.path.as_str(), column.cell.part))) {
@@ -318,9 +328,9 @@ fn set_whole(item: &mut Value, path: &str, value: Value) {
     }
 }
 
-/// Whether a part of a vector follows from its numbers.
-pub fn is_polar(part: Part) -> bool {
-    matches!(part, Part::Length | Part::Degrees)
+/// Whether a part of a value follows from its numbers, which go before it.
+pub fn follows(part: Part) -> bool {
+    !matches!(part, Part::Whole | Part::Number(_))
 }
 
 /// Whether the head of a pasted column means this column.

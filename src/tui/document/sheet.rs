@@ -2,6 +2,7 @@
 //! unnamed items inside a form is shown in it row by row. The panes draw a sheet and the commands edit its cells; neither
 //! knows a field by name, so a new parameter appears by itself.
 
+use super::derived;
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::tui::text::plain;
@@ -11,6 +12,7 @@ use std::sync::Arc;
 use kurbo::Vec2;
 use serde_json::Value;
 
+use crate::layers::parts::derived::Derived;
 use crate::scene::Document;
 use crate::scene::field::{self, Child, Field, Kind};
 use crate::scene::schema::{Body, Place};
@@ -77,6 +79,8 @@ pub enum Part {
     Length,
     /// The direction of the vector that it is, in degrees.
     Degrees,
+    /// A number that follows from it and other fields of its item.
+    Derived(&'static Derived),
 }
 
 impl Cell {
@@ -92,8 +96,12 @@ impl Cell {
 
     /// Its number in the document.
     pub fn number(&self, document: &Document) -> Option<f64> {
-        let value = field::value(document, &self.pointer)?;
+        if let Part::Derived(column) = self.part {
+            return derived::number(document, column, &self.pointer).map(numbers::tidy);
+        }
+        let value = derived::value(document, &self.pointer)?;
         match self.part {
+            Part::Derived(_) => None,
             Part::Whole => value.as_f64(),
             Part::Number(index) => value.get(index)?.as_f64(),
             Part::Length => vector(&value).map(|v| numbers::polar(v).0),
@@ -101,21 +109,32 @@ impl Cell {
         }
     }
 
-    /// The pointer and the value that give it this number in the document.
-    pub fn with_number(&self, document: &Document, number: f64) -> Option<(String, Value)> {
+    /// The value at its place that gives it this number.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn with_number(&self, document: &Document, number: f64) -> Result<Value, String> {
+        match self.part {
+            Part::Derived(column) => derived::solved(document, column, &self.pointer, number),
+            _ => self.changed(document, number).ok_or_else(|| "there is no number here".into()),
+        }
+    }
+
+    fn changed(&self, document: &Document, number: f64) -> Option<Value> {
         let json = |number: f64| match self.field.kind {
             Kind::Number { integer: true } if number == number.trunc() => Value::from(number as i64),
             _ => number::json(number),
         };
-        let both = |v: Vec2| Some((self.pointer.clone(), Value::from(vec![number::json(v.x), number::json(v.y)])));
-        let old = field::value(document, &self.pointer)?;
+        let both = |v: Vec2| Some(Value::from(vec![number::json(v.x), number::json(v.y)]));
+        let old = derived::value(document, &self.pointer)?;
         match self.part {
-            Part::Whole => Some((self.pointer.clone(), json(number))),
+            Part::Whole => Some(json(number)),
             Part::Number(index) => {
                 let mut all = old.as_array()?.clone();
                 *all.get_mut(index)? = json(number);
-                Some((self.pointer.clone(), all.into()))
+                Some(all.into())
             }
+            Part::Derived(_) => None,
             Part::Length => both(numbers::with_length(vector(&old)?, number)),
             Part::Degrees => both(numbers::cartesian(numbers::polar(vector(&old)?).0, number)),
         }
@@ -196,14 +215,17 @@ impl Sheet {
             Some(_) => {
                 let Some(list) = Place::of(json, &block.pointer) else { return };
                 let items = range.filter_map(|i| field::child(list, &block.pointer, &i.to_string()));
-                rows.extend(items.map(|(child, place)| item(child, place)));
+                rows.extend(items.map(|(child, place)| item(&self.document, child, place)));
             }
             None => {
                 let parent = Pointer(&block.pointer).split();
                 let place = parent.as_ref().and_then(|(parent, _)| Place::of(json, parent));
                 let (Some((parent, name)), Some(place)) = (parent, place) else { return };
                 let Some((child, place)) = field::child(place, parent, &name) else { return };
-                rows.push(if self.table { item(child, place) } else { form_row(child, place) });
+                rows.push(match self.table {
+                    true => item(&self.document, child, place),
+                    false => form_row(&self.document, child, place),
+                });
             }
         }
     }
@@ -255,25 +277,48 @@ fn blocks(place: Place, node: &str) -> Vec<Block> {
     blocks
 }
 
-fn item(child: Child, place: Place) -> Row {
+fn item(document: &Document, child: Child, place: Place) -> Row {
     let label = Pointer(&child.pointer).split().map(|(_, token)| token).unwrap_or_default();
     let field = Arc::new(child.field);
-    let cells = match &field.kind {
+    let mut cells = match &field.kind {
         Kind::Object | Kind::Tagged { .. } => {
             let inner = field::below(place, &child.pointer).into_iter();
             inner.fold(Vec::new(), |row, (child, place)| {
-                joined(row, cells(&child.name, &child.pointer, &Arc::new(child.field), place, true))
+                joined(row, cells(document, (&child.name, &child.pointer), &Arc::new(child.field), place, true))
             })
         }
-        _ => cells(&child.name, &child.pointer, &field, place, true),
+        _ => cells(document, (&child.name, &child.pointer), &field, place, true),
     };
+    cells.extend(derived::columns(document, &child.pointer).iter().map(|column| follows(document, &child.pointer, column)));
     Row { label, set: true, item: true, cells, pointer: child.pointer, field }
 }
 
-fn form_row(child: Child, place: Place) -> Row {
+/// The cell of a column that follows from the fields of an item.
+fn follows(document: &Document, item: &str, column: &'static Derived) -> Cell {
+    let field = Field {
+        name: column.name.into(),
+        help: column.help,
+        kind: Kind::Number { integer: false },
+        range: None,
+        unit: Some(column.unit),
+        symbol: None,
+        default: None,
+        optional: true,
+    };
+    let cell = Cell {
+        pointer: Pointer(item).join(column.of),
+        part: Part::Derived(column),
+        head: column.name.into(),
+        field: Arc::new(field),
+        text: String::new(),
+    };
+    Cell { text: cell.number(document).map_or("none".into(), numbers::shown), ..cell }
+}
+
+fn form_row(document: &Document, child: Child, place: Place) -> Row {
     let Child { name, pointer, set, field } = child;
     let field = Arc::new(field);
-    let cells = cells(&name, &pointer, &field, place, false);
+    let cells = cells(document, (&name, &pointer), &field, place, false);
     Row { pointer, label: name, field, set, item: false, cells }
 }
 
@@ -292,8 +337,18 @@ fn is_flat(kind: &Kind) -> bool {
 }
 
 /// The cells of a field. In a table, a cell without a head of its own gets the field's name.
-fn cells(name: &str, pointer: &str, field: &Arc<Field>, place: Place, table: bool) -> Vec<Cell> {
-    let value = place.value.unwrap_or(&Value::Null);
+fn cells(
+    document: &Document,
+    (name, pointer): (&str, &str),
+    field: &Arc<Field>,
+    place: Place,
+    table: bool,
+) -> Vec<Cell> {
+    let automatic = match place.value {
+        None | Some(Value::Null) => derived::automatic(document, pointer),
+        _ => None,
+    };
+    let value = automatic.as_ref().or(place.value).unwrap_or(&Value::Null);
     let cell = |part, head: String, text| Cell { pointer: pointer.to_owned(), part, head, field: field.clone(), text };
     let Kind::Numbers(names) = &field.kind else {
         let head = if table { name.to_owned() } else { String::new() };
@@ -331,7 +386,7 @@ pub fn in_range(field: &Field, part: Part, value: f64) -> Result<(), String> {
     if whole && value != value.trunc() {
         return Err(format!("{} takes whole numbers, not {}", field.name, numbers::short(value)));
     }
-    let counts = !matches!(part, Part::Length | Part::Degrees);
+    let counts = matches!(part, Part::Whole | Part::Number(_));
     match field.range.filter(|(min, max)| counts && !(*min..=*max).contains(&value)) {
         None => Ok(()),
         Some(_) => {

@@ -141,7 +141,9 @@ fn variables(
     (i, n): (usize, usize),
 ) -> Vec<(String, f64)> {
     let document = state.document();
-    let mut known = vec![("v".to_string(), cell.number(document).unwrap_or(0.0))];
+    // What follows from other fields may have no value; everything else begins at 0.
+    let old = cell.number(document).or((!matches!(cell.part, Part::Derived(_))).then_some(0.0));
+    let mut known: Vec<(String, f64)> = old.map(|old| ("v".to_string(), old)).into_iter().collect();
     let others = if row.is_none_or(|row| row.item) { Vec::new() } else { sheet.fields() };
     for row in row.into_iter().chain(&others) {
         // If a row has several vectors, dx, dy, r and a are those of the one that is edited.
@@ -152,8 +154,10 @@ fn variables(
                 Part::Degrees => "a",
                 _ if cell.head.is_empty() => &row.label,
                 Part::Number(_) => cell.head.rsplit(' ').next().unwrap_or(&cell.head),
-                Part::Whole => &cell.head,
+                Part::Whole | Part::Derived(_) => &cell.head,
             };
+            // A name of several words is written as one.
+            let name = &name.replace(' ', "_");
             if let (Some(value), false) = (cell.number(document), known.iter().any(|(known, _)| known == name)) {
                 known.push((name.to_string(), value));
             }
@@ -173,8 +177,7 @@ fn number(document: &Document, cell: &Cell, value: f64) -> Result<Edit, String> 
         let length = cell.field.symbol.map_or("r".to_owned(), |symbol| format!("|{symbol}|"));
         return Err(format!("a vector without a length has no direction: set {length} first"));
     }
-    let (pointer, value) = cell.with_number(document, value).ok_or("there is no number here")?;
-    Ok(Edit::set(document, &pointer, value))
+    Ok(Edit::set(document, &cell.pointer, cell.with_number(document, value)?))
 }
 
 fn length(document: &Document, cell: &Cell) -> f64 {

@@ -10,6 +10,7 @@ mod camera;
 mod conflicts;
 mod counts;
 pub mod coverage;
+mod falling;
 pub mod finding;
 mod images;
 mod items;

@@ -1,0 +1,135 @@
+//! A list whose items lie in space and have columns that follow from their fields: (scene, keys, scene).
+
+use serde_json::{Value, json};
+
+use super::support::{at, paste, press, said_last, state_of};
+use crate::tui::events::Effect;
+use crate::tui::state::{Pane, State};
+
+/// The editor in the table of three nodes, from 5 m above the pool; the first has no velocity of its own.
+fn falling(more: Value) -> State {
+    let mut layer = json!({ "kind": "waterfall", "name": "falls", "clip": "w", "drag": { "model": "none" }, "lip": [
+        { "at": [-1, 4.905, 0] },
+        { "at": [0, 4.905, 0], "velocity": [0.5, 0, 1] },
+        { "at": [1, 4.905, 0], "velocity": [3, 0, 4], "flow": 2 },
+    ]});
+    layer.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+    let clips = json!({ "w": { "path": "w-%04d.png" } });
+    let mut state = state_of(&json!({ "plica": 1, "clips": clips, "camera": {}, "layers": [layer] }).to_string());
+    state.picture.size = Some((400, 300));
+    state.show("/layers/0/lip");
+    state.cursor.focus = Pane::Table;
+    state
+}
+
+fn columns(state: &State, row: usize) -> Vec<(String, String)> {
+    let cells = state.sheet().row(row).unwrap().cells;
+    cells.into_iter().map(|cell| (cell.head, cell.text)).collect()
+}
+
+fn velocity(state: &State, node: usize) -> Vec<f64> {
+    serde_json::from_value(at(state, &format!("/layers/0/lip/{node}/velocity"))).unwrap()
+}
+
+/// Keys that go to a column, from the first one.
+fn to_column(state: &State, head: &str) -> String {
+    let at = columns(state, 0).iter().position(|(own, _)| own == head).unwrap();
+    format!("Home {at} l")
+}
+
+fn near(found: &[f64], wanted: &[f64]) -> bool {
+    found.len() == wanted.len() && found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6)
+}
+
+#[test]
+fn columns_that_follow_are_shown_beside_the_others() {
+    let state = falling(json!({}));
+    let own = |row: usize| columns(&state, row).into_iter().map(|(head, text)| format!("{head} {text}")).collect();
+    let second: Vec<String> = own(2);
+    assert_eq!(
+        second,
+        [
+            "x 1", "y 4.905", "z 0", "vx 3", "vy 0", "vz 4", "flow 2", "speed 5", "land x 4", "land z 4", "air time 1",
+            "impact ~11.011"
+        ]
+    );
+    let first: Vec<String> = own(0);
+    assert_eq!(first[3..6], ["vx 0", "vy 0", "vz 1.962"], "what is not set shows what stands for it");
+    assert_eq!(first[7..10], ["speed 1.962", "land x -1", "land z 1.962"]);
+}
+
+#[test]
+fn typing_a_column_that_follows_solves_for_the_velocity() {
+    for (head, keys, node, wanted) in [
+        ("land x", "j i \"3\" Enter", 1, [3.0, 0.0, 1.0]),
+        ("land x", "i \"2\" Enter", 0, [3.0, 0.0, 1.962]),
+        ("land z", "j +", 1, [0.5, 0.0, 2.0]),
+        ("land x", "v 2 j i \"+=0.2\" Enter", 0, [0.2, 0.0, 1.962]),
+        ("land x", "v 2 j i \"+=0.2\" Enter", 2, [3.2, 0.0, 4.0]),
+        ("land z", "v 2 j i \"land_x*2\" Enter", 2, [3.0, 0.0, 8.0]),
+        ("speed", "2 j i \"*2\" Enter", 2, [6.0, 0.0, 8.0]),
+        ("air time", "2 j i \"2\" Enter", 2, [3.0, 7.3575, 4.0]),
+        ("impact", "2 j i \"sqrt(9.81^2+100)\" Enter", 2, [6.0, 0.0, 8.0]),
+    ] {
+        let mut state = falling(json!({}));
+        let go = to_column(&state, head);
+        press(&mut state, &format!("{go} {keys}"));
+        assert!(near(&velocity(&state, node), &wanted), "{head} {keys}: {:?}", state.message);
+        press(&mut state, "u");
+        assert_eq!(state.document().json(), falling(json!({})).document().json(), "{head} {keys}: one step of undo");
+    }
+}
+
+#[test]
+fn a_velocity_that_is_not_set_is_edited_from_what_stands_for_it() {
+    let mut state = falling(json!({}));
+    let go = to_column(&state, "vx");
+    press(&mut state, &format!("{go} i \"1\" Enter"));
+    assert!(near(&velocity(&state, 0), &[1.0, 0.0, 1.962]), "{:?}", state.message);
+}
+
+#[test]
+fn what_has_no_answer_says_why_and_changes_nothing() {
+    for (more, head, keys, why) in [
+        (json!({ "gravity": -1 }), "land x", "i \"3\" Enter", "row 0: the line of this node never meets the pool"),
+        (json!({ "gravity": -1 }), "air time", "i \"+=1\" Enter", "there is no value to change"),
+        (json!({}), "impact", "v 2 j i \"9\" Enter", "row 0: it comes down at 9.81 m/s"),
+        (json!({}), "air time", "i \"100\" Enter", "less than the life"),
+    ] {
+        let mut state = falling(more);
+        let before = state.document().json().clone();
+        let go = to_column(&state, head);
+        press(&mut state, &format!("{go} {keys}"));
+        let (bad, told) = said_last(&state);
+        assert!(bad && told.contains(why), "{head} {keys}: {told}");
+        assert_eq!(*state.document().json(), before);
+    }
+    let state = falling(json!({ "gravity": -1 }));
+    assert!(columns(&state, 1).contains(&("land x".into(), "none".into())));
+}
+
+#[test]
+fn tables_have_the_columns_that_follow_and_take_them_back_with_what_they_follow_from() {
+    let mut state = falling(json!({}));
+    let effects = press(&mut state, "2 j Y");
+    let copied = effects.iter().find_map(|effect| if let Effect::Copy(text) = effect { Some(text.clone()) } else { None });
+    let csv = copied.unwrap();
+    assert!(csv.starts_with("x,y,z,vx,vy,vz,flow,speed,land x,land z,air time,impact\n1,4.905,0,3,0,4,2,5,4,4,1,"));
+    paste(&mut state, &csv);
+    assert_eq!(at(&state, "/layers/0/lip/3"), at(&state, "/layers/0/lip/2"), "{:?}", state.message);
+    paste(&mut state, "x,y,z,land x\n1,2,3,4\n");
+    assert!(said_last(&state).1.contains("line 2: land x follows from velocity, which is missing"));
+    press(&mut state, "v");
+    paste(&mut state, "land x\n7\n");
+    assert!(said_last(&state).1.contains("land x follows from velocity: paste that, or type it"));
+}
+
+#[test]
+fn help_tells_of_the_column_not_of_the_field_behind_it() {
+    let mut state = falling(json!({}));
+    let go = to_column(&state, "land x");
+    press(&mut state, &format!("{go} ?"));
+    let crate::tui::state::Mode::Pages(pages) = &state.typing.mode else { panic!("no help") };
+    assert!(pages.lines[0].contains("-- land x --"), "{}", pages.lines[0]);
+    assert!(pages.lines.iter().any(|line| line.contains("keeps the air time")));
+}
