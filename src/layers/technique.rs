@@ -17,6 +17,7 @@ use super::parts::plan::Program;
 use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready, Whole};
+use super::space::eye::Ray;
 use super::timeline::{Timeline, Wrap};
 use crate::base::error::Error;
 use crate::base::problem::Problem;
@@ -97,6 +98,15 @@ pub trait Technique: Any + Send + Sync {
     /// Why there is none.
     fn solve(&self, column: &Derived, _item: &Value, _to: f64) -> Result<Value, String> {
         Err(format!("{} cannot be set", column.name))
+    }
+
+    /// The path and the value of a field with which the item at `path` goes to where a ray points: what a line ends at,
+    /// say.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn aimed(&self, _path: &str, _ray: &Ray) -> Result<(String, Value), String> {
+        Err("nothing here goes to a place: select a point that does (w, b)".into())
     }
 
     /// What changes in the layer over the scene time, item by item.

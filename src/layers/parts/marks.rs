@@ -178,13 +178,16 @@ pub struct Look {
     pub stroke: &'static str,
     /// Whether labels avoid its dots and arrows.
     pub keeps_labels_off: bool,
+    /// Whether the mouse can drag its dots: what is at the path of the mark then goes to another place.
+    pub is_grip: bool,
 }
 
 impl Look {
     /// A look of solid lines and discs.
     pub const fn new(name: &'static str, order: u8, color: [u8; 4], width_px: f32) -> Look {
         let (dot, dot_px) = (Dot::Disc, 1.0);
-        Look { name, order, color, width_px, dash_px: None, dot, dot_px, stroke: "·", keeps_labels_off: false }
+        let (dash_px, stroke, keeps_labels_off, is_grip) = (None, "·", false, false);
+        Look { name, order, color, width_px, dash_px, dot, dot_px, stroke, keeps_labels_off, is_grip }
     }
 
     /// The same with these dots.
@@ -200,6 +203,11 @@ impl Look {
     /// The same with another character in terminals.
     pub const fn stroke(self, stroke: &'static str) -> Look {
         Look { stroke, ..self }
+    }
+
+    /// The same with dots that can be dragged.
+    pub const fn grip(self) -> Look {
+        Look { is_grip: true, ..self }
     }
 
     /// The same, with labels avoiding it.

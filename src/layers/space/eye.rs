@@ -20,6 +20,28 @@ pub struct Eye {
     pub middle_px: DVec2,
 }
 
+/// What a place of the frame looks along in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it begins: the camera.
+    pub from: DVec3,
+    /// The way from one depth to the next meter of depth.
+    pub along: DVec3,
+}
+
+impl Ray {
+    /// Its point at a depth.
+    pub fn at_depth(&self, depth: f64) -> DVec3 {
+        self.from + self.along * depth
+    }
+
+    /// Where it meets the level plane at the height `y`; `None` if that is behind the camera, or nowhere.
+    pub fn meets_level(&self, y: f64) -> Option<DVec3> {
+        let depth = (y - self.from.y) / self.along.y;
+        (depth.is_finite() && depth >= NEAR_M).then(|| self.at_depth(depth).with_y(y))
+    }
+}
+
 impl Eye {
     /// Looks from `position` to `target`, with `up` as far up as can be and a vertical field of view of `fov` degrees,
     /// at frames of this width and height. If there is no such view (`target` is where it stands, or straight along
@@ -49,6 +71,11 @@ impl Eye {
         let plane = (at - self.middle_px) / self.focal_px;
         DVec3::new(plane.x, -plane.y, -1.0)
     }
+
+    /// The same in the world.
+    pub fn ray_in_world(&self, at: DVec2) -> Ray {
+        Ray { from: self.position, along: self.turn.transpose() * self.ray(at) }
+    }
 }
 
 #[cfg(test)]
@@ -63,6 +90,17 @@ mod tests {
         assert_eq!(seen, DVec3::new(1.0, 1.0, -2.0));
         assert!((eye.project(seen) - DVec2::new(125.0, 25.0)).length() < 1e-12);
         assert!((eye.ray(DVec2::new(125.0, 25.0)) * 2.0 - seen).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_ray_meets_what_is_seen_there() {
+        let eye = Eye::new([DVec3::new(1.0, 3.0, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y], 50.0, (200, 100));
+        let place = DVec3::new(0.3, 0.25, -1.0);
+        let ray = eye.ray_in_world(eye.project(eye.seen(place)));
+        assert!((ray.at_depth(-eye.seen(place).z) - place).length() < 1e-9);
+        assert!((ray.meets_level(0.25).unwrap() - place).length() < 1e-9);
+        assert_eq!(ray.meets_level(9.0), None, "behind the camera");
+        assert_eq!(Ray { along: DVec3::X, ..ray }.meets_level(0.0), None, "never");
     }
 
     #[test]

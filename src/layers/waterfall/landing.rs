@@ -3,14 +3,16 @@
 //! lands is solved in closed form.
 
 use glam::{DVec2, DVec3};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::automatic::{Node, Values};
 use super::lines::LEAST_LIFE;
 use super::model::{self, WaterfallLayer};
 use super::path::{Laws, Path, first};
+use crate::base::pointer::Pointer;
 use crate::base::text::short;
 use crate::layers::parts::derived::Derived;
+use crate::layers::space::eye::Ray;
 
 const fn column(name: &'static str, unit: &'static str, help: &'static str) -> Derived {
     Derived { name, of: "velocity", unit, help }
@@ -18,10 +20,16 @@ const fn column(name: &'static str, unit: &'static str, help: &'static str) -> D
 
 const SPEED: Derived =
     column("speed", "m/s", "How fast water leaves the node. A new speed keeps the direction of the velocity.");
-const LAND_X: Derived =
-    column("land x", "m", "Where the line of the node meets the pool: x. A new place changes vx, and keeps the air time.");
-const LAND_Z: Derived =
-    column("land z", "m", "Where the line of the node meets the pool: z. A new place changes vz, and keeps the air time.");
+const LAND_X: Derived = column(
+    "land x",
+    "m",
+    "Where the line of the node meets the pool: x. A new place changes vx, and keeps the air time.",
+);
+const LAND_Z: Derived = column(
+    "land z",
+    "m",
+    "Where the line of the node meets the pool: z. A new place changes vz, and keeps the air time.",
+);
 const AIR_TIME: Derived =
     column("air time", "s", "How long the line of the node takes to the pool. A new time changes vy alone.");
 const IMPACT: Derived = column(
@@ -52,9 +60,13 @@ impl Fall {
     pub fn of(layer: &WaterfallLayer, node: &Value) -> Option<Fall> {
         let values = Values::of(layer);
         let node: model::Node = serde_json::from_value(node.clone()).ok()?;
-        let Node { at, velocity, .. } = Node::of(&node, values.height);
-        let path = Path { start: at, velocity };
-        Some(Fall { laws: values.laws, path, pool: values.pool, most: values.kinds[0].life })
+        Some(Fall::new(&values, &Node::of(&node, values.height)))
+    }
+
+    /// The line of a node.
+    pub fn new(values: &Values, node: &Node) -> Fall {
+        let path = Path { start: node.at, velocity: node.velocity };
+        Fall { laws: values.laws, path, pool: values.pool, most: values.kinds[0].life }
     }
 
     /// How long it takes to the pool; `None` if it never meets it.
@@ -160,10 +172,24 @@ impl Fall {
     }
 }
 
+/// The velocity with which the line of the node at `path` ends where a ray meets the pool, and its path.
+///
+/// # Errors
+/// There is no node, or its line or the ray never meets the pool.
+pub fn aimed(layer: &WaterfallLayer, path: &str, ray: &Ray) -> Result<(String, Value), String> {
+    let values = Values::of(layer);
+    let found = Pointer(path).item_of("/lip").and_then(|(index, _)| Some((index, values.lip.get(index)?)));
+    let (index, node) = found.ok_or("only nodes of the lip land: select one (w, b)")?;
+    let missed = || format!("the pool (y {}) is not seen there", short(values.pool, DECIMALS));
+    let at = ray.meets_level(values.pool).ok_or_else(missed)?;
+    let velocity = Fall::new(&values, node).landing(Some(at.x), Some(at.z))?;
+    Ok((format!("/lip/{index}/velocity"), json!(velocity.to_array())))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use crate::layers::space::camera::Camera;
 
     fn layer(more: &Value) -> WaterfallLayer {
         let mut json = json!({ "name": "falls" });
@@ -210,6 +236,23 @@ mod tests {
         assert_eq!((thrown.x, thrown.z), (0.4, 1.1));
         assert!(thrown.y > 0.7, "it flies longer than before");
         assert_eq!(fall.solved(&IMPACT, 9.0).unwrap().y, 0.7);
+    }
+
+    #[test]
+    fn a_node_lands_where_a_ray_meets_the_pool() {
+        let layer = layer(&json!({ "lip": [{ "at": [-1, 2, 0] }, { "at": [1, 2, 0] }], "pool": -0.5 }));
+        let eye = Camera::default().at(0.0, (200, 100));
+        let place = DVec3::new(0.7, -0.5, 0.4);
+        let ray = eye.ray_in_world(eye.project(eye.seen(place)));
+        let (path, velocity) = aimed(&layer, "/lip/1/at", &ray).unwrap();
+        assert_eq!(path, "/lip/1/velocity");
+        let landed = Fall::of(&layer, &json!({ "at": [1, 2, 0], "velocity": velocity })).unwrap().end().unwrap().0;
+        assert!((landed - place).length() < 1e-9, "{landed}");
+        let sky = eye.ray_in_world(DVec2::new(100.0, -100.0));
+        assert!(aimed(&layer, "/lip/1", &sky).unwrap_err().contains("the pool (y -0.5) is not seen there"));
+        for path in ["/lip", "/lip/2", "/look"] {
+            assert!(aimed(&layer, path, &ray).unwrap_err().contains("select one"), "{path}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use kurbo::Point;
 
+use super::landing::Fall;
 use super::lines::Line;
 use super::synth::Synth;
 use crate::base::pointer::Pointer;
@@ -23,8 +24,13 @@ static FOAM: Look = Look::new("line of foam", 29, [255, 255, 255, 90], 0.6).dash
 /// A flow line that starts next to the node which is selected.
 static NEXT: Look = Look::new("flow line at the node", 30, [255, 220, 80, 230], 2.0).dots(Dot::Diamond, 2.5);
 
+/// A node of the lip.
+static NODE: Look = Look::new("node of the lip", 31, [255, 220, 80, 230], 1.0).dots(Dot::Disc, 3.5);
+/// Where the line of a node meets the pool.
+static LANDING: Look = Look::new("landing of a node", 32, [255, 150, 60, 255], 1.0).dots(Dot::Square, 3.5).grip();
+
 /// Every look, from bottom to top.
-pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &WATER, &FOAM, &NEXT];
+pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &WATER, &FOAM, &NEXT, &NODE, &LANDING];
 
 /// Pieces of a drawn line.
 const PIECES: usize = 24;
@@ -47,11 +53,25 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
         } else if line.foam {
             (&FOAM, "/foam")
         } else {
-            (&WATER, "/lip")
+            // Not the lip: all lines would be bold while a node of it is selected.
+            (&WATER, "/lines")
         };
         of_line(synth, (moment, &eye), line, (look, path))
     });
-    drawn.collect()
+    drawn.chain(of_nodes(synth, moment, &eye)).collect()
+}
+
+/// The nodes, and where they land.
+fn of_nodes(synth: &Synth, moment: &Moment, eye: &Eye) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    for (i, node) in synth.values.lip.iter().enumerate() {
+        let landing = Fall::new(&synth.values, node).end().map(|(at, _)| (&LANDING, at));
+        for (look, at) in std::iter::once((&NODE, node.at)).chain(landing) {
+            let dot = line(moment, eye, [at; 2]).map(|[dot, _]| Shape::Dot(dot));
+            marks.extend(dot.map(|dot| Mark::new(look, format!("/lip/{i}"), dot)));
+        }
+    }
+    marks
 }
 
 fn of_line(synth: &Synth, (moment, eye): (&Moment, &Eye), of: &Line, (look, path): (&'static Look, &str)) -> Vec<Mark> {
@@ -86,4 +106,38 @@ fn reach(synth: &Synth, selection: &str) -> Option<std::ops::RangeInclusive<f64>
     let lip = &synth.values.lip;
     let before = |node: usize| lip.windows(2).take(node).map(|pair| pair[0].at.distance(pair[1].at)).sum::<f64>();
     (node < lip.len()).then(|| before(node.saturating_sub(1))..=before(node + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::picture::Picture;
+    use crate::layers::parts::materials::Materials;
+    use crate::layers::ready::Making;
+    use crate::layers::space::camera::Camera;
+    use crate::layers::timeline::Wrap;
+    use std::sync::Arc;
+
+    #[test]
+    fn lines_beside_the_selected_node_stand_out_and_nodes_have_grips_where_they_land() {
+        let layer = r#"{"name": "f", "spread": 0, "lip": [{"at": [-1, 2, 0]}, {"at": [0, 2, 0]}, {"at": [3, 2, 0]}],
+            "sprites": {"size": 16, "sheets": [{"image": "s"}]}}"#;
+        let image = Arc::new(Picture::filled(16, 16, [0.5; 4]));
+        let materials = Materials { pictures: [("s".to_owned(), image)].into(), ..Materials::default() };
+        let layer = serde_json::from_str(layer).unwrap();
+        let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap();
+        let moment = Moment { t: 0.0, size_px: (200, 100), eye: Some(Camera::default().at(0.0, (200, 100))) };
+        let view = View { selection: Some("/lip/0/at".into()), ..View::of(&[LINES]) };
+        let found = marks(&synth, &view, &moment);
+        let next: Vec<&Mark> = found.iter().filter(|mark| mark.look.name == NEXT.name).collect();
+        let ticks = next.iter().filter(|mark| matches!(mark.shape, Shape::Dot(_))).count();
+        let lines = next.len() - ticks;
+        // A quarter of the lip, and a tick at each tenth of the 0.69 s that they last.
+        assert!((lines as f64 / f64::from(synth.values.lines) - 0.25).abs() < 0.02, "{lines}");
+        assert_eq!(ticks, 6 * lines);
+        assert!(next.iter().all(|mark| mark.path == "/lip"));
+        let grips: Vec<&str> = found.iter().filter(|mark| mark.look.is_grip).map(|mark| mark.path.as_str()).collect();
+        assert_eq!(grips, ["/lip/0", "/lip/1", "/lip/2"]);
+        assert_eq!(marks(&synth, &View::default(), &moment), []);
+    }
 }

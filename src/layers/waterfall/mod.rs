@@ -39,6 +39,7 @@ use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
+use super::space::eye::Ray;
 use super::technique::{Checked, Kind, Starts, Technique, halfway};
 use crate::base::problem::Problem;
 
@@ -110,6 +111,10 @@ impl Technique for WaterfallLayer {
     fn solve(&self, column: &Derived, item: &Value, to: f64) -> Result<Value, String> {
         let fall = landing::Fall::of(self, item).ok_or("this is no node of the lip")?;
         fall.solved(column, to).map(|velocity| json!(velocity.to_array()))
+    }
+
+    fn aimed(&self, path: &str, ray: &Ray) -> Result<(String, Value), String> {
+        landing::aimed(self, path, ray)
     }
 
     fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {

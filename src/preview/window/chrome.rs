@@ -8,6 +8,7 @@ use super::state::{Panel, State};
 use super::style::{ACCENT, TEXT};
 use super::text::Letters;
 use super::{bar, legend, panel, problems};
+use crate::base::maths::{TAU, cos, sin};
 use crate::preview::keys::{KEYS, VIEW};
 
 /// Draws all of it.
@@ -15,6 +16,7 @@ pub fn draw(state: &State, letters: &Letters) -> Canvas {
     let mut canvas = Canvas::default();
     border(&mut canvas, state);
     marked(&mut canvas, state);
+    dragged(&mut canvas, state);
     let free = problems::draw(&mut canvas, state, letters);
     match state.panel {
         Panel::None => legend::draw(&mut canvas, state, letters, free),
@@ -54,6 +56,19 @@ fn marked(canvas: &mut Canvas, state: &State) {
             c.line(at + way * 3.0 * scale, at + way * 11.0 * scale, 1.5 * scale, ACCENT);
         }
     });
+}
+
+/// A ring where what is dragged would go.
+fn dragged(canvas: &mut Canvas, state: &State) {
+    let Some(at) = state.dragged else { return };
+    let (at, scale) = (state.viewport.screen_from_image(at, state.area()), state.scale);
+    let ring: Vec<Point> = (0..24)
+        .map(|k| {
+            let angle = f64::from(k) * TAU / 24.0;
+            at + Vec2::new(cos(angle), sin(angle)) * 6.0 * scale
+        })
+        .collect();
+    canvas.with_halo(|c| c.polyline(&ring, true, 1.5 * scale, None, ACCENT));
 }
 
 #[cfg(test)]

@@ -72,7 +72,7 @@ impl App {
         self.leading(|app| {
             asked = match pressed {
                 true => app.mouse.pressed(&mut app.state, button),
-                false => app.mouse.released(&app.state, Instant::now()),
+                false => app.mouse.released(&mut app.state, Instant::now()),
             };
         });
         match asked {
@@ -80,6 +80,7 @@ impl App {
             Asked::Play => self.key(event_loop, "play"),
             Asked::Fit => self.run(event_loop, "zoom-fit"),
             Asked::Select(at) => self.tell("select-point", Some(at)),
+            Asked::Drop(dragged, at) => self.tell(&format!("drop {dragged}"), Some(at)),
         }
         self.pointed();
     }

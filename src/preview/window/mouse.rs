@@ -9,13 +9,13 @@ use super::state::State;
 
 /// A click may move the pointer by this much, in logical pixels.
 const CLICK_PX: f64 = 3.0;
-/// The border of before and after can be grabbed from this distance, in logical pixels.
+/// The border of before and after, and grips, can be grabbed from this distance, in logical pixels.
 const BORDER_PX: f64 = 7.0;
 /// Two clicks within this time, at about the same place, are a double click.
 const DOUBLE: Duration = Duration::from_millis(400);
 
 /// What the window is to do, besides what has changed in the state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Asked {
     /// Nothing.
     Nothing,
@@ -23,6 +23,8 @@ pub enum Asked {
     Play,
     /// Select what stands there in the picture.
     Select(Point),
+    /// Move what is at this JSON pointer to a place of the picture.
+    Drop(String, Point),
     /// Fit the picture into the window.
     Fit,
 }
@@ -52,6 +54,8 @@ enum Drag {
     Along,
     Time,
     Border,
+    /// See [`Mouse::dragged`].
+    Grip,
 }
 
 /// Which button.
@@ -74,6 +78,8 @@ pub struct Mouse {
     drag: Drag,
     /// Where the left button went down on the picture, as long as that may become a click.
     pressed_at: Option<Point>,
+    /// JSON pointer of what is dragged by a grip.
+    dragged: Option<String>,
     /// When and where the last click was.
     clicked: Option<(Instant, Point)>,
     /// The fraction of a wheel step that has been turned so far.
@@ -111,6 +117,7 @@ impl Mouse {
             (Drag::Along, Some(from), Some(to)) => state.drag_along(to - from),
             (Drag::Time, _, Some(to)) => scrub(state, to.x),
             (Drag::Border, _, Some(to)) => state.drag_wipe(to.x),
+            (Drag::Grip, ..) => state.dragged = state.pointed(),
             _ => {}
         }
     }
@@ -124,8 +131,10 @@ impl Mouse {
                 Button::Middle if state.camera.is_some() => Drag::Round,
                 Button::Left if state.camera.is_some() && self.held.alt => Drag::Round,
                 Button::Left if on_border(state, at) => Drag::Border,
+                Button::Left if grip_at(state, at).is_some() => Drag::Grip,
                 _ => Drag::Picture,
             };
+            self.dragged = (self.drag == Drag::Grip).then(|| grip_at(state, at)).flatten();
             self.pressed_at = (button == Button::Left && self.drag == Drag::Picture).then_some(at);
         } else if button == Button::Left {
             if bar::is_sign(state, at) {
@@ -138,8 +147,11 @@ impl Mouse {
     }
 
     /// A button comes up; if the pointer has hardly moved since it went down, that was a click.
-    pub fn released(&mut self, state: &State, now: Instant) -> Asked {
-        self.drag = Drag::Nothing;
+    pub fn released(&mut self, state: &mut State, now: Instant) -> Asked {
+        (self.drag, state.dragged) = (Drag::Nothing, None);
+        if let Some(dragged) = self.dragged.take() {
+            return state.pointed().map_or(Asked::Nothing, |at| Asked::Drop(dragged, at));
+        }
         let (Some(_), Some(to)) = (self.pressed_at.take(), state.pointer) else { return Asked::Nothing };
         let near = |place: Point| place.distance(to) <= 2.0 * CLICK_PX * state.scale;
         let before = self.clicked.replace((now, to));
@@ -179,9 +191,10 @@ impl Mouse {
     pub fn shape(&self, state: &State) -> Shape {
         match (self.drag, state.pointer) {
             (Drag::Border, _) => Shape::Across,
-            (Drag::Picture | Drag::Round | Drag::Along, _) => Shape::Held,
+            (Drag::Picture | Drag::Round | Drag::Along | Drag::Grip, _) => Shape::Held,
             (Drag::Nothing, Some(at)) if at.y >= state.area().height && bar::is_sign(state, at) => Shape::Hand,
             (Drag::Nothing, Some(at)) if on_border(state, at) => Shape::Across,
+            (Drag::Nothing, Some(at)) if grip_at(state, at).is_some() => Shape::Hand,
             _ => Shape::Arrow,
         }
     }
@@ -190,6 +203,14 @@ impl Mouse {
 fn on_border(state: &State, at: Point) -> bool {
     let reach = BORDER_PX * state.scale;
     at.y < state.area().height && state.wipe_at().is_some_and(|x| (x - at.x).abs() <= reach)
+}
+
+/// The nearest grip within reach of a place on the screen: JSON pointer of what it drags.
+fn grip_at(state: &State, at: Point) -> Option<String> {
+    let far = |place: Point| state.viewport.screen_from_image(place, state.area()).distance(at);
+    let grips = state.grips.iter().map(|(path, place)| (path, far(*place)));
+    let near = grips.filter(|(_, far)| *far <= BORDER_PX * state.scale && at.y < state.area().height);
+    near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(path, _)| path.clone())
 }
 
 fn scrub(state: &mut State, x: f64) {
@@ -306,6 +327,29 @@ mod tests {
         let mut mouse = Mouse::default();
         let heard: Vec<bool> = [true, true, true, true, false, false, true].map(|twice| mouse.counts(twice)).into();
         assert_eq!(heard, [true, false, true, false, true, true, true]);
+    }
+
+    #[test]
+    fn a_grip_is_dropped_where_the_button_comes_up() {
+        let now = Instant::now();
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
+        // The picture stands at 200 %.
+        state.grips = vec![("/a".into(), Point::new(50.0, 50.0)), ("/b".into(), Point::new(52.0, 50.0))];
+        let origin = state.viewport.origin(state.area());
+        let mut dragged =
+            |from: f64, to: (f64, f64)| drag(&mut mouse, &mut state, Button::Left, &[(from, 100.0), to], now);
+        assert_eq!(dragged(105.0, (200.0, 60.0)), Asked::Drop("/b".into(), Point::new(100.0, 30.0)));
+        assert_eq!(dragged(97.0, (200.0, 60.0)), Asked::Drop("/a".into(), Point::new(100.0, 30.0)));
+        assert_eq!(dragged(97.0, (9999.0, 60.0)), Asked::Nothing, "beside the picture");
+        assert_eq!(state.viewport.origin(state.area()), origin, "the picture stays");
+        mouse.moved(&mut state, Some((97.0, 100.0).into()));
+        mouse.pressed(&mut state, Button::Left);
+        mouse.moved(&mut state, Some((200.0, 60.0).into()));
+        assert_eq!(state.dragged, Some(Point::new(100.0, 30.0)), "it is seen under the pointer");
+        mouse.released(&mut state, now);
+        assert_eq!(state.dragged, None);
+        assert_eq!(drag(&mut mouse, &mut state, Button::Middle, &[(97.0, 100.0), (90.0, 100.0)], now), Asked::Nothing);
+        assert_ne!(state.viewport.origin(state.area()), origin, "the middle button moves it");
     }
 
     #[test]

@@ -128,6 +128,7 @@ impl Opened {
             Some(show) => {
                 marks.follow(state, show, letters);
                 (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
+                state.grips.clone_from(&marks.grips);
                 let asked = state.pointed().filter(|_| state.shows_vectors());
                 state.jump = asked.and_then(|at| jump_at(&show.synth, at));
                 let in_space = state.pointed().filter(|_| state.camera.is_some());

@@ -13,7 +13,7 @@ use super::text::Letters;
 use super::viewport::Viewport;
 use super::{labels, marks};
 use crate::base::pointer::Pointer;
-use crate::layers::parts::marks::View;
+use crate::layers::parts::marks::{Mark, Shape, View};
 use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::overlay::{longest, overlay, overlays};
@@ -95,6 +95,8 @@ pub struct Cached {
     moved_for: Option<(View, Sight, Option<OwnView>)>,
     /// Names and numbers, above all else of the overlay.
     pub labels: Canvas,
+    /// See [`State::grips`].
+    pub grips: Vec<(String, Point)>,
     /// See [`State::arrow_scale`].
     pub arrow_scale: f64,
     /// See [`State::longest`].
@@ -131,6 +133,7 @@ impl Cached {
             self.moved_for = moving;
             let synth = seen(&show.synth, state.own_camera().as_ref());
             let found = overlay(&show.scene, Some(&synth), &state.moving_view());
+            self.grips = found.iter().filter_map(grip).collect();
             let (viewport, area, scale) = (&state.viewport, state.area(), state.scale);
             self.moving = marks::draw(&found, viewport, area, scale);
             self.moving.strokes.extend(labels::draw(&found, viewport, area, scale, letters).strokes);
@@ -149,6 +152,14 @@ impl Cached {
         let legends = overlays().any(|overlay| overlay.legend.is_some() && state.shows(overlay.name));
         self.longest = if legends { longest(&show.synth) } else { 0.0 };
         self.arrow_scale = View { longest_px: self.longest, ..view }.arrow_scale();
+    }
+}
+
+/// What a mark lets the mouse drag, and where that is.
+fn grip(mark: &Mark) -> Option<(String, Point)> {
+    match mark.shape {
+        Shape::Dot(at) if mark.look.is_grip => Some((mark.path.clone(), at)),
+        _ => None,
     }
 }
 

@@ -54,6 +54,10 @@ pub struct State {
     pub wipe: f64,
     /// The point marked last, in pixels of the picture.
     pub marked: Option<Point>,
+    /// What can be dragged: its JSON pointer, and where in the picture it is.
+    pub grips: Vec<(String, Point)>,
+    /// Where what is dragged by a grip would go, in pixels of the picture.
+    pub dragged: Option<Point>,
     /// The jump vector under the pointer, where what is shown of jump vectors asks for it.
     pub jump: Option<Vec2>,
     /// What stands under the pointer of layers in space.
@@ -102,6 +106,8 @@ impl Default for State {
             field_step: 0,
             wipe: 0.5,
             marked: None,
+            grips: Vec::new(),
+            dragged: None,
             jump: None,
             under: None,
             selected: None,

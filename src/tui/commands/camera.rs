@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
-use crate::base::number;
 use crate::files::materials::{self, Cache};
 use crate::layers::parts::moment::Space;
 use crate::layers::ready::{Making, Ready};
@@ -15,7 +14,7 @@ use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{Bounds, fit};
 use crate::render::frame_size;
 use crate::tui::state::State;
-use crate::tui::text::numbers::short;
+use crate::tui::text::numbers::{rounded, short};
 
 pub const COMMANDS: &[Command] = &[command(
     "camera",
@@ -140,17 +139,4 @@ fn write(state: &mut State, call: &Call, camera: &Camera, said: &str) -> Done {
         format!("{said}, without its {lost} (u brings them back)")
     });
     Ok(())
-}
-
-/// Numbers as a person would write them.
-fn rounded(value: Value) -> Value {
-    const PARTS: f64 = 1e6;
-    match value {
-        Value::Number(number) => {
-            number.as_f64().map_or(Value::Number(number), |n| number::json((n * PARTS).round() / PARTS))
-        }
-        Value::Array(all) => all.into_iter().map(rounded).collect(),
-        Value::Object(all) => all.into_iter().map(|(key, value)| (key, rounded(value))).collect(),
-        other => other,
-    }
 }

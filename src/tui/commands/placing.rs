@@ -6,9 +6,10 @@ use super::command::{Call, Command, Done, command};
 use super::items::go_to;
 use crate::base::problem::quoted;
 use crate::render::overlay;
+use crate::scene::address;
 use crate::tui::events::Effect;
 use crate::tui::layout::picture;
-use crate::tui::state::{Mode, Pane, State, entry, place};
+use crate::tui::state::{Mode, Pane, State, entry, place, spatial};
 use crate::tui::text::numbers::short;
 
 pub const COMMANDS: &[Command] = &[
@@ -18,8 +19,8 @@ pub const COMMANDS: &[Command] = &[
         .counted_with(&["next", "previous"]),
     command(
         "pointer",
-        "[mark|select]",
-        "Enter the place of the window's pointer, or move the picture's cursor there",
+        "[mark|select|drop POINTER]",
+        "Enter the place of the window's pointer, or move the picture's cursor or something else there",
         pointer,
     )
     .inside(),
@@ -79,10 +80,24 @@ fn placed(state: &mut State, call: &Call) -> Done {
     }
 }
 
+/// Ends a drag of a window: what it dragged goes to where the pointer is.
+fn dropped(state: &mut State, call: &Call, dragged: &str) -> Done {
+    if !matches!(state.typing.mode, Mode::Normal) {
+        return Err(BUSY.into());
+    }
+    let (pointer, value) = spatial::dropped(state, dragged)?;
+    let address = address::address(state.document(), &pointer);
+    call.obey(state, &format!("set {address}={value}"))?;
+    call.obey(state, &format!("go {pointer}"))
+}
+
+/// Why a window's mouse changes nothing.
+const BUSY: &str = "something is being typed or chosen: end that first (Esc)";
+
 /// Goes to what is at a place of the picture: an anchor near it, else the zone.
 fn select(state: &mut State, call: &Call, at: Point) -> Done {
     if !matches!(state.typing.mode, Mode::Normal) {
-        return Err("something is being typed or chosen: end that first (Esc)".into());
+        return Err(BUSY.into());
     }
     let (width, height) = state.picture.size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
@@ -96,6 +111,9 @@ fn pointer(state: &mut State, call: &Call) -> Done {
     let (x, y) = state.outside.pointer.ok_or("the window's pointer is not over the picture")?;
     if call.text == "select" {
         return select(state, call, (x, y).into());
+    }
+    if let Some(dragged) = call.text.strip_prefix("drop ") {
+        return dropped(state, call, dragged);
     }
     if matches!(state.typing.mode, Mode::Entry(_)) {
         return entry::offer(state, (x, y).into());

@@ -275,6 +275,7 @@ fn run_of_window(state: &mut State, name: &str) {
     match name {
         "mark-point" => commands::run(state, "pointer mark", None),
         "select-point" => commands::run(state, "pointer select", None),
+        told if told.starts_with("drop ") => commands::run(state, &format!("pointer {told}"), None),
         told => picture::follow_window(state, told),
     }
 }

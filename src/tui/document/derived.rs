@@ -8,6 +8,7 @@ use crate::layers::parts::derived::Derived;
 use crate::layers::technique::Technique;
 use crate::scene::Document;
 use crate::scene::field;
+use crate::tui::text::numbers;
 
 /// The layer that a place belongs to, and the way from it to there.
 pub fn layer_of<'a>(document: &'a Document, pointer: &'a str) -> Option<(&'a dyn Technique, &'a str)> {
@@ -24,7 +25,7 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
 /// The value that a layer has for a field that is not set.
 pub fn automatic(document: &Document, pointer: &str) -> Option<Value> {
     let (layer, way) = layer_of(document, pointer)?;
-    layer.automatic(way)
+    Some(numbers::mapped(layer.automatic(way)?, numbers::tidy))
 }
 
 /// The columns that follow from the item at `pointer`.

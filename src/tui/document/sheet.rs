@@ -289,7 +289,9 @@ fn item(document: &Document, child: Child, place: Place) -> Row {
         }
         _ => cells(document, (&child.name, &child.pointer), &field, place, true),
     };
-    cells.extend(derived::columns(document, &child.pointer).iter().map(|column| follows(document, &child.pointer, column)));
+    cells.extend(
+        derived::columns(document, &child.pointer).iter().map(|column| follows(document, &child.pointer, column)),
+    );
     Row { label, set: true, item: true, cells, pointer: child.pointer, field }
 }
 

@@ -13,8 +13,8 @@ pub const TREE: &str = "tree";
 pub const TABLE: &str = "form and table";
 /// The picture with its cursor.
 pub const PICTURE: &str = "picture";
-/// The picture, while its cursor sets a jump vector.
-pub const AIM: &str = "aiming a jump vector";
+/// The picture, while its cursor sets a jump vector or a landing.
+pub const AIM: &str = "aiming a jump vector or a landing";
 /// A list to choose from.
 pub const LIST: &str = "list of choices";
 /// The palette.
@@ -202,7 +202,7 @@ const OWN: &[KeyRow] = &[
     row(PICTURE, "L", "cursor 10 0", "Move the cursor ten pixels right"),
     row(PICTURE, "a", "place add", "Add a point here to the list in focus"),
     row(PICTURE, "r", "place move", "Move the selected point here"),
-    row(PICTURE, "s", "place aim", "Set the selected point's jump vector: move, then Enter"),
+    row(PICTURE, "s", "place aim", "Set the selected point's jump vector, or where it lands: move, then Enter"),
     row(PICTURE, "w", "place next", "Select the next point and go there"),
     row(PICTURE, "b", "place previous", "Select the previous point and go there"),
     row(PICTURE, "d", "delete", "Delete the selected point"),
@@ -210,9 +210,9 @@ const OWN: &[KeyRow] = &[
     row(PICTURE, "-", "zoom out", "Zoom out"),
     row(PICTURE, "0", "zoom fit", "Show the whole picture"),
     row(PICTURE, "Enter", "probe", "Open or close the read-out of the pixel under the cursor"),
-    row(AIM, "Enter", "place jump", "End the jump vector at the cursor"),
-    row(AIM, "Esc", "cancel", "Keep the old jump vector"),
-    row(AIM, "Ctrl-c", "cancel", "Keep the old jump vector"),
+    row(AIM, "Enter", "place jump", "End the jump vector, or land, at the cursor"),
+    row(AIM, "Esc", "cancel", "Keep the old one"),
+    row(AIM, "Ctrl-c", "cancel", "Keep the old one"),
     row(LIST, "j", "choice next", "Go down"),
     row(LIST, "Down", "choice next", "Go down"),
     row(LIST, "k", "choice previous", "Go up"),

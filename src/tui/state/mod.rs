@@ -10,6 +10,7 @@ pub mod picture;
 pub mod place;
 pub mod play;
 pub mod recorder;
+pub mod spatial;
 pub mod spots;
 pub mod tutor;
 pub mod typing;

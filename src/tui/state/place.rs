@@ -5,7 +5,7 @@ use crate::base::pointer::Pointer;
 use kurbo::{Point, Vec2};
 use serde_json::Value;
 
-use super::State;
+use super::{State, spatial};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::text::numbers::tidy;
@@ -64,6 +64,10 @@ fn placed(state: &State) -> Option<(String, Place, Point)> {
 
 /// Moves what has the focus to the cursor.
 pub fn move_here(state: &State) -> Result<Edit, String> {
+    if let Some((pointer, _)) = spatial::selected(state) {
+        let moved = spatial::moved(state, state.document(), &pointer);
+        return moved.ok_or_else(|| "the camera does not see what is selected".into());
+    }
     let (_, place, _) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     Ok(move_to(state.document(), &place, state.picture.cursor))
 }
@@ -85,6 +89,9 @@ pub fn jump_in_focus(state: &State) -> Option<Vec2> {
 
 /// Makes the jump vector (or the dragged place) of what has the focus end at the cursor.
 pub fn aim_here(state: &State) -> Result<Edit, String> {
+    if let Some(edit) = spatial::aim_here(state)? {
+        return Ok(edit);
+    }
     let document = state.document();
     let (pointer, _, at) = placed(state).ok_or("what is selected has no place: select a point (w, b)")?;
     let children = field::children(document, &pointer);
@@ -118,7 +125,7 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
         for list in lists {
             let end = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
             let index = if is_list { after.map_or(end, |i| i + 1) } else { end };
-            if let Some(added) = add_to(document, &list, index, state.picture.cursor) {
+            if let Some(added) = add_to(state, &list, index) {
                 return Ok(added);
             }
         }
@@ -132,11 +139,20 @@ fn lists(document: &Document, pointer: &str) -> Vec<String> {
     children.filter(|child| matches!(child.field.kind, Kind::List(_))).map(|child| child.pointer).collect()
 }
 
-fn add_to(document: &Document, list: &str, index: usize, at: Point) -> Option<(Edit, String)> {
-    let (edit, pointer) = Edit::insert_new(document, list, index)?;
-    let with = document.apply(&edit).ok()?;
-    let (place, _) = place(&with, &pointer)?;
-    Some((Edit::all([edit, move_to(&with, &place, at)]), pointer))
+fn add_to(state: &State, list: &str, index: usize) -> Option<(Edit, String)> {
+    let (edit, pointer) = Edit::insert_new(state.document(), list, index)?;
+    let with = state.document().apply(&edit).ok()?;
+    let moved = match place(&with, &pointer) {
+        Some((place, _)) => move_to(&with, &place, state.picture.cursor),
+        None => spatial::moved(state, &with, &pointer)?,
+    };
+    Some((Edit::all([edit, moved]), pointer))
+}
+
+/// Where what is at `pointer` is in the picture.
+fn seen(state: &State, pointer: &str) -> Option<Point> {
+    let in_space = || spatial::seen(state, spatial::place(state.document(), pointer)?.1);
+    place(state.document(), pointer).map(|(_, at)| at).or_else(in_space)
 }
 
 /// The next (1) or previous (-1) row that has a place: its index and the place.
@@ -145,11 +161,12 @@ pub fn next_point(state: &State, by: i64) -> Option<(usize, Point)> {
     let n = sheet.len() as i64;
     (1..=n).find_map(|step| {
         let row = (state.cursor.row as i64 + by * step).rem_euclid(n) as usize;
-        place(state.document(), &sheet.pointer(row)?).map(|(_, at)| (row, at))
+        seen(state, &sheet.pointer(row)?).map(|at| (row, at))
     })
 }
 
 /// The place of what has the focus, for the marks on the picture.
 pub fn selected(state: &State) -> Option<Point> {
-    placed(state).map(|(_, _, at)| at)
+    let in_space = || spatial::seen(state, spatial::selected(state)?.1.1);
+    placed(state).map(|(_, _, at)| at).or_else(in_space)
 }

@@ -1,10 +1,22 @@
 //! A list whose items lie in space and have columns that follow from their fields: (scene, keys, scene).
 
+use glam::{DVec2, DVec3};
+use kurbo::Point;
 use serde_json::{Value, json};
 
-use super::support::{at, paste, press, said_last, state_of};
+use super::support::{at, paste, press, said, said_last, state_of};
+use crate::layers::space::camera::Camera;
+use crate::layers::space::eye::Eye;
+use crate::preview::wire::message::ToEditor;
+use crate::tui::commands::obey;
+use crate::tui::commands::update::update;
 use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
+
+/// A camera that sees all nodes and the pool.
+fn camera() -> Camera {
+    Camera { position: [0.0, 3.0, 12.0], target: [0.0, 2.0, 0.0], ..Camera::default() }
+}
 
 /// The editor in the table of three nodes, from 5 m above the pool; the first has no velocity of its own.
 fn falling(more: Value) -> State {
@@ -15,7 +27,7 @@ fn falling(more: Value) -> State {
     ]});
     layer.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
     let clips = json!({ "w": { "path": "w-%04d.png" } });
-    let mut state = state_of(&json!({ "plica": 1, "clips": clips, "camera": {}, "layers": [layer] }).to_string());
+    let mut state = state_of(&json!({ "plica": 1, "clips": clips, "camera": camera(), "layers": [layer] }).to_string());
     state.picture.size = Some((400, 300));
     state.show("/layers/0/lip");
     state.cursor.focus = Pane::Table;
@@ -34,7 +46,8 @@ fn velocity(state: &State, node: usize) -> Vec<f64> {
 /// Keys that go to a column, from the first one.
 fn to_column(state: &State, head: &str) -> String {
     let at = columns(state, 0).iter().position(|(own, _)| own == head).unwrap();
-    format!("Home {at} l")
+    let digits: Vec<String> = at.to_string().chars().map(String::from).collect();
+    format!("Home {} l", digits.join(" "))
 }
 
 fn near(found: &[f64], wanted: &[f64]) -> bool {
@@ -49,7 +62,17 @@ fn columns_that_follow_are_shown_beside_the_others() {
     assert_eq!(
         second,
         [
-            "x 1", "y 4.905", "z 0", "vx 3", "vy 0", "vz 4", "flow 2", "speed 5", "land x 4", "land z 4", "air time 1",
+            "x 1",
+            "y 4.905",
+            "z 0",
+            "vx 3",
+            "vy 0",
+            "vz 4",
+            "flow 2",
+            "speed 5",
+            "land x 4",
+            "land z 4",
+            "air time 1",
             "impact ~11.011"
         ]
     );
@@ -112,7 +135,8 @@ fn what_has_no_answer_says_why_and_changes_nothing() {
 fn tables_have_the_columns_that_follow_and_take_them_back_with_what_they_follow_from() {
     let mut state = falling(json!({}));
     let effects = press(&mut state, "2 j Y");
-    let copied = effects.iter().find_map(|effect| if let Effect::Copy(text) = effect { Some(text.clone()) } else { None });
+    let copied =
+        effects.iter().find_map(|effect| if let Effect::Copy(text) = effect { Some(text.clone()) } else { None });
     let csv = copied.unwrap();
     assert!(csv.starts_with("x,y,z,vx,vy,vz,flow,speed,land x,land z,air time,impact\n1,4.905,0,3,0,4,2,5,4,4,1,"));
     paste(&mut state, &csv);
@@ -120,7 +144,7 @@ fn tables_have_the_columns_that_follow_and_take_them_back_with_what_they_follow_
     paste(&mut state, "x,y,z,land x\n1,2,3,4\n");
     assert!(said_last(&state).1.contains("line 2: land x follows from velocity, which is missing"));
     press(&mut state, "v");
-    paste(&mut state, "land x\n7\n");
+    paste(&mut state, "land x,land z\n7,8\n");
     assert!(said_last(&state).1.contains("land x follows from velocity: paste that, or type it"));
 }
 
@@ -132,4 +156,98 @@ fn help_tells_of_the_column_not_of_the_field_behind_it() {
     let crate::tui::state::Mode::Pages(pages) = &state.typing.mode else { panic!("no help") };
     assert!(pages.lines[0].contains("-- land x --"), "{}", pages.lines[0]);
     assert!(pages.lines.iter().any(|line| line.contains("keeps the air time")));
+}
+
+fn eye(camera: &Camera) -> Eye {
+    camera.at(0.0, (400, 300))
+}
+
+fn place(state: &State, node: usize) -> DVec3 {
+    let at: [f64; 3] = serde_json::from_value(at(state, &format!("/layers/0/lip/{node}/at"))).unwrap();
+    at.into()
+}
+
+fn seen(camera: &Camera, at: DVec3) -> Point {
+    let at = eye(camera).project(eye(camera).seen(at));
+    Point::new(at.x, at.y)
+}
+
+/// Where a node lands, by its columns.
+fn landing(state: &State, node: usize) -> DVec3 {
+    let cells = state.sheet().row(node).unwrap().cells;
+    let of = |head: &str| cells.iter().find(|cell| cell.head == head).unwrap().number(state.document()).unwrap();
+    DVec3::new(of("land x"), 0.0, of("land z"))
+}
+
+/// Checks that the log of an editor leads to the same scene.
+#[track_caller]
+fn replays(state: &State) {
+    let mut other = falling(json!({}));
+    let log = state.memory.recorder.log();
+    log.iter().filter(|line| !line.starts_with('#')).for_each(|line| obey(&mut other, line, None).unwrap());
+    assert_eq!(other.document().json(), state.document().json(), "{log:#?}");
+}
+
+#[test]
+fn the_cursor_sets_where_the_selected_node_lands() {
+    let mut state = falling(json!({}));
+    press(&mut state, "j g i : \"cursor at 150 250\" Enter s 2 J 5 l");
+    assert_eq!(velocity(&state, 1), [0.5, 0.0, 1.0], "not before Enter");
+    press(&mut state, "Enter");
+    assert_eq!(state.picture.cursor, Point::new(155.0, 270.0));
+    let ray = eye(&camera()).ray_in_world(DVec2::new(155.0, 270.0));
+    let wanted = ray.meets_level(0.0).unwrap();
+    assert!((landing(&state, 1) - wanted).length() < 1e-5, "{} {wanted}", landing(&state, 1));
+    replays(&state);
+    press(&mut state, "u");
+    assert_eq!(velocity(&state, 1), [0.5, 0.0, 1.0]);
+    press(&mut state, ": \"cursor at 150 10\" Enter s");
+    assert!(said_last(&state).1.contains("the pool (y 0) is not seen there"), "{:?}", state.message);
+}
+
+#[test]
+fn nodes_are_added_and_moved_as_far_away_as_the_selected_one() {
+    let camera = camera();
+    for (key, node) in [("a", 2), ("r", 1)] {
+        let mut state = falling(json!({}));
+        let depth = -eye(&camera).seen(place(&state, 1)).z;
+        press(&mut state, &format!("j g i : \"cursor at 120 80\" Enter {key}"));
+        assert_eq!(state.cursor.row, node, "{key}: {:?}", state.message);
+        let found = place(&state, node);
+        assert!(seen(&camera, found).distance(Point::new(120.0, 80.0)) < 1e-2, "{key}: {found}");
+        assert!((-eye(&camera).seen(found).z - depth).abs() < 1e-5, "{key}: {found}");
+        assert_eq!(velocity(&state, node), [0.5, 0.0, 1.0], "{key}: a new one is like the one before");
+        replays(&state);
+    }
+}
+
+#[test]
+fn the_cursor_goes_from_node_to_node() {
+    let mut state = falling(json!({}));
+    for (keys, node) in [("g i w", 1), ("w", 2), ("b b", 0)] {
+        press(&mut state, keys);
+        let wanted = seen(&camera(), place(&state, node));
+        assert_eq!((state.cursor.row, state.picture.cursor), (node, wanted), "{keys}");
+    }
+}
+
+#[test]
+fn a_window_drops_a_landing_where_it_sees_the_pool() {
+    for own in [None, Some(Camera { position: [3.0, 2.0, 3.0], ..camera() })] {
+        let mut state = falling(json!({}));
+        update(&mut state, said(ToEditor::Camera(own.clone())));
+        update(&mut state, said(ToEditor::Pointer { x: 230.5, y: 260.0 }));
+        update(&mut state, said(ToEditor::Command("drop /layers/0/lip/2".into())));
+        let wanted = eye(&own.unwrap_or_else(camera)).ray_in_world(DVec2::new(230.5, 260.0)).meets_level(0.0).unwrap();
+        assert!((landing(&state, 2) - wanted).length() < 1e-5, "{} {wanted}", landing(&state, 2));
+        assert_eq!(state.cursor.row, 2);
+        replays(&state);
+        press(&mut state, "u");
+        assert_eq!(state.document().json(), falling(json!({})).document().json());
+        update(&mut state, said(ToEditor::Command("drop /layers/0/look".into())));
+        assert!(said_last(&state).0);
+        press(&mut state, "i");
+        update(&mut state, said(ToEditor::Command("drop /layers/0/lip/2".into())));
+        assert!(said_last(&state).1.contains("something is being typed"));
+    }
 }

@@ -2,9 +2,10 @@
 //! paper, so that a jump of (0, -18) points up at 90 degrees).
 
 use kurbo::Vec2;
+use serde_json::Value;
 
 pub use crate::base::number::text as exact;
-use crate::base::{maths, text};
+use crate::base::{maths, number, text};
 
 /// The most decimals that a table shows; an entry shows all of them.
 const DECIMALS: usize = 3;
@@ -77,6 +78,22 @@ pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
 pub fn tidy(value: f64) -> f64 {
     let rounded = (value * 1e9).round() / 1e9;
     if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
+}
+
+/// Every number of a value with six decimals at most: what was pointed at is no more exact.
+pub fn rounded(value: Value) -> Value {
+    const PARTS: f64 = 1e6;
+    mapped(value, |number| (number * PARTS).round() / PARTS)
+}
+
+/// A value with all its numbers changed.
+pub fn mapped(value: Value, change: fn(f64) -> f64) -> Value {
+    match value {
+        Value::Number(number) => number.as_f64().map_or(Value::Number(number), |n| number::json(change(n))),
+        Value::Array(all) => all.into_iter().map(|value| mapped(value, change)).collect(),
+        Value::Object(all) => all.into_iter().map(|(key, value)| (key, mapped(value, change))).collect(),
+        other => other,
+    }
 }
 
 #[cfg(test)]
