@@ -127,6 +127,38 @@ fn set_asks_what_becomes_of_unsaved_edits_and_keeps_them_until_then() {
 }
 
 #[test]
+fn profiles_are_listed_shown_and_applied() {
+    let folder = folder();
+    let list = ok(plica(folder.path(), &["profile", "list"]));
+    assert!(list.lines().any(|line| line.starts_with("waterfall   smoke       smoke that rises")), "{list}");
+    let shown = plica(folder.path(), &["profile", "show", "cloud"]);
+    assert_eq!(shown.messages, "cloud wants a timeline of 12 s (timeline.duration=12)\n");
+    let patch: serde_json::Value = serde_json::from_str(&shown.out).unwrap();
+    assert_eq!(patch["foam"]["lines"], 0);
+    let layer = |name| serde_json::json!({ "kind": "waterfall", "name": name, "clip": "c" });
+    let layers = [serde_json::json!({ "kind": "fill", "name": "sky" }), layer("a"), layer("b")];
+    let clips = serde_json::json!({ "c": { "path": "%d.png" } });
+    let scene = serde_json::json!({ "plica": 1, "camera": {}, "clips": clips, "layers": layers });
+    std::fs::write(folder.path().join("s.json"), scene.to_string()).unwrap();
+    let apply = |more: &[&str]| plica(folder.path(), &[&["profile", "apply"], more].concat());
+    let applied = apply(&["cloud", "s.json", "--layer", "b"]);
+    let told = "cloud is applied to b; it wants a timeline of 12 s (timeline.duration=12)\n";
+    assert_eq!((applied.status, applied.messages.as_str()), (0, told));
+    assert_eq!(ok(plica(folder.path(), &["get", "s.json", "layers.b.life"])), "12\n");
+    assert_ne!(ok(plica(folder.path(), &["get", "s.json", "layers.a.gravity"])), "0\n");
+    ok(apply(&["smoke", "s.json"]));
+    assert_eq!(ok(plica(folder.path(), &["get", "s.json", "layers.a.gravity"])), "-1.2\n");
+    for (args, told) in [
+        (&["smok", "s.json"][..], "did you mean \"smoke\"?"),
+        (&["smoke", "s.json", "--layer", "c"], "s.json: there is no layer \"c\""),
+        (&["smoke", "s.json", "--layer", "sky"], "s.json: smoke is for layers of kind waterfall; sky is of kind fill"),
+    ] {
+        let refused = apply(args);
+        assert!(refused.status != 0 && refused.messages.contains(told), "{refused:?}");
+    }
+}
+
+#[test]
 fn new_makes_a_scene_and_never_overwrites() {
     let folder = folder();
     assert_eq!(ok(plica(folder.path(), &["new", "cat.png"])), "cat.plica.json\n");

@@ -12,7 +12,7 @@ use plica::base::pixels::Frame;
 use plica::files::profiles;
 use plica::layers::Layer;
 use plica::layers::folding::synth::Synth;
-use plica::scene::Document;
+use plica::scene::{Document, presets};
 use show::{Show, TIMES, at, no_seam, step, still_outside};
 
 #[path = "../profiles/draw/meshes/mod.rs"]
@@ -101,6 +101,20 @@ fn shipped_scenes_are_written_as_the_program_writes_them() {
 }
 
 #[test]
+fn the_demo_of_a_preset_is_the_default_layer_with_it() {
+    for found in presets::all() {
+        let name = found.preset.name;
+        let text = std::fs::read_to_string(root().join(format!("profiles/{name}/{name}.plica.json"))).unwrap();
+        let mut scene = Document::parse(&text).unwrap().json().clone();
+        let layer = scene["layers"][0].as_object_mut().unwrap();
+        layer.retain(|key, _| ["kind", "name", "clip"].contains(&key.as_str()));
+        let plain = Document::from_json(scene).unwrap();
+        let with = plain.apply(&found.apply(&plain, None).unwrap().edit).unwrap();
+        assert_eq!(with.to_text(), text, "{name}");
+    }
+}
+
+#[test]
 fn shipped_frames_are_golden() {
     for profile in profiles::TABLE {
         golden(profile.name, &shipped(profile.name));
@@ -111,7 +125,7 @@ fn shipped_frames_are_golden() {
 fn shipped_scenes_are_still_outside_their_zones_and_have_no_seam() {
     for profile in profiles::TABLE {
         // In space there is no picture to compare with: its own scene is compared.
-        let scene = profile.files.iter().find(|(file, _)| *file == profile.scene_file()).unwrap().1;
+        let scene = profile.files().find(|(file, _)| *file == profile.scene_file()).unwrap().1;
         if Document::parse(std::str::from_utf8(scene).unwrap()).unwrap().scene().camera.is_none() {
             let show = shipped(profile.name);
             still_outside(profile.name, &show);

@@ -14,23 +14,50 @@ pub struct Profile {
     pub name: &'static str,
     /// What it shows, in one line.
     pub help: &'static str,
-    /// The scene, its pictures and meshes: name and bytes.
-    pub files: &'static [(&'static str, &'static [u8])],
+    /// The scene, its pictures and meshes.
+    own: &'static [File],
+    /// The frames of its clip, which others may share.
+    clip: &'static [File],
+}
+
+/// The name and the bytes of a file.
+pub type File = (&'static str, &'static [u8]);
+
+macro_rules! bytes {
+    ($($part:literal),+) => { include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/", $($part),+)) };
 }
 
 macro_rules! profile {
     ($name:literal, $help:literal, $($file:literal),+) => { profile!($name, $help, $($name / $file),+) };
-    ($name:literal, $help:literal, $($folder:literal / $file:literal),+) => {
+    ($name:literal, $help:literal, $($folder:literal / $file:literal),+ $(; $clip:expr)?) => {
         Profile {
             name: $name,
             help: $help,
-            files: &[$((
-                $file,
-                include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/", $folder, "/", $file)),
-            )),+],
+            own: &[$(($file, bytes!($folder, "/", $file))),+],
+            clip: { let clip: &[File] = &[]; $(let clip = $clip;)? clip },
         }
     };
 }
+
+macro_rules! clip {
+    ($folder:literal / $name:literal, $($number:literal)+) => {
+        &[$((concat!($name, "-00", $number, ".png"), bytes!($folder, "/", $name, "-00", $number, ".png"))),+]
+    };
+}
+
+macro_rules! twenty {
+    ($folder:literal / $name:literal) => {
+        clip!(
+            $folder / $name, "00" "01" "02" "03" "04" "05" "06" "07" "08" "09" "10" "11" "12" "13" "14" "15" "16" "17"
+            "18" "19"
+        )
+    };
+}
+
+/// Falling water.
+const WATER: &[File] = twenty!("falls" / "water");
+/// Flames against black.
+const FIRE: &[File] = twenty!("fire" / "fire");
 
 /// Every demo scene; the first is the default.
 pub const TABLE: &[Profile] = &[
@@ -54,53 +81,14 @@ pub const TABLE: &[Profile] = &[
         "falls" / "falls.plica.json",
         "falls" / "cliff.obj",
         "falls" / "pool.obj",
-        "falls" / "stones.obj",
-        "falls" / "water-0000.png",
-        "falls" / "water-0001.png",
-        "falls" / "water-0002.png",
-        "falls" / "water-0003.png",
-        "falls" / "water-0004.png",
-        "falls" / "water-0005.png",
-        "falls" / "water-0006.png",
-        "falls" / "water-0007.png",
-        "falls" / "water-0008.png",
-        "falls" / "water-0009.png",
-        "falls" / "water-0010.png",
-        "falls" / "water-0011.png",
-        "falls" / "water-0012.png",
-        "falls" / "water-0013.png",
-        "falls" / "water-0014.png",
-        "falls" / "water-0015.png",
-        "falls" / "water-0016.png",
-        "falls" / "water-0017.png",
-        "falls" / "water-0018.png",
-        "falls" / "water-0019.png"
+        "falls" / "stones.obj";
+        WATER
     ),
-    profile!(
-        "fire",
-        "a fire, its flames from a clip against black",
-        "fire" / "fire.plica.json",
-        "fire" / "fire-0000.png",
-        "fire" / "fire-0001.png",
-        "fire" / "fire-0002.png",
-        "fire" / "fire-0003.png",
-        "fire" / "fire-0004.png",
-        "fire" / "fire-0005.png",
-        "fire" / "fire-0006.png",
-        "fire" / "fire-0007.png",
-        "fire" / "fire-0008.png",
-        "fire" / "fire-0009.png",
-        "fire" / "fire-0010.png",
-        "fire" / "fire-0011.png",
-        "fire" / "fire-0012.png",
-        "fire" / "fire-0013.png",
-        "fire" / "fire-0014.png",
-        "fire" / "fire-0015.png",
-        "fire" / "fire-0016.png",
-        "fire" / "fire-0017.png",
-        "fire" / "fire-0018.png",
-        "fire" / "fire-0019.png"
-    ),
+    profile!("curtain", "a thin sheet of falling water", "curtain" / "curtain.plica.json"; WATER),
+    profile!("fountain", "a jet of water that rises and falls", "fountain" / "fountain.plica.json"; WATER),
+    profile!("smoke", "smoke that rises and spreads", "smoke" / "smoke.plica.json"; WATER),
+    profile!("fire", "a fire, its flames from a clip against black", "fire" / "fire.plica.json"; FIRE),
+    profile!("cloud", "a cloud that drifts", "cloud" / "cloud.plica.json"; WATER),
     profile!(
         "mug",
         "the squinting cat on a mug that turns",
@@ -150,6 +138,11 @@ impl Profile {
         })
     }
 
+    /// Everything in it: the scene, its pictures, meshes and clip.
+    pub fn files(&self) -> impl Iterator<Item = File> {
+        self.own.iter().chain(self.clip).copied()
+    }
+
     /// The name of the scene's file.
     pub fn scene_file(&self) -> String {
         format!("{}.plica.json", self.name)
@@ -163,7 +156,7 @@ impl Profile {
     pub fn unpack(&self, folder: &Path) -> Result<PathBuf> {
         std::fs::create_dir_all(folder)
             .map_err(|error| Error::at(folder.display(), error).cure("name another folder with -o"))?;
-        for (name, bytes) in self.files {
+        for (name, bytes) in self.files() {
             let path = folder.join(name);
             if path.symlink_metadata().is_err() {
                 write_new(&path, bytes)?;
@@ -180,8 +173,8 @@ mod tests {
     #[test]
     fn every_profile_holds_its_scene() {
         for profile in TABLE {
-            assert!(profile.files.iter().any(|(file, _)| *file == profile.scene_file()), "{}", profile.name);
-            assert!(profile.files.iter().all(|(_, bytes)| bytes.len() < 300_000), "{}", profile.name);
+            assert!(profile.files().any(|(file, _)| file == profile.scene_file()), "{}", profile.name);
+            assert!(profile.files().all(|(_, bytes)| bytes.len() < 300_000), "{}", profile.name);
         }
     }
 

@@ -182,6 +182,8 @@ pub struct Kind {
     pub template: Option<Template>,
     /// How new things in its layers begin.
     pub starts: Starts,
+    /// Settings that change what its layers look like.
+    pub presets: &'static [Preset],
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,
 }
@@ -193,6 +195,19 @@ pub enum Template {
     Picture(fn(image: &str, size: (usize, usize)) -> Value),
     /// From the mesh of this name, with an image on its surface.
     Mesh(fn(mesh: &str, image: Option<&str>) -> Value),
+}
+
+/// Settings that change what a layer looks like.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// Its name, unique among those of all techniques.
+    pub name: &'static str,
+    /// When to use it, in one line.
+    pub help: &'static str,
+    /// What else it wants of the scene, in words; empty for nothing.
+    pub wants: &'static str,
+    /// What it sets: a JSON Merge Patch (RFC 7396) on the layer.
+    pub patch: &'static str,
 }
 
 /// How new things in a document begin, and which lists ascend.

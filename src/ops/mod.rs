@@ -27,6 +27,7 @@ pub mod man;
 pub mod new;
 pub mod opened;
 pub mod probe;
+pub mod profile;
 pub mod render;
 pub mod scene_options;
 pub mod schema;
@@ -47,6 +48,7 @@ pub enum Command {
     Edit(edit::Args),
     Tutor(tutor::Args),
     Set(set::Args),
+    Profile(profile::Args),
     Get(get::Args),
     Check(check::Args),
     Probe(probe::Args),
@@ -72,6 +74,7 @@ impl Command {
             Command::Edit(_) => Err(Error::Usage("edit opens a terminal of its own: here :e opens a scene".into())),
             Command::Tutor(_) => Err(Error::Usage("tutor opens a terminal of its own".into())),
             Command::Set(args) => set::run(args, context),
+            Command::Profile(args) => profile::run(args, context),
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),

@@ -24,6 +24,7 @@ pub mod json_schema;
 pub mod layout;
 pub mod merge;
 pub mod migrate;
+pub mod presets;
 mod references;
 pub mod schema;
 mod shape;

@@ -27,6 +27,7 @@ pub static KIND: Kind = Kind {
     looks: &[],
     template: None,
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
+    presets: &[],
     example: include_str!("example.json"),
 };
 

@@ -68,6 +68,7 @@ pub static KIND: Kind = Kind {
     looks: looks::LOOKS,
     template: Some(Template::Picture(starts::template)),
     starts: Starts { start: starts::start, beyond: starts::beyond, ascending: starts::ascending, item: starts::item },
+    presets: &[],
     example: include_str!("example.json"),
 };
 

@@ -35,6 +35,7 @@ pub static KIND: Kind = Kind {
     looks: marks::LOOKS,
     template: Some(Template::Mesh(template)),
     starts: Starts::PLAIN,
+    presets: &[],
     example: include_str!("example.json"),
 };
 

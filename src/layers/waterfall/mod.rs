@@ -21,6 +21,7 @@ pub mod noise;
 pub mod passes;
 pub mod path;
 pub mod plan;
+pub mod presets;
 pub mod probe;
 pub mod ready;
 pub mod splat;
@@ -55,6 +56,7 @@ pub static KIND: Kind = Kind {
     looks: marks::LOOKS,
     template: None,
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
+    presets: presets::PRESETS,
     example: include_str!("example.json"),
 };
 

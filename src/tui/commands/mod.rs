@@ -26,6 +26,7 @@ pub mod pasting;
 mod picture;
 mod placing;
 mod playing;
+mod profiles;
 mod scripts;
 mod selecting;
 pub mod tutor;
@@ -51,6 +52,7 @@ pub static TABLE: Table = Table(&[
     palette::COMMANDS,
     help::COMMANDS,
     messages::COMMANDS,
+    profiles::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
     camera::COMMANDS,

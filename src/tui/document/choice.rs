@@ -26,6 +26,8 @@ pub enum Then {
     Set(Vec<String>),
     /// The tagged object here becomes one of the chosen kind.
     Become(String),
+    /// This preset is applied to the layer.
+    Preset,
     /// The cursor goes to the chosen address.
     Go,
     /// It answers a question.

@@ -37,6 +37,7 @@ const TABLES: &[fn()] = &[
     super::undoing::edits_apply_to_the_selection_which_stays,
     super::undoing::undo_says_what_it_undid,
     super::items::pictures_and_names_come_and_go,
+    super::profiles::a_preset_is_applied_in_one_step_to_the_layer_that_is_shown,
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::picture::zooming_keeps_the_cursor_and_panning_takes_it_along,
     super::picture::graphics_are_told_and_set,

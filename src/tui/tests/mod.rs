@@ -18,6 +18,7 @@ mod lines;
 mod macros;
 mod pasting;
 mod picture;
+mod profiles;
 mod screens;
 pub mod support;
 mod table;
