@@ -3,6 +3,7 @@
 
 mod beside;
 pub mod cache;
+pub mod clips;
 pub mod disk;
 pub mod draft;
 pub mod fields;

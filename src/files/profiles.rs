@@ -23,6 +23,11 @@ pub struct Profile {
 /// The name and the bytes of a file.
 pub type File = (&'static str, &'static [u8]);
 
+/// The clip of a profile, or no files.
+const fn first(clips: &[&'static [File]]) -> &'static [File] {
+    clips[0]
+}
+
 macro_rules! bytes {
     ($($part:literal),+) => { include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/", $($part),+)) };
 }
@@ -34,7 +39,7 @@ macro_rules! profile {
             name: $name,
             help: $help,
             own: &[$(($file, bytes!($folder, "/", $file))),+],
-            clip: { let clip: &[File] = &[]; $(let clip = $clip;)? clip },
+            clip: first(&[$($clip,)? &[]]),
         }
     };
 }

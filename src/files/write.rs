@@ -43,12 +43,12 @@ pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
 }
 
-/// Copies the file called `name` from one folder to another, as [`copy_new`]; folders in its name are made there.
+/// Copies a file into the folder `to` under this name, as [`copy_new`]; folders in its name are made there.
 ///
 /// # Errors
 /// If the name leads out of the folder, or as [`copy_new`].
-pub fn copy_into(from: &Path, to: &Path, name: &str) -> Result<()> {
-    let (source, target) = (from.join(name), to.join(name));
+pub fn copy_into(source: &Path, to: &Path, name: &str) -> Result<()> {
+    let target = to.join(name);
     if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_))) {
         let error = Error::at(source.display(), "is not in the folder of what names it, and cannot be copied with it");
         return Err(error.cure("make the scene where that is"));
@@ -56,7 +56,7 @@ pub fn copy_into(from: &Path, to: &Path, name: &str) -> Result<()> {
     if let Some(folder) = target.parent().filter(|folder| *folder != to) {
         std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, error))?;
     }
-    copy_new(&source, &target)
+    copy_new(source, &target)
 }
 
 /// A file being written, moved into place by [`Atomic::commit`]. If dropped before that, it leaves nothing behind.

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use super::parts::bundle::{Names, Sink};
 use super::parts::derived::Derived;
 use super::parts::marks::{Hit, Look, Mark, Overlay, View};
-use super::parts::materials::{Materials, Use};
+use super::parts::materials::{List, Materials, Use};
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::plan::Program;
@@ -178,7 +178,7 @@ pub struct Kind {
     pub passes: &'static [Pass],
     /// How that looks, in ascending order.
     pub looks: &'static [&'static Look],
-    /// What makes a new layer, if the technique can start from something.
+    /// What makes a new layer, if the technique can start from something. A layer in space brings a camera.
     pub template: Option<Template>,
     /// How new things in its layers begin.
     pub starts: Starts,
@@ -190,11 +190,22 @@ pub struct Kind {
 
 /// What makes a new layer from something that it shows.
 #[derive(Clone, Copy, Debug)]
-pub enum Template {
-    /// From the image of this name, of this width and height.
-    Picture(fn(image: &str, size: (usize, usize)) -> Value),
-    /// From the mesh of this name, with an image on its surface.
-    Mesh(fn(mesh: &str, image: Option<&str>) -> Value),
+pub struct Template {
+    /// The list of the scene that this is in.
+    pub of: List,
+    /// The layer, called as what it shows.
+    pub layer: fn(shown: &Shown) -> Value,
+}
+
+/// What a new layer shows.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shown<'a> {
+    /// Its name in its list.
+    pub name: &'a str,
+    /// Width and height of its frames in pixels, if it has any.
+    pub size_px: (usize, usize),
+    /// The image on its surface, if it has one.
+    pub image: Option<&'a str>,
 }
 
 /// Settings that change what a layer looks like.

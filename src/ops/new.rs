@@ -1,5 +1,5 @@
-//! `plica new`: a scene made from pictures and models. A picture becomes a layer with one zone that covers it, a model a
-//! mesh with a layer that shows it, seen by a camera.
+//! `plica new`: a scene made from pictures, models and clips. A picture becomes a layer with one zone that covers it, a model
+//! a mesh with a layer that shows it, a clip falling water; what is in space is seen by a camera.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -7,15 +7,18 @@ use std::path::{Path, PathBuf};
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
-use crate::files::{self, disk, models, paths, picture, write};
+use crate::base::problem::Problem;
+use crate::files::materials::{self, Cache};
+use crate::files::{self, clips, disk, models, paths, picture, write};
 use crate::layers::space::fit::Bounds;
 use crate::scene::{Document, Start};
 
-/// Make a scene from pictures and models
+/// Make a scene from pictures, models and clips
 #[derive(clap::Args)]
 pub struct Args {
-    /// Pictures (FILE.exr#LAYER is a layer of an OpenEXR) and models (.obj, .glb, .gltf), lowest layer first; those in other
-    /// folders are copied beside the scene
+    /// Pictures (FILE.exr#LAYER is a layer of an OpenEXR), models (.obj, .glb, .gltf) and clips of water, smoke or fire
+    /// (falls/%04d.jpg, a folder of numbered pictures, a video), lowest layer first; those in other folders are copied
+    /// beside the scene
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// The scene file [default: beside the first file, with its name: FILE.plica.json]
@@ -27,15 +30,18 @@ pub struct Args {
 
 /// Writes the scene and prints where it is.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let first = args.files.first().ok_or_else(|| Error::Usage("name a picture or a model".into()))?;
+    let first = args.files.first().ok_or_else(|| Error::Usage("name a picture, a model or a clip".into()))?;
     let path = args.output.clone().unwrap_or_else(|| beside(first));
     let (_, notes) = create(&path, &args.files, &args.reading.options()?)?;
     notes.iter().for_each(|note| context.messages.say(note));
     context.print(path.display())
 }
 
-/// The scene file that belongs to a picture, to a layer of it, or to a model: beside it, with its name.
+/// The scene file that belongs to a picture, to a layer of it, to a model or to a clip: beside it, with its name.
 pub fn beside(source: &Path) -> PathBuf {
+    if clips::is_one(source) {
+        return source.with_file_name(format!("{}.plica.json", clip_called(source)));
+    }
     let file = source.to_str().map_or(source, |path| Path::new(paths::file_of(path)));
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     file.with_file_name(format!("{stem}.plica.json"))
@@ -48,7 +54,16 @@ pub fn called(picture: &Path) -> String {
     paths::layer_of(&path).map_or_else(|| stem.to_string(), |layer| format!("{stem}-{layer}"))
 }
 
-/// Writes a scene of pictures and models at `path`, which must not exist yet. They are read completely, so that no scene
+/// What a clip is called in a scene: as its files, or their folder.
+fn clip_called(clip: &Path) -> String {
+    let folder = if clip.is_dir() { clip } else { disk::folder_of(clip) };
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let folder = folder.file_name().map_or("clip".into(), |name| name.to_string_lossy());
+    let name = clip.file_name().filter(|_| !clip.is_dir()).unwrap_or_default().to_string_lossy();
+    clips::called(&name, &folder).to_owned()
+}
+
+/// Writes a scene of pictures, models and clips at `path`, which must not exist yet. They are read completely, so that no scene
 /// starts with a broken one. Returns the scene, and notes on what in them is not supported.
 ///
 /// # Errors
@@ -63,7 +78,7 @@ pub fn create(path: &Path, sources: &[PathBuf], options: &files::Options) -> Res
     let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
     let document = making.start.document().map_err(refused)?;
     let folder = disk::folder_of(path);
-    making.copies.iter().try_for_each(|(from, name)| write::copy_into(from, folder, name))?;
+    making.copies.iter().try_for_each(|(file, name)| write::copy_into(file, folder, name))?;
     write::write_new(path, document.to_text().as_bytes())?;
     Ok((document, making.notes))
 }
@@ -87,13 +102,16 @@ struct Making<'a> {
     start: Start,
     /// The names of its sources as they stand in it.
     named: Vec<String>,
-    /// Files of other folders: the folder, and the name in it.
+    /// Files of other folders, and their names beside the scene.
     copies: Vec<(PathBuf, String)>,
     notes: Vec<String>,
 }
 
 impl Making<'_> {
     fn add(&mut self, source: &Path) -> Result<()> {
+        if clips::is_one(source) {
+            return self.add_clip(source);
+        }
         let named = file_name(source)?;
         let mut files = vec![paths::file_of(&named).to_owned()];
         let (name, place) = (called(source), source.display());
@@ -111,18 +129,51 @@ impl Making<'_> {
             self.notes.extend(found.notes.into_iter().map(note));
             start.picture(&name, &named, (found.picture.width(), found.picture.height()))
         };
-        if self.named.contains(&named) {
-            return Err(Error::at(place, "has the same file name as another picture").cure("rename one"));
-        }
-        self.named.push(named);
+        self.name(source, named)?;
         if files.iter().any(|file| self.path.file_name().is_some_and(|name| name.eq_ignore_ascii_case(file))) {
             let error = Error::at(self.path.display(), "is the place of a picture");
             return Err(error.cure("choose another name for the scene with -o"));
         }
         if !same_folder(source, self.path) {
             let folder = disk::folder_of(source);
-            self.copies.extend(files.into_iter().map(|file| (folder.to_owned(), file)));
+            self.copies.extend(files.into_iter().map(|file| (folder.join(&file), file)));
         }
+        Ok(())
+    }
+
+    /// Adds a clip, after it was read completely. Numbered pictures of another folder get one of their own beside the scene.
+    fn add_clip(&mut self, source: &Path) -> Result<()> {
+        let found = clips::find(source)?;
+        let (name, place) = (clip_called(source), source.display());
+        let here = |file: &str| Start::default().clip("clip", file, found.first).document();
+        let alone = here(&found.name).map_err(|problems| refused(source, problems))?;
+        let gathered = materials::load(&found.folder.join("scene"), alone.scene(), self.options, &mut Cache::default());
+        let (_, problems) = gathered.map_err(|problems| refused(source, problems))?;
+        let told = problems.iter().map(|problem| problem.message.as_str()).chain(found.note.as_deref());
+        self.notes.extend(told.map(|note| format!("{place}: {note}")));
+        let (path, copied) = match below(&found.folder, self.path) {
+            Some(folder) => (folder.join(&found.name), false),
+            None if found.files == [found.name.clone()] => (found.name.clone().into(), true),
+            None => (Path::new(&name).join(&found.name), true),
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if copied {
+            let copy = |file: &String| (found.folder.join(file), folder.join(file).to_string_lossy().into_owned());
+            self.copies.extend(found.files.iter().map(copy));
+        }
+        let path = path.to_str().ok_or_else(|| Error::at(place, "has a name that is no text").cure("rename it"))?;
+        self.name(source, path.to_owned())?;
+        self.start = std::mem::take(&mut self.start).clip(&name, path, found.first);
+        Ok(())
+    }
+
+    /// Notes what a source is called in the scene, which no other one may be.
+    fn name(&mut self, source: &Path, named: String) -> Result<()> {
+        if self.named.contains(&named) {
+            let error = Error::at(source.display(), "has the same file name as another picture");
+            return Err(error.cure("rename one"));
+        }
+        self.named.push(named);
         Ok(())
     }
 }
@@ -138,6 +189,20 @@ pub fn file_name(image: &Path) -> Result<String> {
         return Err(refused("has control characters in its name"));
     }
     Ok(name.to_owned())
+}
+
+/// What is wrong with a clip, told as that of its files.
+fn refused(clip: &Path, problems: Vec<Problem>) -> Error {
+    let first = problems.into_iter().next();
+    let Problem { message, hint, .. } = first.unwrap_or_else(|| Problem::error("", "cannot be read"));
+    let error = Error::at(clip.display(), message);
+    hint.into_iter().fold(error, Error::cure)
+}
+
+/// The way from the folder of a scene down to another folder, if it is there or below.
+fn below(folder: &Path, scene: &Path) -> Option<PathBuf> {
+    let scene = disk::folder_of(scene).canonicalize().ok()?;
+    Some(folder.canonicalize().ok()?.strip_prefix(scene).ok()?.to_owned())
 }
 
 fn same_folder(a: &Path, b: &Path) -> bool {

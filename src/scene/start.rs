@@ -1,4 +1,4 @@
-//! A new scene: a layer for each picture and each mesh, made by the techniques that can start from one, and a camera that
+//! A new scene: a layer for each picture, mesh and clip, made by the techniques that can start from one, and a camera that
 //! sees all meshes.
 
 use glam::DVec3;
@@ -10,9 +10,11 @@ use crate::base::maths;
 use crate::base::number;
 use crate::base::problem::Problem;
 use crate::layers::KINDS;
+use crate::layers::parts::materials::List;
+use crate::layers::parts::moment::Space;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{Bounds, fit};
-use crate::layers::technique::Template;
+use crate::layers::technique::{Kind, Shown};
 
 /// Where a new camera sees meshes from.
 const BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
@@ -20,35 +22,42 @@ const BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
 /// A scene in the making.
 #[derive(Debug, Default)]
 pub struct Start {
-    images: Map<String, Value>,
-    meshes: Map<String, Value>,
+    /// The lists of the scene, by name.
+    lists: Map<String, Value>,
     layers: Vec<Value>,
     frame: Option<(usize, usize)>,
     bounds: Option<Bounds>,
+    /// Whether a layer is in space.
+    in_space: bool,
 }
 
 impl Start {
     /// Adds a picture of this width and height, in a file, with a layer that shows it. If another image has its name
     /// already, it gets a similar one.
-    pub fn picture(mut self, name: &str, path: &str, size: (usize, usize)) -> Start {
+    pub fn picture(mut self, name: &str, path: &str, size_px: (usize, usize)) -> Start {
         let image = self.image(name, path);
-        self.frame.get_or_insert(size);
-        self.layer(|template| match template {
-            Template::Picture(make) => Some(make(&image, size)),
-            Template::Mesh(_) => None,
-        });
+        self.frame.get_or_insert(size_px);
+        self.layer(List::Images, &Shown { name: &image, size_px, image: None });
         self
     }
 
     /// Adds a mesh between two corners, in a file, with a layer that shows it; on its surface an image, by name and path.
     pub fn mesh(mut self, name: &str, path: &str, bounds: Option<Bounds>, surface: Option<(&str, &str)>) -> Start {
-        let mesh = put(&mut self.meshes, name, path);
+        let mesh = self.put(List::Meshes, name, json!({ "path": path }));
         let image = surface.map(|(name, path)| self.image(name, path));
         self.bounds = self.bounds.into_iter().chain(bounds).reduce(|a, b| a.and(&b));
-        self.layer(|template| match template {
-            Template::Mesh(make) => Some(make(&mesh, image.as_deref())),
-            Template::Picture(_) => None,
-        });
+        self.layer(List::Meshes, &Shown { name: &mesh, image: image.as_deref(), ..Shown::default() });
+        self
+    }
+
+    /// Adds a clip whose frames are numbered from `first`, with a layer that shows it.
+    pub fn clip(mut self, name: &str, path: &str, first: u64) -> Start {
+        let mut clip = json!({ "path": path });
+        if first > 0 {
+            clip["first"] = first.into();
+        }
+        let clip = self.put(List::Clips, name, clip);
+        self.layer(List::Clips, &Shown { name: &clip, ..Shown::default() });
         self
     }
 
@@ -56,39 +65,41 @@ impl Start {
     ///
     /// # Errors
     /// If what is in it is no scene: a path that none can have, for example.
-    pub fn document(self) -> Result<Document, Vec<Problem>> {
+    pub fn document(mut self) -> Result<Document, Vec<Problem>> {
         let mut scene = Map::from_iter([("plica".to_owned(), VERSION.into())]);
-        if !self.meshes.is_empty() {
+        if self.in_space {
             scene.insert("camera".into(), camera(self.bounds, self.frame.unwrap_or(FRAME)));
         }
-        for (list, items) in [("images", self.images), ("meshes", self.meshes)] {
-            if !items.is_empty() {
-                scene.insert(list.into(), items.into());
-            }
-        }
+        scene.extend(List::NAMED.iter().filter_map(|list| self.lists.remove_entry(list.words().0)));
         scene.insert("layers".into(), self.layers.into());
         Document::from_json(scene.into())
     }
 
     fn image(&mut self, name: &str, path: &str) -> String {
-        let known = self.images.iter().find(|(_, image)| image["path"] == path).map(|(name, _)| name.clone());
-        known.unwrap_or_else(|| put(&mut self.images, name, path))
+        let images = self.lists.get(List::Images.words().0).and_then(Value::as_object);
+        let known = images.and_then(|images| images.iter().find(|(_, image)| image["path"] == path));
+        let known = known.map(|(name, _)| name.clone());
+        known.unwrap_or_else(|| self.put(List::Images, name, json!({ "path": path })))
     }
 
-    /// Adds a layer of the first technique that makes one.
-    fn layer(&mut self, make: impl Fn(Template) -> Option<Value>) {
-        let Some(mut layer) = KINDS.iter().find_map(|kind| make(kind.template?)) else { return };
-        let name = layer["name"].as_str().unwrap_or_default();
-        layer["name"] = unique_name(name, |name| self.layers.iter().any(|other| other["name"] == name)).into();
+    /// Adds an entry to a list of the scene, and gives the name that it has there.
+    fn put(&mut self, list: List, name: &str, entry: Value) -> String {
+        let list = self.lists.entry(list.words().0).or_insert_with(|| json!({}));
+        let name = unique_name(name, |name| list.get(name).is_some());
+        list[&name] = entry;
+        name
+    }
+
+    /// Adds a layer of the first technique that makes one of what is in this list.
+    fn layer(&mut self, list: List, shown: &Shown) {
+        let makes = |kind: &&&Kind| kind.template.is_some_and(|template| template.of == list);
+        let Some((kind, template)) = KINDS.iter().find(makes).and_then(|kind| Some((kind, kind.template?))) else { return };
+        let mut layer = (template.layer)(shown);
+        let name = unique_name(shown.name, |name| self.layers.iter().any(|other| other["name"] == name));
+        layer["name"] = name.into();
         self.layers.push(layer);
+        self.in_space |= kind.space == Space::World;
     }
-}
-
-/// Adds a file to a list of the scene, and gives the name that it has there.
-fn put(list: &mut Map<String, Value>, name: &str, path: &str) -> String {
-    let name = unique_name(name, |name| list.contains_key(name));
-    list.insert(name.clone(), json!({ "path": path }));
-    name
 }
 
 /// A camera that sees everything between `bounds`, in short numbers.
@@ -142,5 +153,19 @@ mod tests {
         assert_eq!(names, ["cat", "cat 2", "cat 3"]);
         assert_eq!(layers[2]["surface"], json!({ "kind": "texture", "image": "cat" }));
         assert_eq!(json["camera"], json!({}));
+    }
+
+    #[test]
+    fn a_clip_gets_a_layer_in_space_and_a_camera() {
+        let document = Start::default().clip("falls", "falls/%04d.jpg", 3).document().unwrap();
+        let expected = json!({
+            "plica": 1,
+            "camera": {},
+            "clips": { "falls": { "path": "falls/%04d.jpg", "first": 3 } },
+            "layers": [{ "kind": "waterfall", "name": "falls", "clip": "falls" }]
+        });
+        assert_eq!(document.json(), &expected);
+        let document = Start::default().picture("cat", "cat.png", (8, 6)).document().unwrap();
+        assert_eq!(document.json().get("camera"), None);
     }
 }

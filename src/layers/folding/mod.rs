@@ -44,7 +44,7 @@ use serde_json::Value;
 
 use self::model::PictureLayer;
 use super::parts::marks::{Hit, Mark, View};
-use super::parts::materials::{Materials, Use};
+use super::parts::materials::{List, Materials, Use};
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
@@ -66,7 +66,7 @@ pub static KIND: Kind = Kind {
     overlays: looks::OVERLAYS,
     passes: &[],
     looks: looks::LOOKS,
-    template: Some(Template::Picture(starts::template)),
+    template: Some(Template { of: List::Images, layer: starts::template }),
     starts: Starts { start: starts::start, beyond: starts::beyond, ascending: starts::ascending, item: starts::item },
     presets: &[],
     example: include_str!("example.json"),

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::model::PictureLayer;
 use crate::base::number;
 use crate::base::pointer::Pointer;
+use crate::layers::technique::Shown;
 
 /// Used in place of a zone where there is none yet.
 const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
@@ -71,10 +72,11 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
 }
 
 /// A layer that shows an image, with one zone that covers it.
-pub fn template(image: &str, (width, height): (usize, usize)) -> Value {
+pub fn template(shown: &Shown) -> Value {
+    let (name, (width, height)) = (shown.name, shown.size_px);
     let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": width, "height": height });
     let zone = json!({ "name": "all", "outline": outline, "position": comes_back() });
-    json!({ "kind": "picture", "name": image, "image": image, "zones": [zone] })
+    json!({ "kind": "picture", "name": name, "image": name, "zones": [zone] })
 }
 
 /// An optional field that a new item of a list starts with: a new zone goes there and back, so that its loop closes.

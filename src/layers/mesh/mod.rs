@@ -20,7 +20,7 @@ use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::ReadOut;
 use super::ready::{Making, Ready};
-use super::technique::{Checked, Kind, Starts, Technique, Template};
+use super::technique::{Checked, Kind, Shown, Starts, Technique, Template};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -33,16 +33,16 @@ pub static KIND: Kind = Kind {
     overlays: marks::OVERLAYS,
     passes: &[],
     looks: marks::LOOKS,
-    template: Some(Template::Mesh(template)),
+    template: Some(Template { of: List::Meshes, layer: template }),
     starts: Starts::PLAIN,
     presets: &[],
     example: include_str!("example.json"),
 };
 
 /// A layer that shows a mesh, with an image on its surface.
-fn template(mesh: &str, image: Option<&str>) -> Value {
-    let mut layer = json!({ "kind": "mesh", "name": mesh, "mesh": mesh });
-    if let Some(image) = image {
+fn template(shown: &Shown) -> Value {
+    let mut layer = json!({ "kind": "mesh", "name": shown.name, "mesh": shown.name });
+    if let Some(image) = shown.image {
         layer["surface"] = json!({ "kind": "texture", "image": image });
     }
     layer

@@ -41,7 +41,7 @@ use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::space::eye::Ray;
-use super::technique::{Checked, Kind, Starts, Technique, halfway};
+use super::technique::{Checked, Kind, Shown, Starts, Technique, Template, halfway};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -54,7 +54,7 @@ pub static KIND: Kind = Kind {
     overlays: marks::OVERLAYS,
     passes: &[passes::LINES, passes::SPRITES],
     looks: marks::LOOKS,
-    template: None,
+    template: Some(Template { of: List::Clips, layer: template }),
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: presets::PRESETS,
     example: include_str!("example.json"),
@@ -132,6 +132,11 @@ impl Technique for WaterfallLayer {
         let previous = previous.and_then(|previous| previous.downcast::<synth::Synth>());
         Ok(Arc::new(synth::Synth::new(self, making, previous)?))
     }
+}
+
+/// A fall of water from a clip.
+fn template(shown: &Shown) -> Value {
+    json!({ "kind": "waterfall", "name": shown.name, "clip": shown.name })
 }
 
 fn start(_variant: &str, field: &str, bounds: Rect) -> Option<Value> {

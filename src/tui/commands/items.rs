@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json as value};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
-use crate::base::numbered::Pattern;
+use crate::files::clips;
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json};
@@ -338,9 +338,6 @@ fn unused(document: &Document, path: &str) -> Done {
     }
 }
 
-/// The extensions of files with videos.
-const VIDEOS: [&str; 9] = ["mp4", "mov", "m4v", "webm", "mkv", "avi", "mpg", "ogv", "y4m"];
-
 /// The extensions of files with meshes; `model.glb#0` is a picture in one.
 const MESHES: [&str; 3] = ["obj", "glb", "gltf"];
 
@@ -348,23 +345,23 @@ const MESHES: [&str; 3] = ["obj", "glb", "gltf"];
 fn list_for(path: &str) -> List {
     let name = path.rsplit('/').next().unwrap_or(path);
     let extension = name.rsplit('.').next().unwrap_or_default().to_lowercase();
-    match Pattern::of(name) {
-        Ok(pattern) if pattern.is_numbered() => List::Clips,
-        _ if MESHES.contains(&extension.as_str()) => List::Meshes,
-        _ if VIDEOS.contains(&extension.as_str()) => List::Clips,
-        _ => List::Images,
+    if clips::is_called(name) {
+        List::Clips
+    } else if MESHES.contains(&extension.as_str()) {
+        List::Meshes
+    } else {
+        List::Images
     }
 }
 
 /// What a file is called in a scene: its name without extension, or for numbered files what is before the number, or their
 /// folder.
 fn called(path: &str) -> &str {
-    if list_for(path) != List::Clips || !path.contains('%') {
-        return stem(path);
+    let (folder, name) = path.rsplit_once('/').unwrap_or(("clip", path));
+    if list_for(path) == List::Clips {
+        return clips::called(name, folder.rsplit('/').next().unwrap_or(folder));
     }
-    let before = stem(path).split('%').next().unwrap_or_default().trim_end_matches(['-', '_', ' ']);
-    let folder = || path.rsplit('/').nth(1).unwrap_or("clip");
-    if before.is_empty() { folder() } else { before }
+    stem(path)
 }
 
 /// The name of a file without folder and extension.

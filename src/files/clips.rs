@@ -1,0 +1,152 @@
+//! Clips that a person names to make a scene of them: numbered pictures, by a pattern or by their folder, or a video.
+
+use std::path::{Path, PathBuf};
+
+use super::{disk, picture};
+use crate::base::error::{Error, Result};
+use crate::base::numbered::{Pattern, Series, series};
+
+/// The extensions of files with videos.
+const VIDEOS: [&str; 9] = ["mp4", "mov", "m4v", "webm", "mkv", "avi", "mpg", "ogv", "y4m"];
+
+/// The files of a clip.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// The folder that they are in.
+    pub folder: PathBuf,
+    /// What a scene in that folder calls them: the pattern of their names, or the video.
+    pub name: String,
+    /// The number of the first frame.
+    pub first: u64,
+    /// Their names, in order.
+    pub files: Vec<String>,
+    /// What was left out, in words.
+    pub note: Option<String>,
+}
+
+/// Whether a file of this name is a video, or a pattern of numbered files.
+pub fn is_called(name: &str) -> bool {
+    let video = name.rsplit_once('.').is_some_and(|(_, end)| VIDEOS.contains(&end.to_lowercase().as_str()));
+    video || Pattern::of(name).is_ok_and(|pattern| pattern.is_numbered())
+}
+
+/// Whether a person means a clip by this path.
+pub fn is_one(path: &Path) -> bool {
+    path.is_dir() || !picture::is_one(path) && is_called(&path.file_name().unwrap_or_default().to_string_lossy())
+}
+
+/// What a clip is called in a scene, by the name of its files: what is before the number, or the name of their folder.
+pub fn called<'a>(name: &'a str, folder: &'a str) -> &'a str {
+    let stem = name.split('.').next().unwrap_or(name);
+    let before = stem.split('%').next().unwrap_or_default().trim_end_matches(['-', '_', ' ']);
+    if before.is_empty() { folder } else { before }
+}
+
+/// The clip that a person means by this path.
+///
+/// # Errors
+/// If there is no such file; if a folder has no numbered pictures, or several clips.
+pub fn find(path: &Path) -> Result<Found> {
+    if path.is_dir() {
+        return in_folder(path);
+    }
+    let (folder, name) = (disk::folder_of(path), path.file_name().unwrap_or_default().to_string_lossy());
+    let pattern = Pattern::of(&name).map_err(|what| {
+        Error::at(path.display(), what).cure("%04d stands for the number of a frame, as in falls/%04d.jpg")
+    })?;
+    if !pattern.is_numbered() {
+        let (folder, name) = (folder.to_owned(), name.into_owned());
+        return Ok(Found { folder, first: 0, files: vec![name.clone()], name, note: None });
+    }
+    let mut numbers: Vec<u64> = names(folder)?.iter().filter_map(|name| pattern.number(name)).collect();
+    numbers.sort_unstable();
+    if numbers.is_empty() {
+        let cure = format!("the first frame would be {} or {}", pattern.name(0), pattern.name(1));
+        return Err(Error::at(path.display(), "there is no such file").cure(cure));
+    }
+    Ok(found(folder, Series { pattern: name.into_owned(), numbers }))
+}
+
+fn in_folder(folder: &Path) -> Result<Found> {
+    let names = names(folder)?;
+    let shown = |one: &Series| {
+        let first = one.file(0).map(|name| folder.join(name));
+        one.numbers.len() > 1 && first.is_some_and(|first| picture::is_one(&first))
+    };
+    let mut all: Vec<Series> = series(names.iter().map(String::as_str)).into_iter().filter(shown).collect();
+    match all.as_slice() {
+        [] => Err(Error::at(folder.display(), "holds no numbered pictures")
+            .cure("name them as 0001.png, 0002.png and so on, or name a picture, a model or a video")),
+        [_] => Ok(found(folder, all.remove(0))),
+        several => {
+            let patterns: Vec<&str> = several.iter().map(|one| one.pattern.as_str()).collect();
+            let cure = format!("name one of them, as {}", folder.join(patterns[0]).display());
+            Err(Error::at(folder.display(), format!("holds several clips: {}", patterns.join(", "))).cure(cure))
+        }
+    }
+}
+
+/// The frames of a series up to the first number that is missing.
+fn found(folder: &Path, all: Series) -> Found {
+    let first = all.numbers.first().copied().unwrap_or(0);
+    let together = all.numbers.iter().zip(first..).take_while(|(found, wanted)| **found == *wanted).count();
+    let files = (0..together).filter_map(|i| all.file(i)).collect();
+    let end = first + together as u64;
+    let note = (together < all.numbers.len()).then(|| format!("it ends before number {end}, which is missing"));
+    Found { folder: folder.to_owned(), name: all.pattern, first, files, note }
+}
+
+fn names(folder: &Path) -> Result<Vec<String>> {
+    let entries = std::fs::read_dir(folder).map_err(|error| Error::at(folder.display(), error))?;
+    Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(names: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for name in names {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            image::RgbaImage::new(2, 2).save(path).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn a_pattern_and_its_folder_are_the_same_clip() {
+        let folder = folder(&["a/0007.png", "a/0008.png", "a/0010.png", "a/cover.png"]);
+        std::fs::write(folder.path().join("a/log1.txt"), "").unwrap();
+        std::fs::write(folder.path().join("a/log2.txt"), "").unwrap();
+        let by_folder = find(&folder.path().join("a")).unwrap();
+        assert_eq!(find(&folder.path().join("a/%04d.png")).unwrap(), by_folder);
+        assert_eq!((by_folder.name.as_str(), by_folder.first), ("%04d.png", 7));
+        assert_eq!(by_folder.files, ["0007.png", "0008.png"]);
+        assert_eq!(by_folder.note.as_deref(), Some("it ends before number 9, which is missing"));
+    }
+
+    #[test]
+    fn what_is_no_clip_is_told_with_the_cure() {
+        let folder = folder(&["none/cat.png", "two/a1.png", "two/a2.png", "two/b1.png", "two/b2.png"]);
+        for (name, told) in [
+            ("none", "none: holds no numbered pictures (name them as 0001.png"),
+            ("two", "two: holds several clips: a%d.png, b%d.png (name one of them, as "),
+            ("two/%04d.png", "two/%04d.png: there is no such file (the first frame would be 0000.png or 0001.png)"),
+            ("two/%x.png", "\"%x\" is no frame number (%04d stands for"),
+        ] {
+            let error = find(&folder.path().join(name)).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+        }
+        assert!(!is_one(&folder.path().join("none/cat.png")) && is_one(&folder.path().join("none")));
+        assert!(is_one(Path::new("x.MP4")) && is_one(Path::new("%d.png")) && !is_one(Path::new("x.png")));
+    }
+
+    #[test]
+    fn a_clip_is_called_by_its_files_or_their_folder() {
+        for (name, expected) in [("%04d.jpg", "falls"), ("fire-%d.png", "fire"), ("fire.mp4", "fire")] {
+            assert_eq!(called(name, "falls"), expected);
+        }
+    }
+}
