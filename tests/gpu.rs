@@ -281,8 +281,11 @@ fn every_technique_answers_everything() {
         assert_eq!(problems.collect::<Vec<_>>(), [], "{kind}");
         let synth = render::synth(&scene, &materials, None).unwrap();
         let making = Making::plain(scene.timeline.wrap, &materials);
-        for layer in &scene.layers {
-            let told = layer.technique().probe(&making, (40, 28), &synth.moment(0.5)).unwrap();
+        let making = Making { duration: scene.timeline.duration, ..making };
+        for (layer, ready) in scene.layers.iter().zip(&synth.layers) {
+            let probe = |ready| layer.technique().probe(&making, ready, (40, 28), &synth.moment(0.5)).unwrap();
+            let told = probe(None);
+            assert_eq!(probe(Some(&**ready)), told, "{kind}: what is made already says the same");
             assert!(told.is_none_or(|told| !told.entries.is_empty()), "{kind}: a probe that says nothing");
         }
         let again = render::synth(&scene, &materials, Some(&synth)).unwrap();

@@ -108,9 +108,9 @@ pub fn series<'a>(names: impl Iterator<Item = &'a str>) -> Vec<Series> {
 fn numbered(name: &str) -> Option<(&str, &str, &str)> {
     let stem = &name[..name.rfind('.').unwrap_or(name.len())];
     let end = stem.rfind(|c: char| c.is_ascii_digit())? + 1;
-    let start = stem[..end].rfind(|c: char| !c.is_ascii_digit()).map_or(0, |at| {
-        at + stem[at..].chars().next().map_or(1, char::len_utf8)
-    });
+    let start = stem[..end]
+        .rfind(|c: char| !c.is_ascii_digit())
+        .map_or(0, |at| at + stem[at..].chars().next().map_or(1, char::len_utf8));
     Some((&name[..start], &name[start..end], &name[end..]))
 }
 

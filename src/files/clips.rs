@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{disk, picture};
+use super::{disk, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::numbered::{Pattern, Series, series};
 
@@ -65,6 +65,18 @@ pub fn find(path: &Path) -> Result<Found> {
         return Err(Error::at(path.display(), "there is no such file").cure(cure));
     }
     Ok(found(folder, Series { pattern: name.into_owned(), numbers }))
+}
+
+/// The patterns of numbered files that begin with `typed`, or whose first file does, relative to `folder` unless absolute.
+pub fn complete(folder: &Path, typed: &str) -> Vec<String> {
+    let (parent, begun) = typed.rfind('/').map_or(("", typed), |at| typed.split_at(at + 1));
+    let Ok(names) = names(&folder.join(paths::typed(parent))) else { return Vec::new() };
+    let begins = |one: &Series| {
+        let first = one.file(0).is_some_and(|name| name.starts_with(begun));
+        one.numbers.len() > 1 && (first || one.pattern.starts_with(begun))
+    };
+    let found = series(names.iter().map(String::as_str)).into_iter().filter(begins);
+    found.map(|one| format!("{parent}{}", one.pattern)).collect()
 }
 
 fn in_folder(folder: &Path) -> Result<Found> {
@@ -141,6 +153,20 @@ mod tests {
         }
         assert!(!is_one(&folder.path().join("none/cat.png")) && is_one(&folder.path().join("none")));
         assert!(is_one(Path::new("x.MP4")) && is_one(Path::new("%d.png")) && !is_one(Path::new("x.png")));
+    }
+
+    #[test]
+    fn patterns_are_completed() {
+        let folder = folder(&["a/0007.png", "a/0008.png", "a/x1.png", "a/y1.png", "a/y2.png"]);
+        for (typed, expected) in [
+            ("a/", &["a/%04d.png", "a/y%d.png"][..]),
+            ("a/0", &["a/%04d.png"]),
+            ("a/%", &["a/%04d.png"]),
+            ("a/x", &[]),
+            ("b/", &[]),
+        ] {
+            assert_eq!(complete(folder.path(), typed), expected, "{typed}");
+        }
     }
 
     #[test]

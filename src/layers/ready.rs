@@ -14,7 +14,7 @@ use super::parts::materials::Materials;
 use super::parts::moment::{CENTRE, Columns, Moment};
 use super::parts::pass::Pass;
 use super::parts::plan::Plan;
-use super::parts::readout::{Under, VectorField};
+use super::parts::readout::{Fact, Under, VectorField};
 use super::space::fit::Bounds;
 use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::Rgba;
@@ -88,6 +88,11 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// The box of the world that holds it at scene time `t`; `None` for layers in the frame.
     fn bounds(&self, _t: f64) -> Option<Bounds> {
         None
+    }
+
+    /// What is good to know of it as a whole, for a single line.
+    fn facts(&self) -> Vec<Fact> {
+        Vec::new()
     }
 
     /// The pictures of its sprites, with so many between each two keys; `None` if it has none.

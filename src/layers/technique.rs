@@ -52,6 +52,11 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
+    /// The problems that only show when the layer is made, which takes as long; asked for where there are no others.
+    fn check_made(&self, _making: &Making) -> Vec<Problem> {
+        Vec::new()
+    }
+
     /// The images and files that the layer names, each as often as it is named.
     fn uses(&self) -> Vec<Use<'_>> {
         Vec::new()
@@ -115,11 +120,17 @@ pub trait Technique: Any + Send + Sync {
     }
 
     /// What the pixel (column, row) of the layer does at one time; `None` if there is nothing to say about
-    /// pixels.
+    /// pixels. `ready` is what was made of the layer, if that is at hand.
     ///
     /// # Errors
     /// As [`Technique::synth`].
-    fn probe(&self, _making: &Making, _pixel: (usize, usize), _moment: &Moment) -> Result<Option<ReadOut>, Problem> {
+    fn probe(
+        &self,
+        _making: &Making,
+        _ready: Option<&dyn Ready>,
+        _pixel: (usize, usize),
+        _moment: &Moment,
+    ) -> Result<Option<ReadOut>, Problem> {
         Ok(None)
     }
 

@@ -7,6 +7,7 @@ use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
+use crate::layers::ready::Making;
 use crate::render;
 
 /// Find every problem in a scene
@@ -67,8 +68,18 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     context.check_cancelled()?;
     let mut problems = document.warnings().to_vec();
     problems.extend(found);
+    let is_broken = |problems: &[Problem]| problems.iter().any(|problem| problem.severity == Severity::Error);
+    if !is_broken(&problems) {
+        let making = Making::plain(scene.timeline.wrap, &materials);
+        let making = Making { duration: scene.timeline.duration, ..making };
+        problems.extend(scene.layers.iter().enumerate().flat_map(|(i, layer)| {
+            let made = layer.technique().check_made(&making).into_iter();
+            made.map(move |problem| problem.under(&format!("/layers/{i}")))
+        }));
+        context.check_cancelled()?;
+    }
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
-    let broken = problems.iter().any(|problem| problem.severity == Severity::Error);
+    let broken = is_broken(&problems);
     let loops = render::seams::warnings(scene, &materials, || {
         if broken { None } else { render::synth(scene, &materials, None).ok() }
     });

@@ -8,9 +8,9 @@ use super::{Context, opened::Opened, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::maths;
 use crate::base::text::hex;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
 use crate::layers::ready::Making;
-use crate::layers::technique::Technique;
 use crate::render::{self, passes, stage::Stage};
 use crate::scene::Scene;
 
@@ -25,7 +25,8 @@ pub struct Args {
     /// Scene time, 0 to 1
     #[arg(long, value_name = "T", default_value_t = 0.0, allow_hyphen_values = true, value_parser = parse_time)]
     time: f64,
-    /// Name of the layer [default: what is seen there of the layers in space, otherwise the first layer]
+    /// Name of the layer [default: what is seen there of the layers in space, otherwise the first layer; then the others
+    /// that have something there]
     #[arg(long, value_name = "LAYER")]
     layer: Option<String>,
     /// Print one JSON object per line
@@ -40,40 +41,65 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let opened = Opened::new(&args.scene, &args.options, context)?;
     let scene = opened.document.scene();
     let asked = find_layer(scene, args.layer.as_deref())?;
-    // In space, what hides the others is meant.
+    // In space, what hides the others is meant first.
     let synth = (args.layer.is_none() && scene.camera.is_some()).then(|| opened.synth()).transpose()?;
     // Only what the pixel needs is computed, not the whole frame.
     let shown = opened.bands(1)?;
-    let own = asked.frame_of().filter(|_| synth.is_none()).and_then(|image| opened.materials.pictures.get(image));
-    let own = own.map(|picture| (picture.width(), picture.height()));
+    let own = own_size(scene, asked, &opened.materials).filter(|_| synth.is_none());
     let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
     let moment = Stage::of(scene).moment(args.time, size);
+    let making = Making::plain(scene.timeline.wrap, &opened.materials);
+    let making = Making { duration: scene.timeline.duration, ..making };
+    let look = |index: usize, pixel| {
+        let ready = synth.as_ref().and_then(|synth| synth.layers.get(index)).map(|ready| &**ready);
+        let read = scene.layers[index].technique().probe(&making, ready, pixel, &moment);
+        read.map_err(|problem| Error::at(args.scene.display(), problem))
+    };
     let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
     for pixel in pixels {
         let seen = synth.as_ref().and_then(|synth| passes::topmost(synth, args.time, pixel));
-        let layer = seen.and_then(|i| scene.layers.get(i)).map_or(asked, |layer| layer.technique());
-        let making = Making::plain(scene.timeline.wrap, &opened.materials);
-        let making = Making { duration: scene.timeline.duration, ..making };
-        let read = layer.probe(&making, pixel, &moment);
-        let read = read.map_err(|problem| Error::at(args.scene.display(), problem))?;
+        let layer = seen.unwrap_or(asked);
+        let mut read = vec![look(layer, pixel)?.unwrap_or_default()];
+        if args.layer.is_none() {
+            let others = others(scene, layer, pixel, &opened.materials).map(|i| look(i, pixel));
+            let others = others.collect::<Result<Vec<_>>>()?;
+            read.extend(others.into_iter().flatten().filter(ReadOut::is_of_something));
+        }
         // A layer larger than the first reaches beyond the frame, which shows nothing there.
         let color = shown.pixel(args.time, pixel).map_err(|problem| opened.failed(problem))?;
-        let answer = if args.json { line(read.as_ref(), color) } else { prose(read.as_ref(), color, pixel, args.time) };
+        let answer = if args.json { line(&read, color) } else { prose(&read, color, pixel, args.time) };
         context.print(answer)?;
     }
     Ok(())
 }
 
-fn find_layer<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a dyn Technique> {
-    let found = scene.layers.iter().find(|layer| name.is_none_or(|name| layer.technique().name() == name));
-    match found {
-        Some(layer) => Ok(layer.technique()),
-        None => {
-            let names: Vec<&str> = scene.layers.iter().map(|layer| layer.technique().name()).collect();
-            let wanted = name.unwrap_or("the first");
-            Err(Error::at("--layer", format!("there is no layer {wanted}; there are: {}", names.join(", "))))
-        }
-    }
+/// The index of the layer `name`, or of the first one.
+fn find_layer(scene: &Scene, name: Option<&str>) -> Result<usize> {
+    let found = scene.layers.iter().position(|layer| name.is_none_or(|name| layer.technique().name() == name));
+    found.ok_or_else(|| {
+        let names: Vec<&str> = scene.layers.iter().map(|layer| layer.technique().name()).collect();
+        let wanted = name.unwrap_or("the first");
+        Error::at("--layer", format!("there is no layer {wanted}; there are: {}", names.join(", ")))
+    })
+}
+
+/// The layers that may show something else in a pixel, the uppermost first: not those that are only seen on others, nor
+/// pictures that do not reach so far.
+fn others<'a>(
+    scene: &'a Scene,
+    layer: usize,
+    (x, y): (usize, usize),
+    materials: &'a Materials,
+) -> impl Iterator<Item = usize> + 'a {
+    let textures = scene.textures();
+    let reaches = move |i: &usize| own_size(scene, *i, materials).is_none_or(|(width, height)| x < width && y < height);
+    (0..scene.layers.len()).rev().filter(move |i| *i != layer && !textures.contains(i)).filter(reaches)
+}
+
+/// Width and height of the picture that gives a layer its size, if there is one.
+fn own_size(scene: &Scene, layer: usize, materials: &Materials) -> Option<(usize, usize)> {
+    let image = scene.layers.get(layer)?.technique().frame_of()?;
+    materials.pictures.get(image).map(|picture| (picture.width(), picture.height()))
 }
 
 fn parse_point(text: &str) -> std::result::Result<[f64; 2], String> {
@@ -98,9 +124,15 @@ fn pixel_at([x, y]: [f64; 2], (width, height): (usize, usize)) -> Result<(usize,
     }
 }
 
-fn line(read: Option<&ReadOut>, color: [u8; 4]) -> String {
-    let mut line = object(read.map_or(&[], |read| &read.entries));
+/// What is read of a pixel, the layer that is meant first, as a JSON object.
+fn line(read: &[ReadOut], color: [u8; 4]) -> String {
+    let mut objects = read.iter().map(|read| object(&read.entries));
+    let mut line = objects.next().unwrap_or_else(|| json!({}));
     line["color"] = json!(color);
+    let others: Vec<Json> = objects.collect();
+    if !others.is_empty() {
+        line["others"] = others.into();
+    }
     line.to_string()
 }
 
@@ -123,14 +155,16 @@ fn value(value: &Value) -> Json {
     }
 }
 
-fn prose(read: Option<&ReadOut>, [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: f64) -> String {
+fn prose(read: &[ReadOut], [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: f64) -> String {
     let mut text = format!("pixel {x},{y} at t {time}");
     // Numbers and flags that follow one another share a line.
     let mut shares = false;
-    for Entry { label, value, .. } in read.into_iter().flat_map(|read| &read.entries) {
+    let entries = read.iter().enumerate().flat_map(|(i, read)| read.entries.iter().map(move |entry| (i, entry)));
+    for (i, Entry { label, value, .. }) in entries {
         let short = matches!(value, Value::Number(_) | Value::Flag { .. });
         text += match value {
-            Value::Of(_) => ": ",
+            Value::Of(_) if i == 0 => ": ",
+            Value::Of(_) => "\nalso: ",
             _ if short && shares => ", ",
             _ => "\n  ",
         };
@@ -189,9 +223,10 @@ mod tests {
                 entry("active", "active", Value::Flag { on, off: "still" }),
                 entry("read", "reads", Value::Place((1.5, 2.0).into())),
             ];
-            Some(ReadOut { entries, axis: None })
+            vec![ReadOut { entries, axis: None }]
         };
-        let outside = Some(ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None });
+        let water = ReadOut { entries: vec![entry("layer", "layer", Value::Of(Some("falls".into())))], axis: None };
+        let outside = vec![ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None }];
         for (read, json, words) in [
             (
                 read(true),
@@ -206,14 +241,19 @@ mod tests {
                  thresholds none\n  τ 0.1250, still\n  reads 1.500, 2.000\n  shows #010203, alpha 255",
             ),
             (
-                outside,
+                outside.clone(),
                 r#"{"zone":null,"color":[1,2,3,255]}"#,
                 "pixel 7,8 at t 0.5: in no zone\n  shows #010203, alpha 255",
             ),
-            (None, r#"{"color":[1,2,3,255]}"#, "pixel 7,8 at t 0.5\n  shows #010203, alpha 255"),
+            (
+                [outside, vec![water]].concat(),
+                r#"{"zone":null,"color":[1,2,3,255],"others":[{"layer":"falls"}]}"#,
+                "pixel 7,8 at t 0.5: in no zone\nalso: layer \"falls\"\n  shows #010203, alpha 255",
+            ),
+            (Vec::new(), r#"{"color":[1,2,3,255]}"#, "pixel 7,8 at t 0.5\n  shows #010203, alpha 255"),
         ] {
-            assert_eq!(line(read.as_ref(), [1, 2, 3, 255]), json);
-            assert_eq!(prose(read.as_ref(), [1, 2, 3, 255], (7, 8), 0.5), words);
+            assert_eq!(line(&read, [1, 2, 3, 255]), json);
+            assert_eq!(prose(&read, [1, 2, 3, 255], (7, 8), 0.5), words);
         }
     }
 

@@ -93,7 +93,9 @@ impl Start {
     /// Adds a layer of the first technique that makes one of what is in this list.
     fn layer(&mut self, list: List, shown: &Shown) {
         let makes = |kind: &&&Kind| kind.template.is_some_and(|template| template.of == list);
-        let Some((kind, template)) = KINDS.iter().find(makes).and_then(|kind| Some((kind, kind.template?))) else { return };
+        let Some((kind, template)) = KINDS.iter().find(makes).and_then(|kind| Some((kind, kind.template?))) else {
+            return;
+        };
         let mut layer = (template.layer)(shown);
         let name = unique_name(shown.name, |name| self.layers.iter().any(|other| other["name"] == name));
         layer["name"] = name.into();

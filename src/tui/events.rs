@@ -34,8 +34,8 @@ pub enum Event {
     Reading(u8),
     /// What a pixel does.
     Probed(Arc<Probed>),
-    /// The worker has made a picture.
-    Picture(Arc<TerminalPicture>),
+    /// The worker has made a picture; it took so many milliseconds.
+    Picture(Arc<TerminalPicture>, f64),
     /// Long work has made progress.
     Progress(String),
     /// Long work has ended, with its last message.

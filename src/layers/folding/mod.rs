@@ -132,7 +132,13 @@ impl Technique for PictureLayer {
         curve.collect()
     }
 
-    fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {
+    fn probe(
+        &self,
+        making: &Making,
+        _ready: Option<&dyn Ready>,
+        pixel: (usize, usize),
+        moment: &Moment,
+    ) -> Result<Option<ReadOut>, Problem> {
         Ok(Some(probe::read_out(probe::probe(self, making, pixel, moment.t)?)))
     }
 

@@ -83,7 +83,13 @@ impl Technique for MeshLayer {
         Rect::new(0.0, 0.0, 1.0, 1.0)
     }
 
-    fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {
+    fn probe(
+        &self,
+        making: &Making,
+        _ready: Option<&dyn Ready>,
+        pixel: (usize, usize),
+        moment: &Moment,
+    ) -> Result<Option<ReadOut>, Problem> {
         probe::probe(self, making, pixel, moment).map(Some)
     }
 

@@ -14,6 +14,24 @@ pub struct ReadOut {
     pub axis: Option<Axis>,
 }
 
+impl ReadOut {
+    /// Whether the pixel belongs to something.
+    pub fn is_of_something(&self) -> bool {
+        self.entries.iter().any(|entry| matches!(entry.value, Value::Of(Some(_))))
+    }
+}
+
+/// A number that is good to know of a layer as a whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fact {
+    /// Its name, as short as can be.
+    pub name: &'static str,
+    /// The number.
+    pub value: f64,
+    /// Its unit; empty if it has none.
+    pub unit: &'static str,
+}
+
 /// What a pixel shows of a layer in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Under {

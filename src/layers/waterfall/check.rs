@@ -112,13 +112,18 @@ fn too_many(count: f64) -> Option<Problem> {
     (count > MOST_SPRITES).then(|| Problem::error("/lines", message()))
 }
 
-/// The problem with what lines carry at once, if it is too much.
-pub fn crowd(lines: &[Line], births: &[Births; 2]) -> Option<Problem> {
+/// How much lines carry at once, in the mean.
+pub fn carried(lines: &[Line], births: &[Births; 2]) -> f64 {
     let of = |line: &Line| {
         let births = births[usize::from(line.foam)];
         births.count as f64 * line.life / births.period
     };
-    too_many(lines.iter().map(of).sum())
+    lines.iter().map(of).sum()
+}
+
+/// The problem with what lines carry at once, if it is too much.
+pub fn crowd(lines: &[Line], births: &[Births; 2]) -> Option<Problem> {
+    too_many(carried(lines, births))
 }
 
 /// The problems that only show with the clip and the images of sheets.

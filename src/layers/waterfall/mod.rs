@@ -29,6 +29,7 @@ pub mod sprites;
 pub mod synth;
 pub mod upload;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use kurbo::Rect;
@@ -82,6 +83,11 @@ impl Technique for WaterfallLayer {
         sources.map_or_else(|_| Vec::new(), |sources| check::with_sources(self, &sources))
     }
 
+    /// A clip in which nothing moves is only known once sprites are looked for.
+    fn check_made(&self, making: &Making) -> Vec<Problem> {
+        synth::Synth::new(self, making, None).err().into_iter().collect()
+    }
+
     fn uses(&self) -> Vec<Use<'_>> {
         let clip =
             self.clip.iter().map(|clip| Use { at: "/clip".into(), of: Of::Name(List::Clips, clip), what: What::Clip });
@@ -119,8 +125,18 @@ impl Technique for WaterfallLayer {
         landing::aimed(self, path, ray)
     }
 
-    fn probe(&self, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<Option<ReadOut>, Problem> {
-        probe::probe(self, making, pixel, moment).map(Some)
+    fn probe(
+        &self,
+        making: &Making,
+        ready: Option<&dyn Ready>,
+        pixel: (usize, usize),
+        moment: &Moment,
+    ) -> Result<Option<ReadOut>, Problem> {
+        let made = match ready.and_then(|ready| ready.downcast::<synth::Synth>()) {
+            Some(made) => Cow::Borrowed(made),
+            None => Cow::Owned(synth::Synth::new(self, making, None)?),
+        };
+        Ok(Some(probe::probe(self, &made, pixel, moment)))
     }
 
     fn flow_lines(&self, samples: usize, each: &mut dyn FnMut(Vec<Entry>)) -> bool {

@@ -7,33 +7,22 @@ use super::model::WaterfallLayer;
 use super::splat::{Splat, splats};
 use super::synth::Synth;
 use crate::base::pixels::{Rgba, encode};
-use crate::base::problem::Problem;
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
-use crate::layers::ready::Making;
 
 /// The most sprites that are told of.
 const MOST: usize = 8;
 
 /// The sprites that cover the pixel in column `x`, row `y`.
-///
-/// # Errors
-/// If the layer cannot be made ready.
-pub fn probe(
-    layer: &WaterfallLayer,
-    making: &Making,
-    pixel: (usize, usize),
-    moment: &Moment,
-) -> Result<ReadOut, Problem> {
-    let synth = Synth::new(layer, making, None)?;
-    let places = places(&synth, moment, &[pixel.1], Columns::Some(&[pixel.0]));
+pub fn probe(layer: &WaterfallLayer, synth: &Synth, pixel: (usize, usize), moment: &Moment) -> ReadOut {
+    let places = places(synth, moment, &[pixel.1], Columns::Some(&[pixel.0]));
     let at = [places[0][0], places[1][0]];
     let over = |splat: &Splat| covered(splat, &places).is_some() && inside(splat, at[0], at[1]).is_some();
-    let mut found: Vec<(Splat, Rgba)> = splats(&synth, moment)
+    let mut found: Vec<(Splat, Rgba)> = splats(synth, moment)
         .into_iter()
         .filter(over)
         .map(|splat| {
-            let color = color(&synth, &splat, at);
+            let color = color(synth, &splat, at);
             (splat, color)
         })
         .collect();
@@ -48,7 +37,7 @@ pub fn probe(
         entry("count", "sprites", Value::Index(count)),
         entry("sprites", "sprite", Value::Items(items)),
     ];
-    Ok(ReadOut { entries, axis: None })
+    ReadOut { entries, axis: None }
 }
 
 /// What a sprite adds to a place: linear light, premultiplied.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::check::carried;
 use super::frame::Seen;
 use super::synth::Synth;
 use super::{album, marks, plan};
@@ -12,6 +13,7 @@ use crate::layers::parts::album::Album;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
+use crate::layers::parts::readout::Fact;
 use crate::layers::ready::{Ready, Still};
 use crate::layers::space::fit::Bounds;
 
@@ -51,6 +53,15 @@ impl Ready for Synth {
             (0..=PLACES).flat_map(move |i| [at(i) - wide, at(i) + wide])
         });
         Bounds::around(places)
+    }
+
+    /// What cannot be seen in a single frame: the measure of all that is automatic, how long water is on its way, and how
+    /// much there is to draw.
+    fn facts(&self) -> Vec<Fact> {
+        let life = self.lines.iter().filter(|line| !line.foam).map(|line| line.life).fold(0.0, f64::max);
+        let fact = |name, value, unit| Fact { name, value, unit };
+        let sprites = carried(&self.lines, &self.births).round();
+        vec![fact("h", self.values.height, "m"), fact("life", life, "s"), fact("sprites", sprites, "")]
     }
 
     fn album(&self, between: usize) -> Option<Album> {

@@ -8,7 +8,7 @@ use crate::tui::state::{Mode, State};
 use crate::tui::text::plain;
 
 pub const COMMANDS: &[Command] =
-    &[command("profile", "[NAME]", "Apply a preset to the layer: smoke, fire, ...", profile).change()];
+    &[command("profile", "[NAME]", "Apply a preset to the layer, as smoke or fire", profile).change()];
 
 fn profile(state: &mut State, call: &Call) -> Done {
     if !call.text.is_empty() {

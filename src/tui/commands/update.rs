@@ -39,7 +39,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Reading(percent) => state.picture.read = Some(percent).filter(|percent| *percent < 100),
         Event::Probed(probed) => state.picture.probed = Some(probed),
         Event::Synthesised(result) => synthesised(state, *result),
-        Event::Picture(shown) => state.picture.latest = Some(shown),
+        Event::Picture(shown, ms) => (state.picture.latest, state.picture.frame_ms) = (Some(shown), Some(ms)),
         Event::Progress(line) => state.outside.work = Some(line),
         Event::Done(result) => {
             if let (Some(work), Ok(_)) = (state.outside.work.take(), &result) {

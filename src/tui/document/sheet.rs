@@ -66,6 +66,8 @@ pub struct Cell {
     pub field: Arc<Field>,
     /// The text that it shows.
     pub text: String,
+    /// Whether its value is written in the document.
+    pub set: bool,
 }
 
 /// Which part of a value a cell is.
@@ -313,6 +315,7 @@ fn follows(document: &Document, item: &str, column: &'static Derived) -> Cell {
         head: column.name.into(),
         field: Arc::new(field),
         text: String::new(),
+        set: true,
     };
     Cell { text: cell.number(document).map_or("none".into(), numbers::shown), ..cell }
 }
@@ -351,7 +354,10 @@ fn cells(
         _ => None,
     };
     let value = automatic.as_ref().or(place.value).unwrap_or(&Value::Null);
-    let cell = |part, head: String, text| Cell { pointer: pointer.to_owned(), part, head, field: field.clone(), text };
+    let cell = |part, head: String, text| {
+        let (pointer, field) = (pointer.to_owned(), field.clone());
+        Cell { pointer, part, head, field, text, set: place.set }
+    };
     let Kind::Numbers(names) = &field.kind else {
         let head = if table { name.to_owned() } else { String::new() };
         return vec![cell(Part::Whole, head, summary(field, value))];

@@ -24,15 +24,23 @@ impl Probed {
     /// The answer, as `plica probe` has it; `None` if there is no such pixel.
     pub fn new(at: ProbeAt, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
         let (x, y) = at.pixel;
-        let asked = scene.layers.get(at.layer)?.technique();
-        // In space, what hides the others is meant.
-        let seen = Some(asked).filter(|layer| layer.kind().space == Space::World);
-        let seen = seen.and_then(|_| scene.layers.get(passes::topmost(synth, at.time, at.pixel)?));
-        let layer = seen.map_or(asked, |layer| layer.technique());
         let moment = synth.moment(at.time);
         let making = Making::plain(scene.timeline.wrap, materials);
         let making = Making { duration: scene.timeline.duration, ..making };
-        let read = layer.probe(&making, at.pixel, &moment).ok()?;
+        let look = |layer: usize| {
+            let ready = synth.layers.get(layer).map(|ready| &**ready);
+            scene.layers.get(layer)?.technique().probe(&making, ready, at.pixel, &moment).ok()
+        };
+        let in_space = scene.layers.get(at.layer)?.technique().kind().space == Space::World;
+        // In space, what hides the others is meant; but sprites hide nothing.
+        let own = synth.layers.get(at.layer).filter(|layer| layer.has_sprites()).and_then(|_| look(at.layer)?);
+        let read = match own.filter(ReadOut::is_of_something) {
+            Some(own) => Some(own),
+            None => {
+                let seen = in_space.then(|| passes::topmost(synth, at.time, at.pixel)).flatten();
+                look(seen.unwrap_or(at.layer))?
+            }
+        };
         let within = x < synth.size.0 && y < synth.size.1;
         let color = within.then(|| encode(*cpu::lattice(synth, at.time, &[x], &[y]).get(0, 0)));
         Some(Probed { at, read, color: color.unwrap_or_default() })

@@ -10,7 +10,7 @@ use super::{image_editor, terminal};
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
-use crate::files::{lines, paths, picture, write};
+use crate::files::{clips, lines, paths, picture, write};
 use crate::ops;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
@@ -56,10 +56,11 @@ impl Editor {
             Effect::Probe(words) if self.screen.is_none() => self.start(&words),
             Effect::Probe(_) => {}
             Effect::Complete { name, path, beside } => {
-                let found = paths::complete(beside.as_deref().unwrap_or(Path::new(".")), &path);
-                self.take(Event::Completed(
-                    found.into_iter().map(|path| format!("{name} {}", said::one_word(&path))).collect(),
-                ));
+                let folder = beside.as_deref().unwrap_or(Path::new("."));
+                // One line for a clip, before its many files.
+                let clips = if name == "add" { clips::complete(folder, &path) } else { Vec::new() };
+                let found = clips.into_iter().chain(paths::complete(folder, &path));
+                self.take(Event::Completed(found.map(|path| format!("{name} {}", said::one_word(&path))).collect()));
             }
             Effect::Copy(text) => match &mut self.screen {
                 Some(screen) => terminal::copy(screen, &text),

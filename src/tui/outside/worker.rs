@@ -143,9 +143,11 @@ impl Studio {
             return false;
         }
         let Some(wanted) = request.picture.clone() else { return true };
+        let begun = Instant::now();
         let picture = TerminalPicture::new(synth, scene, request.time, wanted, self.picture.as_deref());
+        let ms = begun.elapsed().as_secs_f64() * 1000.0;
         self.picture = Some(picture.clone());
-        events.send(Event::Picture(picture)).is_ok()
+        events.send(Event::Picture(picture, ms)).is_ok()
     }
 
     fn run(&self, what: Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>) {

@@ -7,6 +7,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::write;
 use crate::scene::field::Kind;
+use crate::tui::document::derived;
 use crate::tui::document::sheet;
 use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::state::{State, entry};
@@ -25,7 +26,11 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         sheet::told_range(&cell.field).filter(|_| !polar).map(|range| format!("   {range}")).unwrap_or_default();
     let unit = if cell.part == Part::Degrees { Some("degrees counter-clockwise") } else { cell.field.unit };
     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
-    let set = if row.set { "" } else { "   (default)" };
+    let set = match derived::automatic(state.document(), &cell.pointer) {
+        _ if cell.set => "",
+        Some(_) => "   (automatic)",
+        None => "   (default)",
+    };
     let label = plain(&row.label);
     let mut x = write(buffer, area, 0, 0, &format!("{label}{name}"), color::strong());
     x = write(buffer, area, x, 0, &format!("   {value}{unit}"), Style::new());

@@ -7,6 +7,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::write;
 use crate::base::maths::ten_to;
+use crate::layers::parts::readout::Fact;
 use crate::layers::technique::Technique;
 use crate::scene::words::item_of;
 use crate::tui::document::tree;
@@ -87,8 +88,12 @@ fn right(state: &State) -> String {
     if let Some((symbol, value)) = now(state) {
         parts.push(format!("{symbol} {}", short(value)));
     }
+    let mut facts = facts(state);
     if state.picture.synthesising {
         parts.push(state.picture.read.map_or("field ...".into(), |percent| format!("files {percent} %")));
+    } else if !facts.is_empty() {
+        parts.append(&mut facts);
+        parts.extend(state.picture.frame_ms.map(|ms| format!("frame {ms:.0} ms")));
     } else if let Some(ms) = state.picture.synth_ms {
         parts.push(format!("field {ms:.0} ms"));
     }
@@ -100,6 +105,16 @@ fn right(state: &State) -> String {
         parts.push(plain(&state.outside.window));
     }
     parts.join("  ")
+}
+
+/// What is good to know of the layer that is shown.
+fn facts(state: &State) -> Vec<String> {
+    let made = state.picture.synth.as_ref().zip(tree::layer_of(&state.cursor.node));
+    let facts = made.and_then(|(synth, layer)| synth.layers.get(layer)).map(|layer| layer.facts()).unwrap_or_default();
+    facts
+        .into_iter()
+        .map(|Fact { name, value, unit }| format!("{name} {} {unit}", short(value)).trim_end().into())
+        .collect()
 }
 
 /// The present value of what changes over time in the item that is shown, with its symbol.

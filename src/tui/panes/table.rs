@@ -11,7 +11,7 @@ use ratatui::style::{Modifier, Style};
 use super::columns::{Columns, GAP, Placed, VisibleCells};
 use super::{typed, write};
 use crate::scene::address;
-use crate::tui::document::sheet::Row;
+use crate::tui::document::sheet::{Cell, Row};
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pane, State, entry};
 use crate::tui::text::wrap::{clipped, width};
@@ -58,7 +58,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         let limit = room - if sights[y].goes_on(placed) { GAP } else { 0 };
         for (c, placed, shift) in sights[y].cells(placed) {
             let here = i == state.cursor.row && c == state.cursor.column && state.cursor.focus == Pane::Table;
-            let style = style(row, here, selected && c == state.cursor.column);
+            let style = style(placed.cell, here, selected && c == state.cursor.column);
             if let Some(head) = placed.head {
                 write(buffer, cells, head - shift, y as u16, &placed.cell.head, color::faint());
             }
@@ -115,11 +115,11 @@ fn draw_marks(row: &[Placed], visible: VisibleCells, cells: Rect, y: u16, buffer
     visible.cells(row).last().map_or(0, |(_, placed, shift)| placed.end - shift)
 }
 
-fn style(row: &Row, here: bool, selected: bool) -> Style {
+fn style(cell: &Cell, here: bool, selected: bool) -> Style {
     match (here, selected) {
         (true, _) => color::focus(),
         (_, true) => Style::new().add_modifier(Modifier::REVERSED | Modifier::DIM),
-        _ if row.set => Style::new(),
+        _ if cell.set => Style::new(),
         _ => color::faint(),
     }
 }

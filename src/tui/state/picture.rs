@@ -28,6 +28,8 @@ pub struct Picture {
     pub graphics: Graphics,
     /// The picture that the worker made last.
     pub latest: Option<Arc<TerminalPicture>>,
+    /// How long that took, in milliseconds.
+    pub frame_ms: Option<f64>,
     /// Whether the read-out of the pixel under the cursor is open.
     pub probing: bool,
     /// The last answer of the worker about a pixel.
@@ -55,6 +57,7 @@ impl Picture {
             switches: Switches::default(),
             graphics: Graphics::default(),
             latest: None,
+            frame_ms: None,
             probing: false,
             probed: None,
             synthesising: false,

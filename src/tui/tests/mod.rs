@@ -6,6 +6,7 @@ use super::events::Effect;
 use super::state::Mode;
 use super::tests::support::{press, replayed, state};
 
+mod automatic;
 mod camera;
 mod conflicts;
 mod counts;

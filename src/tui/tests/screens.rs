@@ -72,7 +72,7 @@ pub fn see(state: &mut State) {
     if let Some(wanted) = request.picture {
         let before = state.picture.latest.clone();
         let shown = TerminalPicture::new(&synth, &request.scene, request.time, wanted, before.as_deref());
-        update(state, Event::Picture(shown));
+        update(state, Event::Picture(shown, 7.0));
     }
 }
 

@@ -1,0 +1,115 @@
+//! Scenes of clips on the command line: making one, checking it, and what a pixel shows of it.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
+
+mod binary;
+
+use std::path::Path;
+
+use image::{Rgb, RgbImage};
+use serde_json::{Value, json};
+
+/// What a run printed, and its messages.
+fn plica(folder: &Path, args: &[&str], succeeds: bool) -> (String, String) {
+    let output = binary::plica(folder, args).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let (out, messages) = (text(output.stdout), text(output.stderr));
+    assert_eq!(output.status.success(), succeeds, "{args:?}: {out}{messages}");
+    (out, messages)
+}
+
+fn get(folder: &Path, scene: &str, path: &str) -> Value {
+    serde_json::from_str(&plica(folder, &["get", scene, path], true).0).unwrap()
+}
+
+/// Writes frames in which a pattern falls by so many pixels a frame.
+fn clip(folder: &Path, numbers: std::ops::Range<u32>, speed: u32) {
+    std::fs::create_dir_all(folder).unwrap();
+    for number in numbers {
+        let shade = |x: u32, y: u32| {
+            let (x, y) = (x / 4, (y + 1000 - speed * number) / 4);
+            Rgb([(x.wrapping_mul(2_654_435_761).wrapping_add(y.wrapping_mul(2_246_822_519)) >> 13) as u8; 3])
+        };
+        RgbImage::from_fn(96, 96, shade).save(folder.join(format!("{number:04}.png"))).unwrap();
+    }
+}
+
+#[test]
+fn a_clip_becomes_a_scene_by_its_pattern_and_by_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    clip(&at("falls"), 2..14, 3);
+    std::fs::create_dir(at("to")).unwrap();
+    for (args, scene, path) in [
+        (&["new", "falls/%04d.png", "-o", "a.plica.json"][..], "a.plica.json", "falls/%04d.png"),
+        (&["new", "falls"], "falls.plica.json", "falls/%04d.png"),
+        (&["new", "falls/%04d.png"], "falls/falls.plica.json", "%04d.png"),
+        (&["new", "falls", "-o", "to/a.plica.json"], "to/a.plica.json", "falls/%04d.png"),
+    ] {
+        assert_eq!(plica(folder.path(), args, true).0, format!("{scene}\n"));
+        assert_eq!(get(folder.path(), scene, "clips"), json!({ "falls": { "path": path, "first": 2 } }));
+        let layer = json!([{ "kind": "waterfall", "name": "falls", "clip": "falls" }]);
+        assert_eq!(get(folder.path(), scene, "layers"), layer);
+        assert_eq!(get(folder.path(), scene, "camera"), json!({}));
+        plica(folder.path(), &["check", scene], true);
+    }
+    assert!(at("to/falls/0013.png").is_file() && !at("falls/falls").exists());
+    plica(&at("to"), &["set", "a.plica.json", "size=[48, 32]"], true);
+    plica(&at("to"), &["render", "a.plica.json", "--frames", "1", "-o", "a.png"], true);
+}
+
+#[test]
+fn what_is_no_clip_is_refused_with_the_cure() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    clip(&at("gap"), 0..12, 3);
+    clip(&at("gap"), 20..21, 3);
+    clip(&at("broken"), 0..3, 3);
+    std::fs::write(at("broken/0001.png"), "no picture").unwrap();
+    std::fs::create_dir(at("none")).unwrap();
+    for (args, told, succeeds) in [
+        (["new", "none"], "none: holds no numbered pictures (name them as 0001.png", false),
+        (["new", "none/%04d.png"], "there is no such file", false),
+        (["new", "broken"], "broken: 0001.png", false),
+        (["new", "gap"], "gap: it ends before number 12, which is missing", true),
+    ] {
+        let (_, messages) = plica(folder.path(), &args, succeeds);
+        assert!(messages.contains(told), "{args:?}: {messages}");
+    }
+    assert!(!at("broken.plica.json").exists());
+}
+
+#[test]
+fn a_check_finds_a_clip_in_which_nothing_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    clip(&folder.path().join("ice"), 0..12, 0);
+    plica(folder.path(), &["new", "ice"], true);
+    let (out, _) = plica(folder.path(), &["check", "ice.plica.json"], false);
+    let told = "/layers/0/clip: nothing moves in the clip \"ice\": pick sprites by hand (sprites.picks)";
+    assert!(out.contains(told), "{out}");
+}
+
+#[test]
+fn a_probe_tells_of_every_layer_of_sprites() {
+    let folder = tempfile::tempdir().unwrap();
+    clip(&folder.path().join("falls"), 0..14, 3);
+    plica(folder.path(), &["new", "falls"], true);
+    let second = json!({ "kind": "waterfall", "name": "mist", "clip": "falls" });
+    let size = json!([64, 64]);
+    let layers = json!([get(folder.path(), "falls.plica.json", "layers.falls"), second]);
+    let settings = [format!("layers={layers}"), format!("size={size}")];
+    plica(folder.path(), &["set", "falls.plica.json", &settings[0], &settings[1]], true);
+    let probe =
+        |more: &[&str]| plica(folder.path(), &[&["probe", "falls.plica.json", "--at", "32,32"], more].concat(), true).0;
+    let told: Value = serde_json::from_str(&probe(&["--json"])).unwrap();
+    let other = &told["others"][0];
+    for (layer, name) in [(&told, "falls"), (other, "mist")] {
+        let sprites = layer["sprites"].as_array().unwrap();
+        assert_eq!((&layer["layer"], sprites.len()), (&json!(name), 8));
+        assert!(layer["count"].as_u64().unwrap() > 8, "{layer}");
+        assert!(sprites.iter().all(|sprite| sprite["layer"] == name && sprite["width_px"].is_number()), "{layer}");
+    }
+    let words = probe(&[]);
+    assert!(words.contains("\nalso: layer \"mist\"\n  sprites "), "{words}");
+    let one: Value = serde_json::from_str(&probe(&["--json", "--layer", "mist"])).unwrap();
+    assert_eq!((&one["sprites"], one.get("others")), (&other["sprites"], None));
+}
