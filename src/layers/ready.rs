@@ -13,6 +13,7 @@ use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
 use super::parts::moment::{CENTRE, Columns, Moment};
 use super::parts::pass::Pass;
+use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
 use super::space::fit::Bounds;
@@ -97,6 +98,11 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// The pictures of its sprites, with so many between each two keys; `None` if it has none.
     fn album(&self, _between: usize) -> Option<Album> {
+        None
+    }
+
+    /// What there is to see of the clip from which its pictures are picked; `None` if there is nothing.
+    fn picking(&self, _sight: Sight) -> Option<Picking> {
         None
     }
 

@@ -13,6 +13,7 @@ use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{List, Materials, Use};
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
+use super::parts::picking::Picks;
 use super::parts::plan::Program;
 use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
@@ -103,6 +104,11 @@ pub trait Technique: Any + Send + Sync {
     /// Why there is none.
     fn solve(&self, column: &Derived, _item: &Value, _to: f64) -> Result<Value, String> {
         Err(format!("{} cannot be set", column.name))
+    }
+
+    /// Where the layer's pictures are picked from a clip, if they are; `Ready::picking` shows it.
+    fn picks(&self) -> Option<Picks> {
+        None
     }
 
     /// The path and the value of a field with which the item at `path` goes to where a ray points: what a line ends at,

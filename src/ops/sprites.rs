@@ -74,17 +74,20 @@ pub fn none(name: Option<&str>, what: &str) -> Error {
     }
 }
 
+/// The edit that turns the automatic choice of a layer into picks.
+pub fn taken(document: &Document, layer: usize, album: &Album) -> Edit {
+    let edit = |(path, value): &(String, serde_json::Value)| {
+        Edit::set(document, &format!("/layers/{layer}{path}"), value.clone())
+    };
+    Edit::all(album.taken.iter().map(edit))
+}
+
 fn take(args: &Args, layer: usize, album: &Album, context: &mut Context) -> Result<()> {
     if album.taken.is_empty() {
         context.messages.say("nothing to take: sprites.picks and sprites.sheets have all sprites already");
         return Ok(());
     }
-    let make = |document: &Document| {
-        let edit = |(path, value): &(String, serde_json::Value)| {
-            Edit::set(document, &format!("/layers/{layer}{path}"), value.clone())
-        };
-        Ok(Edit::all(album.taken.iter().map(edit)))
-    };
+    let make = |document: &Document| Ok(taken(document, layer, album));
     if set::change(&args.scene, (&args.recovery, &args.options), make)? {
         context.messages.say("taken in the editor that has the scene open; save it there");
     }

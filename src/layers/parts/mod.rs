@@ -8,6 +8,7 @@ pub mod marks;
 pub mod materials;
 pub mod moment;
 pub mod pass;
+pub mod picking;
 pub mod plan;
 pub mod readout;
 pub mod repeat;

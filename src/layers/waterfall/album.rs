@@ -70,7 +70,7 @@ fn shown(synth: &Synth, track: usize, key: usize, u: f64) -> Linear {
 }
 
 /// All keys, a row for each track.
-fn sheet(synth: &Synth) -> Linear {
+pub fn sheet(synth: &Synth) -> Linear {
     let (side, tracks) = (synth.pictures.side, &synth.pictures.tracks);
     let longest = tracks.iter().map(|track| track.keys.len()).max().unwrap_or(0);
     let mut all = Linear::filled(longest * side, tracks.len() * side, [0.0; 4]);

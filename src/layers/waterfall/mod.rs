@@ -20,6 +20,7 @@ pub mod model;
 pub mod noise;
 pub mod passes;
 pub mod path;
+pub mod picking;
 pub mod plan;
 pub mod presets;
 pub mod probe;
@@ -39,6 +40,7 @@ use self::model::WaterfallLayer;
 use super::parts::derived::Derived;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
+use super::parts::picking::Picks;
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::space::eye::Ray;
@@ -119,6 +121,10 @@ impl Technique for WaterfallLayer {
     fn solve(&self, column: &Derived, item: &Value, to: f64) -> Result<Value, String> {
         let fall = landing::Fall::of(self, item).ok_or("this is no node of the lip")?;
         fall.solved(column, to).map(|velocity| json!(velocity.to_array()))
+    }
+
+    fn picks(&self) -> Option<Picks> {
+        Some(Picks { node: "/sprites", list: "/sprites/picks" })
     }
 
     fn aimed(&self, path: &str, ray: &Ray) -> Result<(String, Value), String> {

@@ -7,11 +7,12 @@ use glam::DVec3;
 use super::check::carried;
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{album, marks, plan};
+use super::{album, marks, picking, plan};
 use crate::base::reduce::Reduced;
 use crate::layers::parts::album::Album;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
+use crate::layers::parts::picking::{Picking, Sight};
 use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Fact;
 use crate::layers::ready::{Ready, Still};
@@ -66,6 +67,10 @@ impl Ready for Synth {
 
     fn album(&self, between: usize) -> Option<Album> {
         Some(album::album(self, between))
+    }
+
+    fn picking(&self, sight: Sight) -> Option<Picking> {
+        picking::picking(self, sight)
     }
 
     fn largest_texture(&self) -> usize {

@@ -1,7 +1,7 @@
 //! Which keys are in use.
 
 use crate::tui::keys;
-use crate::tui::state::{Mode, Pane, State, entry};
+use crate::tui::state::{Mode, Pane, State, entry, looking};
 
 /// The contexts of the key table that apply, the innermost first.
 pub fn contexts(state: &State) -> Vec<&'static str> {
@@ -16,6 +16,12 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
         (Mode::Palette(_), _) => vec![keys::PALETTE, keys::TYPING],
         (Mode::Pages(_), _) => vec![keys::HELP],
         (Mode::Aim, _) => vec![keys::AIM, keys::PICTURE],
+        (Mode::Normal, Pane::Tree) if looking::picks(state).is_some_and(|(.., here)| here) => {
+            vec![keys::PICKABLE, keys::TREE, keys::EVERYWHERE]
+        }
+        (Mode::Normal, Pane::Picture) if state.picture.looking.is_some() => {
+            vec![keys::PICKING, keys::PICTURE, keys::EVERYWHERE]
+        }
         (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],

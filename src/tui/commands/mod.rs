@@ -23,6 +23,7 @@ mod naming;
 pub mod own_keys;
 mod palette;
 pub mod pasting;
+mod picking;
 mod picture;
 mod placing;
 mod playing;
@@ -56,6 +57,7 @@ pub static TABLE: Table = Table(&[
     placing::COMMANDS,
     playing::COMMANDS,
     camera::COMMANDS,
+    picking::COMMANDS,
     picture::COMMANDS,
     typing::COMMANDS,
     scripts::COMMANDS,

@@ -17,7 +17,7 @@ use crate::tui::commands;
 use crate::tui::document::tree;
 use crate::tui::keys::Found;
 use crate::tui::layout::first_row;
-use crate::tui::state::{Mode, Pages, Pane, State};
+use crate::tui::state::{Mode, Pages, Pane, State, looking};
 
 /// Handles an event, and returns what is to be done outside.
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
@@ -109,8 +109,8 @@ fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
     match result {
         Ok(Synthesis { synth, ms, longest, warning }) => {
             state.picture.longest = longest;
-            state.picture.size = Some(synth.size);
             state.picture.synth = Some(synth);
+            looking::look(state, state.picture.looking);
             state.picture.synth_ms = Some(ms);
             state.outside.problem = warning;
         }

@@ -134,7 +134,17 @@ mod tests {
 
     fn wanted(protocol: Protocol, tmux: bool) -> Wanted {
         let part = Part { corner: kurbo::Point::ZERO, scale: 1.0, dots: (30, 24) };
-        Wanted { part, cells: (3, 2), protocol, tmux, bytes: 100_000, pass: None, over: View::default(), marks: None }
+        Wanted {
+            part,
+            cells: (3, 2),
+            protocol,
+            tmux,
+            bytes: 100_000,
+            pass: None,
+            clip: None,
+            over: View::default(),
+            marks: None,
+        }
     }
 
     fn first(protocol: Protocol, tmux: bool) -> String {

@@ -42,7 +42,8 @@ impl Ink<'_> {
     fn mark(&mut self, mark: &Mark) {
         let look = mark.look;
         let dash = look.dash_px.map(|(on, off)| (self.less(on.into()).max(1.0), self.less(off.into()).max(1.0)));
-        let color = if mark.selected { SELECTED } else { look.color };
+        let [r, g, b, a] = if mark.selected { SELECTED } else { look.color };
+        let color = [r, g, b, (f32::from(a) * mark.strength).round() as u8];
         let pen = Pen { color, wide: mark.selected && self.by == 1, dash };
         match &mark.shape {
             Shape::Line { points, closed } => {

@@ -1,6 +1,7 @@
 //! The picture in the terminal: as pixels if the terminal has a protocol for them, else in half-blocks, and always within a
 //! limit of bytes, so that a slow link stays usable. Everything here runs on the worker thread.
 
+pub mod clip;
 mod diacritics;
 mod encode;
 mod ink;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use kurbo::Point;
 use ratatui::buffer::Buffer;
 
+use super::clip::square;
 use super::protocol::Wanted;
 use super::{encode, ink};
 use crate::base::pixels::Frame;
@@ -43,20 +44,35 @@ impl TerminalPicture {
         wanted: Wanted,
         before: Option<&TerminalPicture>,
     ) -> Arc<TerminalPicture> {
+        if let Some((synth, over, side)) = wanted.clip.as_ref().and_then(|clip| clip.seen(synth)) {
+            let square = wanted.marks.iter().map(|marks| square(marks.cursor, side));
+            let over = over.into_iter().chain(square).collect();
+            return TerminalPicture::sent((&synth, None), time, wanted, over, before);
+        }
         let over = if wanted.over.shown.is_empty() { Vec::new() } else { overlay(scene, Some(synth), &wanted.over) };
+        TerminalPicture::sent((synth, Some(scene)), time, wanted, over, before)
+    }
+
+    /// Without a scene, nothing of it is drawn over the picture.
+    fn sent(
+        shown: (&Synth, Option<&Scene>),
+        time: f64,
+        wanted: Wanted,
+        over: Vec<Mark>,
+        before: Option<&TerminalPicture>,
+    ) -> Arc<TerminalPicture> {
         let mut by = before.map_or(1, |before| guess(before, &wanted));
         loop {
-            let shown = TerminalPicture::reduced(synth, scene, time, &wanted, (&over, by));
-            if shown.bytes <= wanted.bytes || by >= MOST_REDUCED {
-                return Arc::new(TerminalPicture { over, ..shown });
+            let made = TerminalPicture::reduced(shown, time, &wanted, (&over, by));
+            if made.bytes <= wanted.bytes || by >= MOST_REDUCED {
+                return Arc::new(TerminalPicture { over, ..made });
             }
-            by = (guess(&shown, &wanted)).max(by + 1);
+            by = (guess(&made, &wanted)).max(by + 1);
         }
     }
 
     fn reduced(
-        synth: &Synth,
-        scene: &Scene,
+        (synth, scene): (&Synth, Option<&Scene>),
         time: f64,
         wanted: &Wanted,
         (over, by): (&[Mark], usize),
@@ -70,7 +86,7 @@ impl TerminalPicture {
         if let Some(marks) = &wanted.marks {
             let mut ink = ink::Ink { frame: &mut frame, part: &part, by };
             ink.draw(over);
-            ink.draw(&overlay(scene, Some(synth), &marks.view));
+            scene.iter().for_each(|scene| ink.draw(&overlay(scene, Some(synth), &marks.view)));
             marks.aim.iter().for_each(|&from| ink.aim(from, marks.cursor));
             ink.cross(marks.cursor);
         }

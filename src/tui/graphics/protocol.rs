@@ -2,6 +2,7 @@
 
 use kurbo::Point;
 
+use super::clip::ClipView;
 use crate::layers::parts::marks::View;
 use crate::render::part::Part;
 use crate::render::passes::Asked;
@@ -105,6 +106,8 @@ pub struct Wanted {
     pub bytes: usize,
     /// The pass to show in place of the frame.
     pub pass: Option<Asked>,
+    /// What to show of a clip in place of the scene.
+    pub clip: Option<ClipView>,
     /// The overlays that need more than the document alone.
     pub over: View,
     /// The other marks drawn into the pixels; `None` for half-blocks, whose marks are drawn as characters.

@@ -7,7 +7,8 @@ pub use keymap::Keymap;
 pub use names::{Found, OWN_FILE, name};
 mod table;
 pub use table::{
-    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PALETTE, PICTURE, RECORDING, SMALL, TABLE, TREE, TYPING,
+    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PALETTE, PICKABLE, PICKING, PICTURE, RECORDING, SMALL,
+    TABLE, TREE, TYPING,
 };
 
 #[cfg(test)]

@@ -11,6 +11,10 @@ pub const EVERYWHERE: &str = "everywhere";
 pub const TREE: &str = "tree";
 /// The middle column: a form or a table.
 pub const TABLE: &str = "form and table";
+/// A node of the tree whose pictures are picked from a clip.
+pub const PICKABLE: &str = "tree, on sprites";
+/// The picture, while it shows a clip that pictures are picked from.
+pub const PICKING: &str = "picking from a clip";
 /// The picture with its cursor.
 pub const PICTURE: &str = "picture";
 /// The picture, while its cursor sets a jump vector or a landing.
@@ -210,6 +214,20 @@ const OWN: &[KeyRow] = &[
     row(PICTURE, "-", "zoom out", "Zoom out"),
     row(PICTURE, "0", "zoom fit", "Show the whole picture"),
     row(PICTURE, "Enter", "probe", "Open or close the read-out of the pixel under the cursor"),
+    row(PICKABLE, "Enter", "clip show", "Show the clip, to pick sprites from it"),
+    row(PICKING, "[", "clip previous", "Go one frame of the clip back"),
+    row(PICKING, "]", "clip next", "Go one frame of the clip forward"),
+    row(PICKING, "{", "clip first", "Go to the first frame of the clip"),
+    row(PICKING, "}", "clip last", "Go to the last frame of the clip"),
+    row(PICKING, "a", "pick add", "Pick the square here, in this frame, as a sprite of water"),
+    row(PICKING, "A", "pick foam", "Pick it as a sprite of foam"),
+    row(PICKING, "r", "pick move", "Move the selected pick here, and to this frame"),
+    row(PICKING, "t", "pick track", "Let the selected pick follow what moves, or be a single picture"),
+    row(PICKING, "w", "pick next", "Select the next pick, and go there"),
+    row(PICKING, "b", "pick previous", "Select the previous pick, and go there"),
+    row(PICKING, "z M", "clip cut", "Show what is cut out of the frame, over black, or the frame again"),
+    row(PICKING, "z C", "clip sheet", "Show all that is cut out, tracks that hardly move framed, or the frame again"),
+    row(PICKING, "Esc", "clip off", "Show the scene again"),
     row(AIM, "Enter", "place jump", "End the jump vector, or land, at the cursor"),
     row(AIM, "Esc", "cancel", "Keep the old one"),
     row(AIM, "Ctrl-c", "cancel", "Keep the old one"),

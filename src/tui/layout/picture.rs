@@ -11,7 +11,7 @@ use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::document::tree;
 use crate::tui::graphics::{Marks, Protocol, Wanted, viewport};
-use crate::tui::state::{Mode, State, place};
+use crate::tui::state::{Mode, State, looking, place};
 
 /// What the panes want from the worker now.
 pub fn request(state: &State) -> Request {
@@ -85,7 +85,8 @@ fn wanted(state: &State) -> Option<Wanted> {
         protocol,
         tmux: graphics.tmux,
         bytes: if state.play.playing { playing } else { still },
-        pass: state.picture.pass,
+        pass: state.picture.pass.filter(|_| state.picture.looking.is_none()),
+        clip: looking::view(state),
         over,
         marks: (protocol != Protocol::Blocks).then(marks),
     })

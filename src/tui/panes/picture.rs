@@ -9,8 +9,10 @@ use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
 use crate::layers::parts::marks::{Dot, Mark, SELECTED, Shape};
+use crate::layers::parts::picking::Sight;
 use crate::render::overlay;
 use crate::render::part::Part;
+use crate::tui::graphics::clip::square;
 use crate::tui::graphics::{Protocol, TerminalPicture, viewport};
 use crate::tui::layout::picture;
 use crate::tui::state::{Mode, Pane, State, place};
@@ -28,7 +30,13 @@ pub fn title(state: &State) -> String {
     let protocol = picture::protocol(state).name();
     let pass =
         state.picture.pass.map(|asked| format!(" {}", asked.words(state.document().scene()))).unwrap_or_default();
-    format!("picture{pass}  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
+    let what = match state.picture.looking.map(|looking| (looking.sight(), looking.frames)) {
+        Some((Sight::Frame(frame), frames)) => format!("clip {frame} of {frames}"),
+        Some((Sight::Cut(frame), frames)) => format!("cut out of {frame} of {frames}"),
+        Some((Sight::Sheet, _)) => "all that is cut out".into(),
+        None => format!("picture{pass}"),
+    };
+    format!("{what}  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
 
 /// Draws the picture; the terminal's cursor is on the picture's cursor if the picture has the focus.
@@ -133,7 +141,10 @@ fn both(upper: Option<[u8; 3]>, lower: Option<[u8; 3]>) -> [u8; 3] {
 /// Draws outlines, regions, curves, anchors and their jumps, the selected ones on top.
 fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     let synth = state.picture.synth.as_deref();
-    let mut marks = overlay::overlay(state.document().scene(), synth, &picture::overlays(state));
+    let mut marks = match state.picture.looking {
+        Some(looking) => vec![square(state.picture.cursor, looking.side)],
+        None => overlay::overlay(state.document().scene(), synth, &picture::overlays(state)),
+    };
     marks.sort_by_key(|mark| mark.selected);
     let over = state.picture.latest.iter().flat_map(|shown| &shown.over);
     for mark in over.chain(&marks) {

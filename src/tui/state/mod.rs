@@ -4,6 +4,7 @@
 pub mod cursor;
 pub mod entry;
 pub mod finding;
+pub mod looking;
 pub mod memory;
 pub mod outside;
 pub mod picture;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
 
+use super::looking::Looking;
 use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
@@ -22,6 +23,8 @@ pub struct Picture {
     pub size: Option<(usize, usize)>,
     /// The pass that is shown in place of the frame.
     pub pass: Option<Asked>,
+    /// What is looked at of a clip in place of the scene.
+    pub looking: Option<Looking>,
     /// Which overlays are shown here and in the windows. Those of the document alone are always shown here.
     pub switches: Switches,
     /// How pictures are sent to the terminal.
@@ -54,6 +57,7 @@ impl Picture {
             viewport: Viewport { zoom: None, center: cursor },
             size: None,
             pass: None,
+            looking: None,
             switches: Switches::default(),
             graphics: Graphics::default(),
             latest: None,

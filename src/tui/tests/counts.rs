@@ -21,7 +21,11 @@ fn everything(state: &State) -> String {
     let effects: Vec<&Effect> =
         state.effects.iter().filter(|effect| matches!(effect, Effect::View(_) | Effect::Copy(_))).collect();
     let (at, viewport, yanked) = (picture.cursor, picture.viewport, &memory.yanked);
-    format!("{} {cursor:?} {typing:?} {at:?} {viewport:?} {play:?} {effects:?} {yanked:?}", state.document().json())
+    let looking = picture.looking;
+    format!(
+        "{looking:?} {} {cursor:?} {typing:?} {at:?} {viewport:?} {play:?} {effects:?} {yanked:?}",
+        state.document().json()
+    )
 }
 
 /// Every command that takes a count: the keys before it, and the line.
@@ -74,6 +78,10 @@ const COUNTED: &[(&str, &str)] = &[
     ("g i", "cursor 1 1"),
     ("/ \"motion\" Enter Enter g i", "place next"),
     ("/ \"motion\" Enter Enter g i", "place previous"),
+    ("", "clip next"),
+    ("}", "clip previous"),
+    ("", "pick next"),
+    ("", "pick previous"),
     ("", "frame next"),
     ("", "frame previous"),
     ("", "speed slower"),
@@ -96,7 +104,11 @@ pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
     let mut seen = BTreeSet::new();
     for (keys, line) in COUNTED {
         let run = |times: usize, line: &str| {
-            let mut state = if line.contains("problem") { state_of(super::told::TWO_PROBLEMS) } else { state() };
+            let mut state = match line.trim_start_matches("2 ").split(' ').next() {
+                Some("clip" | "pick") => super::picking::looking(),
+                _ if line.contains("problem") => state_of(super::told::TWO_PROBLEMS),
+                _ => state(),
+            };
             press(&mut state, keys);
             for _ in 0..times {
                 // What can be done only once has nothing to repeat.

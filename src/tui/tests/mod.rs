@@ -18,6 +18,7 @@ mod items;
 mod lines;
 mod macros;
 mod pasting;
+pub mod picking;
 mod picture;
 mod profiles;
 mod screens;

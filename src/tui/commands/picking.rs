@@ -1,0 +1,158 @@
+//! Picking pictures from a clip: what is seen of it, and the squares that are picked.
+
+use kurbo::Point;
+use serde_json::{Value, json};
+
+use super::command::{Call, Command, Done, command};
+use super::items::go_to;
+use crate::ops::sprites;
+use crate::scene::Edit;
+use crate::scene::field;
+use crate::tui::document::tree;
+use crate::tui::events::Effect;
+use crate::tui::layout::picture;
+use crate::tui::state::looking::{self, Looking};
+use crate::tui::state::{Pane, State, first, place};
+use crate::tui::text::said::words;
+
+pub const COMMANDS: &[Command] = &[
+    command(
+        "clip",
+        "show|previous|next|first|last|cut|sheet|off",
+        "Look at the clip that sprites are picked from",
+        clip,
+    )
+    .counted_with(&["previous", "next"]),
+    command(
+        "pick",
+        "add|foam|move|track|previous|next",
+        "Pick the square at the cursor, change a pick, or go to one",
+        pick,
+    )
+    .change()
+    .counted_with(&["previous", "next"]),
+    command("sprites", "take|OPTIONS", "Turn the automatic choice into picks; or as `plica sprites`", take),
+];
+
+fn clip(state: &mut State, call: &Call) -> Done {
+    let Some(now) = state.picture.looking else {
+        return if call.text == "show" { show(state) } else { Err(NOT_LOOKING.into()) };
+    };
+    let last = now.frames.saturating_sub(1);
+    let by = |steps: i64| (now.frame as i64 + steps).clamp(0, last as i64) as usize;
+    let (frame, plain) = (|frame| Looking { frame, sheet: false, ..now }, Looking { cut: false, sheet: false, ..now });
+    let to = match call.text {
+        "previous" => Some(frame(by(-call.times()))),
+        "next" => Some(frame(by(call.times()))),
+        "first" => Some(frame(0)),
+        "last" => Some(frame(last)),
+        "cut" => Some(Looking { cut: !now.cut, ..plain }),
+        "sheet" => Some(Looking { sheet: !now.sheet, ..now }),
+        "show" => Some(plain),
+        _ => None,
+    };
+    looking::look(state, to);
+    picture::settle(state);
+    Ok(())
+}
+
+/// Why nothing is picked.
+const NOT_LOOKING: &str = "the clip is not shown: Enter on the sprites of a layer shows it";
+
+/// Shows the clip of the layer that the cursor is in, at the selected pick.
+fn show(state: &mut State) -> Done {
+    let (layer, picks, _) = looking::picks(state).ok_or("nothing is picked from a clip here")?;
+    looking::look(state, Some(Looking::at(layer)));
+    if state.picture.looking.is_none() {
+        return Err("there is no clip to show yet: the layer names none, or it is not read yet".into());
+    }
+    state.show(format!("/layers/{layer}{}", picks.list));
+    state.cursor.focus = Pane::Picture;
+    state.settle();
+    go_to_pick(state);
+    Ok(())
+}
+
+fn number(state: &State, way: &str) -> Option<f64> {
+    state.document().json().pointer(&format!("{}{way}", selected(state)?))?.as_f64()
+}
+
+/// The pick under the cursor of the table.
+fn selected(state: &State) -> Option<String> {
+    let row = state.sheet().pointer(state.cursor.row)?;
+    let looking = state.picture.looking?;
+    let picks = state.document().scene().layers.get(looking.layer)?.technique().picks()?;
+    row.starts_with(&format!("/layers/{}{}/", looking.layer, picks.list)).then_some(row)
+}
+
+/// Shows the frame of the selected pick, with the cursor on it.
+fn go_to_pick(state: &mut State) {
+    let to = || Some((number(state, "/frame")? as usize, Point::new(number(state, "/at/0")?, number(state, "/at/1")?)));
+    let (Some((frame, at)), Some(now)) = (to(), state.picture.looking) else { return };
+    looking::look(state, Some(Looking { frame, sheet: false, ..now }));
+    state.picture.cursor = at;
+    picture::settle(state);
+    state.ask(Effect::Show);
+}
+
+fn pick(state: &mut State, call: &Call) -> Done {
+    let now = state.picture.looking.ok_or(NOT_LOOKING)?;
+    if now.sheet && matches!(call.text, "add" | "foam" | "move") {
+        return Err("this is the sheet: z C shows the clip again".into());
+    }
+    let none = "no pick is selected: w goes to one, a picks one";
+    match call.text {
+        "add" | "foam" => {
+            let kind = if call.text == "foam" { "foam" } else { "water" };
+            let (edit, pointer) = place::add_here(state)?;
+            let with = state.document().apply(&edit).map_err(|problems| first(&problems))?;
+            let set = |name: &str, value: Value| Edit::set(&with, &format!("{pointer}/{name}"), value);
+            let edits = [set("frame", json!(now.frame)), set("kind", json!(kind))];
+            state.edit(Edit::all([edit].into_iter().chain(edits)), false)?;
+            go_to(state, &pointer);
+            Ok(())
+        }
+        "move" => {
+            let pointer = selected(state).ok_or(none)?;
+            let frame = Edit::set(state.document(), &format!("{pointer}/frame"), json!(now.frame));
+            let edit = Edit::all([place::move_here(state)?, frame]);
+            state.edit(edit, false)
+        }
+        "track" => {
+            let path = format!("{}/track", selected(state).ok_or(none)?);
+            let follows = field::value(state.document(), &path).and_then(|value| value.as_bool()).unwrap_or(true);
+            let edit = Edit::set(state.document(), &path, json!(!follows));
+            state.edit(edit, false)?;
+            state.say(if follows { "a single picture" } else { "it follows what moves" });
+            Ok(())
+        }
+        way => {
+            let count = state.sheet().len() as i64;
+            selected(state).ok_or("there are no picks: a picks one")?;
+            let by = if way == "previous" { -call.times() } else { call.times() };
+            state.cursor.row = (state.cursor.row as i64 + by).rem_euclid(count) as usize;
+            state.settle();
+            go_to_pick(state);
+            Ok(())
+        }
+    }
+}
+
+/// Writes the automatic choice of the layer that the cursor is in, or of the first that has one, as picks.
+fn take(state: &mut State, call: &Call) -> Done {
+    if call.text != "take" {
+        state.ask(Effect::Run(words(&format!("sprites {}", call.text))?));
+        return Ok(());
+    }
+    let synth = state.picture.synth.clone().ok_or("the pictures are not read yet")?;
+    let own = tree::layer_of(&state.cursor.node);
+    let albums = synth.layers.iter().enumerate().filter_map(|(layer, ready)| Some((layer, ready.album(0)?)));
+    let mut albums: Vec<_> = albums.collect();
+    albums.sort_by_key(|(layer, _)| Some(*layer) != own);
+    let (layer, album) = albums.into_iter().next().ok_or("no layer of the scene has sprites")?;
+    if album.taken.is_empty() {
+        return Err("nothing to take: all sprites are picked by hand, or come from sheets".into());
+    }
+    let edit = sprites::taken(state.document(), layer, &album);
+    state.edit(edit, false)
+}

@@ -1,0 +1,78 @@
+//! Looking at a clip, in the picture's pane, while pictures are picked from it.
+
+use kurbo::Point;
+
+use super::State;
+use crate::layers::parts::picking::{Picking, Picks, Sight};
+use crate::tui::document::derived;
+use crate::tui::graphics::clip::ClipView;
+use crate::tui::graphics::viewport::Viewport;
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Looking {
+    /// The layer whose pictures are picked.
+    pub layer: usize,
+    /// The frame of its clip.
+    pub frame: usize,
+    /// Whether what is cut out of the frame is seen, over black.
+    pub cut: bool,
+    /// Whether the sheet of all that is cut out is seen.
+    pub sheet: bool,
+    /// How many frames there are.
+    pub frames: usize,
+    /// The side of the square that is picked, in pixels.
+    pub side: f64,
+}
+
+impl Looking {
+    /// The first frame of a layer's clip.
+    pub fn at(layer: usize) -> Looking {
+        Looking { layer, frame: 0, cut: false, sheet: false, frames: 1, side: 1.0 }
+    }
+
+    /// What is seen.
+    pub fn sight(self) -> Sight {
+        match self {
+            Looking { sheet: true, .. } => Sight::Sheet,
+            Looking { cut: true, frame, .. } => Sight::Cut(frame),
+            Looking { frame, .. } => Sight::Frame(frame),
+        }
+    }
+}
+
+/// Where the layer that the tree's cursor is in has its picks, and whether the cursor is on the node for them.
+pub fn picks(state: &State) -> Option<(usize, Picks, bool)> {
+    let node = &state.cursor.node;
+    let (layer, way) = derived::layer_of(state.document(), node)?;
+    let index = node[..node.len() - way.len()].rsplit('/').next()?.parse().ok()?;
+    layer.picks().map(|picks| (index, picks, picks.node == way))
+}
+
+/// What there is to see.
+fn seen(state: &State, looking: Looking) -> Option<Picking> {
+    state.picture.synth.as_ref()?.layers.get(looking.layer)?.picking(looking.sight())
+}
+
+/// What the picture's pane shows in place of the scene.
+pub fn view(state: &State) -> Option<ClipView> {
+    let looking = state.picture.looking?;
+    Some(ClipView { layer: looking.layer, sight: looking.sight(), selection: state.focused() })
+}
+
+/// Takes what is looked at, or the scene again. Between the two, and between pictures of other sizes, the pane shows all of it.
+pub fn look(state: &mut State, looking: Option<Looking>) {
+    let before = state.picture.looking.is_some();
+    let found = looking.and_then(|looking| Some((looking, seen(state, looking)?)));
+    state.picture.looking =
+        found.as_ref().map(|(looking, seen)| Looking { frames: seen.frames, side: seen.side, ..*looking });
+    let of_scene = state.picture.synth.as_ref().map(|synth| synth.size);
+    let size = found.map(|(_, seen)| (seen.picture.width(), seen.picture.height())).or(of_scene);
+    let other = std::mem::replace(&mut state.picture.size, size) != size;
+    if other && (before || state.picture.looking.is_some()) {
+        let (width, height) = size.unwrap_or_default();
+        let center = Point::new((width / 2) as f64 + 0.5, (height / 2) as f64 + 0.5);
+        state.picture.viewport = Viewport { zoom: None, center };
+        state.picture.cursor = center;
+    }
+}
