@@ -54,6 +54,13 @@ impl Synth {
         Synth { stage: Arc::new(stage), ..self.clone() }
     }
 
+    /// The same with so many births left out after each that is shown: see [`Moment::left_out`].
+    #[cfg(feature = "window")]
+    pub fn thinned(&self, left_out: u32) -> Synth {
+        let stage = Stage { left_out, ..(*self.stage).clone() };
+        Synth { stage: Arc::new(stage), ..self.clone() }
+    }
+
     /// The same with nothing that moves.
     pub fn unmoved(&self) -> Synth {
         let camera = self.stage.camera.as_ref().map(|camera| camera.unmoved());

@@ -15,6 +15,8 @@ pub struct Stage {
     pub camera: Option<Camera>,
     /// The layers by their indices, from bottom to top; those that others show as textures are left out.
     pub groups: Vec<Group>,
+    /// See [`Moment::left_out`].
+    pub left_out: u32,
 }
 
 /// Layers that are composed as one.
@@ -49,12 +51,13 @@ impl Stage {
             }
         }
         let background = color::parse(&scene.background).map_or([0.0; 4], decode);
-        Stage { background, camera: scene.camera.clone(), groups }
+        Stage { background, camera: scene.camera.clone(), groups, left_out: 0 }
     }
 
     /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64, size_px: (usize, usize)) -> Moment {
-        Moment { t, size_px, eye: self.camera.as_ref().map(|camera| camera.at(t, size_px)) }
+        let eye = self.camera.as_ref().map(|camera| camera.at(t, size_px));
+        Moment { t, size_px, eye, left_out: self.left_out }
     }
 
     /// The camera, if layers are seen by it.
@@ -70,7 +73,7 @@ impl Stage {
             Group::World(_) => Group::World(vec![layer]),
         };
         let groups = self.groups.iter().filter(|group| group.layers().contains(&layer)).map(group).collect();
-        Stage { background: [0.0; 4], camera: self.camera.clone(), groups }
+        Stage { background: [0.0; 4], groups, ..self.clone() }
     }
 }
 

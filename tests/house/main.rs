@@ -39,11 +39,13 @@ const OF_ONE_TECHNIQUE: &[&str] = &[
     "benches/keys.rs",
     "benches/scenes/mod.rs",
     "benches/synthesis.rs",
+    "benches/waterfall.rs",
     "tests/display/mod.rs",
     "tests/gpu.rs",
     "tests/profiles.rs",
     "tests/properties.rs",
     "tests/show/mod.rs",
+    "tests/waterfall.rs",
     "tests/window.rs",
 ];
 

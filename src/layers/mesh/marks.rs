@@ -190,7 +190,7 @@ mod tests {
         let layer: MeshLayer = serde_json::from_str(layer).unwrap();
         let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials)).unwrap();
         let camera = Camera { position: [0.0, 0.0, z], target: [0.0; 3], ..Camera::default() };
-        let moment = Moment { t: 0.0, size_px: (60, 60), eye: Some(camera.at(0.0, (60, 60))) };
+        let moment = Moment { t: 0.0, size_px: (60, 60), eye: Some(camera.at(0.0, (60, 60))), left_out: 0 };
         let world = synth.mesh.vertices.iter().map(|vertex| (vertex.position, vertex.normal)).collect();
         of(&Seen { synth: &synth, moment: &moment, eye: moment.eye.unwrap(), world })
     }

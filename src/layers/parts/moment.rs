@@ -16,6 +16,8 @@ pub struct Moment {
     pub size_px: (usize, usize),
     /// Where the scene is seen from, if it has a camera.
     pub eye: Option<Eye>,
+    /// How many births layers of many sprites leave out after each that they show: 0 but for a preview that would be slow.
+    pub left_out: u32,
 }
 
 /// Where the layers of a technique are.

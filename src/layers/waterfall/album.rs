@@ -4,12 +4,12 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use super::between::texels;
-use super::draw::shaded;
+use super::color::shaded;
 use super::splat::mix;
 use super::sprites::model::Shows;
 use super::sprites::{Key, Source, Track};
 use super::synth::Synth;
-use crate::base::pixels::{Linear, Rgba};
+use crate::base::pixels::Linear;
 use crate::layers::parts::album::Album;
 
 /// All keys, `between` even steps after each but the last of a track, and a sheet with a row for each track.
@@ -64,9 +64,9 @@ fn shown(synth: &Synth, track: usize, key: usize, u: f64) -> Linear {
     let place = if key + 1 == keys.len() { (key.saturating_sub(1), 1.0) } else { (key, u) };
     let mix = mix(&synth.between, &keys, place, |_| DVec2::Y);
     let mut own = Vec::new();
-    texels(&synth.pictures, &synth.residues.0, &mix, 0, &mut own);
-    let cells: Vec<Rgba> = own.as_chunks::<4>().0.iter().map(|texel| shaded(*texel, [1.0; 3])).collect();
-    Linear::from_cells(synth.pictures.side, synth.pictures.side, cells)
+    let side = synth.pictures.side;
+    texels((&synth.pictures, &synth.residues), &mix, 0, 0..side, &mut own);
+    Linear::from_cells(side, side, own.into_iter().map(|texel| shaded(texel, [1.0; 3])).collect())
 }
 
 /// All keys, a row for each track.
@@ -107,6 +107,7 @@ fn taken(synth: &Synth) -> Vec<(String, Value)> {
 mod tests {
     use super::*;
     use crate::base::picture::Picture;
+    use crate::base::pixels::Rgba;
     use crate::layers::parts::materials::Materials;
     use crate::layers::ready::Making;
     use crate::layers::timeline::Wrap;

@@ -1,17 +1,43 @@
 //! What a sprite shows between two keys: a cubic curve through both, with tangents, and a residue that neither key has.
 
-use super::sprites::pyramid::Pyramid;
+use std::ops::Range;
+
+use super::sprites::residue::Residues;
 use super::sprites::{Pictures, Place};
+use crate::base::pixels::Rgba;
+
+/// The most keys that a picture is made of.
+const MOST: usize = 4;
 
 /// Which keys make a picture, and how.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mix {
-    /// The keys, each with its weight; the first two are those before and after.
-    pub keys: Vec<(Place, f32)>,
-    /// How much the slopes of the first two, to the right and down, add for each texel of the largest level.
+    keys: [(Place, f32); MOST],
+    count: usize,
+    /// How much the slopes of the first two keys, to the right and down, add for each texel of the largest level.
     pub slopes: [[f32; 2]; 2],
     /// The residue's track and interval, and its weight; `None` if there is none.
     pub residue: Option<(usize, usize, f32)>,
+}
+
+impl Mix {
+    /// These keys, each with its weight; the first two are those before and after.
+    pub fn of(keys: &[(Place, f32)]) -> Mix {
+        let mut mix = Mix::default();
+        keys.iter().for_each(|key| mix.add(*key));
+        mix
+    }
+
+    /// One more key; at most four.
+    pub fn add(&mut self, key: (Place, f32)) {
+        self.keys[self.count] = key;
+        self.count += 1;
+    }
+
+    /// The keys, each with its weight.
+    pub fn keys(&self) -> &[(Place, f32)] {
+        &self.keys[..self.count]
+    }
 }
 
 /// The weights of both keys and both tangents, `u` of the way from one key to the next.
@@ -48,45 +74,110 @@ pub fn residue(u: f64) -> f64 {
     16.0 * away * away
 }
 
-/// Writes the texels of a level, not clamped, to `out`: four numbers each.
-pub fn texels(pictures: &Pictures, residues: &[Vec<Pyramid<1>>], mix: &Mix, level: usize, out: &mut Vec<f32>) {
-    let key = |place: Place| pictures.key(place).levels[level].1.as_flattened();
+/// Writes rows of the texels of a level, not clamped, to `out`.
+pub fn texels(
+    (pictures, residues): (&Pictures, &Residues),
+    mix: &Mix,
+    level: usize,
+    rows: Range<usize>,
+    out: &mut Vec<Rgba>,
+) {
     let side = pictures.side >> level;
-    out.clear();
-    let Some(((first, weight), others)) = mix.keys.split_first() else { return };
-    out.extend(key(*first).iter().map(|v| v * weight));
-    for (place, weight) in others {
-        out.iter_mut().zip(key(*place)).for_each(|(out, v)| *out += v * weight);
-    }
-    for ((place, _), slope) in mix.keys.iter().zip(mix.slopes) {
-        if slope != [0.0; 2] {
-            // Central differences, in texels of the largest level.
-            let each = slope.map(|s| s / (2 << level) as f32);
-            add_slopes(key(*place), side, each, out);
+    let key = |(place, weight): (Place, f32)| Key { texels: &pictures.key(place).levels[level].1, side, weight };
+    let residue = mix.residue.map(|(track, interval, weight)| (&residues.0[track][interval].levels[level].1, weight));
+    // Central differences, in texels of the largest level.
+    let slopes = mix.slopes.map(|slope| slope.map(|v| v / (2 << level) as f32));
+    // What is there is overwritten.
+    out.resize(rows.len() * side, [0.0; 4]);
+    for (y, out) in rows.zip(out.chunks_exact_mut(side)) {
+        match mix.keys() {
+            [a, b] if slopes != [[0.0; 2]; 2] => {
+                advected([key(*a).around(y, slopes[0]), key(*b).around(y, slopes[1])], out);
+            }
+            keys => weighted(keys.iter().map(|of| (key(*of).row(y), of.1)), out),
         }
-    }
-    if let Some((track, interval, weight)) = mix.residue {
-        let random = &residues[track][interval].levels[level].1;
-        for (texel, [random]) in out.as_chunks_mut::<4>().0.iter_mut().zip(random) {
-            let more = weight * random * texel[3];
-            texel[..3].iter_mut().for_each(|v| *v += more);
+        if let Some((random, weight)) = residue {
+            add_residue(&random[y * side..][..side], weight, out);
         }
     }
 }
 
-/// Adds differences between neighbors to the right and down; edges repeat.
-fn add_slopes(key: &[f32], side: usize, [across, down]: [f32; 2], out: &mut [f32]) {
-    let width = 4 * side;
-    for (y, out) in out.chunks_exact_mut(width).enumerate() {
-        let row = |y: usize| &key[y * width..][..width];
-        let (above, own, below) = (row(y.saturating_sub(1)), row(y), row((y + 1).min(side - 1)));
-        let inner = out[4..width - 4].iter_mut().zip(&own[8..]).zip(&own[..width - 8]);
-        inner.for_each(|((out, right), left)| *out += across * (right - left));
-        for c in 0..4 {
-            out[c] += across * (own[4 + c] - own[c]);
-            out[width - 4 + c] += across * (own[width - 4 + c] - own[width - 8 + c]);
-        }
-        out.iter_mut().zip(below).zip(above).for_each(|((out, below), above)| *out += down * (below - above));
+/// A key at a level.
+#[derive(Clone, Copy)]
+struct Key<'a> {
+    texels: &'a [Rgba],
+    side: usize,
+    weight: f32,
+}
+
+/// A row of a key with those above and below it, its weight, and what a difference to the right and down adds.
+struct Around<'a> {
+    above: &'a [Rgba],
+    own: &'a [Rgba],
+    below: &'a [Rgba],
+    weight: f32,
+    slope: [f32; 2],
+}
+
+impl<'a> Key<'a> {
+    fn row(self, y: usize) -> &'a [Rgba] {
+        &self.texels[y * self.side..][..self.side]
+    }
+
+    /// Edges repeat.
+    fn around(self, y: usize, slope: [f32; 2]) -> Around<'a> {
+        let (above, below) = (self.row(y.saturating_sub(1)), self.row((y + 1).min(self.side - 1)));
+        Around { above, own: self.row(y), below, weight: self.weight, slope }
+    }
+}
+
+impl Around<'_> {
+    /// What a texel's neighbors add to a color.
+    #[inline(always)]
+    fn add(&self, color: Rgba, [left, x, right]: [usize; 3]) -> Rgba {
+        let [across, down] = self.slope;
+        std::array::from_fn(|c| {
+            let color = color[c] + across * (self.own[right][c] - self.own[left][c]);
+            color + down * (self.below[x][c] - self.above[x][c])
+        })
+    }
+}
+
+/// A row of two keys with their slopes: all at once, since most of the time goes into fetching and storing texels.
+fn advected([a, b]: [Around; 2], out: &mut [Rgba]) {
+    let last = out.len() - 1;
+    let [a, b] = [a, b].map(|key| Around {
+        // The same length as far as the compiler sees.
+        above: &key.above[..=last],
+        own: &key.own[..=last],
+        below: &key.below[..=last],
+        ..key
+    });
+    let texel = |at: [usize; 3]| {
+        let faded = std::array::from_fn(|c| a.own[at[1]][c] * a.weight + b.own[at[1]][c] * b.weight);
+        b.add(a.add(faded, at), at)
+    };
+    out[0] = texel([0, 0, 1.min(last)]);
+    for (left, out) in out[1..last].iter_mut().enumerate() {
+        *out = texel([left, left + 1, left + 2]);
+    }
+    out[last] = texel([last.saturating_sub(1), last, last]);
+}
+
+/// A row of keys by their weights.
+fn weighted<'a>(keys: impl Iterator<Item = (&'a [Rgba], f32)>, out: &mut [Rgba]) {
+    out.fill([0.0; 4]);
+    for (key, weight) in keys {
+        let add = |(out, texel): (&mut Rgba, &Rgba)| *out = std::array::from_fn(|c| out[c] + texel[c] * weight);
+        out.iter_mut().zip(key).for_each(add);
+    }
+}
+
+/// Adds random numbers to the colors, as far as these cover.
+fn add_residue(random: &[[f32; 1]], weight: f32, out: &mut [Rgba]) {
+    for (texel, [random]) in out.iter_mut().zip(random) {
+        let more = weight * random * texel[3];
+        *texel = [texel[0] + more, texel[1] + more, texel[2] + more, texel[3]];
     }
 }
 
@@ -95,6 +186,7 @@ mod tests {
     use super::*;
     use crate::layers::waterfall::hash::Random;
     use crate::layers::waterfall::sprites::model::Shows;
+    use crate::layers::waterfall::sprites::pyramid::Pyramid;
     use crate::layers::waterfall::sprites::{Key, Source, Track};
     use std::sync::Arc;
 
@@ -122,17 +214,19 @@ mod tests {
             "advect" => [[leaving * 0.6, leaving * -0.8], [reaching * 0.6, reaching * -0.8]],
             _ => [[0.0; 2]; 2],
         };
+        let keys: Vec<_> = keys.into_iter().map(|(i, weight)| ((0, i), weight as f32)).collect();
         Mix {
-            keys: keys.into_iter().map(|(i, weight)| ((0, i), weight as f32)).collect(),
             slopes: slopes.map(|slope| slope.map(|v| v as f32)),
             residue: Some((0, 1, (0.1 * residue(u)) as f32)),
+            ..Mix::of(&keys)
         }
     }
 
-    fn shown(u: f64, kind: &str, level: usize) -> Vec<f32> {
+    fn shown(u: f64, kind: &str, level: usize) -> Vec<Rgba> {
         let pictures = pictures(4);
         let mut out = Vec::new();
-        texels(&pictures, &pictures.residues(Random(1), 3).0, &mix(u, kind), level, &mut out);
+        let residues = pictures.residues(Random(1), 3);
+        texels((&pictures, &residues), &mix(u, kind), level, 0..SIDE >> level, &mut out);
         out
     }
 
@@ -154,11 +248,21 @@ mod tests {
     fn at_a_key_it_is_the_key_to_the_bit() {
         for kind in ["zero", "catmull", "advect"] {
             for level in [0, 2] {
-                let own = |k: usize| pictures(4).key((0, k)).levels[level].1.as_flattened().to_vec();
+                let own = |k: usize| pictures(4).key((0, k)).levels[level].1.clone();
                 assert_eq!(shown(0.0, kind, level), own(1), "{kind}");
                 assert_eq!(shown(1.0, kind, level), own(2), "{kind}");
                 assert_ne!(shown(0.5, kind, level), own(1), "{kind}");
             }
+        }
+    }
+
+    #[test]
+    fn rows_are_those_of_the_whole() {
+        for kind in ["zero", "catmull", "advect"] {
+            let (pictures, mut rows) = (pictures(4), Vec::new());
+            let residues = pictures.residues(Random(1), 3);
+            texels((&pictures, &residues), &mix(0.3, kind), 0, 5..9, &mut rows);
+            assert_eq!(rows, shown(0.3, kind, 0)[5 * SIDE..9 * SIDE], "{kind}");
         }
     }
 
@@ -169,11 +273,11 @@ mod tests {
         let key = Key { window: None, texels: Arc::new(Pyramid::new(SIDE, texels_of)) };
         let track = Track { kind: Shows::Water, source: Source::Sheet, keys: vec![key] };
         let pictures = Pictures { side: SIDE, tracks: vec![track] };
-        let mix = Mix { keys: vec![((0, 0), 0.0)], slopes: [[2.0, 1.0], [0.0; 2]], residue: None };
+        let mix = Mix { slopes: [[2.0, 1.0], [0.0; 2]], ..Mix::of(&[((0, 0), 0.0), ((0, 0), 0.0)]) };
         for level in [0, 1] {
             let (mut out, side) = (Vec::new(), SIDE >> level);
-            texels(&pictures, &[], &mix, level, &mut out);
-            let at = |x: usize, y: usize| out[4 * (y * side + x)];
+            texels((&pictures, &Residues(Vec::new())), &mix, level, 0..side, &mut out);
+            let at = |x: usize, y: usize| out[y * side + x][0];
             assert_eq!(at(2, 2), 2.0 * 3.0 + 5.0);
             // Edges repeat: half of the difference.
             assert_eq!((at(0, 2), at(side - 1, side - 1)), (3.0 + 5.0, 3.0 + 2.5));

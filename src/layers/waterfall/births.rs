@@ -1,6 +1,9 @@
 //! What lines carry at a time. Each line gives birth again and again, at times that repeat with the timeline; how old
 //! everything is follows from the time alone.
 
+use std::iter::successors;
+use std::ops::Range;
+
 use super::hash::Random;
 use super::lines::Line;
 
@@ -36,33 +39,34 @@ impl Births {
     }
 
     /// What `line` carries at the time `now`, in the order of births and then of ages.
-    pub fn alive(&self, random: Random, line: &Line, now: f64) -> Vec<Alive> {
-        let mut all = Vec::new();
-        if !line.carries() {
-            return all;
-        }
-        let (period, each) = (self.period, self.period / self.count as f64);
-        let mut add = |birth: u64| {
-            let own = random.of(line.number, birth as u32, BIRTH);
-            let born = (birth as f64 + own[0]) * period / self.count as f64;
-            let mut age = (now - born).rem_euclid(period);
-            while age < line.life {
-                all.push(Alive { birth: birth as u32, born, age, own });
-                age += period;
-            }
+    /// After each birth `left_out` others are left out.
+    pub fn alive(&self, random: Random, line: &Line, now: f64, left_out: u32) -> impl Iterator<Item = Alive> + use<> {
+        let Births { period, count } = *self;
+        let (number, life) = (line.number, line.life);
+        let of_birth = move |birth: u64| {
+            let own = random.of(number, birth as u32, BIRTH);
+            let born = (birth as f64 + own[0]) * period / count as f64;
+            let youngest = (now - born).rem_euclid(period);
+            let ages = successors(Some(youngest), move |age| Some(age + period)).take_while(move |age| *age < life);
+            ages.map(move |age| Alive { birth: birth as u32, born, age, own })
         };
-        // Those that may be young enough, if only some are.
-        let first = ((now - line.life) / each).floor() - 1.0;
-        let last = (now / each).floor() + 1.0;
-        if last - first + 1.0 >= self.count as f64 {
-            (0..self.count).for_each(add);
-            return all;
+        let young = if line.carries() { self.young(life, now) } else { [0..0, 0..0] };
+        let shown = move |birth: &u64| birth.is_multiple_of(u64::from(left_out) + 1);
+        young.into_iter().flatten().filter(shown).flat_map(of_birth)
+    }
+
+    /// The births, ascending, that may be young enough at the time `now`.
+    fn young(&self, life: f64, now: f64) -> [Range<u64>; 2] {
+        let each = self.period / self.count as f64;
+        let first = ((now - life) / each).floor() - 1.0;
+        let count = (now / each).floor() + 2.0 - first;
+        if count >= self.count as f64 {
+            return [0..self.count, 0..0];
         }
-        let count = self.count as i64;
-        let mut births: Vec<u64> = (first as i64..=last as i64).map(|birth| birth.rem_euclid(count) as u64).collect();
-        births.sort_unstable();
-        births.into_iter().for_each(&mut add);
-        all
+        // Births before the beginning of the timeline are those at its end.
+        let from = (first as i64).rem_euclid(self.count as i64) as u64;
+        let to = from + count as u64;
+        [0..to.saturating_sub(self.count), from..to.min(self.count)]
     }
 }
 
@@ -82,7 +86,7 @@ mod tests {
         for (rate, life) in [(40.0, 0.3), (40.0, 1.99), (40.0, 5.0), (0.1, 0.5), (0.1, 7.0)] {
             let births = Births::new(rate, 2.0);
             for now in [0.0, 0.017, 0.9, 1.999, 2.0] {
-                let found = births.alive(Random(1), &line(life), now);
+                let found = births.alive(Random(1), &line(life), now, 0);
                 let mut wanted = Vec::new();
                 for birth in 0..births.count {
                     let own = Random(1).of(3, birth as u32, 16);
@@ -90,7 +94,7 @@ mod tests {
                     let ages = (0..9).map(|k| (now - born).rem_euclid(2.0) + 2.0 * f64::from(k));
                     wanted.extend(ages.filter(|age| *age < life).map(|age| (birth as u32, age)));
                 }
-                let found: Vec<_> = found.iter().map(|one| (one.birth, one.age)).collect();
+                let found: Vec<_> = found.map(|one| (one.birth, one.age)).collect();
                 assert_eq!(found, wanted, "rate {rate}, life {life}, at {now}");
             }
         }
@@ -99,7 +103,19 @@ mod tests {
     #[test]
     fn the_end_of_the_timeline_is_its_beginning() {
         let births = Births::new(31.0, 2.0);
-        assert_eq!(births.alive(Random(1), &line(0.7), 0.0), births.alive(Random(1), &line(0.7), 2.0));
-        assert_eq!(births.alive(Random(1), &line(1e-4), 0.0), []);
+        let alive = |life: f64, now: f64| births.alive(Random(1), &line(life), now, 0).collect::<Vec<_>>();
+        assert_eq!(alive(0.7, 0.0), alive(0.7, 2.0));
+        assert_eq!(alive(1e-4, 0.0), []);
+    }
+
+    #[test]
+    fn births_left_out_are_always_the_same() {
+        let births = Births::new(40.0, 2.0);
+        for now in [0.0, 0.9, 1.99] {
+            let alive = |left_out: u32| births.alive(Random(1), &line(0.7), now, left_out);
+            let some: Vec<_> = alive(3).collect();
+            assert_eq!(some, alive(0).filter(|one| one.birth.is_multiple_of(4)).collect::<Vec<_>>());
+            assert!((6..9).contains(&some.len()), "{}", some.len());
+        }
     }
 }

@@ -6,7 +6,9 @@ pub mod album;
 pub mod automatic;
 pub mod between;
 pub mod births;
+pub mod cells;
 pub mod check;
+pub mod color;
 pub mod drag;
 pub mod draw;
 pub mod frame;
@@ -27,6 +29,7 @@ pub mod probe;
 pub mod ready;
 pub mod splat;
 pub mod sprites;
+pub mod strip;
 pub mod synth;
 pub mod upload;
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::draw::{covered, inside};
+use super::cells::{covered, inside};
 use super::lines::Line;
 use super::splat::Splat;
 use super::synth::Synth;

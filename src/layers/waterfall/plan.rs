@@ -50,12 +50,7 @@ struct Sprite {
 pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
     let splats = splats(synth, moment);
     let atlas = Atlas { side: synth.pictures.side };
-    let is_in_frame = |splat: &&Splat| {
-        let reach = splat.size_px.length() / 2.0 + 1.0;
-        let inside = |at: f64, size: usize| at + reach > 0.0 && at - reach < size as f64;
-        inside(splat.middle.x, moment.size_px.0) && inside(splat.middle.y, moment.size_px.1)
-    };
-    let shown = in_order(synth.blend, &splats).into_iter().filter(is_in_frame);
+    let shown = in_order(synth.blend, &splats).into_iter();
     let sprites: Vec<Sprite> = shown.map(|splat| sprite(synth, &atlas, splat)).collect();
     if sprites.is_empty() {
         return Plan::default();
@@ -97,7 +92,7 @@ fn sprite(synth: &Synth, atlas: &Atlas, splat: &Splat) -> Sprite {
         [x, y, weight, 0.0]
     };
     let mut keys = [[0.0; 4]; 4];
-    for (out, &(key, weight)) in keys.iter_mut().zip(&mix.keys) {
+    for (out, &(key, weight)) in keys.iter_mut().zip(mix.keys()) {
         *out = place(synth.pictures.number(key), weight);
     }
     // Central differences, in texels of the largest level.

@@ -1,7 +1,8 @@
 //! The sprites of one pixel explained.
 
 use super::between::texels;
-use super::draw::{before, covered, inside, read, shaded};
+use super::cells::{covered, inside};
+use super::color::{before, read, shaded};
 use super::frame::places;
 use super::model::WaterfallLayer;
 use super::splat::{Splat, splats};
@@ -43,16 +44,17 @@ pub fn probe(layer: &WaterfallLayer, synth: &Synth, pixel: (usize, usize), momen
 /// What a sprite adds to a place: linear light, premultiplied.
 fn color(synth: &Synth, splat: &Splat, [x, y]: [f64; 2]) -> Rgba {
     let mut own = Vec::new();
-    texels(&synth.pictures, &synth.residues.0, &splat.mix, splat.level, &mut own);
+    let side = synth.pictures.side >> splat.level;
+    texels((&synth.pictures, &synth.residues), &splat.mix, splat.level, 0..side, &mut own);
     let Some(place) = inside(splat, x, y) else { return [0.0; 4] };
     let opacity = splat.opacity * before(f64::INFINITY, splat.depth, synth.values.soft);
-    shaded(read(&own, synth.pictures.side >> splat.level, place), splat.tint).map(|v| v * opacity as f32)
+    shaded(read(&own, side, place), splat.tint).map(|v| v * opacity as f32)
 }
 
 fn entries(layer: &WaterfallLayer, splat: &Splat, color: Rgba) -> Vec<Entry> {
     let entry = |key, value| Entry { key, label: key, value };
     let kind = if splat.foam { "foam" } else { "water" };
-    let (track, _) = splat.mix.keys.first().map_or((0, 0), |(place, _)| *place);
+    let (track, _) = splat.mix.keys().first().map_or((0, 0), |(place, _)| *place);
     vec![
         entry("layer", Value::Of(Some(layer.name.clone()))),
         entry("kind", Value::Of(Some(kind.to_owned()))),

@@ -1,5 +1,7 @@
 //! Where a sprite is in the frame, and what it shows.
 
+use std::borrow::Cow;
+
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -61,18 +63,18 @@ pub struct Splat {
     pub mix: Mix,
 }
 
-/// All sprites in front of the camera, in order: by line, birth, age.
-pub fn splats(synth: &Synth, moment: &Moment) -> Vec<Splat> {
+/// All sprites that the camera may see, in order: by line, birth, age.
+pub fn splats<'a>(synth: &'a Synth, moment: &Moment) -> Vec<Splat> {
     let Some(eye) = moment.eye else { return Vec::new() };
     let now = synth.now(moment);
-    let of_line = |line: &Line| {
-        let alive = synth.births[usize::from(line.foam)].alive(synth.random, line, now);
-        alive.into_iter().filter_map(|alive| splat(synth, &eye, line, alive)).collect::<Vec<_>>()
+    let of_line = |line: &'a Line| {
+        let alive = synth.births[usize::from(line.foam)].alive(synth.random, line, now, moment.left_out);
+        alive.filter_map(move |alive| splat(synth, &eye, moment.size_px, line, alive))
     };
     synth.lines.par_iter().flat_map_iter(of_line).collect()
 }
 
-fn splat(synth: &Synth, eye: &Eye, line: &Line, alive: Alive) -> Option<Splat> {
+fn splat(synth: &Synth, eye: &Eye, frame: (usize, usize), line: &Line, alive: Alive) -> Option<Splat> {
     let values = &synth.values;
     let look = &values.kinds[usize::from(line.foam)].look;
     let (age, s) = (alive.age, alive.age / line.life);
@@ -89,13 +91,16 @@ fn splat(synth: &Synth, eye: &Eye, line: &Line, alive: Alive) -> Option<Splat> {
     let far = if look.align { way.length() } else { way.y.abs() };
     let scale = eye.focal_px / depth;
     let size = DVec2::new(scale * width, scale * (width + look.streak * far));
+    let (middle, size_px) = (eye.project(seen), size.max(DVec2::splat(SMALLEST_PX)));
+    if is_outside(middle, size_px, frame) {
+        return None;
+    }
     let sense = if alive.own[2] < 0.5 { 1.0 } else { -1.0 };
     let angle = turned(look, look.tilt * (2.0 * tilt - 1.0) + sense * look.spin * s, way);
     let turn = if angle == 0.0 { DVec2::X } else { DVec2::new(cos(angle.to_radians()), sin(angle.to_radians())) };
     let tint = look.tint(s);
     let near = (depth / width - 0.5).clamp(0.0, 1.0);
     let thin = (size / SMALLEST_PX).min(DVec2::ONE);
-    let size_px = size.max(DVec2::splat(SMALLEST_PX));
     let side = synth.pictures.side;
     let level = (log2(side as f64 / size_px.x) + 0.5).floor().clamp(0.0, Pyramid::<4>::last(side) as f64) as usize;
     let mirrored = look.mirror && alive.own[3] < 0.5;
@@ -113,7 +118,7 @@ fn splat(synth: &Synth, eye: &Eye, line: &Line, alive: Alive) -> Option<Splat> {
         alive,
         life: line.life,
         at,
-        middle: eye.project(seen),
+        middle,
         depth,
         size_px,
         angle,
@@ -125,6 +130,13 @@ fn splat(synth: &Synth, eye: &Eye, line: &Line, alive: Alive) -> Option<Splat> {
         key,
         mix,
     })
+}
+
+/// Whether a sprite is outside the frame however it is turned: it ends here, before most of the work for it.
+fn is_outside(middle: DVec2, size_px: DVec2, (width, height): (usize, usize)) -> bool {
+    let reach = size_px.length() / 2.0 + 1.0;
+    let outside = |at: f64, size: usize| at + reach < 0.0 || at - reach > size as f64;
+    outside(middle.x, width) || outside(middle.y, height)
 }
 
 /// The angle of a sprite in degrees, if it is turned by `own` itself and its line runs this way.
@@ -170,15 +182,14 @@ fn clumped(synth: &Synth, line: &Line, alive: &Alive) -> f64 {
 }
 
 /// The keys that a sprite runs through.
-fn keys(synth: &Synth, line: &Line, alive: &Alive) -> Vec<Place> {
+fn keys<'a>(synth: &'a Synth, line: &Line, alive: &Alive) -> Cow<'a, [Place]> {
     let kind = usize::from(line.foam);
     let pick = |share: f64, count: usize| (share * count as f64).floor() as usize;
+    let all = &synth.keys[kind];
     if synth.between.order == Order::Track {
         let tracks = &synth.tracks[kind];
-        let track = tracks[pick(alive.own[1], tracks.len())];
-        return (0..synth.pictures.tracks[track].keys.len()).map(|key| (track, key)).collect();
+        return Cow::Borrowed(&all[tracks[pick(alive.own[1], tracks.len())].clone()]);
     }
-    let all = &synth.keys[kind];
     let mut found: Vec<usize> = Vec::with_capacity(synth.shuffled);
     for i in 0..synth.shuffled as u32 {
         let next = pick(synth.random.of(line.number, alive.birth, SHUFFLE + i)[0], all.len());
@@ -206,15 +217,15 @@ fn mixed(synth: &Synth, line: &Line, alive: &Alive, direction: impl Fn(f64) -> D
 pub fn mix(between: &Between, keys: &[Place], (i, u): (usize, f64), ahead: impl Fn(usize) -> DVec2) -> Mix {
     let [first] = keys else {
         let [a, b, leaving, reaching] = hermite(u);
-        let mut mix = Mix { keys: vec![(keys[i], a as f32), (keys[i + 1], b as f32)], ..Mix::default() };
+        let mut mix = Mix::of(&[(keys[i], a as f32), (keys[i + 1], b as f32)]);
         match between.tangents {
             Tangents::Zero => {}
             Tangents::Catmull => {
                 let (before, after) = (i.checked_sub(1).map(|i| keys[i]), keys.get(i + 2));
                 let weights = catmull(u, before.is_some(), after.is_some()).map(|weight| weight as f32);
-                mix.keys = vec![(keys[i], weights[1]), (keys[i + 1], weights[2])];
-                mix.keys.extend(before.map(|key| (key, weights[0])));
-                mix.keys.extend(after.map(|key| (*key, weights[3])));
+                mix = Mix::of(&[(keys[i], weights[1]), (keys[i + 1], weights[2])]);
+                before.into_iter().for_each(|key| mix.add((key, weights[0])));
+                after.into_iter().for_each(|key| mix.add((*key, weights[3])));
             }
             Tangents::Advect => {
                 let slope = |k: usize, weight: f64| (ahead(k) * (-between.drift * weight)).to_array().map(|v| v as f32);
@@ -226,5 +237,5 @@ pub fn mix(between: &Between, keys: &[Place], (i, u): (usize, f64), ahead: impl 
         }
         return mix;
     };
-    Mix { keys: vec![(*first, 1.0)], ..Mix::default() }
+    Mix::of(&[(*first, 1.0)])
 }

@@ -1,5 +1,6 @@
 //! A waterfall layer ready for any time.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use kurbo::Vec2;
@@ -42,10 +43,10 @@ pub struct Synth {
     pub pictures: Arc<Pictures>,
     /// The residues, by track and interval.
     pub residues: Arc<Residues>,
-    /// The tracks of water, and of foam.
-    pub tracks: [Vec<usize>; 2],
-    /// All their keys.
+    /// The keys of all tracks of water, and of foam.
     pub keys: [Vec<Place>; 2],
+    /// Where among them the keys of each track are.
+    pub tracks: [Vec<Range<usize>>; 2],
     /// How many residues each track has.
     pub intervals: usize,
     /// Keys of a shuffled sprite.
@@ -76,11 +77,7 @@ impl Synth {
             Some(before) => (before.pictures.clone(), before.share.clone()),
             None => cut(layer, &made_of, making)?,
         };
-        let tracks = [false, true].map(|foam| pictures.of(foam));
-        let keys = tracks.clone().map(|tracks| {
-            let keys = |&track: &usize| (0..pictures.tracks[track].keys.len()).map(move |key| (track, key));
-            tracks.iter().flat_map(keys).collect()
-        });
+        let [(water, of_water), (foam, of_foam)] = [false, true].map(|foam| keys(&pictures, foam));
         let shuffled = layer.sprites.keys as usize;
         let longest = pictures.tracks.iter().map(|track| track.keys.len()).max().unwrap_or(0).max(shuffled);
         let intervals = if layer.between.noise > 0.0 { longest.saturating_sub(1) } else { 0 };
@@ -103,8 +100,8 @@ impl Synth {
             blend: layer.blend,
             residues,
             pictures,
-            tracks,
-            keys,
+            keys: [water, foam],
+            tracks: [of_water, of_foam],
             shuffled,
             intervals,
             place: making.place,
@@ -119,6 +116,17 @@ impl Synth {
     pub fn now(&self, moment: &Moment) -> f64 {
         if self.still { 0.0 } else { moment.t * self.noise.period }
     }
+}
+
+/// All keys that sprites of a kind show, and where among them those of each track are.
+fn keys(pictures: &Pictures, foam: bool) -> (Vec<Place>, Vec<Range<usize>>) {
+    let (mut keys, mut tracks) = (Vec::new(), Vec::new());
+    for track in pictures.of(foam) {
+        let first = keys.len();
+        keys.extend((0..pictures.tracks[track].keys.len()).map(|key| (track, key)));
+        tracks.push(first..keys.len());
+    }
+    (keys, tracks)
 }
 
 /// After how many simulated seconds the layer repeats. A timeline of no length has a single frame; it shows the beginning

@@ -148,6 +148,8 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     parts.extend(state.jump.map(|jump| (2, format!("jump {:.2}, {:.2}", jump.x, jump.y))));
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
+    let shown = [(1, "every second sprite"), (3, "every fourth sprite")];
+    parts.extend(shown.iter().find(|(left_out, _)| *left_out == state.thin.left_out()).map(|of| (5, of.1.to_owned())));
     parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
     parts.extend(state.own.map(|_| (6, "own view, 0 ends it".to_owned())));
     parts.push((1, "? keys".to_owned()));
@@ -211,6 +213,9 @@ mod tests {
         state.run("own-view-off");
         (state.fps, state.transport.whole_frames) = (Some(59.97), true);
         assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   200 %   ? keys");
+        (0..8).for_each(|_| state.thin.took(1.0));
+        assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   every fourth sprite   200 %   ? keys");
+        state.thin = Default::default();
         state.under = Some("stone, triangle 7, 4.00 m".to_owned());
         assert!(right_text(&state, 999.0, width).starts_with("stone, triangle 7, 4.00 m   whole frames"));
         let narrow = width("stone, triangle 7, 4.00 m   own view, 0 ends it");

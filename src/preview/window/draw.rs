@@ -1,8 +1,12 @@
 //! The drawing of a frame: the time runs on, the window is painted, what was lost is replaced.
 
+use std::time::{Duration, Instant};
+
 use super::app::App;
 use super::screen::Drawn;
+use super::show::Show;
 use super::text::of_system;
+use super::thin::Thin;
 use super::worker::Event;
 use crate::base::error::Result;
 use crate::preview::wire::message::ToEditor;
@@ -14,6 +18,7 @@ impl App {
         let Some(opened) = &mut self.opened else { return Ok(()) };
         let was_hidden = opened.hidden;
         if opened.is_seen() {
+            let began = Instant::now();
             self.letters.begin();
             match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, &self.letters) {
                 _ if opened.gpu.device().is_lost() => self.reopen()?,
@@ -24,6 +29,7 @@ impl App {
                 Err(error) => return Err(error),
             }
             self.clock.drawn += 1;
+            self.took(began.elapsed());
         } else if !was_hidden {
             self.report();
         }
@@ -49,10 +55,20 @@ impl App {
         }
     }
 
+    /// A drawing took so long: sprites are left out if it is too long to play.
+    fn took(&mut self, time: Duration) {
+        let sprites = self.shown.as_ref().is_some_and(Show::has_sprites);
+        match self.state.transport.playing && sprites {
+            true => self.state.thin.took(time.as_secs_f64()),
+            false => self.state.thin = Thin::default(),
+        }
+    }
+
     /// The animation runs on; one that plays once stops at its end.
     fn advance(&mut self) {
         let (passed, fps) = self.clock.tick();
         if !self.state.transport.playing {
+            self.state.thin = Thin::default();
             return;
         }
         if let Some(fps) = fps {

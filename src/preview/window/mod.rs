@@ -44,6 +44,7 @@ mod steer;
 mod stroke;
 mod style;
 mod text;
+mod thin;
 mod transport;
 mod viewport;
 mod words;

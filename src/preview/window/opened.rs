@@ -11,7 +11,7 @@ use winit::window::{CursorIcon, Fullscreen, Window};
 use super::mouse::Shape;
 use super::pass::{self, For};
 use super::screen::{Drawn, Pictures, Screen, Strokes};
-use super::show::{Cached, Show, jump_at, seen, under};
+use super::show::{Cached, Show, jump_at, seen, thinned, under};
 use super::state::{BAR_PX, State};
 use super::text::Letters;
 use super::x11::Desk;
@@ -171,6 +171,7 @@ impl Opened {
             let (frame, other) = self.passes.follow(&self.gpu, wanted, frame, other)?;
             return Ok(Pictures { frame, other, scale: show.frame_scale / self.passes.each as f64 });
         }
+        let frame = (&*thinned(frame.0, state.thin.left_out()), frame.1);
         let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
         Ok(Pictures { frame, other, scale: show.frame_scale })
     }

@@ -43,6 +43,16 @@ impl Show {
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
         (Show { scene, still: frames.unmoved(), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
     }
+
+    /// Whether any layer has sprites, of which some can be left out.
+    pub fn has_sprites(&self) -> bool {
+        self.frames.layers.iter().any(|layer| layer.has_sprites())
+    }
+}
+
+/// A scene with so many births left out after each that is shown.
+pub fn thinned(synth: &Synth, left_out: u32) -> Cow<'_, Synth> {
+    if left_out > 0 { Cow::Owned(synth.thinned(left_out)) } else { Cow::Borrowed(synth) }
 }
 
 /// A scene as the window's own camera sees it, if there is one.

@@ -3,6 +3,7 @@
 use kurbo::{Point, Size, Vec2};
 
 use super::own_view::OwnView;
+use super::thin::Thin;
 use super::transport::Transport;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
@@ -66,6 +67,8 @@ pub struct State {
     pub selected: Option<String>,
     /// Frames a second, while it plays.
     pub fps: Option<f64>,
+    /// Sprites that are left out, while it plays.
+    pub thin: Thin,
     /// Length of the field's arrows on the picture, as a share of the jump vectors.
     pub arrow_scale: f64,
     /// The longest jump vector, in pixels of the picture.
@@ -112,6 +115,7 @@ impl Default for State {
             under: None,
             selected: None,
             fps: None,
+            thin: Thin::default(),
             arrow_scale: 1.0,
             longest: 0.0,
         }
