@@ -144,6 +144,9 @@ fn take(state: &mut State, call: &Call) -> Done {
         state.ask(Effect::Run(words(&format!("sprites {}", call.text))?));
         return Ok(());
     }
+    if state.picture.synthesising {
+        return Err("the sprites are being chosen: once more when that is done".into());
+    }
     let synth = state.picture.synth.clone().ok_or("the pictures are not read yet")?;
     let own = tree::layer_of(&state.cursor.node);
     let albums = synth.layers.iter().enumerate().filter_map(|(layer, ready)| Some((layer, ready.album(0)?)));

@@ -58,7 +58,10 @@ fn placed(state: &mut State, call: &Call) -> Done {
             state.edit(edit, false)
         }
         "aim" => {
-            place::aim_here(state)?;
+            // In space the cursor may begin where nothing can land, as on the point itself.
+            if spatial::selected(state).is_none() {
+                place::aim_here(state)?;
+            }
             state.typing.mode = Mode::Aim;
             Ok(())
         }

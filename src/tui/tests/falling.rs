@@ -11,7 +11,7 @@ use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
 use crate::tui::events::Effect;
-use crate::tui::state::{Pane, State};
+use crate::tui::state::{Mode, Pane, State};
 
 /// A camera that sees all nodes and the pool.
 fn camera() -> Camera {
@@ -153,7 +153,7 @@ fn help_tells_of_the_column_not_of_the_field_behind_it() {
     let mut state = falling(json!({}));
     let go = to_column(&state, "land x");
     press(&mut state, &format!("{go} ?"));
-    let crate::tui::state::Mode::Pages(pages) = &state.typing.mode else { panic!("no help") };
+    let Mode::Pages(pages) = &state.typing.mode else { panic!("no help") };
     assert!(pages.lines[0].contains("-- land x --"), "{}", pages.lines[0]);
     assert!(pages.lines.iter().any(|line| line.contains("keeps the air time")));
 }
@@ -202,7 +202,10 @@ fn the_cursor_sets_where_the_selected_node_lands() {
     press(&mut state, "u");
     assert_eq!(velocity(&state, 1), [0.5, 0.0, 1.0]);
     press(&mut state, ": \"cursor at 150 10\" Enter s");
+    assert!(matches!(state.typing.mode, Mode::Aim), "it may begin in the sky: {:?}", state.message);
+    press(&mut state, "Enter");
     assert!(said_last(&state).1.contains("the pool (y 0) is not seen there"), "{:?}", state.message);
+    assert!(matches!(state.typing.mode, Mode::Normal));
 }
 
 #[test]
