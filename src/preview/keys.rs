@@ -60,7 +60,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "6", "orbit-right", "Round to the right"),
     row(WINDOW, "8", "orbit-up", "Round over the top"),
     row(WINDOW, "2", "orbit-down", "Round below"),
-    row(WINDOW, "9", "dolly-nearer", "Nearer to what it looks at; so does the wheel with Alt"),
+    row(WINDOW, "9", "dolly-nearer", "Nearer to what it looks at; so does the wheel with Ctrl or Alt"),
     row(WINDOW, "3", "dolly-farther", "Farther away"),
     row(WINDOW, "h", "walk-left", "Walks to the left; a drag with Shift moves it along"),
     row(WINDOW, "l", "walk-right", "Walks to the right"),

@@ -48,8 +48,8 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let view = View { longest_px, ..view.clone() };
     let t = view.times.first().copied().unwrap_or(0.0);
     let synth = synth.map(|synth| (synth, synth.moment(t)));
+    let nearest = synth.as_ref().map(|(synth, moment)| nearest(synth, moment, &view)).unwrap_or_default();
     let ready = synth.iter().flat_map(|(synth, moment)| {
-        let nearest = nearest(synth, moment, &view);
         let marks = |(i, layer): (usize, &Arc<dyn Ready>)| {
             let selected = view.selection.as_deref().and_then(|path| Pointer(path).below(&format!("/layers/{i}")));
             let selection = selected.map(str::to_owned);
@@ -62,7 +62,9 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let layers = layers.flat_map(|(i, layer)| layer.technique().marks(&view).into_iter().map(move |mark| (i, mark)));
     let of_layers = ready.chain(layers).map(|(i, mark)| (format!("/layers/{i}{}", mark.path), mark));
     let world = synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some());
-    let world = world.flat_map(|(_, moment)| space::marks::marks(&view, moment, scene.camera.as_ref()));
+    // The topmost of what is in space.
+    let over_ground = View { nearest: nearest.values().next_back().cloned(), ..view.clone() };
+    let world = world.flat_map(|(_, moment)| space::marks::marks(&over_ground, moment, scene.camera.as_ref()));
     let all = of_layers.chain(world.map(|mark| (mark.path.clone(), mark)));
     let mut marks: Vec<Mark> = all.map(|(path, mark)| collected(path, mark, &view)).collect();
     marks.sort_by_key(|mark| mark.look.order);

@@ -8,6 +8,7 @@ use super::edit::Edit;
 use super::field::name_of;
 use super::merge::Conflict;
 use super::schema::{Body, Place, Shape};
+use crate::base::number;
 use crate::base::pointer::{self, Pointer};
 
 /// The most characters of a value in words.
@@ -195,7 +196,7 @@ fn words(shape: Option<Shape>, value: &Value) -> String {
         (_, Value::Array(items)) if items.iter().all(Value::is_number) && items.len() <= 4 => {
             items.iter().map(number).collect::<Vec<_>>().join(", ")
         }
-        (_, Value::Array(items)) => format!("{} items", items.len()),
+        (_, Value::Array(items)) => format!("{} item{}", items.len(), if items.len() == 1 { "" } else { "s" }),
         (_, Value::String(text)) if text.is_empty() => "\"\"".into(),
         (_, Value::String(text)) => text.clone(),
         (_, Value::Null) => "none".into(),
@@ -209,10 +210,7 @@ fn words(shape: Option<Shape>, value: &Value) -> String {
 
 /// A number without needless decimals; other values as JSON.
 fn number(value: &Value) -> String {
-    match value.as_f64() {
-        Some(number) if number == number.trunc() && number.abs() < 1e15 => format!("{number:.0}"),
-        _ => value.to_string(),
-    }
+    value.as_f64().map_or_else(|| value.to_string(), number::text)
 }
 
 #[cfg(test)]

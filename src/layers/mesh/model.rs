@@ -50,7 +50,7 @@ fn nothing(_: &mut SchemaGenerator) -> Schema {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sides {
-    /// Those whose corners run counter-clockwise as seen.
+    /// Front sides: triangles whose corners run counter-clockwise as seen.
     #[default]
     Front,
     /// Both; the normals of back sides are turned to the camera.

@@ -15,32 +15,32 @@ pub struct Pose {
     /// Where the origin of the mesh is.
     #[schemars(extend("unit" = "m"))]
     pub position: Xyz,
-    /// Turns about the world's x, then y, then z.
+    /// Turns about the world's x, then y, then z; counter-clockwise as seen from the end of the axis.
     #[schemars(extend("unit" = "degrees"))]
     pub rotate: Xyz,
     /// How many times larger it is.
     #[schemars(range(min = 0.0, max = 1e6), extend("unit" = "1"))]
     pub scale: f64,
-    /// How far it turns about the world's y in one timeline.
+    /// How far it turns about the world's y in one timeline, counter-clockwise as seen from above.
     #[schemars(extend("unit" = "degrees"))]
     pub spin: f64,
     /// How it bends.
     pub bend: Bend,
 }
 
-/// A turn about the model's z that grows along an axis of the model.
+/// A turn about the z through the model's origin that grows along an axis of the model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Bend {
     /// The whole turn.
     #[schemars(extend("unit" = "degrees"))]
     pub degrees: f64,
-    /// The axis along which it grows.
+    /// The axis of the model along which the turn grows, from `from` to `to`.
     pub axis: Axis,
-    /// Where it begins on the axis.
+    /// Where the turn begins on the axis.
     #[schemars(extend("unit" = "m"))]
     pub from: f64,
-    /// Where it is whole.
+    /// Where the turn is whole.
     #[schemars(extend("unit" = "m"))]
     pub to: f64,
     /// How many times it swings to both sides in one timeline; 0 stands still.
@@ -52,12 +52,12 @@ pub struct Bend {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Axis {
-    /// To the right.
+    /// From left to right.
     X,
-    /// Up.
+    /// From below to above.
     #[default]
     Y,
-    /// To the front.
+    /// From back to front.
     Z,
 }
 

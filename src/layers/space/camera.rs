@@ -63,9 +63,9 @@ pub struct Key {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Between {
-    /// A straight line.
+    /// At a constant rate.
     Linear,
-    /// A smooth monotone curve (Fritsch and Carlson), each number for itself.
+    /// Smoothly, without passing beyond a key (monotone cubic of Fritsch and Carlson); each coordinate by itself.
     #[default]
     Smooth,
 }

@@ -6,6 +6,7 @@ use kurbo::{Point, Rect};
 
 use super::camera::Camera;
 use super::eye::{Eye, NEAR_M};
+use super::hidden::Depths;
 use crate::base::maths::{lerp, nice};
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::Moment;
@@ -14,7 +15,8 @@ const GROUND: &str = "view-ground";
 const CAMERA: &str = "view-camera";
 
 /// The ground and the axes: an overlay of every technique in space.
-pub const GROUND_OVERLAY: Overlay = Overlay::new(GROUND, "G", "The ground and the axes of the world", When::EveryFrame);
+pub const GROUND_OVERLAY: Overlay =
+    Overlay { hidden: true, ..Overlay::new(GROUND, "G", "The ground and the axes of the world", When::EveryFrame) };
 /// The scene's camera: an overlay of every technique in space.
 pub const CAMERA_OVERLAY: Overlay =
     Overlay::new(CAMERA, "C", "What the scene's camera sees, looked at from elsewhere", When::EveryFrame);
@@ -81,10 +83,11 @@ fn within(room: Rect, [a, b]: [Point; 2]) -> Option<[f64; 2]> {
     (from <= to).then_some([from, to])
 }
 
-/// The marks of all that is in space together; `camera` is the scene's.
+/// The marks of all that is in space together; `camera` is the scene's. The ground is hidden by what `view` has as the
+/// nearest.
 pub fn marks(view: &View, moment: &Moment, camera: Option<&Camera>) -> Vec<Mark> {
     let Some(eye) = moment.eye else { return Vec::new() };
-    let mut drawn = Drawn { moment, eye, marks: Vec::new() };
+    let mut drawn = Drawn { moment, eye, nearest: view.nearest.as_deref(), marks: Vec::new() };
     if view.shows(GROUND) {
         drawn.ground();
     }
@@ -98,14 +101,25 @@ pub fn marks(view: &View, moment: &Moment, camera: Option<&Camera>) -> Vec<Mark>
 struct Drawn<'a> {
     moment: &'a Moment,
     eye: Eye,
+    nearest: Option<&'a Depths>,
     marks: Vec<Mark>,
 }
 
 impl Drawn<'_> {
+    /// A line without the parts that something nearer hides.
+    fn ground_line(&mut self, look: &'static Look, ends: [DVec3; 2]) {
+        let Some(line) = deep_line(self.moment, &self.eye, ends) else { return };
+        let parts = match self.nearest {
+            Some(nearest) => nearest.shown(line),
+            None => vec![line.map(|(at, _)| at)],
+        };
+        let mark = |points: [Point; 2]| Mark::new(look, "", Shape::Line { points: points.into(), closed: false });
+        self.marks.extend(parts.into_iter().map(mark));
+    }
+
     fn line(&mut self, look: &'static Look, ends: [DVec3; 2]) {
         if let Some(points) = line(self.moment, &self.eye, ends) {
-            let path = if look.name == FRUSTUM.name { "/camera" } else { "" };
-            self.marks.push(Mark::new(look, path, Shape::Line { points: points.into(), closed: false }));
+            self.marks.push(Mark::new(look, "/camera", Shape::Line { points: points.into(), closed: false }));
         }
     }
 
@@ -120,13 +134,13 @@ impl Drawn<'_> {
         let far = cell * f64::from(LINES);
         for k in (-LINES..=LINES).filter(|&k| k != 0) {
             let at = f64::from(k) * cell;
-            self.line(&GRID, [DVec3::new(at, 0.0, -far), DVec3::new(at, 0.0, far)]);
-            self.line(&GRID, [DVec3::new(-far, 0.0, at), DVec3::new(far, 0.0, at)]);
+            self.ground_line(&GRID, [DVec3::new(at, 0.0, -far), DVec3::new(at, 0.0, far)]);
+            self.ground_line(&GRID, [DVec3::new(-far, 0.0, at), DVec3::new(far, 0.0, at)]);
         }
         let [x, y, z] = [&AXES[0], &AXES[1], &AXES[2]];
-        self.line(x, [DVec3::X * -far, DVec3::X * far]);
-        self.line(y, [DVec3::ZERO, DVec3::Y * cell * TALL]);
-        self.line(z, [DVec3::Z * -far, DVec3::Z * far]);
+        self.ground_line(x, [DVec3::X * -far, DVec3::X * far]);
+        self.ground_line(y, [DVec3::ZERO, DVec3::Y * cell * TALL]);
+        self.ground_line(z, [DVec3::Z * -far, DVec3::Z * far]);
         self.label(x, DVec3::X * cell, format!("x {cell} m"));
         self.label(y, DVec3::Y * cell, format!("y {cell} m"));
         self.label(z, DVec3::Z * cell, format!("z {cell} m"));
@@ -151,7 +165,10 @@ impl Drawn<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::layers::parts::moment::Columns;
 
     fn moment() -> Moment {
         let camera = Camera { position: [0.0, 2.0, 4.0], target: [0.0, 0.0, 0.0], ..Camera::default() };
@@ -178,6 +195,23 @@ mod tests {
         assert_eq!(marks(&view, &seen, Some(&own)), []);
         let marks = marks(&view, &moment(), Some(&own));
         assert!(marks.len() > 4 && marks.iter().all(|mark| mark.path == "/camera"), "{marks:?}");
+    }
+
+    #[test]
+    fn the_ground_is_hidden_by_what_is_nearer() {
+        let left = |_: usize, columns: Columns, depths: &mut [f64]| {
+            let Columns::Some(columns) = columns else { return };
+            depths.iter_mut().zip(columns).filter(|(_, x)| **x < 100).for_each(|(depth, _)| *depth = 0.1);
+        };
+        let nearest = Some(Arc::new(Depths::new((200, 100), left)));
+        let found = marks(&View { nearest, ..View::of(&[GROUND]) }, &moment(), None);
+        let ends = found.iter().flat_map(|mark| match &mark.shape {
+            Shape::Line { points, .. } => points.clone(),
+            _ => Vec::new(),
+        });
+        let ends: Vec<f64> = ends.map(|end| end.x).collect();
+        // Beside the frame nothing is known.
+        assert!(ends.iter().all(|x| *x < 1.0 || *x > 98.0) && ends.iter().any(|x| *x > 100.0), "{ends:?}");
     }
 
     #[test]

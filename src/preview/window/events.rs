@@ -152,7 +152,9 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::ModifiersChanged(held) => {
                 self.held = held.state();
-                self.mouse.hold(Held { alt: self.held.alt_key(), shift: self.held.shift_key() });
+                // Window managers often take Alt for themselves.
+                let alt = self.held.alt_key() || self.held.control_key();
+                self.mouse.hold(Held { alt, shift: self.held.shift_key() });
             }
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {
                 if let Some(command) = input::command(&event.logical_key, self.held, event.repeat) {

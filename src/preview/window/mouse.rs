@@ -68,6 +68,7 @@ pub enum Button {
 /// The keys that change what it does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
+    /// Alt or Ctrl.
     pub alt: bool,
     pub shift: bool,
 }
