@@ -390,7 +390,8 @@ fn every_shader_is_valid() {
     use wgpu::naga::{front::wgsl, valid};
     let programs = KINDS.iter().flat_map(|kind| kind.programs).chain(render::gpu::PROGRAMS);
     let programs = programs.map(|program| (program.name, program.text()));
-    let window = ("screen.wgsl", include_str!("../src/preview/window/screen.wgsl").to_owned());
+    let window = [plica::layers::parts::plan::COMMON, include_str!("../src/preview/window/screen.wgsl")].concat();
+    let window = ("screen.wgsl", window);
     for (name, source) in programs.chain([window]) {
         let source = source.as_str();
         let module = wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));

@@ -143,7 +143,6 @@ fn report(state: &mut State, result: Result<String, String>) {
     match &result {
         Ok(_) if opens => {}
         Ok(_) => state.say(text),
-        Err(_) if opens => state.complain(lines.last().copied().unwrap_or_default()),
         Err(_) => state.complain(text),
     }
     if opens {

@@ -140,6 +140,10 @@ impl Editor {
                 false => terminal::remark(&format!("line {}: {first}", session.number)),
             }
             lines.for_each(|line| if session.interactive { terminal::print(line) } else { terminal::remark(line) });
+            // On a screen the same lines are pages.
+            if let Mode::Pages(_) = self.state.typing.mode {
+                self.state.typing.mode = Mode::Normal;
+            }
         }
         self.said().iter().for_each(|line| terminal::print(line));
         session.tell(self.state.outside.work.as_deref());
