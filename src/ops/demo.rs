@@ -38,7 +38,7 @@ impl Args {
 /// As [`Args::unpack`].
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     if args.list {
-        let mut row = |profile: &Profile| context.print(format_args!("{:<8}{}", profile.name, profile.help));
+        let mut row = |profile: &Profile| context.print(format_args!("{:<10}{}", profile.name, profile.help));
         return profiles::TABLE.iter().try_for_each(&mut row);
     }
     let scene = args.unpack()?;

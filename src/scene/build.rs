@@ -43,10 +43,13 @@ impl Edit {
     /// Adds `item` to the list at `list`, before the one at `index` (or at the end).
     pub fn insert(document: &Document, list: &str, index: usize, item: Value) -> Edit {
         if document.json().pointer(list).is_some_and(Value::is_array) {
-            Edit::add(&Pointer(list).join(index), item)
-        } else {
-            write(document, list, json!([item]))
+            return Edit::add(&Pointer(list).join(index), item);
         }
+        // A list that is not written begins as what stands for it.
+        let items = Place::of(document.json(), list).and_then(|place| place.value?.as_array());
+        let mut items = items.cloned().unwrap_or_default();
+        items.insert(index.min(items.len()), item);
+        write(document, list, items.into())
     }
 
     /// Adds a new item with sensible values to the list at `list`, before the one at `index` or as near to it as an

@@ -39,7 +39,7 @@ pub fn all() -> impl Iterator<Item = Found> + Clone {
 pub fn find(name: &str) -> Result<Found, String> {
     let unknown = || {
         let hint = problem::nearest(name, all().map(|found| found.preset.name)).unwrap_or_default();
-        format!("there is no profile {} ({hint})", problem::quoted(name))
+        format!("there is no preset {} ({hint})", problem::quoted(name))
     };
     all().find(|found| found.preset.name == name).ok_or_else(unknown)
 }

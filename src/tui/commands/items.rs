@@ -307,9 +307,10 @@ fn duplicate(state: &mut State, call: &Call) -> Done {
 /// Moves a block as far as possible, by moving the items that it passes to its other side.
 fn reorder(state: &mut State, call: &Call) -> Done {
     let (list, from, to) = block(state)?;
-    let count = state.document().json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
+    let mut items =
+        field::value(state.document(), &list).and_then(|items| items.as_array().cloned()).unwrap_or_default();
     let (up, times) = (call.text == "up", call.times() as usize);
-    let by = times.min(if up { from } else { count - 1 - to });
+    let by = times.min(if up { from } else { items.len().saturating_sub(to + 1) });
     if by == 0 {
         return Err("it cannot move any further".into());
     }
@@ -317,7 +318,18 @@ fn reorder(state: &mut State, call: &Call) -> Done {
         let (at, onto) = if up { (from - 1 - k, to - k) } else { (to + 1 + k, from + k) };
         Edit::move_item(state.document(), &Pointer(&list).join(at), onto).map(|(edit, _)| edit)
     });
-    let edit = Edit::all(passed);
+    let edit = match state.document().json().pointer(&list) {
+        Some(_) => Edit::all(passed),
+        // It is not written: its default is, in the new order.
+        None => {
+            if up {
+                items[from - by..=to].rotate_left(by)
+            } else {
+                items[from..=to + by].rotate_right(by)
+            }
+            Edit::set(state.document(), &list, items.into())
+        }
+    };
     let by = if up { -(by as i64) } else { by as i64 };
     state.edit(edit, false)?;
     follow(state, &list, (from as i64 + by) as usize, by);

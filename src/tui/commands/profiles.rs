@@ -16,7 +16,7 @@ fn profile(state: &mut State, call: &Call) -> Done {
     }
     let options: Vec<_> = offered(state).map(|found| (found.preset.name.into(), found.preset.help.into())).collect();
     if options.is_empty() {
-        return Err("there are no profiles for this layer".into());
+        return Err("there are no presets for this layer".into());
     }
     state.typing.mode = Mode::Choice(Choice { title: "profile".into(), options, at: 0, then: Then::Preset });
     Ok(())

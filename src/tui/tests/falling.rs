@@ -39,6 +39,33 @@ fn columns(state: &State, row: usize) -> Vec<(String, String)> {
     cells.into_iter().map(|cell| (cell.head, cell.text)).collect()
 }
 
+#[test]
+fn a_lip_that_is_not_written_begins_as_what_stands_for_it() {
+    let layer = json!({ "kind": "waterfall", "name": "falls", "clip": "w" });
+    let clips = json!({ "w": { "path": "w-%04d.png" } });
+    let scene = json!({ "plica": 1, "clips": clips, "camera": camera(), "layers": [layer] }).to_string();
+    for (line, expected) in [
+        ("reorder down", Ok(vec![1.0, -1.0])),
+        ("5 reorder down", Ok(vec![1.0, -1.0])),
+        ("reorder up", Err("it cannot move any further")),
+        ("add", Ok(vec![-1.0, 0.0, 1.0])),
+    ] {
+        let mut state = state_of(&scene);
+        state.show("/layers/0/lip");
+        state.cursor.focus = Pane::Table;
+        let found = obey(&mut state, line, None);
+        let lip = state.document().json().pointer("/layers/0/lip");
+        let x = |node: &Value| node["at"][0].as_f64().unwrap_or(f64::NAN);
+        match expected {
+            Ok(expected) => {
+                let lip: Vec<f64> = lip.unwrap().as_array().unwrap().iter().map(x).collect();
+                assert!(found.is_ok() && lip == expected, "{line}: {found:?} {lip:?}");
+            }
+            Err(why) => assert_eq!((found.unwrap_err().as_str(), lip), (why, None), "{line}"),
+        }
+    }
+}
+
 fn velocity(state: &State, node: usize) -> Vec<f64> {
     serde_json::from_value(at(state, &format!("/layers/0/lip/{node}/velocity"))).unwrap()
 }

@@ -55,14 +55,14 @@ fn without_a_name_the_presets_for_the_layer_are_listed() {
     assert_eq!(said_last(&state).1, "smoke changes nothing in mist");
     let mut state = shown("/layers/0");
     press(&mut state, ": \"profile\" Enter");
-    assert_eq!(said_last(&state), (true, "there are no profiles for this layer".into()));
+    assert_eq!(said_last(&state), (true, "there are no presets for this layer".into()));
 }
 
 #[test]
 fn a_preset_that_cannot_be_applied_says_why() {
     let mut state = state();
     for (line, told) in [
-        ("profile smok", "there is no profile \"smok\" (did you mean \"smoke\"?)"),
+        ("profile smok", "there is no preset \"smok\" (did you mean \"smoke\"?)"),
         ("profile smoke", "smoke is for layers of kind waterfall, and the scene has none"),
     ] {
         press(&mut state, &format!(": \"{line}\" Enter"));
