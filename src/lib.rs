@@ -1,8 +1,8 @@
-//! Plica animates still pictures from the keyboard: folding textures, edited as numbers in a terminal.
+//! Plica animates still pictures from the keyboard: folding textures, meshes and waterfalls, edited as numbers in a terminal.
 //!
 //! # Code map
 //!
-//! A module names only what stands to its left (tests/house.rs holds the rule):
+//! A module names only what stands to its left (tests/house/ enforces the rule):
 //!
 //! base < layers < scene < files < render < export < preview < ops < tui < cli < main
 

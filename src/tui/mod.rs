@@ -1,4 +1,4 @@
-//! The terminal editor, in rungs: each folder names only what stands above it in this list (tests/house.rs holds that).
+//! The terminal editor, in rungs: each folder names only what stands above it in this list (tests/house/ enforces it).
 //! The state is a value and `update` a function of it (commands/update.rs); drawing changes nothing (panes/view.rs). There is
 //! one table of keys and one of commands (keys/table.rs, commands/). Whatever is slow or touches the system is in outside/.
 
