@@ -79,6 +79,53 @@ fn what_is_no_clip_is_refused_with_the_cure() {
 }
 
 #[test]
+fn a_short_or_small_clip_gets_a_layer_that_fits_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    clip(&at("short"), 0..4, 3);
+    clip(&at("two"), 0..2, 3);
+    clip(&at("small"), 0..12, 3);
+    for number in 0..12 {
+        let file = at("small").join(format!("{number:04}.png"));
+        image::imageops::crop_imm(&image::open(&file).unwrap(), 8, 8, 40, 90).to_image().save(&file).unwrap();
+    }
+    for (name, fits, told) in [
+        (
+            "short",
+            json!({ "keys": 4, "step": 1 }),
+            "short: has 4 frames of 96 x 96: its layer begins with {\"sprites\":",
+        ),
+        ("two", json!({ "keys": 2, "step": 1 }), "two: has 2 frames"),
+        ("small", json!({ "size": 32 }), "small: has 12 frames of 40 x 90"),
+    ] {
+        let (_, messages) = plica(folder.path(), &["new", name], true);
+        assert!(messages.contains(told), "{name}: {messages}");
+        let scene = format!("{name}.plica.json");
+        assert_eq!(get(folder.path(), &scene, "layers.0.sprites"), fits);
+        plica(folder.path(), &["check", &scene], true);
+    }
+    std::fs::remove_file(at("two/0001.png")).unwrap();
+    let (_, messages) = plica(folder.path(), &["new", "two/%04d.png", "-o", "one.plica.json"], false);
+    let told = "two/%04d.png: 2 keys 1 frames apart need 2 frames; the clip \"two/%04d.png\" has 1";
+    assert!(messages.contains(told), "{messages}");
+}
+
+#[test]
+fn a_scene_without_a_camera_is_given_one() {
+    let folder = tempfile::tempdir().unwrap();
+    clip(&folder.path().join("falls"), 0..12, 3);
+    plica(folder.path(), &["new", "falls"], true);
+    plica(folder.path(), &["set", "falls.plica.json", "camera=null"], true);
+    let told = "the scene has no camera (set camera={}, or in the editor :camera fit, which sees everything)";
+    for args in [&["check", "falls.plica.json"][..], &["render", "falls.plica.json", "--frames", "0", "-o", "a.png"]] {
+        let (out, messages) = plica(folder.path(), args, false);
+        assert!(format!("{out}{messages}").contains(told), "{args:?}: {out}{messages}");
+    }
+    plica(folder.path(), &["set", "falls.plica.json", "camera={}"], true);
+    plica(folder.path(), &["check", "falls.plica.json"], true);
+}
+
+#[test]
 fn a_check_finds_a_clip_in_which_nothing_moves() {
     let folder = tempfile::tempdir().unwrap();
     clip(&folder.path().join("ice"), 0..12, 0);
@@ -105,7 +152,7 @@ fn a_probe_tells_of_every_layer_of_sprites() {
     for (layer, name) in [(&told, "falls"), (other, "mist")] {
         let sprites = layer["sprites"].as_array().unwrap();
         assert_eq!((&layer["layer"], sprites.len()), (&json!(name), 8));
-        assert!(layer["count"].as_u64().unwrap() > 8, "{layer}");
+        assert!(layer["count"].as_u64().unwrap() > 8 && layer["listed"] == 8, "{layer}");
         assert!(sprites.iter().all(|sprite| sprite["layer"] == name && sprite["width_px"].is_number()), "{layer}");
     }
     let words = probe(&[]);

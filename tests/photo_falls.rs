@@ -107,7 +107,7 @@ fn windows_of_real_clips_are_all_distinct_and_within_them() {
     for (clip, (width, height)) in [("waterfall", (512, 400)), ("fire_cg", (320, 180))] {
         let folder = tempfile::tempdir().unwrap();
         copy_clip(&data.join("clips").join(clip), &folder.path().join("clip"));
-        let scene = plica::scene::Start::default().clip("clip", "clip/%04d.jpg", 0).document().unwrap();
+        let scene = plica::scene::Start::default().clip("clip", "clip/%04d.jpg", 0, None).document().unwrap();
         std::fs::write(folder.path().join("scene.plica.json"), scene.to_text()).unwrap();
         let (document, synth) = synth(&folder.path().join("scene.plica.json"));
         let album = synth.layers[0].album(0).unwrap();

@@ -1,5 +1,6 @@
 //! Clips that a person names to make a scene of them: numbered pictures, by a pattern or by their folder, or a video.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::{disk, paths, picture};
@@ -87,8 +88,7 @@ fn in_folder(folder: &Path) -> Result<Found> {
     };
     let mut all: Vec<Series> = series(names.iter().map(String::as_str)).into_iter().filter(shown).collect();
     match all.as_slice() {
-        [] => Err(Error::at(folder.display(), "holds no numbered pictures")
-            .cure("name them as 0001.png, 0002.png and so on, or name a picture, a model or a video")),
+        [] => Err(no_series(folder, &names)),
         [_] => Ok(found(folder, all.remove(0))),
         several => {
             let patterns: Vec<&str> = several.iter().map(|one| one.pattern.as_str()).collect();
@@ -96,6 +96,17 @@ fn in_folder(folder: &Path) -> Result<Found> {
             Err(Error::at(folder.display(), format!("holds several clips: {}", patterns.join(", "))).cure(cure))
         }
     }
+}
+
+/// Why a folder has no clip.
+fn no_series(folder: &Path, names: &[String]) -> Error {
+    let numbered = |name: &&String| picture::is_one(&folder.join(name)) && name.contains(|c: char| c.is_ascii_digit());
+    let what = match names.iter().find(numbered) {
+        Some(alone) => format!("holds no two pictures with one name and different numbers; {alone} alone is no clip"),
+        None => "holds no numbered pictures".to_owned(),
+    };
+    let cure = "name them as 0001.png, 0002.png and so on, or name a picture, a model or a video";
+    Error::at(folder.display(), what).cure(cure)
 }
 
 /// The frames of a series up to the first number that is missing.
@@ -109,7 +120,10 @@ fn found(folder: &Path, all: Series) -> Found {
 }
 
 fn names(folder: &Path) -> Result<Vec<String>> {
-    let entries = std::fs::read_dir(folder).map_err(|error| Error::at(folder.display(), error))?;
+    let entries = std::fs::read_dir(folder).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => Error::at(folder.display(), "there is no such folder"),
+        _ => Error::at(folder.display(), error),
+    })?;
     Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect())
 }
 
@@ -141,9 +155,11 @@ mod tests {
 
     #[test]
     fn what_is_no_clip_is_told_with_the_cure() {
-        let folder = folder(&["none/cat.png", "two/a1.png", "two/a2.png", "two/b1.png", "two/b2.png"]);
+        let folder = folder(&["none/cat.png", "one/0000.png", "two/a1.png", "two/a2.png", "two/b1.png", "two/b2.png"]);
         for (name, told) in [
             ("none", "none: holds no numbered pictures (name them as 0001.png"),
+            ("one", "one: holds no two pictures with one name and different numbers; 0000.png alone is no clip"),
+            ("nosuch/%04d.png", "nosuch: there is no such folder"),
             ("two", "two: holds several clips: a%d.png, b%d.png (name one of them, as "),
             ("two/%04d.png", "two/%04d.png: there is no such file (the first frame would be 0000.png or 0001.png)"),
             ("two/%x.png", "\"%x\" is no frame number (%04d stands for"),

@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 
 use super::parts::bundle::{Names, Sink};
 use super::parts::derived::Derived;
+use super::parts::goal::Goal;
 use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{List, Materials, Use};
 use super::parts::moment::{Moment, Space};
@@ -19,6 +20,7 @@ use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::space::eye::Ray;
+use super::space::fit::Bounds;
 use super::timeline::{Timeline, Wrap};
 use crate::base::error::Error;
 use crate::base::problem::Problem;
@@ -77,6 +79,11 @@ pub trait Technique: Any + Send + Sync {
     /// The part of the layer's picture for something new at `path`.
     fn bounds(&self, path: &str) -> Rect;
 
+    /// The box of the world that holds the layer at all times, if the document alone tells.
+    fn extent(&self) -> Option<Bounds> {
+        None
+    }
+
     /// The name of the item at `path`, if it is in a list whose items have names.
     fn item_name(&self, _path: &str) -> Option<&str> {
         None
@@ -116,7 +123,16 @@ pub trait Technique: Any + Send + Sync {
     ///
     /// # Errors
     /// Why there is none.
-    fn aimed(&self, _path: &str, _ray: &Ray) -> Result<(String, Value), String> {
+    fn aimed(&self, path: &str, _ray: &Ray) -> Result<(String, Value), String> {
+        self.goal(path)?;
+        Err("this cannot be moved".into())
+    }
+
+    /// Where the item at `path` goes now.
+    ///
+    /// # Errors
+    /// It goes nowhere.
+    fn goal(&self, _path: &str) -> Result<Goal, String> {
         Err("nothing here goes to a place: select a point that does (w, b)".into())
     }
 
@@ -219,8 +235,10 @@ pub struct Template {
 pub struct Shown<'a> {
     /// Its name in its list.
     pub name: &'a str,
-    /// Width and height of its frames in pixels, if it has any.
+    /// Width and height of its frames in pixels, as far as they are known.
     pub size_px: (usize, usize),
+    /// How many frames it has, if it is a clip and that is known.
+    pub frames: Option<usize>,
     /// The image on its surface, if it has one.
     pub image: Option<&'a str>,
 }

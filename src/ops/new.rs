@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use super::Context;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
-use crate::base::problem::Problem;
+use crate::base::problem::{Problem, Severity};
+use crate::files::clips::Found;
 use crate::files::materials::{self, Cache};
 use crate::files::{self, clips, disk, models, paths, picture, write};
 use crate::layers::space::fit::Bounds;
-use crate::scene::{Document, Start};
+use crate::scene::{Document, Start, check};
 
 /// Make a scene from pictures, models and clips
 #[derive(clap::Args)]
@@ -145,10 +146,7 @@ impl Making<'_> {
     fn add_clip(&mut self, source: &Path) -> Result<()> {
         let found = clips::find(source)?;
         let (name, place) = (clip_called(source), source.display());
-        let here = |file: &str| Start::default().clip("clip", file, found.first).document();
-        let alone = here(&found.name).map_err(|problems| refused(source, problems))?;
-        let gathered = materials::load(&found.folder.join("scene"), alone.scene(), self.options, &mut Cache::default());
-        let (_, problems) = gathered.map_err(|problems| refused(source, problems))?;
+        let (known, problems) = self.measure(source, &found)?;
         let told = problems.iter().map(|problem| problem.message.as_str()).chain(found.note.as_deref());
         self.notes.extend(told.map(|note| format!("{place}: {note}")));
         let (path, copied) = match below(&found.folder, self.path) {
@@ -161,16 +159,45 @@ impl Making<'_> {
             let copy = |file: &String| (found.folder.join(file), folder.join(file).to_string_lossy().into_owned());
             self.copies.extend(found.files.iter().map(copy));
         }
-        let path = path.to_str().ok_or_else(|| Error::at(place, "has a name that is no text").cure("rename it"))?;
+        let path =
+            path.to_str().ok_or_else(|| Error::at(source.display(), "has a name that is no text").cure("rename it"))?;
         self.name(source, path.to_owned())?;
-        self.start = std::mem::take(&mut self.start).clip(&name, path, found.first);
+        self.start = std::mem::take(&mut self.start).clip(&name, path, found.first, Some(known));
+        if let Some(fitted) = self.start.fitted() {
+            let ((width, height), frames) = known;
+            self.notes
+                .push(format!("{place}: has {frames} frames of {width} x {height}: its layer begins with {fitted}"));
+        }
         Ok(())
+    }
+
+    /// Width and height of a clip that was read completely, how many frames it has, and the warnings.
+    ///
+    /// # Errors
+    /// It cannot be read, or no layer fits it.
+    fn measure(&self, source: &Path, found: &Found) -> Result<(((usize, usize), usize), Vec<Problem>)> {
+        let refused = |problems| refused(source, problems);
+        let called = source.display().to_string();
+        let alone = |known| Start::default().clip(&called, &found.name, found.first, known).document();
+        let document = alone(None).map_err(refused)?;
+        let mut cache = Cache::default();
+        let (materials, problems) =
+            materials::gather(&found.folder.join("scene"), document.scene(), self.options, &mut cache);
+        // Whether a layer fits is only known after the clip.
+        let of_clip = |problem: &Problem| !problem.path.starts_with("/layers");
+        let (mut problems, _): (Vec<Problem>, Vec<Problem>) = problems.into_iter().partition(of_clip);
+        let Some(clip) = materials.clips.get(&called) else { return Err(refused(problems)) };
+        let known = (clip.size_px(), clip.frames.len());
+        let fitted = alone(Some(known)).map_err(refused)?;
+        problems.extend(check::check_materials(fitted.scene(), &materials));
+        let failed = problems.iter().any(|problem| problem.severity == Severity::Error);
+        if failed { Err(refused(problems)) } else { Ok((known, problems)) }
     }
 
     /// Notes what a source is called in the scene, which no other one may be.
     fn name(&mut self, source: &Path, named: String) -> Result<()> {
         if self.named.contains(&named) {
-            let error = Error::at(source.display(), "has the same file name as another picture");
+            let error = Error::at(source.display(), "has the same file name as another one");
             return Err(error.cure("rename one"));
         }
         self.named.push(named);

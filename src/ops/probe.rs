@@ -7,7 +7,7 @@ use serde_json::{Value as Json, json};
 use super::{Context, opened::Opened, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::maths;
-use crate::base::text::hex;
+use crate::base::text::{self, hex};
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
 use crate::layers::ready::Making;
@@ -151,6 +151,7 @@ fn value(value: &Value) -> Json {
         Value::Index(index) => json!(index),
         Value::Coordinates(numbers, _) => json!(numbers),
         Value::Flag { on, .. } => json!(on),
+        Value::Color(codes) => json!(codes),
         Value::Items(items) => items.iter().map(|entries| object(entries)).collect(),
     }
 }
@@ -160,7 +161,9 @@ fn prose(read: &[ReadOut], [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: 
     // Numbers and flags that follow one another share a line.
     let mut shares = false;
     let entries = read.iter().enumerate().flat_map(|(i, read)| read.entries.iter().map(move |entry| (i, entry)));
-    for (i, Entry { label, value, .. }) in entries {
+    let is_empty = |value: &Value| matches!(value, Value::Items(items) if items.is_empty());
+    let is_told = |entry: &Entry| !entry.label.is_empty() && !is_empty(&entry.value);
+    for (i, Entry { label, value, .. }) in entries.filter(|(_, entry)| is_told(entry)) {
         let short = matches!(value, Value::Number(_) | Value::Flag { .. });
         text += match value {
             Value::Of(_) if i == 0 => ": ",
@@ -197,14 +200,45 @@ fn said(label: &str, value: &Value) -> String {
             format!("{label} {} {unit}", numbers.join(", ")).trim_end().to_owned()
         }
         Value::Flag { on, off } => if *on { label } else { off }.to_owned(),
-        Value::Items(items) => {
-            let words = |entries: &Vec<Entry>| {
-                let words: Vec<String> = entries.iter().map(|entry| said(entry.label, &entry.value)).collect();
-                format!("{label}: {}", words.join(", "))
-            };
-            items.iter().map(words).collect::<Vec<_>>().join("\n  ")
-        }
+        Value::Color([r, g, b, a]) => format!("{label} #{}, alpha {a}", hex(&[*r, *g, *b])),
+        Value::Items(items) => format!("listed {}, {label}:\n  {}", items.len(), table(items).join("\n  ")),
     }
+}
+
+/// Several things as a table: the labels, then a line for each.
+fn table(items: &[Vec<Entry>]) -> Vec<String> {
+    let told = |entries: &[Entry]| entries.iter().filter(|entry| !entry.label.is_empty()).cloned().collect();
+    let items: Vec<Vec<Entry>> = items.iter().map(|entries| told(entries)).collect();
+    let heads = items.first().map(|entries| entries.iter().map(|entry| entry.label.to_owned()).collect());
+    let cells = items.iter().map(|entries| entries.iter().map(|entry| brief(&entry.value)).collect());
+    let rows: Vec<Vec<String>> = heads.into_iter().chain(cells).collect();
+    let wide = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().enumerate().map(|(i, cell)| format!("{cell:>0$}", wide(i).unwrap_or(0)));
+        cells.collect::<Vec<_>>().join(" ")
+    };
+    rows.iter().map(line).collect()
+}
+
+/// A value in as little room as can be.
+fn brief(value: &Value) -> String {
+    match value {
+        Value::Of(name) => name.clone().unwrap_or_default(),
+        Value::Number(number) => brief_number(*number),
+        Value::Index(index) => index.to_string(),
+        Value::Coordinates(numbers, _) | Value::List(numbers) => {
+            numbers.iter().map(|number| brief_number(*number)).collect::<Vec<_>>().join(" ")
+        }
+        Value::Color(codes) => format!("#{}", hex(codes)),
+        Value::Flag { on, off } => if *on { "yes" } else { off }.to_owned(),
+        other => said("", other).trim().to_owned(),
+    }
+}
+
+/// A number with three digits that count.
+fn brief_number(number: f64) -> String {
+    let digits = [1.0, 10.0, 100.0].iter().filter(|least| number.abs() >= **least).count();
+    text::short(number, [3, 2, 1, 1][digits])
 }
 
 #[cfg(test)]
@@ -226,6 +260,23 @@ mod tests {
             vec![ReadOut { entries, axis: None }]
         };
         let water = ReadOut { entries: vec![entry("layer", "layer", Value::Of(Some("falls".into())))], axis: None };
+        let sprite = |age, at: [f64; 2], level, color| {
+            vec![
+                entry("age", "age", Value::Number(age)),
+                entry("at", "at", Value::Coordinates(at.to_vec(), "m")),
+                entry("level", "", Value::Index(level)),
+                entry("color", "color", Value::Color(color)),
+            ]
+        };
+        let items =
+            vec![sprite(0.12345, [-0.5, 12.25], 1, [255, 0, 16, 128]), sprite(2.0, [1.0, 250.04], 0, [1, 2, 3, 4])];
+        let sprites = vec![
+            entry("count", "sprites", Value::Index(2)),
+            entry("listed", "", Value::Index(2)),
+            entry("sprites", "the oldest first", Value::Items(items)),
+            entry("none", "none", Value::Items(Vec::new())),
+        ];
+        let sprites = vec![ReadOut { entries: sprites, axis: None }];
         let outside = vec![ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None }];
         for (read, json, words) in [
             (
@@ -249,6 +300,12 @@ mod tests {
                 [outside, vec![water]].concat(),
                 r#"{"zone":null,"color":[1,2,3,255],"others":[{"layer":"falls"}]}"#,
                 "pixel 7,8 at t 0.5: in no zone\nalso: layer \"falls\"\n  shows #010203, alpha 255",
+            ),
+            (
+                sprites.clone(),
+                r#"{"count":2,"listed":2,"sprites":[{"age":0.12345,"at":[-0.5,12.25],"level":1,"color":[255,0,16,128]},{"age":2.0,"at":[1.0,250.04],"level":0,"color":[1,2,3,4]}],"none":[],"color":[1,2,3,255]}"#,
+                "pixel 7,8 at t 0.5\n  sprites 2\n  listed 2, the oldest first:\n    age       at     color\n  0.123 -0.5 12.2 #ff001080\n      2     1 250 #01020304\n  \
+                 shows #010203, alpha 255",
             ),
             (Vec::new(), r#"{"color":[1,2,3,255]}"#, "pixel 7,8 at t 0.5\n  shows #010203, alpha 255"),
         ] {

@@ -155,7 +155,8 @@ pub fn thinned(asked: &Asked, synth: &Synth, time: f64, most: usize) -> (Linear,
 
 /// The numbers of a pass as colors to look at.
 pub fn view(pass: &Pass, picture: &Linear) -> Frame {
-    let covered = picture.cells().iter().filter(|cell| cell[3] != 0.0).map(|cell| cell[0]);
+    let shown = if pass.holds == Holds::Speed { 2 } else { 0 };
+    let covered = picture.cells().iter().filter(|cell| cell[3] != 0.0).map(|cell| cell[shown]);
     let range = covered.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
     let cells = picture.cells().par_iter().map(|cell| color(pass, *cell, range)).collect();
     Grid::from_cells(picture.width(), picture.height(), cells)
@@ -167,6 +168,7 @@ fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
     let code = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
     match pass.holds {
         Holds::Light => encode(cell),
+        Holds::Count if covered == 0.0 => [0, 0, 0, 255],
         _ if covered == 0.0 => [0; 4],
         Holds::Vector if *pass == pass::UV => {
             let [r, g, _] = hue(z as u32);
@@ -177,6 +179,15 @@ fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
             let [r, g, b] = hue(x as u32);
             [r, g, b, 255]
         }
+        // One is already brighter than none, and the most are white.
+        Holds::Count => {
+            let many = code(0.15 + 0.85 * x / high.max(1.0));
+            [many, many, many, 255]
+        }
+        Holds::Speed => {
+            let [r, g, b] = heat(if high > low { (z - low) / (high - low) } else { 0.5 });
+            [code(r), code(g), code(b), 255]
+        }
         // The nearest is white and the farthest is not yet black, whatever the scale of the scene.
         Holds::Number => {
             let far = if high > low { (x - low) / (high - low) } else { 0.0 };
@@ -184,6 +195,15 @@ fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
             [near, near, near, 255]
         }
     }
+}
+
+/// From blue through green to red: for shares from 0 to 1.
+fn heat(share: f32) -> [f32; 3] {
+    const COLORS: [[f32; 3]; 3] = [[0.15, 0.3, 1.0], [0.2, 0.85, 0.35], [1.0, 0.25, 0.15]];
+    let at = share.clamp(0.0, 1.0) * 2.0;
+    let (below, above) = if at < 1.0 { (COLORS[0], COLORS[1]) } else { (COLORS[1], COLORS[2]) };
+    let part = at - if at < 1.0 { 0.0 } else { 1.0 };
+    std::array::from_fn(|c| below[c] + (above[c] - below[c]) * part)
 }
 
 /// A color that tells a number from its neighbors.
@@ -203,5 +223,29 @@ mod tests {
         let shown = view(&pass::DEPTH, &Linear::from_cells(4, 1, cells.to_vec()));
         let codes: Vec<[u8; 2]> = shown.cells().iter().map(|[r, _, _, a]| [*r, *a]).collect();
         assert_eq!(codes, [[0, 0], [255, 255], [140, 255], [26, 255]]);
+    }
+
+    fn seen(holds: Holds, cells: &[Rgba]) -> Vec<[u8; 4]> {
+        let pass = Pass { name: "test", help: "", holds };
+        view(&pass, &Linear::from_cells(cells.len(), 1, cells.to_vec())).cells().to_vec()
+    }
+
+    #[test]
+    fn counts_to_look_at_are_brighter_the_more_there_are() {
+        let shown = seen(Holds::Count, &[0.0, 1.0, 20.0, 40.0].map(|v: f32| [v, v, v, v.min(1.0)]));
+        assert_eq!(
+            shown.iter().map(|[r, .., a]| [*r, *a]).collect::<Vec<_>>(),
+            [[0, 255], [44, 255], [147, 255], [255, 255]]
+        );
+    }
+
+    #[test]
+    fn speeds_to_look_at_go_from_blue_through_green_to_red_whatever_they_are() {
+        for unit in [0.01, 1.0, 300.0] {
+            let shown = seen(Holds::Speed, &[1.0, 2.0, 3.0].map(|v| [7.0, 0.4, v * unit, 1.0]));
+            let most = |[r, g, b, _]: [u8; 4]| [r, g, b].iter().enumerate().max_by_key(|(_, v)| **v).unwrap().0;
+            assert_eq!(shown.iter().map(|code| most(*code)).collect::<Vec<_>>(), [2, 1, 0], "{unit}: {shown:?}");
+        }
+        assert_eq!(seen(Holds::Speed, &[[0.0; 4]]), [[0; 4]], "no line, no color");
     }
 }

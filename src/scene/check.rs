@@ -15,7 +15,7 @@ use crate::base::problem::{Problem, Severity};
 use crate::layers::parts::materials::{List, Materials, Of};
 use crate::layers::parts::moment::Space;
 use crate::layers::technique::{Checked, Technique};
-use crate::layers::{KINDS, check as rules};
+use crate::layers::{KINDS, Layer, check as rules};
 
 /// At most about so many frames are looked at for what the camera sees.
 const MOST_VIEWS: u64 = 2000;
@@ -142,10 +142,20 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems
 }
 
-/// The problems that only show with the pictures and fields: outlines outside their picture, masks and fields of
-/// another size. Those that could not be loaded are skipped.
+/// The problems with which a scene can be open and edited, but not shown. Some show only with the pictures and fields:
+/// outlines outside their picture, masks and fields of another size; those that could not be loaded are skipped.
 pub fn check_materials(scene: &Scene, materials: &Materials) -> Vec<Problem> {
-    below_layers(scene, |layer| layer.check_materials(materials))
+    let mut problems = below_layers(scene, |layer| layer.check_materials(materials));
+    problems.extend(unseen(scene));
+    problems
+}
+
+/// A layer in space that no camera sees.
+fn unseen(scene: &Scene) -> Option<Problem> {
+    let in_space = |layer: &Layer| layer.technique().kind().space == Space::World;
+    let lost = scene.layers.iter().position(in_space).filter(|_| scene.camera.is_none())?;
+    let problem = Problem::error(format!("/layers/{lost}"), "the layer is in space, and the scene has no camera");
+    Some(problem.hint("set camera={}, or in the editor :camera fit, which sees everything"))
 }
 
 fn below_layers(scene: &Scene, check: impl Fn(&dyn Technique) -> Vec<Problem>) -> Vec<Problem> {
@@ -201,11 +211,6 @@ fn view(scene: &Scene) -> Vec<Problem> {
     let times = (0..frames).step_by(step).map(|k| scene.timeline.time_of(k));
     let camera = scene.camera.iter().flat_map(|camera| camera.check(times.clone()));
     problems.extend(camera.map(|problem| problem.under("/camera")));
-    let lost = scene.layers.iter().position(|layer| layer.technique().kind().space == Space::World);
-    if let (Some(i), None) = (lost, &scene.camera) {
-        let problem = Problem::error(format!("/layers/{i}"), "the layer is in space, and the scene has no camera");
-        problems.push(problem.hint(":camera fit makes one that sees everything"));
-    }
     problems
 }
 

@@ -29,6 +29,8 @@ pub struct Start {
     bounds: Option<Bounds>,
     /// Whether a layer is in space.
     in_space: bool,
+    /// See [`Start::fitted`].
+    fitted: Option<String>,
 }
 
 impl Start {
@@ -37,7 +39,7 @@ impl Start {
     pub fn picture(mut self, name: &str, path: &str, size_px: (usize, usize)) -> Start {
         let image = self.image(name, path);
         self.frame.get_or_insert(size_px);
-        self.layer(List::Images, &Shown { name: &image, size_px, image: None });
+        self.layer(List::Images, &Shown { name: &image, size_px, ..Shown::default() });
         self
     }
 
@@ -50,15 +52,23 @@ impl Start {
         self
     }
 
-    /// Adds a clip whose frames are numbered from `first`, with a layer that shows it.
-    pub fn clip(mut self, name: &str, path: &str, first: u64) -> Start {
+    /// Adds a clip whose frames are numbered from `first`, with a layer that shows it, which fits what is `known` of it: width
+    /// and height, and how many frames there are.
+    pub fn clip(mut self, name: &str, path: &str, first: u64, known: Option<((usize, usize), usize)>) -> Start {
         let mut clip = json!({ "path": path });
         if first > 0 {
             clip["first"] = first.into();
         }
         let clip = self.put(List::Clips, name, clip);
-        self.layer(List::Clips, &Shown { name: &clip, ..Shown::default() });
+        let plain = Shown { name: &clip, ..Shown::default() };
+        let shown = known.map_or(plain, |(size_px, frames)| Shown { size_px, frames: Some(frames), ..plain });
+        self.layer(List::Clips, &shown);
         self
+    }
+
+    /// What the last layer has that one of something whose size is not known would not have, as JSON.
+    pub fn fitted(&self) -> Option<&str> {
+        self.fitted.as_deref()
     }
 
     /// The scene.
@@ -97,6 +107,10 @@ impl Start {
             return;
         };
         let mut layer = (template.layer)(shown);
+        let plain = (template.layer)(&Shown { size_px: (0, 0), frames: None, ..*shown });
+        let fields = layer.as_object().into_iter().flatten().filter(|(name, value)| plain.get(name) != Some(*value));
+        let fields: Map<String, Value> = fields.map(|(name, value)| (name.clone(), value.clone())).collect();
+        self.fitted = (!fields.is_empty()).then(|| Value::Object(fields).to_string());
         let name = unique_name(shown.name, |name| self.layers.iter().any(|other| other["name"] == name));
         layer["name"] = name.into();
         self.layers.push(layer);
@@ -159,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_clip_gets_a_layer_in_space_and_a_camera() {
-        let document = Start::default().clip("falls", "falls/%04d.jpg", 3).document().unwrap();
+        let document = Start::default().clip("falls", "falls/%04d.jpg", 3, None).document().unwrap();
         let expected = json!({
             "plica": 1,
             "camera": {},

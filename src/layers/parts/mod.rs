@@ -4,6 +4,7 @@
 pub mod album;
 pub mod bundle;
 pub mod derived;
+pub mod goal;
 pub mod marks;
 pub mod materials;
 pub mod moment;

@@ -18,8 +18,12 @@ pub enum Holds {
     Light,
     /// Coordinates of a vector.
     Vector,
-    /// One number, in all three channels.
+    /// One number, in all three channels; the less, the nearer.
     Number,
+    /// How many there are, in all three channels.
+    Count,
+    /// Three numbers, of which the last is shown as a color: from slow to fast.
+    Speed,
 }
 
 /// The finished frame.

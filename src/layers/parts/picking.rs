@@ -25,6 +25,8 @@ pub struct Picking {
     pub marks: Vec<Mark>,
     /// How many frames the clip has.
     pub frames: usize,
+    /// How many of them what is picked is followed through.
+    pub followed: usize,
     /// The side of the square that is picked, in pixels.
     pub side: f64,
 }

@@ -76,7 +76,9 @@ pub enum Value {
         /// The word if it is false.
         off: &'static str,
     },
-    /// Several things, each with its own entries.
+    /// Red, green, blue and alpha, as codes.
+    Color([u8; 4]),
+    /// Several things, each with its own entries; those without a label are not told to people.
     Items(Vec<Vec<Entry>>),
 }
 

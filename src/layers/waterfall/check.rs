@@ -6,9 +6,9 @@ use super::hash::Random;
 use super::lines::{Line, lines, water};
 use super::look::Look;
 use super::model::{Node, WaterfallLayer};
-use super::sprites::bytes_of;
 use super::sprites::cut::Sources;
 use super::sprites::model::{Pick, Shows, Sprites};
+use super::sprites::{SIDE_STEP, bytes_of};
 use crate::base::budget::size;
 use crate::base::clip::Clip;
 use crate::base::problem::Problem;
@@ -18,8 +18,6 @@ use crate::layers::check as rules;
 const MOST_SPRITES: f64 = 2e6;
 /// The most bytes of keys.
 const MOST_BYTES: u64 = 1 << 30;
-/// Sides of keys are multiples of this, in texels.
-const PART: u32 = 16;
 
 /// The checks beyond shape.
 pub fn problems(layer: &WaterfallLayer) -> Vec<Problem> {
@@ -56,9 +54,9 @@ fn of_sprites(layer: &WaterfallLayer) -> Vec<Problem> {
             .push(Problem::error("", "a waterfall needs a clip or sprites.sheets").hint("name a clip of the scene"));
     }
     let side = sprites.size;
-    if !side.is_multiple_of(PART) {
-        let near = [side / PART * PART, side.div_ceil(PART) * PART].map(|side| side.to_string());
-        let problem = Problem::error("/sprites/size", format!("{side} is no multiple of {PART}"));
+    if !side.is_multiple_of(SIDE_STEP) {
+        let near = [side / SIDE_STEP * SIDE_STEP, side.div_ceil(SIDE_STEP) * SIDE_STEP].map(|side| side.to_string());
+        let problem = Problem::error("/sprites/size", format!("{side} is no multiple of {SIDE_STEP}"));
         problems.push(problem.hint(near.join(", ")));
     }
     if sprites.matte.low >= sprites.matte.high {

@@ -12,6 +12,7 @@ use super::path::{Laws, Path, first};
 use crate::base::pointer::Pointer;
 use crate::base::text::short;
 use crate::layers::parts::derived::Derived;
+use crate::layers::parts::goal::Goal;
 use crate::layers::space::eye::Ray;
 
 const fn column(name: &'static str, unit: &'static str, help: &'static str) -> Derived {
@@ -37,6 +38,9 @@ const IMPACT: Derived = column(
     "m/s",
     "How fast the line of the node meets the pool. A new speed changes vx and vz, and keeps the air time.",
 );
+
+/// The columns that tell of a landing.
+static OF_LANDING: &[Derived] = &[LAND_X, LAND_Z, AIR_TIME];
 
 /// The columns of the lip that follow from its nodes.
 pub static COLUMNS: &[Derived] = &[SPEED, LAND_X, LAND_Z, AIR_TIME, IMPACT];
@@ -178,12 +182,28 @@ impl Fall {
 /// There is no node, or its line or the ray never meets the pool.
 pub fn aimed(layer: &WaterfallLayer, path: &str, ray: &Ray) -> Result<(String, Value), String> {
     let values = Values::of(layer);
-    let found = Pointer(path).item_of("/lip").and_then(|(index, _)| Some((index, values.lip.get(index)?)));
-    let (index, node) = found.ok_or("only nodes of the lip land: select one (w, b)")?;
+    let (index, node) = node(&values, path)?;
     let missed = || format!("the pool (y {}) is not seen there", short(values.pool, DECIMALS));
     let at = ray.meets_level(values.pool).ok_or_else(missed)?;
     let velocity = Fall::new(&values, node).landing(Some(at.x), Some(at.z))?;
     Ok((format!("/lip/{index}/velocity"), json!(velocity.to_array())))
+}
+
+/// Where the line of the node at `path` ends.
+///
+/// # Errors
+/// There is no node.
+pub fn goal(layer: &WaterfallLayer, path: &str) -> Result<Goal, String> {
+    let values = Values::of(layer);
+    let (_, node) = node(&values, path)?;
+    let at = Fall::new(&values, node).end().map(|(at, _)| at);
+    Ok(Goal { at, level: values.pool, told: OF_LANDING })
+}
+
+/// The node at `path`, and its number.
+fn node<'a>(values: &'a Values, path: &str) -> Result<(usize, &'a Node), String> {
+    let found = Pointer(path).item_of("/lip").and_then(|(index, _)| Some((index, values.lip.get(index)?)));
+    found.ok_or_else(|| "only nodes of the lip land: select one (w, b)".into())
 }
 
 #[cfg(test)]

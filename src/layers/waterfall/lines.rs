@@ -8,11 +8,15 @@ use super::hash::Random;
 use super::model::Foam;
 use super::path::Path;
 use crate::base::maths::{TAU, cos, sin};
+use crate::layers::space::fit::Bounds;
 
 /// Foam starts so far above the pool, in meters.
 const ABOVE: f64 = 1e-6;
 /// Lines with a shorter life carry nothing, in seconds.
 pub const LEAST_LIFE: f64 = 1e-3;
+
+/// Places of a line that are looked at for where it is.
+const PLACES: usize = 16;
 
 /// A flow line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +49,16 @@ pub fn lines(values: &Values, foam: &Foam, random: Random) -> Vec<Line> {
         springing.map(|i| spring(values, foam, &all[i / count], (i % count) as u32, random)).collect();
     all.extend(springing);
     all
+}
+
+/// The box around all lines, as wide as what they carry.
+pub fn bounds(values: &Values, lines: &[Line]) -> Option<Bounds> {
+    let places = lines.iter().filter(|line| line.carries()).flat_map(|line| {
+        let wide = DVec3::splat(values.kinds[usize::from(line.foam)].look.widest() / 2.0);
+        let at = move |i: usize| values.laws.at(&line.path, line.life * i as f64 / PLACES as f64).0;
+        (0..=PLACES).flat_map(move |i| [at(i) - wide, at(i) + wide])
+    });
+    Bounds::around(places)
 }
 
 /// Those from the lip.

@@ -41,12 +41,14 @@ use serde_json::{Value, json};
 
 use self::model::WaterfallLayer;
 use super::parts::derived::Derived;
+use super::parts::goal::Goal;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
 use super::parts::picking::Picks;
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::space::eye::Ray;
+use super::space::fit::Bounds;
 use super::technique::{Checked, Kind, Shown, Starts, Technique, Template, halfway};
 use crate::base::problem::Problem;
 
@@ -109,6 +111,11 @@ impl Technique for WaterfallLayer {
         Rect::new(0.0, 0.0, side, side)
     }
 
+    fn extent(&self) -> Option<Bounds> {
+        let values = automatic::Values::of(self);
+        lines::bounds(&values, &lines::lines(&values, &self.foam, hash::Random(self.seed)))
+    }
+
     fn automatic(&self, path: &str) -> Option<Value> {
         automatic::Values::of(self).field(path)
     }
@@ -132,6 +139,10 @@ impl Technique for WaterfallLayer {
 
     fn aimed(&self, path: &str, ray: &Ray) -> Result<(String, Value), String> {
         landing::aimed(self, path, ray)
+    }
+
+    fn goal(&self, path: &str) -> Result<Goal, String> {
+        landing::goal(self, path)
     }
 
     fn probe(
@@ -159,9 +170,14 @@ impl Technique for WaterfallLayer {
     }
 }
 
-/// A fall of water from a clip.
+/// A fall of water from a clip; what is cut out of it fits into it, as far as that can be.
 fn template(shown: &Shown) -> Value {
-    json!({ "kind": "waterfall", "name": shown.name, "clip": shown.name })
+    let mut layer = json!({ "kind": "waterfall", "name": shown.name, "clip": shown.name });
+    let fitting = shown.frames.map(|frames| sprites::fitting(shown.size_px, frames)).unwrap_or_default();
+    if !fitting.is_empty() {
+        layer["sprites"] = fitting.into();
+    }
+    layer
 }
 
 fn start(_variant: &str, field: &str, bounds: Rect) -> Option<Value> {

@@ -17,11 +17,11 @@ pub const PIECES: usize = 64;
 pub const LINES: Pass = Pass {
     name: "lines",
     help: "flow lines: number from 1, age in seconds, speed in m/s; 0 where none is",
-    holds: Holds::Vector,
+    holds: Holds::Speed,
 };
 /// The sprites.
 pub const SPRITES: Pass =
-    Pass { name: "sprites", help: "how many sprites of water and the like lie over a pixel", holds: Holds::Number };
+    Pass { name: "sprites", help: "how many sprites of water and the like lie over a pixel", holds: Holds::Count };
 
 /// Adds how many sprites lie over each place of a row.
 pub fn sprites(splats: &[Splat], places: &[Vec<f64>; 2], depth: &mut [f64], out: &mut [Rgba]) {

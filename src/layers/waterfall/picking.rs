@@ -39,7 +39,8 @@ pub fn picking(synth: &Synth, sight: Sight) -> Option<Picking> {
         Sight::Cut(frame) => (Arc::new(cut(synth, clip.frames.get(frame)?, frame)), marks(frame)),
         Sight::Sheet => (Arc::new(laid(synth)), stills(synth)),
     };
-    Some(Picking { picture, marks, frames: clip.frames.len(), side: synth.pictures.side as f64 })
+    let (frames, followed) = (clip.frames.len(), synth.made_of.0.track_frames());
+    Some(Picking { picture, marks, frames, followed, side: synth.pictures.side as f64 })
 }
 
 /// The tracks from the clip, those that are picked with the number of their pick.

@@ -30,13 +30,15 @@ pub fn probe(layer: &WaterfallLayer, synth: &Synth, pixel: (usize, usize), momen
     let count = found.len();
     found.sort_by(|a, b| b.1[3].total_cmp(&a.1[3]));
     found.truncate(MOST);
+    let listed = found.len();
     let items = found.iter().map(|(splat, color)| entries(layer, splat, *color)).collect();
     let layer = Some(layer.name.clone()).filter(|_| count > 0);
     let entry = |key, label, value| Entry { key, label, value };
     let entries = vec![
         entry("layer", "layer", Value::Of(layer)),
         entry("count", "sprites", Value::Index(count)),
-        entry("sprites", "sprite", Value::Items(items)),
+        entry("listed", "", Value::Index(listed)),
+        entry("sprites", "the most opaque first", Value::Items(items)),
     ];
     ReadOut { entries, axis: None }
 }
@@ -53,10 +55,13 @@ fn color(synth: &Synth, splat: &Splat, [x, y]: [f64; 2]) -> Rgba {
 
 fn entries(layer: &WaterfallLayer, splat: &Splat, color: Rgba) -> Vec<Entry> {
     let entry = |key, value| Entry { key, label: key, value };
+    // What follows from the rest is for scripts.
+    let untold = |key, value| Entry { key, label: "", value };
+    let called = |key, label, value| Entry { key, label, value };
     let kind = if splat.foam { "foam" } else { "water" };
     let (track, _) = splat.mix.keys().first().map_or((0, 0), |(place, _)| *place);
     vec![
-        entry("layer", Value::Of(Some(layer.name.clone()))),
+        untold("layer", Value::Of(Some(layer.name.clone()))),
         entry("kind", Value::Of(Some(kind.to_owned()))),
         entry("line", Value::Index(splat.line as usize)),
         entry("birth", Value::Index(splat.alive.birth as usize)),
@@ -67,11 +72,11 @@ fn entries(layer: &WaterfallLayer, splat: &Splat, color: Rgba) -> Vec<Entry> {
         entry("u", Value::Number(splat.key.1)),
         entry("at", Value::Coordinates(splat.at.to_array().to_vec(), "m")),
         entry("depth", Value::Number(splat.depth)),
-        entry("width_px", Value::Number(splat.size_px.x)),
-        entry("length_px", Value::Number(splat.size_px.y)),
+        called("width_px", "width", Value::Number(splat.size_px.x)),
+        called("length_px", "length", Value::Number(splat.size_px.y)),
         entry("angle", Value::Number(splat.angle)),
-        entry("level", Value::Index(splat.level)),
-        entry("axis_aligned", Value::Flag { on: splat.angle == 0.0, off: "turned" }),
-        entry("color", Value::List(encode(color).map(f64::from).to_vec())),
+        untold("level", Value::Index(splat.level)),
+        untold("axis_aligned", Value::Flag { on: splat.angle == 0.0, off: "turned" }),
+        entry("color", Value::Color(encode(color))),
     ]
 }

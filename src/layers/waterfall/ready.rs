@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use super::check::carried;
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{album, marks, picking, plan};
+use super::{album, lines, marks, picking, plan};
 use crate::base::reduce::Reduced;
 use crate::layers::parts::album::Album;
 use crate::layers::parts::marks::{Mark, View};
@@ -17,9 +15,6 @@ use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Fact;
 use crate::layers::ready::{Ready, Still};
 use crate::layers::space::fit::Bounds;
-
-/// Places of a line that are looked at for where it is.
-const PLACES: usize = 16;
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
@@ -46,14 +41,8 @@ impl Ready for Synth {
         marks::marks(self, view, moment)
     }
 
-    /// All lines, as wide as what they carry.
     fn bounds(&self, _t: f64) -> Option<Bounds> {
-        let places = self.lines.iter().filter(|line| line.carries()).flat_map(|line| {
-            let wide = DVec3::splat(self.values.kinds[usize::from(line.foam)].look.widest() / 2.0);
-            let at = move |i: usize| self.values.laws.at(&line.path, line.life * i as f64 / PLACES as f64).0;
-            (0..=PLACES).flat_map(move |i| [at(i) - wide, at(i) + wide])
-        });
-        Bounds::around(places)
+        lines::bounds(&self.values, &self.lines)
     }
 
     /// What cannot be seen in a single frame: the measure of all that is automatic, how long water is on its way, and how

@@ -1,4 +1,4 @@
-//! The scene's camera: from what a window shows, and so that all meshes are seen.
+//! The scene's camera: from what a window shows, and so that all that is in space is seen.
 
 use std::sync::Arc;
 
@@ -8,23 +8,26 @@ use serde_json::json;
 use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
 use crate::files::materials::{self, Cache};
+use crate::layers::Layer;
+use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Space;
 use crate::layers::ready::{Making, Ready};
 use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{Bounds, fit};
 use crate::render::frame_size;
+use crate::scene::Scene;
 use crate::tui::state::State;
 use crate::tui::text::numbers::{rounded, short};
 
 pub const COMMANDS: &[Command] = &[command(
     "camera",
     "take|key|fit",
-    "Make the window's camera the scene's, or a key of it at this time; or see all meshes",
+    "Make the window's camera the scene's, or a key of it at this time; or see all that is in space",
     camera,
 )
 .inside()];
 
-/// Where a new camera sees meshes from.
+/// Where a new camera stands.
 const FIRST_BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
 /// What moves is looked at at so many times.
 const TIMES: u32 = 16;
@@ -94,7 +97,7 @@ fn see_all(state: &mut State, call: &Call) -> Done {
     let ([position, target, up], fov) = of.view(state.play.time);
     let back = if before.is_some() { position - target } else { FIRST_BACK };
     let [position, target] = fit(&bounds, [back, up], fov, size).map(Into::into);
-    write(state, call, &Camera { position, target, up: up.into(), fov, ..of }, "the camera sees all meshes")
+    write(state, call, &Camera { position, target, up: up.into(), fov, ..of }, "the camera sees all that is in space")
 }
 
 /// The box around all that is in space, over the whole timeline.
@@ -104,23 +107,37 @@ fn bounds(layers: &[Arc<dyn Ready>]) -> Option<Bounds> {
     all.reduce(|a, b| a.and(&b))
 }
 
-/// The box around all layers in space, or without any around all meshes, and the size of frames, read from the files: where
-/// nothing is shown, or not yet. Otherwise why there is none.
+/// The box around all layers in space, or without any around all meshes, and the size of frames: where nothing is shown, or not
+/// yet. Files are read only where the document does not tell. Otherwise why there is none.
 fn unmade(state: &State) -> Result<(Bounds, (usize, usize)), String> {
     let scene = state.document().scene();
-    if scene.meshes.is_empty() {
-        return Err("it has no mesh: :add MODEL.obj adds one, and :camera fit sees it".into());
+    if let Some(told) = extent(scene) {
+        return Ok((told, frame_size(scene, &Materials::default())));
+    }
+    if scene.meshes.is_empty() && !scene.layers.iter().any(is_in_space) {
+        return Err("nothing in it is in space: :add MODEL.obj adds a mesh, and :camera fit sees it".into());
     }
     let (materials, problems) =
         materials::gather(state.scene.path(), scene, state.scene.options(), &mut Cache::default());
-    let in_space = scene.layers.iter().map(|layer| layer.technique());
-    let in_space = in_space.filter(|layer| layer.kind().space == Space::World);
+    let in_space = scene.layers.iter().filter(|layer| is_in_space(layer));
     let making = Making::plain(scene.timeline.wrap, &materials);
-    let layers: Vec<_> = in_space.filter_map(|layer| layer.synth(&making, None).ok()).collect();
+    let layers: Vec<_> = in_space.filter_map(|layer| layer.technique().synth(&making, None).ok()).collect();
     let meshes = || materials.meshes.values().flat_map(|mesh| mesh.bounds()).flat_map(<[_; 2]>::from);
     let seen = if layers.is_empty() { Bounds::around(meshes()) } else { bounds(&layers) };
     let why = || problems.first().map_or("nothing is in space".to_owned(), |problem| problem.message.clone());
     Ok((seen.ok_or_else(why)?, frame_size(scene, &materials)))
+}
+
+fn is_in_space(layer: &Layer) -> bool {
+    layer.technique().kind().space == Space::World
+}
+
+/// The box around all layers in space, if the document tells that of each, and the size of frames too.
+fn extent(scene: &Scene) -> Option<Bounds> {
+    let sized = scene.size.is_some() || scene.layers.iter().all(|layer| layer.technique().frame_of().is_none());
+    let in_space = scene.layers.iter().filter(|layer| sized && is_in_space(layer));
+    let told = in_space.map(|layer| layer.technique().extent()).collect::<Option<Vec<_>>>()?;
+    told.into_iter().reduce(|a, b| a.and(&b))
 }
 
 /// Makes a camera that stands still the scene's; says so, and what is lost by it.

@@ -15,16 +15,16 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
         (Mode::Choice(_), _) => vec![keys::LIST],
         (Mode::Palette(_), _) => vec![keys::PALETTE, keys::TYPING],
         (Mode::Pages(_), _) => vec![keys::HELP],
-        (Mode::Aim, _) => vec![keys::AIM, keys::PICTURE],
+        (Mode::Aim, _) => vec![keys::AIM, keys::MOVING],
         (Mode::Normal, Pane::Tree) if looking::picks(state).is_some_and(|(.., here)| here) => {
             vec![keys::PICKABLE, keys::TREE, keys::EVERYWHERE]
         }
         (Mode::Normal, Pane::Picture) if state.picture.looking.is_some() => {
-            vec![keys::PICKING, keys::PICTURE, keys::EVERYWHERE]
+            vec![keys::PICKING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
         }
         (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
-        (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::EVERYWHERE],
+        (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::MOVING, keys::EVERYWHERE],
     };
     if matches!(state.typing.mode, Mode::Normal) && state.memory.recorder.recording().is_some() {
         contexts.insert(0, keys::RECORDING);

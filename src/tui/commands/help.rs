@@ -52,7 +52,7 @@ fn help(state: &mut State, call: &Call) -> Done {
             .map(|command| format!("{:<28} {}", format!("{} {}", command.name, command.args), command.help)),
     );
     lines.extend(call.table.subcommands().map(|name| format!("{name:<28} As `plica {name}` on this scene")));
-    state.typing.mode = Mode::Pages(Pages { title: format!("help: {}", here[0]), lines, scroll: 0 });
+    open(state, here[0], lines);
     Ok(())
 }
 
@@ -76,12 +76,16 @@ fn help_of(state: &mut State, call: &Call) -> Done {
         }
         (None, None) => return Err(call.table.unknown(name)),
     };
-    // The entry comes back when the help is closed.
-    if let Mode::Entry(entry) = &state.typing.mode {
-        state.memory.entry = Some(entry.clone());
+    open(state, name, lines);
+    Ok(())
+}
+
+/// Shows pages. What is being typed or aimed comes back when they are closed.
+fn open(state: &mut State, name: &str, lines: Vec<String>) {
+    if matches!(state.typing.mode, Mode::Entry(_) | Mode::Aim) {
+        state.memory.under = Some(state.typing.mode.clone());
     }
     state.typing.mode = Mode::Pages(Pages { title: format!("help: {name}"), lines, scroll: 0 });
-    Ok(())
 }
 
 /// Help, value, range, default, path and formula of the field under the cursor, in the tree of the node.

@@ -47,7 +47,7 @@ fn opened(table: &Table, state: &mut State) -> Palette {
 
 /// The lines of keys that work in the panes, then commands that take arguments or have no key.
 fn actions(table: &Table, state: &State) -> Vec<Action> {
-    let shown = [keys::EVERYWHERE, keys::TREE, keys::TABLE, keys::PICTURE];
+    let shown = [keys::EVERYWHERE, keys::TREE, keys::TABLE, keys::PICTURE, keys::MOVING];
     let mut all: Vec<Action> = Vec::new();
     for row in state.keymap.rows().iter().filter(|row| shown.contains(&row.context) && !row.command.contains('{')) {
         let line = row.command.to_string();

@@ -101,27 +101,42 @@ fn pick(state: &mut State, call: &Call) -> Done {
         return Err("this is the sheet: z C shows the clip again".into());
     }
     let none = "no pick is selected: w goes to one, a picks one";
+    if matches!(call.text, "add" | "foam" | "move") {
+        move_inside(state, now.side);
+    }
     match call.text {
         "add" | "foam" => {
             let kind = if call.text == "foam" { "foam" } else { "water" };
             let (edit, pointer) = place::add_here(state)?;
             let with = state.document().apply(&edit).map_err(|problems| first(&problems))?;
             let set = |name: &str, value: Value| Edit::set(&with, &format!("{pointer}/{name}"), value);
-            let edits = [set("frame", json!(now.frame)), set("kind", json!(kind))];
+            let unfollowed = now.unfollowed();
+            let alone = unfollowed.as_ref().map(|_| set("track", json!(false)));
+            let edits = [set("frame", json!(now.frame)), set("kind", json!(kind))].into_iter().chain(alone);
             state.edit(Edit::all([edit].into_iter().chain(edits)), false)?;
             go_to(state, &pointer);
+            tell_alone(state, unfollowed);
             Ok(())
         }
         "move" => {
             let pointer = selected(state).ok_or(none)?;
             let frame = Edit::set(state.document(), &format!("{pointer}/frame"), json!(now.frame));
-            let edit = Edit::all([place::move_here(state)?, frame]);
-            state.edit(edit, false)
+            let unfollowed = now.unfollowed().filter(|_| follows(state, &pointer));
+            let alone =
+                unfollowed.as_ref().map(|_| Edit::set(state.document(), &format!("{pointer}/track"), json!(false)));
+            let edit = Edit::all([place::move_here(state)?, frame].into_iter().chain(alone));
+            state.edit(edit, false)?;
+            tell_alone(state, unfollowed);
+            Ok(())
         }
         "track" => {
-            let path = format!("{}/track", selected(state).ok_or(none)?);
-            let follows = field::value(state.document(), &path).and_then(|value| value.as_bool()).unwrap_or(true);
-            let edit = Edit::set(state.document(), &path, json!(!follows));
+            let pointer = selected(state).ok_or(none)?;
+            let follows = follows(state, &pointer);
+            let frame = number(state, "/frame").map_or(now.frame, |frame| frame as usize);
+            if let (false, Some(why)) = (follows, Looking { frame, ..now }.unfollowed()) {
+                return Err(why);
+            }
+            let edit = Edit::set(state.document(), &format!("{pointer}/track"), json!(!follows));
             state.edit(edit, false)?;
             state.say(if follows { "a single picture" } else { "it follows what moves" });
             Ok(())
@@ -136,6 +151,28 @@ fn pick(state: &mut State, call: &Call) -> Done {
             Ok(())
         }
     }
+}
+
+/// Whether a pick follows what moves.
+fn follows(state: &State, pick: &str) -> bool {
+    let track = field::value(state.document(), &format!("{pick}/track"));
+    track.and_then(|value| value.as_bool()).unwrap_or(true)
+}
+
+/// Says why a pick is a single picture, if it is one because it cannot be followed.
+fn tell_alone(state: &mut State, why: Option<String>) {
+    if let Some(why) = why {
+        state.say(format!("a single picture: {why}"));
+    }
+}
+
+/// Moves the cursor so that the square around it lies in the picture.
+fn move_inside(state: &mut State, side: f64) {
+    let (width, height) = state.picture.size.unwrap_or_default();
+    let inside = |at: f64, size: usize| at.min(size as f64 - side / 2.0).max(side / 2.0);
+    let Point { x, y } = state.picture.cursor;
+    state.picture.cursor = Point::new(inside(x, width), inside(y, height));
+    picture::settle(state);
 }
 
 /// Writes the automatic choice of the layer that the cursor is in, or of the first that has one, as picks.

@@ -58,17 +58,22 @@ fn placed(state: &mut State, call: &Call) -> Done {
             state.edit(edit, false)
         }
         "aim" => {
-            // In space the cursor may begin where nothing can land, as on the point itself.
-            if spatial::selected(state).is_none() {
-                place::aim_here(state)?;
+            match spatial::aim_from(state)? {
+                Some(from) => {
+                    state.picture.cursor = from;
+                    picture::settle(state);
+                    state.ask(Effect::Show);
+                }
+                None => _ = place::aim_here(state)?,
             }
             state.typing.mode = Mode::Aim;
             Ok(())
         }
         "jump" => {
-            state.typing.mode = Mode::Normal;
             let edit = place::aim_here(state)?;
-            state.edit(edit, false)
+            state.edit(edit, false)?;
+            state.typing.mode = Mode::Normal;
+            Ok(())
         }
         way => {
             let by = if way == "previous" { -call.times() } else { call.times() };

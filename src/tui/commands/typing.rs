@@ -19,6 +19,7 @@ pub const COMMANDS: &[Command] = &[
         if !begun.as_str().is_empty() {
             line.text = Text::new(format!("{} ", begun.as_str()), false);
         }
+        state.memory.under = matches!(state.typing.mode, Mode::Aim).then_some(Mode::Aim);
         state.typing.mode = Mode::Line(line);
         Ok(())
     })
@@ -39,14 +40,19 @@ pub const COMMANDS: &[Command] = &[
         if call.count.is_some() {
             return Ok(());
         }
-        let under = state.memory.entry.take().filter(|_| matches!(state.typing.mode, Mode::Pages(_)));
-        state.typing.mode = under.map_or(Mode::Normal, Mode::Entry);
+        close(state);
         search_left(state);
         Ok(())
     })
     .inside()
     .counted(),
 ];
+
+/// Closes what is typed, chosen or shown; what it was opened over comes back.
+fn close(state: &mut State) {
+    let under = state.memory.under.take().filter(|_| matches!(state.typing.mode, Mode::Pages(_) | Mode::Line(_)));
+    state.typing.mode = under.unwrap_or(Mode::Normal);
+}
 
 /// Types text. JSON quotes keep spaces at its ends.
 fn type_text(state: &mut State, call: &Call) -> Done {
@@ -80,11 +86,14 @@ fn seek(state: &mut State) {
 fn run_typed(state: &mut State, call: &Call) -> Done {
     let Mode::Line(line) = &state.typing.mode else { return Ok(()) };
     let (kind, typed) = (line.kind, line.text.value().trim().to_string());
-    state.typing.mode = Mode::Normal;
-    search_left(state);
     if typed.is_empty() {
+        close(state);
+        search_left(state);
         return Ok(());
     }
+    let under = state.memory.under.take();
+    state.typing.mode = Mode::Normal;
+    search_left(state);
     if kind == '/' && !state.is_small() {
         return call.obey(state, &format!("search {}", quoted(&typed)));
     }
@@ -93,7 +102,16 @@ fn run_typed(state: &mut State, call: &Call) -> Done {
     }
     state.memory.lines.retain(|old| *old != typed);
     state.memory.lines.push(typed.clone());
-    call.obey(state, &typed)
+    let before = (state.scene.revision(), state.focused());
+    let done = call.obey(state, &typed);
+    // Aiming goes on, unless it is no longer what it was.
+    let under = under.filter(|_| before == (state.scene.revision(), state.focused()));
+    match (under, &state.typing.mode) {
+        (Some(under), Mode::Normal) => state.typing.mode = under,
+        (Some(under), Mode::Pages(_)) => state.memory.under = Some(under),
+        _ => {}
+    }
+    done
 }
 
 fn complete(state: &mut State, call: &Call) -> Done {
@@ -124,7 +142,7 @@ fn text(state: &mut State, call: &Call) -> Done {
         Mode::Line(line) => {
             // Backspace in an empty line leaves it, as in vim.
             if call.text == "rub" && line.text.value().is_empty() {
-                state.typing.mode = Mode::Normal;
+                close(state);
                 search_left(state);
                 return Ok(());
             }

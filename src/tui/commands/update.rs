@@ -264,7 +264,8 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         _ if state.is_small() => state.complain(TOO_SMALL),
-        Mode::Normal | Mode::Aim => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
+        Mode::Aim => state.complain("aiming: the cursor's keys, Enter and Esc act here, also : and ?"),
+        Mode::Normal => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
         _ => {}
     }
 }

@@ -37,7 +37,7 @@ pub fn columns(document: &Document, pointer: &str) -> &'static [Derived] {
 /// The number in a column of the item whose field is at `pointer`.
 pub fn number(document: &Document, column: &Derived, pointer: &str) -> Option<f64> {
     let item = Pointer(pointer).parent()?;
-    layer_of(document, item)?.0.derive(column, document.json().pointer(item)?)
+    layer_of(document, item)?.0.derive(column, &field::value(document, item)?)
 }
 
 /// The value of the field at `pointer` with which its item has this number in a column.

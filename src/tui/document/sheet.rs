@@ -309,13 +309,15 @@ fn follows(document: &Document, item: &str, column: &'static Derived) -> Cell {
         default: None,
         optional: true,
     };
+    let pointer = Pointer(item).join(column.of);
+    let set = document.json().pointer(&pointer).is_some();
     let cell = Cell {
-        pointer: Pointer(item).join(column.of),
+        pointer,
         part: Part::Derived(column),
         head: column.name.into(),
         field: Arc::new(field),
         text: String::new(),
-        set: true,
+        set,
     };
     Cell { text: cell.number(document).map_or("none".into(), numbers::shown), ..cell }
 }

@@ -7,8 +7,8 @@ pub use keymap::Keymap;
 pub use names::{Found, OWN_FILE, name};
 mod table;
 pub use table::{
-    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, NUMBER, PALETTE, PICKABLE, PICKING, PICTURE, RECORDING, SMALL,
-    TABLE, TREE, TYPING,
+    AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, MOVING, NUMBER, PALETTE, PICKABLE, PICKING, PICTURE, RECORDING,
+    SMALL, TABLE, TREE, TYPING,
 };
 
 #[cfg(test)]
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn keys_are_found_from_the_inside_out() {
-        let contexts = [PICTURE, EVERYWHERE];
+        let contexts = [PICTURE, MOVING, EVERYWHERE];
         let find = |contexts: &[&str], pressed: &str| Keymap::default().find(contexts, pressed);
         assert_eq!(find(&contexts, "J"), Found::Line("cursor 0 10".into()));
         assert_eq!(find(&contexts, "u"), Found::Line("undo".into()));

@@ -17,6 +17,8 @@ pub const PICKABLE: &str = "tree, on sprites";
 pub const PICKING: &str = "picking from a clip";
 /// The picture with its cursor.
 pub const PICTURE: &str = "picture";
+/// The picture's cursor, also while it sets a jump vector or a landing.
+pub const MOVING: &str = "moving the picture's cursor";
 /// The picture, while its cursor sets a jump vector or a landing.
 pub const AIM: &str = "aiming a jump vector or a landing";
 /// A list to choose from.
@@ -192,18 +194,18 @@ const OWN: &[KeyRow] = &[
     row(TABLE, "R", "rename", "Rename the row; a picture is renamed everywhere"),
     row(TABLE, "J", "reorder down", "Move the row or the selection down"),
     row(TABLE, "K", "reorder up", "Move the row or the selection up"),
-    row(PICTURE, "h", "cursor -1 0", "Move the cursor a pixel left"),
-    row(PICTURE, "Left", "cursor -1 0", "Move the cursor a pixel left"),
-    row(PICTURE, "j", "cursor 0 1", "Move the cursor a pixel down"),
-    row(PICTURE, "Down", "cursor 0 1", "Move the cursor a pixel down"),
-    row(PICTURE, "k", "cursor 0 -1", "Move the cursor a pixel up"),
-    row(PICTURE, "Up", "cursor 0 -1", "Move the cursor a pixel up"),
-    row(PICTURE, "l", "cursor 1 0", "Move the cursor a pixel right"),
-    row(PICTURE, "Right", "cursor 1 0", "Move the cursor a pixel right"),
-    row(PICTURE, "H", "cursor -10 0", "Move the cursor ten pixels left"),
-    row(PICTURE, "J", "cursor 0 10", "Move the cursor ten pixels down"),
-    row(PICTURE, "K", "cursor 0 -10", "Move the cursor ten pixels up"),
-    row(PICTURE, "L", "cursor 10 0", "Move the cursor ten pixels right"),
+    row(MOVING, "h", "cursor -1 0", "Move the cursor a pixel left"),
+    row(MOVING, "Left", "cursor -1 0", "Move the cursor a pixel left"),
+    row(MOVING, "j", "cursor 0 1", "Move the cursor a pixel down"),
+    row(MOVING, "Down", "cursor 0 1", "Move the cursor a pixel down"),
+    row(MOVING, "k", "cursor 0 -1", "Move the cursor a pixel up"),
+    row(MOVING, "Up", "cursor 0 -1", "Move the cursor a pixel up"),
+    row(MOVING, "l", "cursor 1 0", "Move the cursor a pixel right"),
+    row(MOVING, "Right", "cursor 1 0", "Move the cursor a pixel right"),
+    row(MOVING, "H", "cursor -10 0", "Move the cursor ten pixels left"),
+    row(MOVING, "J", "cursor 0 10", "Move the cursor ten pixels down"),
+    row(MOVING, "K", "cursor 0 -10", "Move the cursor ten pixels up"),
+    row(MOVING, "L", "cursor 10 0", "Move the cursor ten pixels right"),
     row(PICTURE, "a", "place add", "Add a point here to the list in focus"),
     row(PICTURE, "r", "place move", "Move the selected point here"),
     row(PICTURE, "s", "place aim", "Set the selected point's jump vector, or where it lands: move, then Enter"),
@@ -231,6 +233,10 @@ const OWN: &[KeyRow] = &[
     row(AIM, "Enter", "place jump", "End the jump vector, or land, at the cursor"),
     row(AIM, "Esc", "cancel", "Keep the old one"),
     row(AIM, "Ctrl-c", "cancel", "Keep the old one"),
+    row(AIM, ":", "line", "Type a command"),
+    row(AIM, "?", "help", "Show the help"),
+    row(AIM, "Ctrl-l", "redraw", "Redraw the screen"),
+    row(AIM, "Ctrl-z", "suspend", "Go to the shell (`fg` comes back)"),
     row(LIST, "j", "choice next", "Go down"),
     row(LIST, "Down", "choice next", "Go down"),
     row(LIST, "k", "choice previous", "Go up"),

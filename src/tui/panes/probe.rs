@@ -100,7 +100,7 @@ fn places<'a>(entries: impl Iterator<Item = &'a Entry>, cells: usize) -> Vec<Str
     let mut lines: Vec<String> = Vec::new();
     for entry in entries {
         let part = match &entry.value {
-            Value::Index(index) => format!("{} {index}", entry.label),
+            Value::Index(index) if !entry.label.is_empty() => format!("{} {index}", entry.label),
             Value::Coordinates(numbers, unit) => {
                 let numbers: Vec<String> = numbers.iter().map(|&number| short(number)).collect();
                 format!("{} {} {unit}", entry.label, numbers.join(", ")).trim_end().to_owned()

@@ -11,7 +11,7 @@ use crate::layers::parts::readout::Fact;
 use crate::layers::technique::Technique;
 use crate::scene::words::item_of;
 use crate::tui::document::tree;
-use crate::tui::state::{Mode, Pane, State};
+use crate::tui::state::{Mode, Pane, State, spatial};
 use crate::tui::text::numbers::short;
 use crate::tui::text::wrap::{clipped, width};
 
@@ -84,6 +84,13 @@ fn right(state: &State) -> String {
         parts.push(format!("{}  Esc cancels", plain(work)));
         return parts.join("  ");
     }
+    if let Some(aiming) = spatial::aiming(state).filter(|_| matches!(state.typing.mode, Mode::Aim)) {
+        match aiming {
+            Ok(facts) => parts.extend(facts.into_iter().map(told)),
+            Err(why) => parts.push(plain(&why)),
+        }
+        return parts.join("  ");
+    }
     parts.push(format!("{}t {}", if state.play.playing { "> " } else { "" }, short(state.play.time)));
     if let Some((symbol, value)) = now(state) {
         parts.push(format!("{symbol} {}", short(value)));
@@ -111,10 +118,11 @@ fn right(state: &State) -> String {
 fn facts(state: &State) -> Vec<String> {
     let made = state.picture.synth.as_ref().zip(tree::layer_of(&state.cursor.node));
     let facts = made.and_then(|(synth, layer)| synth.layers.get(layer)).map(|layer| layer.facts()).unwrap_or_default();
-    facts
-        .into_iter()
-        .map(|Fact { name, value, unit }| format!("{name} {} {unit}", short(value)).trim_end().into())
-        .collect()
+    facts.into_iter().map(told).collect()
+}
+
+fn told(Fact { name, value, unit }: Fact) -> String {
+    format!("{name} {} {unit}", short(value)).trim_end().into()
 }
 
 /// The present value of what changes over time in the item that is shown, with its symbol.

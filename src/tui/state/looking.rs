@@ -21,6 +21,8 @@ pub struct Looking {
     pub sheet: bool,
     /// How many frames there are.
     pub frames: usize,
+    /// How many of them what is picked is followed through.
+    pub followed: usize,
     /// The side of the square that is picked, in pixels.
     pub side: f64,
 }
@@ -28,7 +30,14 @@ pub struct Looking {
 impl Looking {
     /// The first frame of a layer's clip.
     pub fn at(layer: usize) -> Looking {
-        Looking { layer, frame: 0, cut: false, sheet: false, frames: 1, side: 1.0 }
+        Looking { layer, frame: 0, cut: false, sheet: false, frames: 1, followed: 1, side: 1.0 }
+    }
+
+    /// Why what is picked in the frame that is seen cannot be followed, if it cannot.
+    pub fn unfollowed(self) -> Option<String> {
+        let Looking { frame, frames, followed, .. } = self;
+        (frame + followed > frames)
+            .then(|| format!("a track of {followed} frames would pass the clip's end ({frames})"))
     }
 
     /// What is seen.
@@ -64,8 +73,10 @@ pub fn view(state: &State) -> Option<ClipView> {
 pub fn look(state: &mut State, looking: Option<Looking>) {
     let before = state.picture.looking.is_some();
     let found = looking.and_then(|looking| Some((looking, seen(state, looking)?)));
-    state.picture.looking =
-        found.as_ref().map(|(looking, seen)| Looking { frames: seen.frames, side: seen.side, ..*looking });
+    state.picture.looking = found.as_ref().map(|(looking, seen)| {
+        let Picking { frames, followed, side, .. } = *seen;
+        Looking { frames, followed, side, ..*looking }
+    });
     let of_scene = state.picture.synth.as_ref().map(|synth| synth.size);
     let size = found.map(|(_, seen)| (seen.picture.width(), seen.picture.height())).or(of_scene);
     let other = std::mem::replace(&mut state.picture.size, size) != size;

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::finding::Finding;
 use super::recorder::Recorder;
-use crate::tui::document::entry::Entry;
+use super::typing::Mode;
 
 /// The most messages that are remembered.
 const MOST_SAID: usize = 200;
@@ -22,8 +22,8 @@ pub struct Memory {
     pub recorder: Recorder,
     /// What was yanked last.
     pub yanked: Option<Yanked>,
-    /// The entry that was being typed when the help was opened over it.
-    pub entry: Option<Entry>,
+    /// What comes back when the help or the command line is closed that was opened over it: an entry, or aiming.
+    pub under: Option<Mode>,
     /// Marks, the jump list and the search.
     pub finding: Finding,
 }

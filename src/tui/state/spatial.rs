@@ -7,7 +7,10 @@ use serde_json::Value;
 
 use super::State;
 use crate::base::pointer::Pointer;
+use crate::layers::parts::derived::Derived;
+use crate::layers::parts::goal::Goal;
 use crate::layers::parts::moment::Space;
+use crate::layers::parts::readout::Fact;
 use crate::layers::space::eye::{Eye, NEAR_M, Ray};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
@@ -40,18 +43,20 @@ pub fn selected(state: &State) -> Option<(String, Place)> {
 }
 
 /// Where the picture is seen from.
-fn eye(state: &State) -> Option<Eye> {
-    Some(state.document().scene().camera.as_ref()?.at(state.play.time, state.picture.size?))
+fn eye(state: &State) -> Result<Eye, String> {
+    let camera = state.document().scene().camera.as_ref().ok_or("the scene has no camera (:camera fit makes one)")?;
+    Ok(camera.at(state.play.time, state.picture.size.ok_or("nothing is shown yet")?))
 }
 
-/// What a place of the picture looks along.
-fn ray(state: &State, at: Point) -> Option<Ray> {
-    Some(eye(state)?.ray_in_world(DVec2::new(at.x, at.y)))
+/// What the cursor points along.
+fn ray(state: &State) -> Result<Ray, String> {
+    let Point { x, y } = state.picture.cursor;
+    Ok(eye(state)?.ray_in_world(DVec2::new(x, y)))
 }
 
 /// Where a place in space is in the picture; `None` if it is not in it.
 pub fn seen(state: &State, at: DVec3) -> Option<Point> {
-    let eye = eye(state)?;
+    let eye = eye(state).ok()?;
     let seen = eye.seen(at);
     let at = (-seen.z >= NEAR_M).then(|| eye.project(seen))?;
     let size = eye.middle_px * 2.0;
@@ -64,8 +69,8 @@ pub fn seen(state: &State, at: DVec3) -> Option<Point> {
 pub fn moved(state: &State, document: &Document, pointer: &str) -> Option<Edit> {
     let (field, own) = place(document, pointer)?;
     let beside = selected(state).map_or(own, |(_, (_, at))| at);
-    let depth = Some(-eye(state)?.seen(beside).z).filter(|depth| *depth >= NEAR_M)?;
-    let to = ray(state, state.picture.cursor)?.at_depth(depth);
+    let depth = Some(-eye(state).ok()?.seen(beside).z).filter(|depth| *depth >= NEAR_M)?;
+    let to = ray(state).ok()?.at_depth(depth);
     Some(Edit::set(document, &field, numbers::rounded(Value::from(to.to_array().to_vec()))))
 }
 
@@ -86,7 +91,7 @@ pub fn aimed(state: &State, pointer: &str, ray: &Ray) -> Result<(String, Value),
 pub fn dropped(state: &State, pointer: &str) -> Result<(String, Value), String> {
     let (at, size) = state.outside.pointer.zip(state.picture.size).ok_or("nothing is shown yet")?;
     let camera = state.outside.camera.as_ref().or(state.document().scene().camera.as_ref());
-    let camera = camera.ok_or("the scene has no camera yet")?;
+    let camera = camera.ok_or("the scene has no camera (:camera fit makes one)")?;
     aimed(state, pointer, &camera.at(state.play.time, size).ray_in_world(at.into()))
 }
 
@@ -96,7 +101,54 @@ pub fn dropped(state: &State, pointer: &str) -> Result<(String, Value), String> 
 /// Why there is none.
 pub fn aim_here(state: &State) -> Result<Option<Edit>, String> {
     let Some((pointer, _)) = selected(state) else { return Ok(None) };
-    let ray = ray(state, state.picture.cursor).ok_or("the scene has no camera yet")?;
-    let (field, value) = aimed(state, &pointer, &ray)?;
+    let (field, value) = aimed(state, &pointer, &ray(state)?)?;
     Ok(Some(Edit::set(state.document(), &field, value)))
+}
+
+/// Where the goal of what is selected is in the picture, as far as it is seen; else the nearest place at which one could be;
+/// else where the cursor is. `None` if it has no place in space.
+///
+/// # Errors
+/// What is selected has no goal, or nothing is seen.
+pub fn aim_from(state: &State) -> Result<Option<Point>, String> {
+    let Some((pointer, _)) = selected(state) else { return Ok(None) };
+    let goal = goal(state, &pointer)?;
+    let (eye, cursor) = (eye(state)?, state.picture.cursor);
+    let size = eye.middle_px * 2.0;
+    let inside = |at: DVec2| at.clamp(DVec2::splat(0.5), (size - 0.5).max(DVec2::splat(0.5)));
+    let possible = |at: &DVec2| eye.ray_in_world(*at).meets_level(goal.level).is_some();
+    let seen = goal.at.map(|at| eye.seen(at)).filter(|seen| -seen.z >= NEAR_M);
+    let now = seen.map(|seen| inside(eye.project(seen))).filter(possible);
+    let nearest = || {
+        let step = (size.max_element() / SEARCHED).max(1.0);
+        let steps = |side: f64| (0..).map(move |i| f64::from(i) * step + 0.5).take_while(move |at| *at < side);
+        let places = steps(size.y).flat_map(|y| steps(size.x).map(move |x| DVec2::new(x, y)));
+        let far = |at: &DVec2| at.distance_squared(DVec2::new(cursor.x, cursor.y));
+        places.filter(possible).min_by(|a, b| far(a).total_cmp(&far(b)))
+    };
+    Ok(Some(now.or_else(nearest).map_or(cursor, |at| Point::new(at.x, at.y))))
+}
+
+/// At most so many places in a row are looked at for one where a goal could be.
+const SEARCHED: f64 = 256.0;
+
+fn goal(state: &State, pointer: &str) -> Result<Goal, String> {
+    let (layer, way) = derived::layer_of(state.document(), pointer).ok_or("nothing there goes to a place")?;
+    layer.goal(way)
+}
+
+/// What would be true of the goal of what is selected, were it where the cursor is; or why it cannot be there. `None` if it
+/// has none.
+pub fn aiming(state: &State) -> Option<Result<Vec<Fact>, String>> {
+    let (pointer, _) = selected(state)?;
+    let goal = goal(state, &pointer).ok()?;
+    let told = |(field, to): (String, Value)| {
+        let name = field.strip_prefix(&pointer)?.strip_prefix('/')?;
+        let mut item = field::value(state.document(), &pointer)?;
+        item.as_object_mut()?.insert(name.to_owned(), to);
+        let (layer, _) = derived::layer_of(state.document(), &pointer)?;
+        let fact = |of: &Derived| Some(Fact { name: of.name, value: layer.derive(of, &item)?, unit: of.unit });
+        Some(goal.told.iter().filter_map(fact).collect())
+    };
+    Some(ray(state).and_then(|ray| aimed(state, &pointer, &ray)).map(|aimed| told(aimed).unwrap_or_default()))
 }

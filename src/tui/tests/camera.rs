@@ -12,6 +12,7 @@ use crate::layers::parts::materials::Materials;
 use crate::layers::space::camera::Camera;
 use crate::preview::wire::message::ToEditor;
 use crate::render;
+use crate::scene::check as scene;
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Event;
@@ -82,7 +83,7 @@ fn all_meshes_are_seen_at_all_times() {
     let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
     state.picture.synth = Some(Arc::new(render::synth(state.document().scene(), &materials, None).unwrap()));
     let told = run(&mut state, "camera fit");
-    assert!(told.starts_with("the camera sees all meshes"), "{told}");
+    assert!(told.starts_with("the camera sees all that is in space"), "{told}");
     let fitted = state.document().scene().camera.clone().unwrap();
     assert_eq!((fitted.target, fitted.turn, fitted.fov), ([5.0, 1.5, 0.0], 0.0, 30.0));
     let back = DVec3::from(fitted.position) - DVec3::from(fitted.target);
@@ -112,7 +113,7 @@ fn meshes_are_seen_before_anything_is_shown() {
     std::fs::write(&path, scene).unwrap();
     let mut state = State::new(OpenScene::in_memory(&path), (80, 24), Depth::None);
     let told = run(&mut state, "camera fit");
-    assert!(told.starts_with("the camera sees all meshes"), "{told}");
+    assert!(told.starts_with("the camera sees all that is in space"), "{told}");
     assert_eq!(camera(&state)["target"], json!([0, 1, 5]));
 }
 
@@ -125,4 +126,26 @@ fn a_file_that_is_missing_from_the_start_is_told_and_found() {
     assert!(told.bad && told.text.contains("meshes.m.path") && told.text.contains("no such file"), "{}", told.text);
     press(&mut state, "g d");
     assert_eq!(state.focused(), "/meshes/m/path");
+}
+
+#[test]
+fn a_scene_in_space_opens_without_a_camera_and_gets_one_that_sees_it() {
+    let falls = r#"{ "plica": 1, "size": [200, 100], "clips": { "w": { "path": "w-%04d.png" } }, "layers": [
+        { "kind": "waterfall", "name": "falls", "clip": "w", "lip": [{ "at": [50, 4, 0] }] }] }"#;
+    let mut state = state_of(falls);
+    let problem = scene::check_materials(state.document().scene(), &Materials::default()).pop().unwrap();
+    assert!(problem.to_string().contains("set camera={}"), "{problem}");
+    update(&mut state, Event::Synthesised(Box::new(Err(problem))));
+    assert!(state.message.clone().unwrap().text.contains("no camera"));
+    let told = run(&mut state, "camera fit");
+    assert!(told.starts_with("the camera sees all that is in space"), "no clip is needed: {told}");
+    let fitted = state.document().scene().camera.clone().unwrap();
+    let eye = fitted.at(0.0, (200, 100));
+    for at in [[50.0, 4.0, 0.0], [50.0, 0.0, 0.5]] {
+        let seen = eye.project(eye.seen(DVec3::from(at)));
+        assert!(seen.x > 0.0 && seen.x < 200.0 && seen.y > 0.0 && seen.y < 100.0, "{at:?} at {seen}");
+    }
+    let mut state = state_of(falls);
+    run(&mut state, "set camera={}");
+    assert_eq!(state.document().scene().camera, Some(Camera::default()));
 }

@@ -11,7 +11,7 @@ use crate::preview::wire::message::ToEditor;
 use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
 use crate::tui::events::Effect;
-use crate::tui::state::{Mode, Pane, State};
+use crate::tui::state::{Mode, Pane, State, spatial};
 
 /// A camera that sees all nodes and the pool.
 fn camera() -> Camera {
@@ -64,6 +64,24 @@ fn a_lip_that_is_not_written_begins_as_what_stands_for_it() {
             Err(why) => assert_eq!((found.unwrap_err().as_str(), lip), (why, None), "{line}"),
         }
     }
+}
+
+#[test]
+fn what_follows_from_a_lip_that_is_not_written_is_shown_as_not_set() {
+    let layer = json!({ "kind": "waterfall", "name": "falls", "clip": "w" });
+    let scene = json!({ "plica": 1, "clips": { "w": { "path": "w-%04d.png" } }, "camera": {}, "layers": [layer] });
+    let mut state = state_of(&scene.to_string());
+    state.show("/layers/0/lip");
+    state.cursor.focus = Pane::Table;
+    let cells = state.sheet().row(1).unwrap().cells;
+    let of =
+        |head: &str| cells.iter().find(|cell| cell.head == head).map(|cell| (cell.text.clone(), cell.set)).unwrap();
+    for head in ["speed", "land x", "land z", "air time", "impact"] {
+        assert!(of(head).0 != "none" && !of(head).1, "{head}: {:?}", of(head));
+    }
+    let go = to_column(&state, "air time");
+    press(&mut state, &format!("{go} i \"+=0.1\" Enter"));
+    assert!(!said_last(&state).0, "{:?}", state.message);
 }
 
 fn velocity(state: &State, node: usize) -> Vec<f64> {
@@ -218,7 +236,7 @@ fn replays(state: &State) {
 #[test]
 fn the_cursor_sets_where_the_selected_node_lands() {
     let mut state = falling(json!({}));
-    press(&mut state, "j g i : \"cursor at 150 250\" Enter s 2 J 5 l");
+    press(&mut state, "j g i s : \"cursor at 150 250\" Enter 2 J 5 l");
     assert_eq!(velocity(&state, 1), [0.5, 0.0, 1.0], "not before Enter");
     press(&mut state, "Enter");
     assert_eq!(state.picture.cursor, Point::new(155.0, 270.0));
@@ -228,11 +246,49 @@ fn the_cursor_sets_where_the_selected_node_lands() {
     replays(&state);
     press(&mut state, "u");
     assert_eq!(velocity(&state, 1), [0.5, 0.0, 1.0]);
-    press(&mut state, ": \"cursor at 150 10\" Enter s");
-    assert!(matches!(state.typing.mode, Mode::Aim), "it may begin in the sky: {:?}", state.message);
-    press(&mut state, "Enter");
+    press(&mut state, "s : \"cursor at 150 10\" Enter Enter");
     assert!(said_last(&state).1.contains("the pool (y 0) is not seen there"), "{:?}", state.message);
-    assert!(matches!(state.typing.mode, Mode::Normal));
+    assert!(matches!(state.typing.mode, Mode::Aim), "it can be tried again");
+}
+
+#[test]
+fn aiming_begins_where_the_line_lands_as_far_as_that_is_seen() {
+    let landed = |state: &State, node| seen(&camera(), landing(state, node));
+    for (more, node, wanted) in
+        [(json!({}), "j", Some(1)), (json!({ "pool": -3 }), "2 j", None), (json!({ "gravity": -1 }), "", None)]
+    {
+        let mut state = falling(more.clone());
+        press(&mut state, &format!("{node} g i : \"cursor at 150 10\" Enter s"));
+        assert!(matches!(state.typing.mode, Mode::Aim), "{more}: {:?}", state.message);
+        let at = state.picture.cursor;
+        if let Some(node) = wanted {
+            assert!(at.distance(landed(&state, node)) < 1e-9, "{at}");
+        }
+        let level = more["pool"].as_f64().unwrap_or(0.0);
+        assert!(eye(&camera()).ray_in_world(DVec2::new(at.x, at.y)).meets_level(level).is_some(), "{more} {at}");
+        assert!((0.0..400.0).contains(&at.x) && (0.0..300.0).contains(&at.y), "{more} {at}");
+    }
+}
+
+#[test]
+fn while_aiming_only_the_cursor_acts_and_the_status_line_tells_the_landing() {
+    let mut state = falling(json!({}));
+    press(&mut state, "j g i s");
+    let before = state.document().json().clone();
+    for key in ["a", "r", "d", "w", "b", "s", "u", "p", "Tab", "z", "g"] {
+        press(&mut state, key);
+        assert!(said_last(&state).1.contains("aiming: the cursor's keys, Enter and Esc"), "{key}: {:?}", state.message);
+        assert!(matches!(state.typing.mode, Mode::Aim) && *state.document().json() == before, "{key}");
+    }
+    let facts = spatial::aiming(&state).unwrap().unwrap();
+    let told: Vec<(&str, f64)> = facts.iter().map(|fact| (fact.name, (fact.value * 1e6).round() / 1e6)).collect();
+    assert_eq!(told, [("land x", 0.5), ("land z", 1.0), ("air time", 1.0)], "where it lands already");
+    for keys in ["? Esc", ": Esc", ": Backspace", ": \"help put\" Enter Esc"] {
+        press(&mut state, keys);
+        assert!(matches!(state.typing.mode, Mode::Aim), "{keys} comes back to it");
+    }
+    press(&mut state, ": \"go layers.0.look\" Enter");
+    assert!(matches!(state.typing.mode, Mode::Normal), "nothing is aimed there");
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::base::clip::Clip;
 use crate::base::picture::Picture;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::picking::Sight;
+use crate::scene::check;
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event, Synthesis};
 use crate::tui::graphics::TerminalPicture;
@@ -90,6 +91,28 @@ pub fn sprites_are_picked_from_frames_of_the_clip() {
     let effects = press(&mut state, ": \"sprites -o out\" Enter");
     let asked = |effect: &Effect| matches!(effect, Effect::Run(words) if words.join(" ") == "sprites -o out");
     assert!(effects.iter().any(asked), "{effects:?}");
+}
+
+#[test]
+fn what_would_leave_the_clip_is_picked_inside_it_or_as_a_single_picture() {
+    let followed = "a track of 5 frames would pass the clip's end (8)";
+    for (keys, path, wanted, told) in [
+        (": \"cursor at 0 0\" Enter a", "/1/at", json!([8, 8]), ""),
+        (": \"cursor at 63 47\" Enter r", "/0/at", json!([56, 40]), ""),
+        ("} a", "/1/track", json!(false), followed),
+        ("3 [ 3 ] a", "/1/track", Value::Null, ""),
+        ("} r", "/0/track", json!(false), followed),
+        ("} r t", "/0/track", json!(false), followed),
+    ] {
+        let mut state = looking();
+        press(&mut state, keys);
+        let found = at(&state, &format!("/layers/0/sprites/picks{path}"));
+        assert_eq!(found, wanted, "{keys}: {:?}", state.message);
+        assert!(said_last(&state).1.contains(told), "{keys}: {:?}", state.message);
+        read(&mut state);
+        let materials = Materials { clips: [("w".to_owned(), clip())].into(), ..Materials::default() };
+        assert_eq!(check::check_materials(state.document().scene(), &materials), [], "{keys}");
+    }
 }
 
 #[test]

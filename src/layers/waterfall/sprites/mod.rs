@@ -11,12 +11,16 @@ pub mod residue;
 
 use std::sync::Arc;
 
+use serde_json::{Map, Value};
+
 use self::model::{Shows, Sprites};
 use self::pyramid::Pyramid;
 use self::residue::Residues;
 use super::hash::Random;
 use crate::base::pixels::Rgba;
 
+/// Sides of keys are multiples of this, in texels.
+pub const SIDE_STEP: u32 = 16;
 /// Bytes that a texel of a key takes with its smaller levels, and one of a residue.
 const TEXEL_BYTES: [u64; 2] = [22, 6];
 
@@ -91,6 +95,19 @@ impl Pictures {
     }
 }
 
+/// What `sprites` has to set to fit into a clip of this size and length, as little smaller than by default as can be: nothing
+/// if the defaults fit. Where nothing fits, the least.
+pub fn fitting((width, height): (usize, usize), frames: usize) -> Map<String, Value> {
+    let usual = Sprites::default();
+    let side = (width.min(height) as u32 / SIDE_STEP * SIDE_STEP).clamp(SIDE_STEP, usual.size);
+    // A key is found by what moves from its frame to another one.
+    let keys = (frames as u32).clamp(2, usual.keys);
+    let step = (frames as u32).saturating_sub(1) / (keys - 1);
+    let all = [("size", side, usual.size), ("keys", keys, usual.keys), ("step", step.clamp(1, usual.step), usual.step)];
+    let set = all.into_iter().filter(|(_, fits, usual)| fits != usual);
+    set.map(|(name, fits, _)| (name.to_owned(), fits.into())).collect()
+}
+
 /// How many bytes keys and residues take at most.
 pub fn bytes_of(sprites: &Sprites) -> u64 {
     let (tracks, keys, longest) = sprites.most();
@@ -101,4 +118,27 @@ pub fn bytes_of(sprites: &Sprites) -> u64 {
 /// A key from its texels.
 fn key(side: usize, texels: Vec<Rgba>, window: Option<(usize, (usize, usize))>) -> Key {
     Key { window, texels: Arc::new(Pyramid::new(side, texels)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn what_is_set_fits_and_is_no_smaller_than_it_has_to_be() {
+        for (size, frames, wanted) in [
+            ((512, 400), 16, json!({})),
+            ((64, 64), 11, json!({})),
+            ((512, 400), 10, json!({ "step": 1 })),
+            ((512, 400), 6, json!({ "step": 1 })),
+            ((512, 400), 4, json!({ "keys": 4, "step": 1 })),
+            ((512, 400), 1, json!({ "keys": 2, "step": 1 })),
+            ((63, 400), 11, json!({ "size": 48 })),
+            ((16, 16), 3, json!({ "size": 16, "keys": 3, "step": 1 })),
+            ((8, 8), 11, json!({ "size": 16 })),
+        ] {
+            assert_eq!(Value::Object(fitting(size, frames)), wanted, "{size:?} {frames}");
+        }
+    }
 }
