@@ -87,7 +87,7 @@ fn a_short_or_small_clip_gets_a_layer_that_fits_it() {
     clip(&at("small"), 0..12, 3);
     for number in 0..12 {
         let file = at("small").join(format!("{number:04}.png"));
-        image::imageops::crop_imm(&image::open(&file).unwrap(), 8, 8, 40, 90).to_image().save(&file).unwrap();
+        image::imageops::crop_imm(&image::open(&file).unwrap(), 8, 8, 40, 88).to_image().save(&file).unwrap();
     }
     for (name, fits, told) in [
         (
@@ -96,7 +96,7 @@ fn a_short_or_small_clip_gets_a_layer_that_fits_it() {
             "short: has 4 frames of 96 x 96: its layer begins with {\"sprites\":",
         ),
         ("two", json!({ "keys": 2, "step": 1 }), "two: has 2 frames"),
-        ("small", json!({ "size": 32 }), "small: has 12 frames of 40 x 90"),
+        ("small", json!({ "size": 32 }), "small: has 12 frames of 40 x 88"),
     ] {
         let (_, messages) = plica(folder.path(), &["new", name], true);
         assert!(messages.contains(told), "{name}: {messages}");
@@ -123,6 +123,60 @@ fn a_scene_without_a_camera_is_given_one() {
     }
     plica(folder.path(), &["set", "falls.plica.json", "camera={}"], true);
     plica(folder.path(), &["check", "falls.plica.json"], true);
+}
+
+#[test]
+fn what_cannot_be_changed_or_is_not_there_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    clip(&folder.path().join("falls"), 0..12, 3);
+    plica(folder.path(), &["new", "falls"], true);
+    let scene = "falls.plica.json";
+    let input = "what is changed has to be a file: - is standard input, which is only read";
+    let unknown = "there is no layer \"nope\" (there is \"falls\")";
+    for (args, told) in [
+        (&["sprites", "-", "--take"][..], input),
+        (&["profile", "apply", "smoke", "-"], input),
+        (&["set", "-", "title=x"], input),
+        (&["sprites", scene, "-o", "falls"], "falls: holds a clip of falls.plica.json: no output may replace it"),
+        (&["sprites", scene, "-o", "out", "--layer", "nope"], unknown),
+        (&["lines", scene, "--layer", "nope"], unknown),
+        (&["probe", scene, "--at", "1,1", "--layer", "nope"], unknown),
+        (&["profile", "apply", "smoke", scene, "--layer", "nope"], unknown),
+    ] {
+        let (out, messages) = plica(folder.path(), args, false);
+        assert!(out.is_empty() && messages.contains(told), "{args:?}: {messages}");
+        assert_eq!(messages.trim_end().lines().count(), 1, "{args:?}: {messages}");
+    }
+}
+
+#[test]
+fn a_script_waits_for_the_clip_and_its_log_replays() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    clip(&at("falls"), 0..12, 3);
+    plica(folder.path(), &["new", "falls"], true);
+    let start = std::fs::read(at("falls.plica.json")).unwrap();
+    let picks = "go layers.falls.sprites\nclip show\ncursor at 0 40\npick add\nclip last\npick foam\nw\n";
+    let edited = |lines: &str, by_script: bool| {
+        std::fs::write(at("falls.plica.json"), &start).unwrap();
+        std::fs::write(at("lines"), lines).unwrap();
+        let mut command = binary::plica(folder.path(), ["edit", "falls.plica.json"]);
+        if by_script {
+            command.args(["--script", "lines"]);
+        } else {
+            command.stdin(std::fs::File::open(at("lines")).unwrap());
+        }
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        get(folder.path(), "falls.plica.json", "layers.0.sprites.picks")
+    };
+    let first = json!([
+        { "frame": 0, "at": [32, 40], "kind": "water" },
+        { "frame": 11, "at": [32, 40], "kind": "foam", "track": false }
+    ]);
+    assert_eq!(edited(picks, false), first);
+    assert_eq!(edited(picks, true), first);
+    assert!(edited("sprites take\nw\n", false).as_array().is_some_and(|picks| picks.len() > 1));
 }
 
 #[test]

@@ -130,6 +130,9 @@ impl Guard {
                 self.keep(&journal, format!("belongs to the journal of {called}"));
             }
         }
+        // A folder of frames would hold two clips.
+        let folders = scene.clips.values().filter_map(|clip| clip.path.rsplit_once('/').map(|(folder, _)| folder));
+        folders.for_each(|folder| self.keep(&paths::beside(path, folder), format!("holds a clip of {called}")));
         for name in materials::paths(path, scene).into_iter().chain(materials::ahead(path, scene)) {
             // What follows a # says which part of the file is meant.
             for name in [Some(&*name), name.rsplit_once('#').map(|(file, _)| file)].into_iter().flatten() {
@@ -161,7 +164,7 @@ impl Guard {
         match self.kept(path) {
             None => Ok(()),
             Some(what) => Err(Error::at(path.display(), format!("{what}: no output may replace it"))
-                .cure("name another file for the output")),
+                .cure("name another place for the output")),
         }
     }
 

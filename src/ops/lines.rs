@@ -38,7 +38,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
             return Ok(());
         }
     }
-    Err(none(args.layer.as_deref(), "lines"))
+    Err(none(read.document.scene(), args.layer.as_deref(), "lines"))
 }
 
 /// Prints the lines of a layer; whether it has any.
@@ -60,13 +60,17 @@ fn print(layer: &dyn Technique, args: &Args, context: &mut Context) -> Result<bo
 
 /// The entries that a table has.
 fn columns(entries: &[Entry]) -> impl Iterator<Item = &Entry> {
-    entries.iter().filter(|entry| !matches!(entry.value, Value::Items(_)))
+    entries.iter().filter(|entry| !entry.label.is_empty() && !matches!(entry.value, Value::Items(_)))
 }
+
+/// The width of a column, and of each of three coordinates: a row fits into the editor on 80 columns.
+const WIDE: usize = 6;
+const OF_THREE: usize = 6;
 
 fn header(entries: &[Entry]) -> String {
     let heads = columns(entries).map(|entry| match &entry.value {
-        Value::Coordinates(..) => format!("{:>26}", entry.key),
-        _ => format!("{:>8}", entry.key),
+        Value::Coordinates(numbers, _) => format!("{:>1$}", entry.label, numbers.len() * (OF_THREE + 1) - 1),
+        _ => format!("{:>WIDE$}", entry.label),
     });
     heads.collect::<Vec<_>>().join(" ")
 }
@@ -74,12 +78,36 @@ fn header(entries: &[Entry]) -> String {
 fn row(entries: &[Entry]) -> String {
     let cells = columns(entries).map(|entry| match &entry.value {
         Value::Coordinates(numbers, _) => {
-            numbers.iter().map(|v| format!("{:>8}", short(*v, 3))).collect::<Vec<_>>().join(" ")
+            numbers.iter().map(|v| format!("{:>OF_THREE$}", short(*v, 2))).collect::<Vec<_>>().join(" ")
         }
-        Value::Number(number) => format!("{:>8}", short(*number, 4)),
-        Value::Index(index) => format!("{index:>8}"),
-        Value::Of(Some(word)) => format!("{word:>8}"),
-        _ => format!("{:>8}", ""),
+        Value::Number(number) => format!("{:>WIDE$}", short(*number, 3)),
+        Value::Index(index) => format!("{index:>WIDE$}"),
+        Value::Of(Some(word)) => format!("{word:>WIDE$}"),
+        _ => " ".repeat(WIDE),
     });
     cells.collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_fits_into_a_narrow_terminal_under_its_heads() {
+        let entry = |key, value| Entry { key, label: key, value };
+        let place = || Value::Coordinates(vec![-12.345_67, 100.0, 0.5], "m");
+        let entries = vec![
+            entry("line", Value::Index(4000)),
+            entry("kind", Value::Of(Some("water".into()))),
+            entry("start", place()),
+            Entry { key: "velocity", label: "", value: place() },
+            entry("life", Value::Number(0.123_456)),
+            entry("end", place()),
+            entry("impact", Value::Number(12.5)),
+        ];
+        let (head, row) = (header(&entries), row(&entries));
+        assert_eq!(head, "  line   kind                start   life                  end impact");
+        assert_eq!(row, "  4000  water -12.35    100    0.5  0.123 -12.35    100    0.5   12.5");
+        assert!(head.len() == row.len() && row.len() <= 71);
+    }
 }

@@ -222,7 +222,9 @@ pub fn file_name(image: &Path) -> Result<String> {
 fn refused(clip: &Path, problems: Vec<Problem>) -> Error {
     let first = problems.into_iter().next();
     let Problem { message, hint, .. } = first.unwrap_or_else(|| Problem::error("", "cannot be read"));
-    let error = Error::at(clip.display(), message);
+    // A video names itself.
+    let own = clip.file_name().map(|name| format!("{}: ", name.to_string_lossy())).unwrap_or_default();
+    let error = Error::at(clip.display(), message.strip_prefix(&own).unwrap_or(&message));
     hint.into_iter().fold(error, Error::cure)
 }
 

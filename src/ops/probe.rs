@@ -75,12 +75,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 
 /// The index of the layer `name`, or of the first one.
 fn find_layer(scene: &Scene, name: Option<&str>) -> Result<usize> {
-    let found = scene.layers.iter().position(|layer| name.is_none_or(|name| layer.technique().name() == name));
-    found.ok_or_else(|| {
-        let names: Vec<&str> = scene.layers.iter().map(|layer| layer.technique().name()).collect();
-        let wanted = name.unwrap_or("the first");
-        Error::at("--layer", format!("there is no layer {wanted}; there are: {}", names.join(", ")))
-    })
+    match name {
+        Some(name) => scene.layer_called(name).map_err(|why| Error::at("--layer", why)),
+        None if scene.layers.is_empty() => Err(Error::at("--at", "the scene has no layers")),
+        None => Ok(0),
+    }
 }
 
 /// The layers that may show something else in a pixel, the uppermost first: not those that are only seen on others, nor
@@ -304,7 +303,7 @@ mod tests {
             (
                 sprites.clone(),
                 r#"{"count":2,"listed":2,"sprites":[{"age":0.12345,"at":[-0.5,12.25],"level":1,"color":[255,0,16,128]},{"age":2.0,"at":[1.0,250.04],"level":0,"color":[1,2,3,4]}],"none":[],"color":[1,2,3,255]}"#,
-                "pixel 7,8 at t 0.5\n  sprites 2\n  listed 2, the oldest first:\n    age       at     color\n  0.123 -0.5 12.2 #ff001080\n      2     1 250 #01020304\n  \
+                "pixel 7,8 at t 0.5\n  sprites 2\n  listed 2, the oldest first:\n    age        at     color\n  0.123 -0.5 12.2 #ff001080\n      2     1 250 #01020304\n  \
                  shows #010203, alpha 255",
             ),
             (Vec::new(), r#"{"color":[1,2,3,255]}"#, "pixel 7,8 at t 0.5\n  shows #010203, alpha 255"),

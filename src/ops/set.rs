@@ -62,6 +62,7 @@ pub fn change(
     (recovery, reading): (&RecoveryOptions, &SceneOptions),
     make: impl Fn(&Document) -> Result<Edit>,
 ) -> Result<bool> {
+    refuse_input(scene)?;
     let options = reading.options()?;
     let begun = Instant::now();
     let mut session = loop {
@@ -86,6 +87,17 @@ pub fn change(
         applied.and_then(|_| session.undo());
     })?;
     Ok(false)
+}
+
+/// Refuses standard input, which cannot be written back.
+///
+/// # Errors
+/// It is meant.
+pub fn refuse_input(scene: &Path) -> Result<()> {
+    match scene.as_os_str() == "-" {
+        true => Err(Error::Usage("what is changed has to be a file: - is standard input, which is only read".into())),
+        false => Ok(()),
+    }
 }
 
 /// Takes over or discards unsaved edits that a session left behind; without the option that says which, it is an error.

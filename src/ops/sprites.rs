@@ -7,10 +7,11 @@ use super::writing::Replacing;
 use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use super::{scene_options::RecoveryOptions, set};
 use crate::base::error::{Error, Result};
+use crate::base::problem;
 use crate::export::album;
 use crate::files::outputs;
 use crate::layers::parts::album::Album;
-use crate::scene::{Document, Edit};
+use crate::scene::{Document, Edit, Scene};
 
 /// Write the pictures of a waterfall's sprites, or take their automatic choice into the scene
 #[derive(clap::Args)]
@@ -40,6 +41,9 @@ pub struct Args {
 /// Writes the pictures, or the picks.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
+    if args.take {
+        set::refuse_input(&args.scene)?;
+    }
     let read = Unloaded::read(&args.scene, &args.options, context)?;
     let mut place = None;
     if let Some(folder) = &args.output {
@@ -53,7 +57,8 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let layers = opened.document.scene().layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers);
     let named = layers.enumerate().filter(|(_, (name, _))| args.layer.as_deref().is_none_or(|layer| layer == *name));
     let mut albums = named.filter_map(|(i, (_, ready))| Some((i, ready.album(args.between as usize)?)));
-    let (layer, found) = albums.next().ok_or_else(|| none(args.layer.as_deref(), "sprites"))?;
+    let (layer, found) =
+        albums.next().ok_or_else(|| none(opened.document.scene(), args.layer.as_deref(), "sprites"))?;
     match (&args.output, place) {
         (Some(folder), Some(place)) => {
             let names = album::write(&found, &place)?;
@@ -67,9 +72,10 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 }
 
 /// The error that no layer, or not the one that is named, has something.
-pub fn none(name: Option<&str>, what: &str) -> Error {
-    match name {
-        Some(name) => Error::at("--layer", format!("there is no layer {name} with {what}")),
+pub fn none(scene: &Scene, name: Option<&str>, what: &str) -> Error {
+    match name.map(|name| (name, scene.layer_called(name))) {
+        Some((_, Err(why))) => Error::at("--layer", why),
+        Some((name, Ok(_))) => Error::at("--layer", format!("the layer {} has no {what}", problem::quoted(name))),
         None => Error::Usage(format!("no layer of the scene has {what}")),
     }
 }
@@ -88,8 +94,11 @@ fn take(args: &Args, layer: usize, album: &Album, context: &mut Context) -> Resu
         return Ok(());
     }
     let make = |document: &Document| Ok(taken(document, layer, album));
-    if set::change(&args.scene, (&args.recovery, &args.options), make)? {
-        context.messages.say("taken in the editor that has the scene open; save it there");
-    }
+    let elsewhere = set::change(&args.scene, (&args.recovery, &args.options), make)?;
+    context.messages.say(if elsewhere {
+        "taken in the editor that has the scene open; save it there"
+    } else {
+        "the automatic choice is in sprites.picks now"
+    });
     Ok(())
 }

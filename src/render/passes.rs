@@ -56,15 +56,7 @@ impl Asked {
         let names: Vec<&str> = all().map(|pass| pass.name).collect();
         let known = || nearest(name, names.iter().copied()).unwrap_or_default();
         let pass = pass.ok_or_else(|| format!("there is no pass {} ({})", quoted(name), known()))?;
-        let index = |layer: &str| {
-            let names = || scene.layers.iter().map(|layer| layer.technique().name());
-            let unknown = || {
-                let hint = nearest(layer, names()).unwrap_or_default();
-                format!("there is no layer {} ({hint})", quoted(layer))
-            };
-            names().position(|name| name == layer).ok_or_else(unknown)
-        };
-        Ok(Asked { pass, layer: layer.map(index).transpose()? })
+        Ok(Asked { pass, layer: layer.map(|layer| scene.layer_called(layer)).transpose()? })
     }
 
     /// What it is, as [`Asked::parse`] reads it.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::base::problem;
 use crate::layers::parts::materials::{List, Of, Use};
 use crate::layers::space::camera::Camera;
 use crate::layers::{Layer, timeline::Timeline};
@@ -91,6 +92,19 @@ impl Scene {
             let uses = layer.technique().uses().into_iter();
             uses.map(move |used| Use { at: format!("/layers/{i}{}", used.at), ..used })
         })
+    }
+
+    /// The index of the layer with this name.
+    ///
+    /// # Errors
+    /// There is none: in words, with those that there are.
+    pub fn layer_called(&self, name: &str) -> Result<usize, String> {
+        let names = || self.layers.iter().map(|layer| layer.technique().name());
+        let unknown = || match problem::nearest(name, names()) {
+            Some(hint) => format!("there is no layer {} ({hint})", problem::quoted(name)),
+            None => "the scene has no layers".to_owned(),
+        };
+        names().position(|own| own == name).ok_or_else(unknown)
     }
 
     /// Pointers to where layers name what is called `name` in a list of the scene.

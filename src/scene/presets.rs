@@ -63,13 +63,13 @@ impl Found {
         let layers = document.scene().layers.iter().map(|layer| layer.technique()).enumerate();
         let mut named = layers.filter(|(_, layer)| name.is_none_or(|name| layer.name() == name));
         let first = named.clone().next();
+        name.map_or(Ok(0), |name| document.scene().layer_called(name))?;
         let found = named.find(|(_, layer)| layer.kind().name == kind);
         found.ok_or_else(|| match (name, first) {
-            (Some(name), None) => format!("there is no layer {}", problem::quoted(name)),
             (Some(name), Some((_, other))) => {
                 format!("{own} is for layers of kind {kind}; {name} is of kind {}", other.kind().name)
             }
-            (None, _) => format!("{own} is for layers of kind {kind}, and the scene has none"),
+            _ => format!("{own} is for layers of kind {kind}, and the scene has none"),
         })
     }
 

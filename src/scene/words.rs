@@ -10,6 +10,7 @@ use super::merge::Conflict;
 use super::schema::{Body, Place, Shape};
 use crate::base::number;
 use crate::base::pointer::{self, Pointer};
+use crate::base::text::short;
 
 /// The most characters of a value in words.
 const LONGEST: usize = 40;
@@ -208,10 +209,20 @@ fn words(shape: Option<Shape>, value: &Value) -> String {
     }
 }
 
-/// A number without needless decimals; other values as JSON.
+/// A number without needless decimals, rounded where it has many; other values as JSON.
 fn number(value: &Value) -> String {
-    value.as_f64().map_or_else(|| value.to_string(), number::text)
+    let Some(number) = value.as_f64() else { return value.to_string() };
+    let text = number::text(number);
+    match (text.len() > MOST_DIGITS, number.abs() >= 0.001) {
+        (false, _) => text,
+        (true, true) => short(number, DECIMALS),
+        (true, false) => format!("{number:.DECIMALS$e}"),
+    }
 }
+
+/// Numbers with more characters are rounded, to so many decimals.
+const MOST_DIGITS: usize = 9;
+const DECIMALS: usize = 4;
 
 #[cfg(test)]
 mod tests {
@@ -234,6 +245,10 @@ mod tests {
         for (edit, expected) in [
             (set(&eye("interpolation.radius"), json!(80)), "left eye · radius 60 → 80"),
             (set(&eye("motion.0.jump"), json!([0, -20])), "left eye · motion 0 jump 0, -18 → 0, -20"),
+            (
+                set(&eye("motion.0.jump"), json!([1.933_925_815_543_853_5, 0.000_012_345_678_9])),
+                "left eye · motion 0 jump 0, -18 → 1.9339, 1.2346e-5",
+            ),
             (set(&eye("motion.0.at.x"), json!(151)), "left eye · motion 0 at x 150 → 151"),
             (set(&eye("motion.1.jumps.1.along"), json!(0.6)), "left eye · motion 1 jumps 1 along 0.5 → 0.6"),
             (set(&eye("outline.kind"), json!("rectangle")), "left eye · outline polygon → rectangle"),

@@ -8,7 +8,7 @@ use super::graphics::TerminalPicture;
 use super::graphics::probed::Probed;
 use crate::preview::editor;
 use crate::render::Synth;
-use crate::scene::{Document, Edit};
+use crate::scene::{Document, Edit, Scene};
 
 /// Something that happened.
 pub enum Event {
@@ -28,6 +28,8 @@ pub enum Event {
     Tick(f64),
     /// A synthesis has ended: what it made, or why it failed.
     Synthesised(Box<Result<Synthesis, Problem>>),
+    /// What was said last of a synthesis is true of this scene.
+    Made(Arc<Scene>),
     /// A synthesis has begun.
     Synthesising,
     /// So much of the scene's files is read, in percent, if that takes a while.

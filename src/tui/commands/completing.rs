@@ -1,7 +1,9 @@
 //! Completion of the command line.
 
+use std::collections::BTreeSet;
+
 use super::command::Table;
-use super::profiles;
+use super::{fields, profiles};
 use crate::scene::{address, field};
 use crate::tui::state::State;
 
@@ -25,12 +27,17 @@ pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
     PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
 }
 
-/// The lines that `typed` can be completed to: names of commands, of presets, and paths of the scene after `set` and `get`.
+/// The lines that `typed` can be completed to: names of commands, of presets, of fields, and paths of the scene after `set` and `get`.
 pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
     match typed.split_once(' ') {
         None => table.names().into_iter().filter(|name| name.starts_with(typed)).collect(),
         Some((command @ ("set" | "get"), path)) => {
             paths(state, path).into_iter().map(|path| format!("{command} {path}")).collect()
+        }
+        Some(("help", name)) => {
+            let fields = fields::all(state).into_iter().map(|found| found.name);
+            let all: BTreeSet<String> = table.names().into_iter().chain(fields).collect();
+            all.into_iter().filter(|own| own.starts_with(name)).map(|own| format!("help {own}")).collect()
         }
         Some(("profile", name)) => {
             let names = profiles::offered(state).map(|found| found.preset.name).filter(|own| own.starts_with(name));

@@ -4,6 +4,7 @@
 use super::cells::number;
 use super::command::{Call, Command, Done, command};
 use super::contexts::contexts;
+use super::fields;
 use crate::base::pointer::Pointer;
 use crate::scene::address;
 use crate::scene::field::{self, Field, Kind};
@@ -15,7 +16,13 @@ use crate::tui::text::wrap::wrapped;
 use crate::tui::text::{numbers, plain};
 
 pub const COMMANDS: &[Command] = &[
-    command("help", "[COMMAND]", "Show help for what is under the cursor, then keys and commands", help).inside(),
+    command(
+        "help",
+        "[COMMAND|FIELD]",
+        "Show help for what is under the cursor, then keys and commands; or for one",
+        help,
+    )
+    .inside(),
     command("scroll", "LINES", "Scroll the pages", scroll).inside().counted(),
 ];
 
@@ -57,6 +64,7 @@ fn help(state: &mut State, call: &Call) -> Done {
 }
 
 /// The help of one command: its line in the table; for `put` also what can be entered; for a subcommand the text of `--help`.
+/// Otherwise that of a field; where one is called like a command, of both.
 fn help_of(state: &mut State, call: &Call) -> Done {
     let name = call.text.trim_start_matches(':');
     let lines: Vec<String> = match (call.table.find(name), call.table.subcommands().find(|known| known == name)) {
@@ -65,16 +73,22 @@ fn help_of(state: &mut State, call: &Call) -> Done {
             [line, command.help.to_owned(), String::new()].into_iter().chain(entries()).collect()
         }
         (Some(command), _) => {
-            state.say(format!(":{} {}  {}", command.name, command.args, command.help));
-            return Ok(());
+            let line = format!(":{} {}  {}", command.name, command.args, command.help);
+            match of_field(state, call, name) {
+                Ok(lines) => [line, String::new()].into_iter().chain(lines).collect(),
+                Err(_) => {
+                    state.say(line);
+                    return Ok(());
+                }
+            }
         }
         (None, Some(known)) => {
             let text = crate::ops::help(&known).unwrap_or_default();
-            text.lines()
-                .flat_map(|line| if line.len() > 100 { wrapped(line, WIDTH) } else { vec![line.to_owned()] })
-                .collect()
+            let fits = |line: &str| if line.len() > 100 { wrapped(line, WIDTH) } else { vec![line.to_owned()] };
+            let field = of_field(state, call, name).unwrap_or_default();
+            field.into_iter().chain(text.lines().flat_map(fits)).collect()
         }
-        (None, None) => return Err(call.table.unknown(name)),
+        (None, None) => of_field(state, call, name)?,
     };
     open(state, name, lines);
     Ok(())
@@ -96,7 +110,19 @@ fn under_cursor(state: &State) -> Vec<String> {
     let document = state.document();
     let derived = cell.filter(|cell| matches!(cell.part, Part::Derived(_)));
     let field = derived.map(|cell| (*cell.field).clone()).or_else(|| field::field(document, &at));
-    let Some(field) = field else { return Vec::new() };
+    field.map_or(Vec::new(), |field| told(state, &at, &field, cell))
+}
+
+/// The same of a field by its name.
+fn of_field(state: &State, call: &Call, name: &str) -> Result<Vec<String>, String> {
+    let found = fields::called(state, call.table, name)?;
+    let field = found.field(state.document()).ok_or("nothing is known of it")?;
+    Ok(told(state, &found.pointer, &field, None))
+}
+
+/// The same of the field at a place; of a cell, if it is in one.
+fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<String> {
+    let document = state.document();
     let name = if at.is_empty() { "scene".to_owned() } else { plain(&field.name) };
     let part = cell.filter(|cell| cell.part != Part::Whole).map(|cell| cell.head.as_str()).unwrap_or_default();
     // Some columns begin with the name of their field.
@@ -109,18 +135,21 @@ fn under_cursor(state: &State) -> Vec<String> {
         lines.push(format!("{name:<9} {}", parts.next().unwrap_or_default()));
         lines.extend(parts.map(|line| format!("{:<9} {line}", "")));
     };
-    say("value", value(state, &at, &field, cell));
-    if let Some(range) = sheet::told_range(&field) {
-        say("range", range);
+    say("value", value(state, at, field, cell));
+    // The range names the unit too.
+    match (sheet::told_range(field), field.unit) {
+        (Some(range), _) => say("range", range),
+        (None, Some(unit)) => say("unit", unit.to_owned()),
+        (None, None) => {}
     }
     if let Some(default) = &field.default {
-        say("default", sheet::summary(&field, default));
+        say("default", sheet::summary(field, default));
     }
-    let path = plain(&address::address(document, &at));
+    let path = plain(&address::address(document, at));
     if !path.is_empty() {
         say("path", format!("{path}   (:set {path}=VALUE)"));
     }
-    if let Some((kind, help, formula)) = formula(state, &at) {
+    if let Some((kind, help, formula)) = formula(state, at) {
         say(&kind, help);
         say("formula", formula);
     }

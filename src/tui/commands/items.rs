@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json as value};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
-use crate::files::clips;
+use crate::files::{clips, paths};
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Edit, json};
@@ -95,8 +95,15 @@ fn add(state: &mut State, call: &Call) -> Done {
 
 /// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name.
 fn add_file(state: &mut State, path: &str) -> Done {
-    let entry = (called(path).to_owned(), value!({ "path": path }));
     let list = list_for(path);
+    let mut entry = value!({ "path": path });
+    if matches!(list, List::Clips) {
+        let found = clips::find(&paths::beside(state.scene.path(), path)).map_err(|error| error.to_string())?;
+        if found.first > 0 {
+            entry["first"] = found.first.into();
+        }
+    }
+    let entry = (called(path).to_owned(), entry);
     let map = format!("/{}", list.words().0);
     let added = Edit::insert_entries(state.document(), &map, [entry].into_iter().collect());
     let (edit, pointer) = added.ok_or("there is no list for it")?;

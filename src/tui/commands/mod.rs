@@ -9,6 +9,7 @@ pub mod command;
 mod completing;
 pub mod conflicts;
 pub mod contexts;
+mod fields;
 mod files;
 mod filling;
 mod finding;
@@ -35,6 +36,7 @@ mod typing;
 mod undoing;
 pub mod update;
 mod values;
+pub mod waiting;
 mod yanking;
 
 /// Every command.

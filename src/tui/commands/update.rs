@@ -39,6 +39,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Reading(percent) => state.picture.read = Some(percent).filter(|percent| *percent < 100),
         Event::Probed(probed) => state.picture.probed = Some(probed),
         Event::Synthesised(result) => synthesised(state, *result),
+        Event::Made(scene) => state.picture.made = Some(scene),
         Event::Picture(shown, ms) => (state.picture.latest, state.picture.frame_ms) = (Some(shown), Some(ms)),
         Event::Progress(line) => state.outside.work = Some(line),
         Event::Done(result) => {

@@ -7,7 +7,7 @@ use crate::base::pointer::Pointer;
 use crate::layers::parts::derived::Derived;
 use crate::layers::technique::Technique;
 use crate::scene::Document;
-use crate::scene::field;
+use crate::scene::field::{self, Field, Kind};
 use crate::tui::text::numbers;
 
 /// The layer that a place belongs to, and the way from it to there.
@@ -26,6 +26,20 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
 pub fn automatic(document: &Document, pointer: &str) -> Option<Value> {
     let (layer, way) = layer_of(document, pointer)?;
     Some(numbers::mapped(layer.automatic(way)?, numbers::tidy))
+}
+
+/// What is known of a column.
+pub fn field(column: &Derived) -> Field {
+    Field {
+        name: column.name.into(),
+        help: column.help,
+        kind: Kind::Number { integer: false },
+        range: None,
+        unit: Some(column.unit),
+        symbol: None,
+        default: None,
+        optional: true,
+    }
 }
 
 /// The columns that follow from the item at `pointer`.

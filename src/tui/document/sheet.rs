@@ -299,16 +299,7 @@ fn item(document: &Document, child: Child, place: Place) -> Row {
 
 /// The cell of a column that follows from the fields of an item.
 fn follows(document: &Document, item: &str, column: &'static Derived) -> Cell {
-    let field = Field {
-        name: column.name.into(),
-        help: column.help,
-        kind: Kind::Number { integer: false },
-        range: None,
-        unit: Some(column.unit),
-        symbol: None,
-        default: None,
-        optional: true,
-    };
+    let field = derived::field(column);
     let pointer = Pointer(item).join(column.of);
     let set = document.json().pointer(&pointer).is_some();
     let cell = Cell {

@@ -14,17 +14,21 @@ use crate::files::lines::Log;
 use crate::files::materials::Watched;
 use crate::files::watch::Watch;
 use crate::preview::editor::{self, Preview};
+use crate::scene::{FRAME, Scene};
 use crate::tui::commands::update::update;
+use crate::tui::commands::waiting::awaits_pictures;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::graphics;
+use crate::tui::graphics::request::Request;
+use crate::tui::layout::picture;
 use crate::tui::state::tutor::Tutor;
 use crate::tui::state::{Message, Mode, State, USUAL};
 use crate::tui::text::color::Depth;
 use crate::tui::text::plain;
 use std::path::Path;
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
 /// A running editor.
@@ -55,6 +59,8 @@ pub struct Editor {
     pub(super) log: Option<Log>,
     /// Limits how often the worker is asked for pictures.
     pub(super) throttle: Throttle,
+    /// The scene of which a script waits for what is shown.
+    pub(super) awaited: Option<Arc<Scene>>,
     /// Whether the editor is about to end.
     pub(super) leaving: bool,
     /// Whether a signal has ended it.
@@ -114,6 +120,7 @@ impl Editor {
             scripts: Scripts::default(),
             log,
             throttle: Throttle::default(),
+            awaited: None,
             leaving: false,
             interrupted: false,
             drawn: None,
@@ -246,6 +253,10 @@ impl Editor {
         let (place, done) = match self.scripts.waits.take() {
             Some(place) => (place, self.refused()),
             None => match self.scripts.next() {
+                Some((place, line)) if self.awaits(&line) => {
+                    self.scripts.hold(place, line);
+                    return Ok(false);
+                }
                 Some((place, line)) => (place, self.obey(line)),
                 None => return Ok(false),
             },
@@ -256,6 +267,26 @@ impl Editor {
         }
         self.scripts.waits = self.state.outside.work.is_some().then_some(place);
         Ok(true)
+    }
+
+    /// Whether a line has to wait for what is shown, which without a screen nobody else asks for.
+    pub fn awaits(&mut self, line: &str) -> bool {
+        if !awaits_pictures(&self.state, line) {
+            return false;
+        }
+        let scene = self.state.document().scene();
+        if !self.awaited.as_ref().is_some_and(|awaited| Arc::ptr_eq(awaited, scene)) {
+            self.awaited = Some(scene.clone());
+            if self.screen.is_none() {
+                self.worker.ask(Request { picture: None, probe: None, ..picture::request(&self.state) });
+            }
+        }
+        true
+    }
+
+    /// Whether scripts have something to do now.
+    pub fn scripts_go_on(&self) -> bool {
+        !self.scripts.is_empty() && !self.scripts.holds() && self.state.outside.work.is_none()
     }
 
     /// Runs the scripts for a short while, and shows a mistake with its place.
@@ -306,9 +337,13 @@ fn begin_log(scene: &OpenScene, (width, height): (u16, u16), sender: mpsc::Sende
     Log::begin(scene.path(), header, move |why| drop(sender.send(Event::Unlogged(why))))
 }
 
-/// The size of the first layer's picture, from its header.
+/// The size of a frame, as far as the document and the header of a picture tell.
 fn picture_size(state: &State) -> Option<(usize, usize)> {
-    let image = state.document().scene().layers.first()?.technique().frame_of()?;
+    let scene = state.document().scene();
+    if let Some([width, height]) = scene.size {
+        return Some((width as usize, height as usize));
+    }
+    let Some(image) = scene.layers.iter().find_map(|layer| layer.technique().frame_of()) else { return Some(FRAME) };
     let (sizes, _) = files::materials::sizes(state.scene.path(), state.document().scene(), state.scene.options());
     sizes.get(image).copied()
 }

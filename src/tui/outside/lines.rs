@@ -37,6 +37,8 @@ struct Session {
     left: Option<String>,
     /// The last message on why edits do not reach the journal.
     failing: Option<String>,
+    /// A line that waits for what is shown.
+    held: Option<String>,
     /// The last progress that was printed, and when.
     told: Option<(String, Instant)>,
 }
@@ -63,14 +65,16 @@ impl Editor {
             self.answer(&mut session);
             self.state.scene.tend();
             session.see_journal(self.state.scene.failing());
-            let busy = self.state.outside.work.is_some() || !self.scripts.is_empty();
+            if let Some(line) = session.held.take() {
+                self.typed(Some(line), &mut session);
+            }
+            let busy = self.state.outside.work.is_some() || !self.scripts.is_empty() || session.held.is_some();
             if !busy && !reading {
                 session.prompt(&self.state);
                 read_line(self.sender.clone());
                 reading = true;
             }
-            let patience =
-                if self.scripts.is_empty() || self.state.outside.work.is_some() { PATIENCE } else { Duration::ZERO };
+            let patience = if self.scripts_go_on() { Duration::ZERO } else { PATIENCE };
             for event in events.recv_timeout(patience).into_iter().chain(events.try_iter()) {
                 if let Event::Typed(line) = event {
                     reading = false;
@@ -87,6 +91,10 @@ impl Editor {
     /// Handles a line of the input; `None` at its end.
     fn typed(&mut self, line: Option<String>, session: &mut Session) {
         let Some(line) = line else { return self.input_ended(session) };
+        if self.awaits(line.trim().trim_start_matches(':')) {
+            session.held = Some(line);
+            return;
+        }
         session.number += 1;
         session.warned = false;
         let line = line.trim();

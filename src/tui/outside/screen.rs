@@ -62,7 +62,7 @@ impl Editor {
 
     /// Waits for an event and handles all that have arrived, so that many of them cost only one drawing.
     fn wait(&mut self, events: &mpsc::Receiver<Event>, watch: &mut Stopwatch) {
-        let script_goes_on = !self.scripts.is_empty() && self.state.outside.work.is_none();
+        let script_goes_on = self.scripts_go_on();
         let patience = match self.state.play.playing {
             _ if script_goes_on => Duration::ZERO,
             _ if pace::is_behind() => BEHIND,

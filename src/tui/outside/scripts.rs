@@ -10,6 +10,8 @@ const DEEPEST: usize = 16;
 #[derive(Debug, Default)]
 pub struct Scripts {
     running: Vec<Script>,
+    /// The next line, with its place, if it waits for what is shown.
+    held: Option<(String, String)>,
     /// The place of the line whose long work is still running.
     pub waits: Option<String>,
 }
@@ -37,6 +39,9 @@ impl Scripts {
 
     /// The next line, and its place as FILE:LINE. Comments (`#`) and blank lines are skipped.
     pub fn next(&mut self) -> Option<(String, String)> {
+        if let Some(held) = self.held.take() {
+            return Some(held);
+        }
         while let Some(script) = self.running.last_mut() {
             while let Some(line) = script.lines.get(script.next) {
                 script.next += 1;
@@ -50,9 +55,19 @@ impl Scripts {
         None
     }
 
+    /// Takes a line back, which comes next again.
+    pub fn hold(&mut self, place: String, line: String) {
+        self.held = Some((place, line));
+    }
+
+    /// Whether a line was taken back.
+    pub fn holds(&self) -> bool {
+        self.held.is_some()
+    }
+
     /// Whether nothing is left to run.
     pub fn is_empty(&self) -> bool {
-        self.running.is_empty() && self.waits.is_none()
+        self.running.is_empty() && self.waits.is_none() && self.held.is_none()
     }
 }
 
@@ -70,6 +85,10 @@ mod tests {
         assert_eq!(place(&mut scripts).as_deref(), Some("b:1 undo"));
         assert_eq!(place(&mut scripts).as_deref(), Some("a:4 put 5"));
         assert_eq!(place(&mut scripts), None);
+        assert!(scripts.is_empty());
+        scripts.hold("a:4".into(), "put 5".into());
+        assert!(scripts.holds() && !scripts.is_empty());
+        assert_eq!(place(&mut scripts).as_deref(), Some("a:4 put 5"));
         assert!(scripts.is_empty());
     }
 

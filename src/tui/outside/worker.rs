@@ -45,7 +45,8 @@ impl Worker {
                     Err(fault) => {
                         // Its state may be incomplete, so start again with an empty one.
                         studio = Studio::new(studio.options, studio.running);
-                        if events.send(Event::Synthesised(Box::new(Err(Problem::error("", fault))))).is_err() {
+                        let told = Event::Synthesised(Box::new(Err(Problem::error("", fault))));
+                        if events.send(told).and_then(|()| events.send(Event::Made(request.scene))).is_err() {
                             return;
                         }
                     }
@@ -133,7 +134,8 @@ impl Studio {
                 let longest = probed::longest(&synth);
                 Synthesis { synth, ms, longest, warning }
             });
-            if events.send(Event::Synthesised(Box::new(made))).is_err() {
+            let told = events.send(Event::Synthesised(Box::new(made)));
+            if told.and_then(|()| events.send(Event::Made(request.scene.clone()))).is_err() {
                 return false;
             }
         }

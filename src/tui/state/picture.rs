@@ -8,6 +8,7 @@ use super::looking::Looking;
 use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
+use crate::scene::Scene;
 use crate::tui::graphics::probed::Probed;
 use crate::tui::graphics::viewport::Viewport;
 use crate::tui::graphics::{Graphics, TerminalPicture};
@@ -43,6 +44,8 @@ pub struct Picture {
     pub read: Option<u8>,
     /// The last synthesis.
     pub synth: Option<Arc<Synth>>,
+    /// The scene of which it was, also if it failed.
+    pub made: Option<Arc<Scene>>,
     /// How long the last synthesis took, in milliseconds.
     pub synth_ms: Option<f64>,
     /// The longest vector of every field, by its pointer.
@@ -67,6 +70,7 @@ impl Picture {
             synthesising: false,
             read: None,
             synth: None,
+            made: None,
             synth_ms: None,
             longest: Vec::new(),
         }

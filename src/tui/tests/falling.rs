@@ -203,6 +203,37 @@ fn help_tells_of_the_column_not_of_the_field_behind_it() {
     assert!(pages.lines.iter().any(|line| line.contains("keeps the air time")));
 }
 
+#[test]
+fn help_tells_of_any_field_by_its_name() {
+    for (name, parts) in [
+        ("lines", &["-- lines --", "How many", "range", "path      layers.falls.lines"][..]),
+        ("surge.width", &["-- width --", " m\n", "path      layers.falls.surge.width"]),
+        ("layers.falls.gravity", &["-- gravity --", "default   9.81", "range     -1000 to 1000 m/s2"]),
+        ("frame", &["-- frame --", "The frame of its first key"]),
+        ("air time", &["-- air time --", "How long the line of the node takes"]),
+        ("land_x", &["-- land x --"]),
+        ("speed", &[":speed ", "-- speed --"]),
+    ] {
+        let mut state = falling(json!({}));
+        press(&mut state, &format!(": \"help {name}\" Enter"));
+        let Mode::Pages(pages) = &state.typing.mode else { panic!("{name}: {:?}", state.message) };
+        let text = pages.lines.join("\n");
+        assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
+    }
+    let mut state = falling(json!({}));
+    for (name, told) in [
+        ("gravitty", "there is no command or field \"gravitty\" (did you mean \"gravity\"?)"),
+        ("width", "\"width\" is several fields: layers.falls."),
+        ("look.widths", "there is no command or field"),
+    ] {
+        press(&mut state, &format!(": \"help {name}\" Enter"));
+        assert!(said_last(&state).1.contains(told), "{name}: {:?}", state.message);
+    }
+    press(&mut state, ": \"help grav\" Tab");
+    let Mode::Line(line) = &state.typing.mode else { panic!("no line") };
+    assert_eq!(line.text.value(), "help gravity");
+}
+
 fn eye(camera: &Camera) -> Eye {
     camera.at(0.0, (400, 300))
 }

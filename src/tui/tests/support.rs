@@ -50,6 +50,11 @@ pub fn state() -> State {
     static FOLDER: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("cat.plica.json"), SCENE).unwrap();
+        for first in ["falls/0000.jpg", "falls/0.png", "late/0007.jpg", "b/fire-0.png", "a.0.png"] {
+            let file = folder.path().join(first);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, "").unwrap();
+        }
         folder
     });
     let scene = OpenScene::in_memory(&FOLDER.path().join("cat.plica.json"));

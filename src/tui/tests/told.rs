@@ -155,7 +155,7 @@ fn the_help_of_entries_opens_over_one_and_leaves_it_as_typed() {
         press(&mut state, "q");
     }
     press(&mut state, ": \"help rendr\" Enter");
-    assert_eq!(said(&state), "there is no command \"rendr\" (did you mean \"render\"?)");
+    assert_eq!(said(&state), "there is no command or field \"rendr\" (did you mean \"render\"?)");
 }
 
 #[test]

@@ -1,0 +1,133 @@
+//! The fields of the scene by their names, for help: those that are written, those that are not, and columns that follow.
+
+use super::command::Table;
+use crate::base::pointer::Pointer;
+use crate::base::problem::{nearest, quoted};
+use crate::layers::parts::derived::Derived;
+use crate::scene::field::{self, Field};
+use crate::scene::schema::{Body, Place};
+use crate::scene::{Document, address};
+use crate::tui::document::derived;
+use crate::tui::state::State;
+
+/// At most so many items of a list are looked at: they are alike.
+const MOST_ITEMS: usize = 20;
+/// At most so deep.
+const DEEPEST: usize = 12;
+/// At most so many places are named where a name means several.
+const MOST_NAMED: usize = 4;
+
+/// A field, or a column that follows from one.
+#[derive(Clone)]
+pub struct Found {
+    /// Its name.
+    pub name: String,
+    /// Where it is; that of a column is the field that it follows from.
+    pub pointer: String,
+    /// The column.
+    pub column: Option<&'static Derived>,
+}
+
+impl Found {
+    /// What is known of it.
+    pub fn field(&self, document: &Document) -> Option<Field> {
+        match self.column {
+            Some(column) => Some(derived::field(column)),
+            None => field::field(document, &self.pointer),
+        }
+    }
+}
+
+/// All fields, those of the layer that is shown first.
+pub fn all(state: &State) -> Vec<Found> {
+    let document = state.document();
+    let mut found = Vec::new();
+    walk(document, Place::root(document.json()), "", 0, &mut found);
+    let shown = Pointer(&state.cursor.node).tokens().take(2).collect::<Vec<_>>().join("/");
+    found.sort_by_key(|one| !one.pointer.trim_start_matches('/').starts_with(&shown));
+    found
+}
+
+fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &mut Vec<Found>) {
+    if depth > DEEPEST {
+        return;
+    }
+    let value = place.value.filter(|value| !value.is_null());
+    let tokens: Vec<String> = match place.shape.body() {
+        Body::List(..) => (0..field::count(place).clamp(1, MOST_ITEMS)).map(|i| i.to_string()).collect(),
+        Body::Map(_) | Body::Row(_) => field::steps(place).into_iter().map(|(token, _)| token).collect(),
+        Body::Object | Body::Tagged(_) => {
+            let fields = place.shape.properties(value).into_iter().filter(|(_, shape)| !shape.is_fixed());
+            fields.map(|(name, _)| name.to_owned()).collect()
+        }
+        _ => Vec::new(),
+    };
+    let is_named = matches!(place.shape.body(), Body::Object | Body::Tagged(_));
+    for token in tokens {
+        let (Some(below), at) = (place.step(&token), Pointer(pointer).join(&token)) else { continue };
+        walk(document, below, &at, depth + 1, found);
+        if is_named {
+            found.push(Found { name: token, pointer: at, column: None });
+        } else {
+            let column = |of: &'static Derived| Found {
+                name: of.name.to_owned(),
+                pointer: Pointer(&at).join(of.of),
+                column: Some(of),
+            };
+            found.extend(derived::columns(document, &at).iter().map(column));
+        }
+    }
+}
+
+/// The field that a person means by an address, by the end of one, or by its name alone.
+///
+/// # Errors
+/// There is none, or several that differ.
+pub fn called(state: &State, table: &Table, text: &str) -> Result<Found, String> {
+    let document = state.document();
+    let exact = address::resolve(document, text).ok().filter(|pointer| field::field(document, pointer).is_some());
+    if let Some(pointer) = exact.filter(|pointer| !pointer.is_empty()) {
+        let name = Pointer(&pointer).split().map(|(_, name)| name).unwrap_or_default();
+        return Ok(Found { name, pointer, column: None });
+    }
+    let all = all(state);
+    let name = text.rsplit('.').next().unwrap_or(text);
+    let is_name = |one: &&Found| one.name == name || one.column.is_some() && one.name == name.replace('_', " ");
+    let ends = |one: &&Found| {
+        let address = address::address(document, &one.pointer);
+        !text.contains('.') || address.ends_with(&format!(".{text}"))
+    };
+    let mut meant: Vec<&Found> = Vec::new();
+    for one in all.iter().filter(is_name).filter(ends) {
+        let is_same = |other: &&Found| same(document, one, other);
+        if !meant.iter().any(is_same) {
+            meant.push(one);
+        }
+    }
+    // A field of the layer itself is meant before one inside another.
+    let depth = |one: &Found| one.pointer.matches('/').count();
+    let least = meant.iter().map(|one| depth(one)).min();
+    meant.retain(|one| Some(depth(one)) == least);
+    match meant.as_slice() {
+        [] => {
+            let names = table.names();
+            let known = names.iter().map(String::as_str).chain(all.iter().map(|one| one.name.as_str()));
+            let near = nearest(text, known).filter(|near| near.starts_with("did you mean"));
+            let near = near.unwrap_or("? lists commands, Space Space finds fields".into());
+            Err(format!("there is no command or field {} ({near})", quoted(text)))
+        }
+        [one] => Ok((*one).clone()),
+        several => {
+            let places: Vec<String> =
+                several.iter().take(MOST_NAMED).map(|one| address::address(document, &one.pointer)).collect();
+            let more = if several.len() > MOST_NAMED { ", ..." } else { "" };
+            Err(format!("{} is several fields: {}{more}", quoted(text), places.join(", ")))
+        }
+    }
+}
+
+/// Whether the same is known of two fields.
+fn same(document: &Document, one: &Found, other: &Found) -> bool {
+    let known = |found: &Found| found.field(document).map(|field| (field.help, field.range, field.unit));
+    known(one) == known(other)
+}
