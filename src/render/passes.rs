@@ -154,6 +154,22 @@ pub fn view(pass: &Pass, picture: &Linear) -> Frame {
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 
+/// How bright a frame is that lies under a pass.
+const DIMMED: f32 = 0.25;
+
+/// The same as [`view`], over the dimmed frame where that tells what is where: thin lines alone do not.
+pub fn view_over(asked: &Asked, picture: &Linear, frame: impl FnOnce() -> Linear) -> Frame {
+    let shown = view(asked.pass, picture);
+    if asked.pass.holds != Holds::Speed {
+        return shown;
+    }
+    let dimmed = |[r, g, b, a]: Rgba| encode([r * DIMMED, g * DIMMED, b * DIMMED, a]);
+    let under = frame();
+    let cells = shown.cells().iter().zip(under.cells());
+    let cells = cells.map(|(code, light)| if code[3] == 0 { dimmed(*light) } else { *code }).collect();
+    Grid::from_cells(shown.width(), shown.height(), cells)
+}
+
 /// The color of a number that lies in a range over the whole picture.
 fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
     let [x, y, z, covered] = cell;
@@ -239,5 +255,16 @@ mod tests {
             assert_eq!(shown.iter().map(|code| most(*code)).collect::<Vec<_>>(), [2, 1, 0], "{unit}: {shown:?}");
         }
         assert_eq!(seen(Holds::Speed, &[[0.0; 4]]), [[0; 4]], "no line, no color");
+    }
+
+    #[test]
+    fn lines_lie_over_the_dimmed_frame_and_other_passes_alone() {
+        let asked = |holds| Asked { pass: Box::leak(Box::new(Pass { name: "test", help: "", holds })), layer: None };
+        let picture = Linear::from_cells(2, 1, vec![[0.0; 4], [1.0; 4]]);
+        let frame = || Linear::filled(2, 1, [1.0, 0.0, 0.0, 1.0]);
+        let shown = view_over(&asked(Holds::Speed), &picture, frame);
+        assert_eq!(shown.cells()[0], [137, 0, 0, 255]);
+        assert_ne!(shown.cells()[1][1], 0, "a line hides it");
+        assert_eq!(view_over(&asked(Holds::Count), &picture, frame).cells()[0], [0, 0, 0, 255]);
     }
 }

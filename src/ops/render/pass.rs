@@ -11,7 +11,7 @@ use crate::files::outputs;
 use crate::layers::parts::pass::COLOR;
 use crate::ops::Context;
 use crate::ops::opened::Unloaded;
-use crate::render::passes::{Asked, view};
+use crate::render::passes::{Asked, view_over};
 use crate::render::{self, Synth, cpu};
 
 /// Renders the pass that `args` ask for, or the finished light if they only name OpenEXR files.
@@ -55,7 +55,8 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
             [synth] => asked.picture(synth, time),
             samples => cpu::mean(samples, time),
         };
-        files.write(number, &picture, *asked.pass == COLOR, || view(asked.pass, &picture))?;
+        let shown = || view_over(&asked, &picture, || cpu::linear(&samples[0], time));
+        files.write(number, &picture, *asked.pass == COLOR, shown)?;
     }
     context.messages.step("frame", todo.len() as u64, todo.len() as u64);
     let what = match todo.len() {

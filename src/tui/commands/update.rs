@@ -101,11 +101,12 @@ fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
         Err(problem) => (Some(problem), None),
     };
     // What is wrong from the start would go unseen below the greeting.
-    if state.picture.synth_ms.is_none()
-        && state.outside.problem.is_none()
-        && let Some(problem) = problem.or(warning)
-    {
-        state.complain(told(state.document(), problem));
+    if state.picture.synth_ms.is_none() && state.outside.problem.is_none() {
+        match (problem, warning) {
+            (Some(problem), _) => state.complain(told(state.document(), problem)),
+            (None, Some(warning)) => state.say(told(state.document(), warning)),
+            (None, None) => {}
+        }
     }
     match result {
         Ok(Synthesis { synth, ms, longest, warning }) => {
@@ -265,7 +266,7 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) if one => type_text(state, typed),
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         _ if state.is_small() => state.complain(TOO_SMALL),
-        Mode::Aim => state.complain("aiming: the cursor's keys, Enter and Esc act here, also : and ?"),
+        Mode::Aim => state.complain("aiming: only the cursor, Enter, Esc, : and ? act"),
         Mode::Normal => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
         _ => {}
     }

@@ -15,7 +15,7 @@ use crate::render;
 use crate::scene::check as scene;
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
-use crate::tui::events::Event;
+use crate::tui::events::{Event, Synthesis};
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
 
@@ -126,6 +126,16 @@ fn a_file_that_is_missing_from_the_start_is_told_and_found() {
     assert!(told.bad && told.text.contains("meshes.m.path") && told.text.contains("no such file"), "{}", told.text);
     press(&mut state, "g d");
     assert_eq!(state.focused(), "/meshes/m/path");
+}
+
+#[test]
+fn a_warning_of_the_start_is_told_and_fails_no_line() {
+    let mut state = state_of(SCENE);
+    let warning = Some(Problem::warning("/meshes/m/path", "m.obj: has no normals"));
+    let made = Synthesis { synth: Arc::new(render::Synth::default()), ms: 1.0, longest: Vec::new(), warning };
+    update(&mut state, Event::Synthesised(Box::new(Ok(made))));
+    let told = state.message.clone().unwrap();
+    assert!(!told.bad && told.text.contains("meshes.m.path"), "{}", told.text);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use kurbo::Point;
 use serde_json::{Value, json};
 
+use super::screens::screen;
 use super::support::{at, paste, press, said, said_last, state_of};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::eye::Eye;
@@ -308,12 +309,22 @@ fn while_aiming_only_the_cursor_acts_and_the_status_line_tells_the_landing() {
     let before = state.document().json().clone();
     for key in ["a", "r", "d", "w", "b", "s", "u", "p", "Tab", "z", "g"] {
         press(&mut state, key);
-        assert!(said_last(&state).1.contains("aiming: the cursor's keys, Enter and Esc"), "{key}: {:?}", state.message);
+        assert!(
+            said_last(&state).1.contains("aiming: only the cursor, Enter, Esc, : and ? act"),
+            "{key}: {:?}",
+            state.message
+        );
         assert!(matches!(state.typing.mode, Mode::Aim) && *state.document().json() == before, "{key}");
     }
     let facts = spatial::aiming(&state).unwrap().unwrap();
     let told: Vec<(&str, f64)> = facts.iter().map(|fact| (fact.name, (fact.value * 1e6).round() / 1e6)).collect();
     assert_eq!(told, [("land x", 0.5), ("land z", 1.0), ("air time", 1.0)], "where it lands already");
+    state.message = None;
+    for width in [80, 60] {
+        state.size = (width, 24);
+        let shown = screen(&state);
+        assert!(shown.contains(" AIM  ") && shown.contains("land x 0.5 m  land z 1 m  air time 1 s"), "{shown}");
+    }
     for keys in ["? Esc", ": Esc", ": Backspace", ": \"help put\" Enter Esc"] {
         press(&mut state, keys);
         assert!(matches!(state.typing.mode, Mode::Aim), "{keys} comes back to it");
