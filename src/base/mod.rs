@@ -23,6 +23,7 @@ pub mod pointer;
 pub mod problem;
 pub mod progress;
 pub mod quantise;
+pub mod random;
 pub mod reduce;
 pub mod system;
 pub mod text;

@@ -102,6 +102,7 @@ pub const TABLE: &[Profile] = &[
         "mug" / "print.obj",
         "cat" / "cat.png"
     ),
+    profile!("sketch", "a mug that turns, drawn with a pen", "sketch" / "sketch.plica.json", "mug" / "mug.obj"),
 ];
 
 /// The scene that the tutor begins with: a picture, the lid and the opening of an eye, and a curve that does not move

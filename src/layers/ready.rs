@@ -12,7 +12,7 @@ use super::parts::album::Album;
 use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
 use super::parts::moment::{CENTRE, Columns, Moment};
-use super::parts::pass::Pass;
+use super::parts::pass::{Pass, Which};
 use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
@@ -29,6 +29,10 @@ pub struct Making<'a> {
     pub wrap: Wrap,
     /// How long the timeline is, in seconds.
     pub duration: f64,
+    /// Width and height of the frame, in pixels.
+    pub size_px: (usize, usize),
+    /// How many pixels of the frame a meter at the camera's target is, at the beginning.
+    pub px_per_m: f64,
     /// The files that layers name.
     pub materials: &'a Materials,
     /// The place in each pixel that is evaluated: its centre, or another for supersampling.
@@ -41,7 +45,8 @@ impl<'a> Making<'a> {
     /// At the centre of each pixel, without layers as textures; the timeline is as long as one that is not set.
     pub fn plain(wrap: Wrap, materials: &'a Materials) -> Self {
         static NONE: Textures = Textures::new();
-        Making { wrap, duration: Timeline::default().duration, materials, place: CENTRE, textures: &NONE }
+        let duration = Timeline::default().duration;
+        Making { wrap, duration, size_px: (0, 0), px_per_m: 1.0, materials, place: CENTRE, textures: &NONE }
     }
 }
 
@@ -67,6 +72,12 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// Whether it has sprites: they are drawn after all surfaces of their group.
     fn has_sprites(&self) -> bool {
+        false
+    }
+
+    /// Whether something is drawn on its surfaces: that needs all of a frame at once ([`Still::strokes`]), and the GPU
+    /// cannot do it yet.
+    fn has_strokes(&self) -> bool {
         false
     }
 
@@ -140,8 +151,23 @@ pub trait Still: Sync {
     /// other, with all surfaces of the group, whose depths in meters are `depth`. Nothing for layers without sprites.
     fn sprites(&self, _rows: &[usize], _columns: Columns, _depth: &[f64], _out: &mut [Rgba]) {}
 
+    /// What a pass has where something is drawn on the surfaces of the layer, as one of a group: writes the pixels that
+    /// show the layer. Nothing for layers on which nothing is drawn.
+    fn strokes(&self, _which: Which, _surfaces: &Surfaces, _out: &mut [Rgba]) {}
+
     /// What a pass other than color has in row `y`, as [`Still::surface`]; nothing for layers in the frame.
     fn pass(&self, _pass: &Pass, _y: usize, _columns: Columns, _depth: &mut [f64], _out: &mut [Rgba]) {}
+}
+
+/// The surfaces of a group in all pixels of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Surfaces<'a> {
+    /// How far away they are, in meters; infinite where there are none.
+    pub depth: &'a [f64],
+    /// Which layer each is of.
+    pub layer: &'a [u32],
+    /// The layer that is asked.
+    pub own: u32,
 }
 
 /// A layer whose parts can be prepared without the rest, for a single pixel or a band of a large picture.

@@ -136,6 +136,11 @@ pub trait Technique: Any + Send + Sync {
         Err("nothing here goes to a place: select a point that does (w, b)".into())
     }
 
+    /// The names of what a pass can be of in the layer, if it is of things that have names.
+    fn pass_names(&self, _pass: &Pass) -> Vec<&str> {
+        Vec::new()
+    }
+
     /// What changes in the layer over the scene time, item by item.
     fn curves(&self, _wrap: Wrap) -> Vec<Curve<'_>> {
         Vec::new()

@@ -7,7 +7,6 @@ use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
-use crate::layers::ready::Making;
 use crate::render;
 
 /// Find every problem in a scene
@@ -70,8 +69,7 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     problems.extend(found);
     let is_broken = |problems: &[Problem]| problems.iter().any(|problem| problem.severity == Severity::Error);
     if !is_broken(&problems) {
-        let making = Making::plain(scene.timeline.wrap, &materials);
-        let making = Making { duration: scene.timeline.duration, ..making };
+        let making = render::making(scene, &materials);
         problems.extend(scene.layers.iter().enumerate().flat_map(|(i, layer)| {
             let made = layer.technique().check_made(&making).into_iter();
             made.map(move |problem| problem.under(&format!("/layers/{i}")))

@@ -10,7 +10,6 @@ use crate::base::maths;
 use crate::base::text::{self, hex};
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
-use crate::layers::ready::Making;
 use crate::render::{self, passes, stage::Stage};
 use crate::scene::Scene;
 
@@ -48,8 +47,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let own = own_size(scene, asked, &opened.materials).filter(|_| synth.is_none());
     let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
     let moment = Stage::of(scene).moment(args.time, size);
-    let making = Making::plain(scene.timeline.wrap, &opened.materials);
-    let making = Making { duration: scene.timeline.duration, ..making };
+    let making = render::making(scene, &opened.materials);
     let look = |index: usize, pixel| {
         let ready = synth.as_ref().and_then(|synth| synth.layers.get(index)).map(|ready| &**ready);
         let read = scene.layers[index].technique().probe(&making, ready, pixel, &moment);

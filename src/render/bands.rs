@@ -8,6 +8,7 @@ use std::sync::Arc;
 use kurbo::Vec2;
 
 use super::stage::Stage;
+use super::whole::Wholes;
 use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, encode};
 use crate::base::problem::Problem;
@@ -15,7 +16,6 @@ use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::CENTRE;
 use crate::layers::ready::{Making, Prepared, Whole};
-use crate::layers::timeline::Timeline;
 use crate::scene::Scene;
 
 /// A scene whose parts can be rendered without the rest.
@@ -43,8 +43,7 @@ impl<'a> Bands<'a> {
                 if let Some(texture) = textures.get(layer.technique().name()) {
                     return Ok(Box::new(Whole(texture.layer.clone())) as Box<dyn Prepared>);
                 }
-                let Timeline { wrap, duration, .. } = scene.timeline;
-                let making = Making { wrap, duration, materials, place, textures: &textures };
+                let making = Making { place, textures: &textures, ..super::making(scene, materials) };
                 layer.technique().prepare(&making).map_err(|problem| problem.under(&format!("/layers/{i}")))
             };
             scene.layers.iter().enumerate().map(prepare).collect::<Result<Vec<_>, _>>()
@@ -80,9 +79,10 @@ impl<'a> Bands<'a> {
         let (width, height) = self.size;
         let mut cells = vec![[0; 4]; width * height];
         let most = (Self::PIXELS / width.max(1)).max(1);
+        let wholes = Wholes::new(&self.part(0..width, 0..0)?, time);
         for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
             let rows = i * most..((i + 1) * most).min(height);
-            cpu::finish_rows(&self.part(0..width, rows.clone())?, time, rows, out);
+            cpu::finish_rows(&self.part(0..width, rows.clone())?, (time, &wholes), rows, out);
         }
         Ok(Grid::from_cells(width, height, cells))
     }
@@ -104,7 +104,7 @@ impl<'a> Bands<'a> {
             return Ok([0; 4]);
         }
         let made = self.part(x..x + 1, y..y + 1)?;
-        let linear = cpu::mean_of(made.iter().map(|synth| cpu::lattice(synth, time, &[x], &[y])));
+        let linear = cpu::mean_lattice(&made, time, &[x], &[y]);
         Ok(linear.cells().first().map_or([0; 4], |&color| encode(color)))
     }
 }

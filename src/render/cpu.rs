@@ -7,22 +7,18 @@ use rayon::prelude::*;
 
 use super::Synth;
 use super::stage::Group;
+use super::whole::Wholes;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
 use crate::layers::parts::moment::Columns;
 use crate::layers::ready::Still;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
 pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
-    rows(synth, scene_time, 0..synth.size.1)
+    mean(std::slice::from_ref(synth), scene_time)
 }
 
-/// Only these rows of it.
-fn rows(synth: &Synth, scene_time: f64, rows: Range<usize>) -> Linear {
-    lines(synth, scene_time, Columns::All, &rows.collect::<Vec<_>>())
-}
-
-/// Only these columns of these rows.
-fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Linear {
+/// Only these columns of these rows of one sample of each pixel.
+fn lines((synth, sample): (&Synth, usize), (scene_time, wholes): At, columns: Columns, rows: &[usize]) -> Linear {
     let width = match columns {
         Columns::All => synth.size.0,
         Columns::Some(columns) => columns.len(),
@@ -30,12 +26,13 @@ fn lines(synth: &Synth, scene_time: f64, columns: Columns, rows: &[usize]) -> Li
     let moment = synth.moment(scene_time);
     let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
     let mut picture = Linear::filled(width, rows.len(), synth.stage.background);
-    for group in &synth.stage.groups {
+    for (i, group) in synth.stage.groups.iter().enumerate() {
         let (shown, width) = (Shown { layers: &layers, group, columns }, width.max(1));
         let out = picture.cells_mut();
-        if group.layers().iter().any(|&layer| synth.layers[layer].has_sprites()) {
+        let whole = wholes.of(i, sample, columns, rows);
+        if whole.is_some() || group.layers().iter().any(|&layer| synth.layers[layer].has_sprites()) {
             // Sprites reach over many rows: all of these at once.
-            let (own, depth) = shown.surfaces(rows, width);
+            let (own, depth) = whole.unwrap_or_else(|| shown.surfaces(rows, width));
             let own = shown.sprites(rows, &depth, own);
             out.par_iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(color, *beneath));
             continue;
@@ -92,32 +89,47 @@ impl Shown<'_> {
 /// How many pixels are in memory as light at a time: light takes four times the memory of codes.
 pub const BAND: usize = 1 << 22;
 
+/// A scene time, with what is made whole then.
+type At<'a> = (f64, &'a Wholes);
+
 /// The finished frame from several samples per pixel: sRGB, straight alpha, 8 bits per channel.
 pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {
     let (width, height) = samples.first().map_or((0, 0), |synth| synth.size);
     let mut cells = vec![[0; 4]; width * height];
     let most = (BAND / width.max(1)).max(1);
+    let wholes = Wholes::new(samples, scene_time);
     for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
-        finish_rows(samples, scene_time, i * most..((i + 1) * most).min(height), out);
+        finish_rows(samples, (scene_time, &wholes), i * most..((i + 1) * most).min(height), out);
     }
     Grid::from_cells(width, height, cells)
 }
 
 /// Finishes these rows into `out`.
-pub fn finish_rows(samples: &[Synth], scene_time: f64, band: Range<usize>, out: &mut [[u8; 4]]) {
-    let linear = mean_of(samples.iter().map(|synth| rows(synth, scene_time, band.clone())));
+pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8; 4]]) {
+    let linear = mean_lines(samples, at, Columns::All, &band.collect::<Vec<_>>());
     out.par_iter_mut().zip(linear.cells().par_iter()).for_each(|(code, &light)| *code = encode(light));
 }
 
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are
-/// computed, so that a small view of a large picture is cheap.
+/// computed, but of layers that are made whole, so that a small view of a large picture is cheap.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
-    lines(synth, scene_time, Columns::Some(columns), rows)
+    mean_lattice(std::slice::from_ref(synth), scene_time, columns, rows)
+}
+
+/// The same for several samples per pixel.
+pub fn mean_lattice(samples: &[Synth], scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
+    mean_lines(samples, (scene_time, &Wholes::new(samples, scene_time)), Columns::Some(columns), rows)
 }
 
 /// The mean of the frames for several samples per pixel, in linear light.
 pub fn mean(samples: &[Synth], scene_time: f64) -> Linear {
-    mean_of(samples.iter().map(|synth| linear(synth, scene_time)))
+    let height = samples.first().map_or(0, |synth| synth.size.1);
+    let at = (scene_time, &Wholes::new(samples, scene_time));
+    mean_lines(samples, at, Columns::All, &(0..height).collect::<Vec<_>>())
+}
+
+fn mean_lines(samples: &[Synth], at: At, columns: Columns, rows: &[usize]) -> Linear {
+    mean_of(samples.iter().enumerate().map(|(sample, synth)| lines((synth, sample), at, columns, rows)))
 }
 
 /// The mean of linear frames of the same size.

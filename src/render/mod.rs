@@ -27,6 +27,7 @@ pub mod reduce;
 pub mod samples;
 pub mod seams;
 pub mod stage;
+mod whole;
 
 use stage::Stage;
 
@@ -45,6 +46,11 @@ impl Synth {
     /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64) -> Moment {
         self.stage.moment(t, self.size)
+    }
+
+    /// Whether it has what the CPU alone can draw.
+    pub fn has_strokes(&self) -> bool {
+        self.layers.iter().any(|layer| layer.has_strokes())
     }
 
     /// The same, seen by another camera.
@@ -98,10 +104,17 @@ fn no_layers() -> Problem {
     Problem::error("/layers", "a scene without layers has nothing to show").hint("add a layer")
 }
 
-fn synth_at(scene: &Scene, making: (&Materials, &Textures, Vec2), previous: Option<&Synth>) -> Result<Synth, Problem> {
-    let (materials, textures, place) = making;
+/// What the layers of a scene are made with, at the centre of each pixel and without layers as textures.
+pub fn making<'a>(scene: &Scene, materials: &'a Materials) -> Making<'a> {
     let Timeline { wrap, duration, .. } = scene.timeline;
-    let making = Making { wrap, duration, materials, place, textures };
+    let size_px = frame_size(scene, materials);
+    let px_per_m = scene.camera.as_ref().map_or(1.0, |camera| camera.px_per_m(size_px));
+    Making { duration, size_px, px_per_m, ..Making::plain(wrap, materials) }
+}
+
+fn synth_at(scene: &Scene, with: (&Materials, &Textures, Vec2), previous: Option<&Synth>) -> Result<Synth, Problem> {
+    let (materials, textures, place) = with;
+    let making = Making { place, textures, ..making(scene, materials) };
     let ready = |(i, layer): (usize, &Layer)| {
         if let Some(texture) = textures.get(layer.technique().name()) {
             return Ok(texture.layer.clone());
@@ -127,8 +140,7 @@ fn textures(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> R
     while let Some(next) = left.iter().position(|&i| scene.shown_by(i).iter().all(|(shown, _)| !left.contains(shown))) {
         let i = left.swap_remove(next);
         let layer = scene.layers[i].technique();
-        let Timeline { wrap, duration, .. } = scene.timeline;
-        let making = Making { wrap, duration, materials, place: CENTRE, textures: &made };
+        let making = Making { textures: &made, ..making(scene, materials) };
         let before = previous.and_then(|synth| synth.layers.get(i)).map(|before| &**before);
         let ready = layer.synth(&making, before).map_err(|problem| problem.under(&format!("/layers/{i}")))?;
         let picture = layer.frame_of().and_then(|name| materials.pictures.get(name));

@@ -1,24 +1,28 @@
 //! What frames are made from, as pictures of numbers: depth, normals, which layer and which triangle.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::stage::{Group, Stage};
-use super::{Synth, cpu};
+use super::{Synth, cpu, whole};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
 use crate::base::problem::{nearest, quoted};
 use crate::layers::KINDS;
 use crate::layers::parts::moment::Columns;
-use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass};
+use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass, Which};
 use crate::layers::ready::Still;
 use crate::scene::Scene;
 
 /// A pass of a scene, or of one of its layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Asked {
     /// The pass.
     pub pass: &'static Pass,
+    /// What it is of, by its name, for passes of things that have names; `None` for the first.
+    pub of: Option<Arc<str>>,
     /// The only layer, by its index; `None` for all of them.
     pub layer: Option<usize>,
 }
@@ -46,27 +50,46 @@ pub fn table() -> String {
 }
 
 impl Asked {
-    /// The pass that `NAME` or `NAME:LAYER` asks for.
+    /// The finished frame.
+    pub const FRAME: Asked = Asked { pass: &COLOR, of: None, layer: None };
+
+    /// The pass that `NAME` asks for, or `NAME:LAYER`, or `NAME:OF` or `NAME:OF:LAYER` of something that has a name.
     ///
     /// # Errors
     /// There is no such pass or layer; in words.
     pub fn parse(text: &str, scene: &Scene) -> Result<Asked, String> {
-        let (name, layer) = text.split_once(':').map_or((text, None), |(name, layer)| (name, Some(layer)));
+        let (name, rest) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
         let pass = all().find(|pass| pass.name == name);
         let names: Vec<&str> = all().map(|pass| pass.name).collect();
         let known = || nearest(name, names.iter().copied()).unwrap_or_default();
         let pass = pass.ok_or_else(|| format!("there is no pass {} ({})", quoted(name), known()))?;
-        Ok(Asked { pass, layer: layer.map(|layer| scene.layer_called(layer)).transpose()? })
+        let known: BTreeSet<&str> = scene.layers.iter().flat_map(|layer| layer.technique().pass_names(pass)).collect();
+        let of = rest.map(|rest| rest.split_once(':').map_or((rest, None), |(of, layer)| (of, Some(layer))));
+        let (of, layer) = match of.filter(|(of, _)| known.contains(of)) {
+            Some((of, layer)) => (Some(of.into()), layer),
+            None => (None, rest),
+        };
+        let index = |layer: &str| {
+            let hint = nearest(layer, known.iter().copied()).unwrap_or_default();
+            let also = |told| format!("there is no {name} {} ({hint}), and {told}", quoted(layer));
+            scene.layer_called(layer).map_err(|told| if known.is_empty() { told } else { also(told) })
+        };
+        Ok(Asked { pass, of, layer: layer.map(index).transpose()? })
+    }
+
+    fn which(&self) -> Which<'_> {
+        Which { pass: self.pass, of: self.of.as_deref() }
     }
 
     /// What it is, as [`Asked::parse`] reads it.
     pub fn words(&self, scene: &Scene) -> String {
-        let layer = self.layer.and_then(|layer| scene.layers.get(layer));
-        layer.map_or(self.pass.name.to_owned(), |layer| format!("{}:{}", self.pass.name, layer.technique().name()))
+        let layer = self.layer.and_then(|layer| scene.layers.get(layer)).map(|layer| layer.technique().name());
+        let parts = [Some(self.pass.name), self.of.as_deref(), layer];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(":")
     }
 
     /// The synthesis that is to be shown for it.
-    pub fn of(&self, synth: &Synth) -> Synth {
+    pub fn only(&self, synth: &Synth) -> Synth {
         match self.layer {
             Some(layer) => Synth { stage: Stage::only(&synth.stage, layer).into(), ..synth.clone() },
             None => synth.clone(),
@@ -76,32 +99,37 @@ impl Asked {
     /// The whole pass at a scene time.
     pub fn picture(&self, synth: &Synth, time: f64) -> Linear {
         if *self.pass == COLOR {
-            return cpu::linear(&self.of(synth), time);
+            return cpu::linear(&self.only(synth), time);
         }
-        lines(self.pass, &self.of(synth), time, Columns::All, &(0..synth.size.1).collect::<Vec<_>>())
+        lines(self.which(), &self.only(synth), time, Columns::All, &(0..synth.size.1).collect::<Vec<_>>())
     }
 
     /// The pixels of these columns and rows (ascending, within the frame); no others are computed.
     pub fn lattice(&self, synth: &Synth, time: f64, columns: &[usize], rows: &[usize]) -> Linear {
         if *self.pass == COLOR {
-            return cpu::lattice(&self.of(synth), time, columns, rows);
+            return cpu::lattice(&self.only(synth), time, columns, rows);
         }
-        lines(self.pass, &self.of(synth), time, Columns::Some(columns), rows)
+        lines(self.which(), &self.only(synth), time, Columns::Some(columns), rows)
     }
 }
 
 /// These rows of a pass, other than color: of the topmost group that covers a pixel, its nearest surface.
-fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]) -> Linear {
+fn lines(which: Which, synth: &Synth, time: f64, columns: Columns, rows: &[usize]) -> Linear {
+    let pass = which.pass;
     let width = match columns {
         Columns::All => synth.size.0,
         Columns::Some(columns) => columns.len(),
     };
     let moment = synth.moment(time);
     let stills: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
+    // What is drawn on surfaces, for passes that not all layers in space have.
+    let own = PASSES.iter().all(|common| *common != pass);
+    let groups = synth.stage.groups.iter().filter(|_| own);
+    let drawn: Vec<Option<Vec<Rgba>>> = groups.map(|group| whole::pass(synth, group, &moment, which)).collect();
     let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
     let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
     lines.for_each(|(out, &y)| {
-        for group in &synth.stage.groups {
+        for (i, group) in synth.stage.groups.iter().enumerate() {
             let Group::World(layers) = group else { continue };
             let mut depth = vec![f64::INFINITY; width];
             let mut own = vec![[0.0; 4]; width];
@@ -117,6 +145,11 @@ fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]
                     nearer.for_each(|((cell, _), _)| *cell = [number, number, number, 1.0]);
                 }
             }
+            if let Some(Some(drawn)) = drawn.get(i) {
+                let at = |cell: usize| drawn[y * synth.size.0 + columns.at(cell)];
+                let drawn = own.iter_mut().enumerate().map(|(cell, own)| (own, at(cell)));
+                drawn.filter(|(_, drawn)| drawn[3] > 0.0).for_each(|(own, drawn)| *own = drawn);
+            }
             let covered = out.iter_mut().zip(own).zip(depth);
             let covered = covered.filter(|((_, own), depth)| depth.is_finite() || own[3] > 0.0);
             covered.for_each(|((cell, own), _)| *cell = own);
@@ -128,7 +161,9 @@ fn lines(pass: &Pass, synth: &Synth, time: f64, columns: Columns, rows: &[usize]
 /// The layer in space that a pixel shows, by its index, if it shows one.
 pub fn topmost(synth: &Synth, time: f64, (x, y): (usize, usize)) -> Option<usize> {
     let within = x < synth.size.0 && y < synth.size.1 && synth.stage.camera.is_some();
-    let number = within.then(|| lines(&OBJECT, synth, time, Columns::Some(&[x]), &[y]).get(0, 0)[0] as usize)?;
+    let number = within.then(|| {
+        lines(Which { pass: &OBJECT, of: None }, synth, time, Columns::Some(&[x]), &[y]).get(0, 0)[0] as usize
+    })?;
     number.checked_sub(1)
 }
 
@@ -195,6 +230,15 @@ fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
         Holds::Speed => {
             let [r, g, b] = heat(if high > low { (z - low) / (high - low) } else { 0.5 });
             [code(r), code(g), code(b), 255]
+        }
+        Holds::Share => {
+            let share = code(x);
+            [share, share, share, 255]
+        }
+        // Three standard deviations to either side.
+        Holds::Noise => {
+            let gray = code(0.5 + x / 6.0);
+            [gray, gray, gray, 255]
         }
         // The nearest is white and the farthest is not yet black, whatever the scale of the scene.
         Holds::Number => {

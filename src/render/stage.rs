@@ -57,7 +57,7 @@ impl Stage {
     /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64, size_px: (usize, usize)) -> Moment {
         let eye = self.camera.as_ref().map(|camera| camera.at(t, size_px));
-        Moment { t, size_px, eye, left_out: self.left_out }
+        Moment { t, size_px, eye, left_out: self.left_out, magnified: 1 }
     }
 
     /// The camera, if layers are seen by it.

@@ -194,7 +194,7 @@ fn a_clip_is_read_frame_by_frame() {
     let still = Arc::new(synth.clone()).unmoved();
     let seen = |layer: &dyn Ready, t: f64, (x, y): (usize, usize)| {
         let mut row = vec![[0.0; 4]; 40];
-        layer.at(&Moment { t, size_px: (40, 30), eye: None, left_out: 0 }).row(y, Columns::All, &mut row);
+        layer.at(&Moment { t, size_px: (40, 30), eye: None, left_out: 0, magnified: 1 }).row(y, Columns::All, &mut row);
         row[x][0]
     };
     for (t, frame) in [(0.0, 0), (1.0 / 12.0, 1), (0.2, 2), (0.25, 3), (1.0 / 3.0, 0), (0.99, 3), (1.0, 0)] {

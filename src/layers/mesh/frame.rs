@@ -1,18 +1,21 @@
 //! A mesh layer at one time, on the CPU: the reference.
 
-use glam::{DVec2, DVec3};
+use std::sync::OnceLock;
+
+use glam::{DVec2, DVec3, Vec3};
 use kurbo::Vec2;
 use rayon::prelude::*;
 
 use super::model::Sides;
 use super::pose::Placed;
+use super::strokes::{self, Given};
 use super::surface::StillSurface;
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
-use crate::layers::parts::moment::{Columns, Moment};
-use crate::layers::parts::pass::{self, Pass};
-use crate::layers::ready::Still;
+use crate::layers::parts::moment::{CENTRE, Columns, Moment};
+use crate::layers::parts::pass::{self, Pass, Which};
+use crate::layers::ready::{Still, Surfaces};
 use crate::layers::space::raster::{Hit, NONE, Raster};
 
 /// Where a mesh is in the frame at one time.
@@ -90,32 +93,104 @@ impl<'a> View<'a> {
 
 /// A mesh layer at one time.
 pub struct Seen<'a> {
+    synth: &'a Synth,
+    moment: &'a Moment,
+    placed: Placed,
     view: View<'a>,
     /// Where the light comes from, of length 1, and the share of it that comes from everywhere.
     light: (DVec3, f64),
     surface: Box<dyn StillSurface + 'a>,
+    /// The frame of the layer alone, if it is drawn with strokes, once it is needed.
+    alone: OnceLock<Vec<Rgba>>,
 }
 
 impl<'a> Seen<'a> {
     /// The layer at one time.
     pub fn new(synth: &'a Synth, moment: &'a Moment) -> Self {
         let placed = synth.pose.at(synth.time(moment));
-        let view = View::new(&synth.mesh, synth.sides, &placed, synth.place, moment);
-        Seen { view, light: (synth.light.toward(), synth.light.ambient), surface: synth.surface.at(moment) }
+        let place = if moment.magnified > 1 { CENTRE } else { synth.place };
+        let view = View::new(&synth.mesh, synth.sides, &placed, place, moment);
+        let light = (synth.light.toward(), synth.light.ambient);
+        Seen { synth, moment, placed, view, light, surface: synth.surface.at(moment), alone: OnceLock::new() }
+    }
+
+    /// How much light falls on a spot.
+    fn lit(&self, spot: &Spot) -> f32 {
+        let (toward, ambient) = self.light;
+        (ambient + (1.0 - ambient) * spot.normal.dot(toward).max(0.0)) as f32
     }
 
     /// The light that a spot sends to the camera: linear, premultiplied.
     fn shaded(&self, spot: &Spot) -> Rgba {
-        let (toward, ambient) = self.light;
-        let light = (ambient + (1.0 - ambient) * spot.normal.dot(toward).max(0.0)) as f32;
+        let light = self.lit(spot);
         let [r, g, b, a] = self.surface.color(spot.uv);
         [r * light, g * light, b * light, a]
+    }
+
+    /// What its strokes are drawn from; `None` without a camera.
+    fn given(&self, surfaces: &Surfaces) -> Option<Given<'_>> {
+        let (width, count) = (self.moment.size_px.0.max(1), surfaces.depth.len());
+        let mut given = Given {
+            mesh: &self.synth.mesh,
+            world: &self.view.world,
+            placed: &self.placed,
+            both: self.synth.sides == Sides::Both,
+            toward: self.light.0,
+            eye: self.moment.eye?,
+            size_px: self.moment.size_px,
+            magnified: f64::from(self.moment.magnified),
+            t: self.synth.time(self.moment),
+            inverse: surfaces.depth.par_iter().map(|depth| 1.0 / depth).collect(),
+            triangle: vec![NONE; count],
+            normal: vec![Vec3::ZERO; count],
+            shaded: vec![[0.0; 4]; count],
+            light: vec![0.0; count],
+        };
+        let cells = given.triangle.par_chunks_mut(width).zip(given.normal.par_chunks_mut(width));
+        let cells = cells.zip(given.shaded.par_chunks_mut(width)).zip(given.light.par_chunks_mut(width));
+        cells.enumerate().for_each(|(y, (((triangle, normal), shaded), light))| {
+            let layer = &surfaces.layer[y * width..];
+            self.view.row_of(y, Columns::All, &mut vec![f64::INFINITY; width], |x, spot| {
+                if layer[x] == surfaces.own {
+                    (triangle[x], normal[x]) = (spot.hit.triangle as u32, spot.normal.as_vec3());
+                    (shaded[x], light[x]) = (self.shaded(&spot), self.lit(&spot));
+                }
+            });
+        });
+        Some(given)
+    }
+
+    /// The frame of the layer alone, with its strokes.
+    fn alone(&self) -> Vec<Rgba> {
+        let (width, height) = self.moment.size_px;
+        let mut depth = vec![f64::INFINITY; width * height];
+        let mut out = vec![[0.0; 4]; depth.len()];
+        let rows = depth.par_chunks_mut(width.max(1)).zip(out.par_chunks_mut(width.max(1))).enumerate();
+        rows.for_each(|(y, (depth, out))| self.surface(y, Columns::All, depth, out));
+        let layer = vec![0; depth.len()];
+        self.strokes(
+            Which { pass: &pass::COLOR, of: None },
+            &Surfaces { depth: &depth, layer: &layer, own: 0 },
+            &mut out,
+        );
+        out
     }
 }
 
 impl Still for Seen<'_> {
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
-        self.surface(y, columns, &mut vec![f64::INFINITY; out.len()], out);
+        if self.synth.strokes.is_none() {
+            return self.surface(y, columns, &mut vec![f64::INFINITY; out.len()], out);
+        }
+        let row = &self.alone.get_or_init(|| self.alone())[y * self.moment.size_px.0..];
+        out.iter_mut().enumerate().for_each(|(cell, out)| *out = row[columns.at(cell)]);
+    }
+
+    fn strokes(&self, which: Which, surfaces: &Surfaces, out: &mut [Rgba]) {
+        let Some((ready, given)) = self.synth.strokes.as_deref().zip(self.given(surfaces)) else { return };
+        let own = given.triangle.iter().map(|triangle| *triangle != NONE);
+        let drawn = strokes::draw::pass(ready, &given, which);
+        out.iter_mut().zip(drawn).zip(own).filter(|(_, own)| *own).for_each(|((out, drawn), _)| *out = drawn);
     }
 
     fn surface(&self, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {

@@ -188,9 +188,10 @@ mod tests {
         let mesh = Arc::new(Mesh { vertices, triangles, ..Mesh::default() });
         let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
         let layer: MeshLayer = serde_json::from_str(layer).unwrap();
-        let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials)).unwrap();
+        let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap();
         let camera = Camera { position: [0.0, 0.0, z], target: [0.0; 3], ..Camera::default() };
-        let moment = Moment { t: 0.0, size_px: (60, 60), eye: Some(camera.at(0.0, (60, 60))), left_out: 0 };
+        let moment =
+            Moment { t: 0.0, size_px: (60, 60), eye: Some(camera.at(0.0, (60, 60))), left_out: 0, magnified: 1 };
         let world = synth.mesh.vertices.iter().map(|vertex| (vertex.position, vertex.normal)).collect();
         of(&Seen { synth: &synth, moment: &moment, eye: moment.eye.unwrap(), world })
     }

@@ -7,6 +7,7 @@ pub mod plan;
 pub mod pose;
 pub mod probe;
 pub mod ready;
+pub mod strokes;
 pub mod surface;
 pub mod synth;
 
@@ -18,6 +19,7 @@ use serde_json::{Value, json};
 use self::model::MeshLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
+use super::parts::pass::Pass;
 use super::parts::readout::ReadOut;
 use super::ready::{Making, Ready};
 use super::technique::{Checked, Kind, Shown, Starts, Technique, Template};
@@ -31,7 +33,7 @@ pub static KIND: Kind = Kind {
     bundle: None,
     counted: &[],
     overlays: marks::OVERLAYS,
-    passes: &[],
+    passes: &[strokes::passes::NOISE, strokes::passes::TONE, strokes::passes::INK],
     looks: marks::LOOKS,
     template: Some(Template { of: List::Meshes, layer: template }),
     starts: Starts::PLAIN,
@@ -62,21 +64,43 @@ impl Technique for MeshLayer {
     }
 
     fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
-        let mesh = materials.meshes.get(&self.mesh).filter(|_| self.surface.slot().needs_uv());
-        let without = mesh.and_then(|mesh| mesh.without_uv);
+        let without = materials.meshes.get(&self.mesh).and_then(|mesh| mesh.without_uv);
         let problem = |triangle: usize| {
             let message =
                 format!("the mesh \"{}\" has no texture coordinates at triangle {triangle} (from 0)", self.mesh);
             Problem::error("/surface", message).hint("make the surface plain, or unwrap the mesh")
         };
-        without.map(problem).into_iter().collect()
+        let surface = without.filter(|_| self.surface.slot().needs_uv()).map(problem);
+        let strokes = self.strokes.as_ref().zip(without);
+        let strokes = strokes.and_then(|(own, triangle)| strokes::check::without_uv(own, &self.mesh, triangle));
+        surface.into_iter().chain(strokes.map(|problem| problem.under("/strokes"))).collect()
+    }
+
+    fn check_made(&self, making: &Making) -> Vec<Problem> {
+        let made = self.strokes.is_some().then(|| synth::Synth::new(self, making, None));
+        made.and_then(Result::err).into_iter().collect()
     }
 
     fn uses(&self) -> Vec<Use<'_>> {
         let mesh = Use { at: "/mesh".into(), of: Of::Name(List::Meshes, &self.mesh), what: What::Mesh };
         let surface = self.surface.slot().uses().into_iter();
         let surface = surface.map(|used| Use { at: format!("/surface{}", used.at), ..used });
-        std::iter::once(mesh).chain(surface).collect()
+        let images = self.strokes.iter().flat_map(strokes::check::images);
+        let images = images.map(|(at, image)| Use {
+            at: format!("/strokes{at}"),
+            of: Of::Name(List::Images, image),
+            what: What::Picture,
+        });
+        std::iter::once(mesh).chain(surface).chain(images).collect()
+    }
+
+    fn automatic(&self, path: &str) -> Option<Value> {
+        self.strokes.as_ref()?.automatic(path.strip_prefix("/strokes")?)
+    }
+
+    fn pass_names(&self, pass: &Pass) -> Vec<&str> {
+        let noises = self.strokes.iter().filter(|_| *pass == strokes::passes::NOISE).flat_map(|own| own.noises.keys());
+        noises.map(String::as_str).collect()
     }
 
     fn bounds(&self, _path: &str) -> Rect {
@@ -93,7 +117,8 @@ impl Technique for MeshLayer {
         probe::probe(self, making, pixel, moment).map(Some)
     }
 
-    fn synth(&self, making: &Making, _previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {
-        Ok(Arc::new(synth::Synth::new(self, making)?))
+    fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {
+        let previous = previous.and_then(|previous| previous.downcast());
+        Ok(Arc::new(synth::Synth::new(self, making, previous)?))
     }
 }

@@ -1,10 +1,11 @@
 //! The mesh layer as in the document. The doc comments become the help texts of forms and schema.
 
 use glam::DVec3;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::pose::Pose;
+use super::strokes::{self, Strokes};
 use super::surface::Surface;
 use crate::base::geometry::Xyz;
 use crate::base::problem::Problem;
@@ -31,19 +32,9 @@ pub struct MeshLayer {
     /// What its surface shows.
     #[serde(default)]
     pub surface: Surface,
-    /// Reserved for what is drawn from the surface: null.
+    /// The strokes that it is drawn with, if it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(schema_with = "nothing")]
     pub strokes: Option<Strokes>,
-}
-
-/// What is drawn from the surface: there is no kind of it yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Strokes {}
-
-/// The schema of what can only be null.
-fn nothing(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": ["string", "null"], "enum": [null], "readOnly": true })
 }
 
 /// Which sides of triangles are seen.
@@ -91,6 +82,8 @@ impl MeshLayer {
             problems.push(problem.hint("make it [0, -1, 0] for light from above"));
         }
         problems.extend(self.surface.slot().check().into_iter().map(|problem| problem.under("/surface")));
+        let drawn = self.strokes.iter().flat_map(strokes::check::problems);
+        problems.extend(drawn.map(|problem| problem.under("/strokes")));
         problems
     }
 }

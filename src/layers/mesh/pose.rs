@@ -130,11 +130,20 @@ impl Placed {
         let (bent, normal) = if self.bend_radians == 0.0 {
             (model, normal)
         } else {
-            let share = ((model.dot(self.along) - self.from) / self.length).clamp(0.0, 1.0);
-            let bend = DMat3::from_rotation_z(self.bend_radians * share);
+            let bend = self.bend_at(model);
             (bend * model, bend * normal)
         };
         (self.turn * (bent * self.scale) + self.position, self.turn * normal)
+    }
+
+    /// How the model is turned at one of its points, to the world.
+    pub fn turn_at(&self, model: DVec3) -> DMat3 {
+        if self.bend_radians == 0.0 { self.turn } else { self.turn * self.bend_at(model) }
+    }
+
+    fn bend_at(&self, model: DVec3) -> DMat3 {
+        let share = ((model.dot(self.along) - self.from) / self.length).clamp(0.0, 1.0);
+        DMat3::from_rotation_z(self.bend_radians * share)
     }
 }
 

@@ -20,6 +20,10 @@ impl Ready for Synth {
         Box::new(Seen::new(self, moment))
     }
 
+    fn has_strokes(&self) -> bool {
+        self.strokes.is_some()
+    }
+
     fn plan(&self, moment: &Moment) -> Plan {
         plan::plan(self, moment)
     }
@@ -29,7 +33,8 @@ impl Ready for Synth {
     }
 
     fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
-        Arc::new(Synth { surface: self.surface.clone().reduced(pictures), ..self.clone() })
+        let strokes = self.strokes.as_deref().map(|strokes| Arc::new(strokes.reduced(pictures.by)));
+        Arc::new(Synth { surface: self.surface.clone().reduced(pictures), strokes, ..self.clone() })
     }
 
     fn marks(&self, view: &View, moment: &Moment) -> Vec<Mark> {
@@ -78,7 +83,7 @@ mod tests {
         ] {
             let layer = format!(r#"{{"name": "m", "mesh": "m", "pose": {pose}}}"#);
             let layer: MeshLayer = serde_json::from_str(&layer).unwrap();
-            let found = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials)).unwrap().bounds(t).unwrap();
+            let found = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap().bounds(t).unwrap();
             let far = (found.low - DVec3::from(low)).length().max((found.high - DVec3::from(high)).length());
             assert!(far < 1e-12, "{pose}: {found:?}");
         }

@@ -6,6 +6,7 @@ use kurbo::Vec2;
 
 use super::model::{Light, MeshLayer, Sides};
 use super::pose::Pose;
+use super::strokes::{self, Strokes};
 use super::surface::ReadySurface;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
@@ -27,19 +28,26 @@ pub struct Synth {
     pub surface: Arc<dyn ReadySurface>,
     /// The place in each pixel that is looked at.
     pub place: Vec2,
+    /// The strokes that it is drawn with.
+    pub strokes: Option<Arc<strokes::Ready>>,
     /// Whether the pose stands still as it is at the beginning.
     pub still: bool,
 }
 
 impl Synth {
-    /// A layer made ready.
+    /// A layer made ready. What it has in common with `previous` is reused.
     ///
     /// # Errors
-    /// If the mesh, or what its surface names, is not there; the problem's path is relative to the layer.
-    pub fn new(layer: &MeshLayer, making: &Making) -> Result<Synth, Problem> {
+    /// If the mesh, or what its surface or its strokes name, is not there; the problem's path is relative to the layer.
+    pub fn new(layer: &MeshLayer, making: &Making, previous: Option<&Synth>) -> Result<Synth, Problem> {
         let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
         let surface = layer.surface.slot().synth(making).map_err(|problem| problem.under("/surface"))?;
+        let before = previous.filter(|previous| Arc::ptr_eq(&previous.mesh, &mesh));
+        let before = before.and_then(|previous| previous.strokes.as_deref());
+        let ready = |own: &Strokes| strokes::Ready::new(own, &mesh, making, before).map(Arc::new);
+        let strokes = layer.strokes.as_ref().map(ready).transpose().map_err(|problem| problem.under("/strokes"))?;
         Ok(Synth {
+            strokes,
             mesh,
             sides: layer.sides,
             pose: layer.pose.clone(),

@@ -18,6 +18,9 @@ pub struct Moment {
     pub eye: Option<Eye>,
     /// How many births layers of many sprites leave out after each that they show: 0 but for a preview that would be slow.
     pub left_out: u32,
+    /// How many times larger than that of the scene the frame is on each side, for several samples a pixel of layers that
+    /// are drawn whole. Above 1, each pixel is looked at in its centre.
+    pub magnified: u32,
 }
 
 /// Where the layers of a technique are.

@@ -24,6 +24,19 @@ pub enum Holds {
     Count,
     /// Three numbers, of which the last is shown as a color: from slow to fast.
     Speed,
+    /// One number from 0 to 1, in all three channels.
+    Share,
+    /// A number of mean 0 and variance 1, and what else is known of it.
+    Noise,
+}
+
+/// A pass, and what of it: some are of things that have names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Which<'a> {
+    /// The pass.
+    pub pass: &'a Pass,
+    /// The name of what it is of; `None` for the first.
+    pub of: Option<&'a str>,
 }
 
 /// The finished frame.

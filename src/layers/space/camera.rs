@@ -115,6 +115,12 @@ impl Camera {
         ([position, target, up], fov)
     }
 
+    /// How many pixels of a frame of this size a meter at its target is, at the beginning.
+    pub fn px_per_m(&self, size: (usize, usize)) -> f64 {
+        let ([position, target, _], _) = self.view(0.0);
+        self.at(0.0, size).focal_px / (target - position).length()
+    }
+
     /// The camera that stays where this one begins.
     pub fn unmoved(&self) -> Camera {
         let ([position, target, _], fov) = self.view(0.0);

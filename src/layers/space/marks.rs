@@ -172,7 +172,7 @@ mod tests {
 
     fn moment() -> Moment {
         let camera = Camera { position: [0.0, 2.0, 4.0], target: [0.0, 0.0, 0.0], ..Camera::default() };
-        Moment { t: 0.0, size_px: (200, 100), eye: Some(camera.at(0.0, (200, 100))), left_out: 0 }
+        Moment { t: 0.0, size_px: (200, 100), eye: Some(camera.at(0.0, (200, 100))), left_out: 0, magnified: 1 }
     }
 
     #[test]

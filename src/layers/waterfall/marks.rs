@@ -126,8 +126,13 @@ mod tests {
         let materials = Materials { pictures: [("s".to_owned(), image)].into(), ..Materials::default() };
         let layer = serde_json::from_str(layer).unwrap();
         let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap();
-        let moment =
-            Moment { t: 0.0, size_px: (200, 100), eye: Some(Camera::default().at(0.0, (200, 100))), left_out: 0 };
+        let moment = Moment {
+            t: 0.0,
+            size_px: (200, 100),
+            eye: Some(Camera::default().at(0.0, (200, 100))),
+            left_out: 0,
+            magnified: 1,
+        };
         let view = View { selection: Some("/lip/0/at".into()), ..View::of(&[LINES]) };
         let found = marks(&synth, &view, &moment);
         let next: Vec<&Mark> = found.iter().filter(|mark| mark.look.name == NEXT.name).collect();

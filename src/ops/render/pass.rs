@@ -46,7 +46,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let band = size.0 * size.1;
     let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
     let samples = if each_way == 1 { vec![opened.synth()?] } else { opened.samples(each_way)? };
-    let samples: Vec<Synth> = samples.iter().map(|synth| asked.of(synth)).collect();
+    let samples: Vec<Synth> = samples.iter().map(|synth| asked.only(synth)).collect();
     for (i, &(frame, number)) in todo.iter().enumerate() {
         context.check_cancelled()?;
         context.messages.step("frame", i as u64, todo.len() as u64);

@@ -165,7 +165,9 @@ impl Opened {
         let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
         let asked = state.pass.as_deref().map(|pass| Asked::parse(pass, &show.scene)).transpose();
         state.no_pass = asked.as_ref().err().cloned();
-        if let Ok(Some(asked)) = asked {
+        // Strokes are drawn by the CPU, as passes are.
+        let asked = asked.ok().flatten().or_else(|| show.frames.has_strokes().then_some(Asked::FRAME));
+        if let Some(asked) = asked {
             let times = (frame.1, other.as_ref().map(|(_, t)| *t), state.shows("view-still"));
             let wanted = For { asked, revision, own: state.own, times };
             let (frame, other) = self.passes.follow(&self.gpu, wanted, frame, other)?;

@@ -8,7 +8,7 @@ use crate::base::error::Result;
 use crate::base::pixels::{Frame, Grid};
 use crate::base::progress::Progress;
 use crate::layers::parts::plan::{Plan, Upload};
-use crate::render::Synth;
+use crate::render::{Synth, cpu};
 
 pub mod device;
 mod draw;
@@ -115,8 +115,12 @@ impl Gpu {
         Ok((first, second))
     }
 
-    /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once.
+    /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once. Strokes are the CPU's work, and so
+    /// is all of a frame that has them.
     pub fn frame(&mut self, synth: &Synth, scene_time: f64) -> Result<Frame> {
+        if synth.has_strokes() {
+            return Ok(cpu::frame(synth, scene_time));
+        }
         let frame = self.frame_once(synth, scene_time);
         if !self.parts.device.is_lost() {
             return frame;

@@ -116,7 +116,7 @@ fn pass(state: &mut State, call: &Call) -> Done {
         text => Some(Asked::parse(text, state.document().scene())?),
     };
     take_pass(state, asked);
-    let words = state.picture.pass.map(|asked| asked.words(state.document().scene()));
+    let words = state.picture.pass.as_ref().map(|asked| asked.words(state.document().scene()));
     state.ask(Effect::View(Some(views::show_pass(words.as_deref()))));
     Ok(())
 }

@@ -5,7 +5,6 @@ use crate::base::pixels::encode;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Space;
 use crate::layers::parts::readout::ReadOut;
-use crate::layers::ready::Making;
 use crate::render::{Synth, cpu, passes};
 use crate::scene::Scene;
 
@@ -25,8 +24,7 @@ impl Probed {
     pub fn new(at: ProbeAt, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
         let (x, y) = at.pixel;
         let moment = synth.moment(at.time);
-        let making = Making::plain(scene.timeline.wrap, materials);
-        let making = Making { duration: scene.timeline.duration, ..making };
+        let making = crate::render::making(scene, materials);
         let look = |layer: usize| {
             let ready = synth.layers.get(layer).map(|ready| &**ready);
             scene.layers.get(layer)?.technique().probe(&making, ready, at.pixel, &moment).ok()

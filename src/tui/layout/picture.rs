@@ -85,7 +85,7 @@ fn wanted(state: &State) -> Option<Wanted> {
         protocol,
         tmux: graphics.tmux,
         bytes: if state.play.playing { playing } else { still },
-        pass: state.picture.pass.filter(|_| state.picture.looking.is_none()),
+        pass: state.picture.pass.clone().filter(|_| state.picture.looking.is_none()),
         clip: looking::view(state),
         over,
         marks: (protocol != Protocol::Blocks).then(marks),

@@ -28,8 +28,12 @@ pub fn title(state: &State) -> String {
     let fit = if state.picture.viewport.zoom.is_none() { " fit" } else { "" };
     let reduced = state.picture.latest.as_ref().filter(|shown| shown.by > 1).map(|shown| format!(" /{}", shown.by));
     let protocol = picture::protocol(state).name();
-    let pass =
-        state.picture.pass.map(|asked| format!(" {}", asked.words(state.document().scene()))).unwrap_or_default();
+    let pass = state
+        .picture
+        .pass
+        .as_ref()
+        .map(|asked| format!(" {}", asked.words(state.document().scene())))
+        .unwrap_or_default();
     let what = match state.picture.looking.map(|looking| (looking.sight(), looking.frames)) {
         Some((Sight::Frame(frame), frames)) => format!("clip {frame} of {frames}"),
         Some((Sight::Cut(frame), frames)) => format!("cut out of {frame} of {frames}"),

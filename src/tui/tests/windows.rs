@@ -133,7 +133,7 @@ fn a_name_takes_a_capital_m() {
 fn a_pass_is_the_same_here_and_in_the_windows() {
     let mut state = state();
     let shown = |state: &State| {
-        let words = state.picture.pass.map(|asked| asked.words(state.document().scene()));
+        let words = state.picture.pass.as_ref().map(|asked| asked.words(state.document().scene()));
         words.unwrap_or_default()
     };
     for (typed, told, here) in

@@ -1,0 +1,39 @@
+//! Impulses that are fixed to the frame, in a grid of cells: a pattern behind a shower door.
+
+use glam::{DVec2, DVec3};
+
+use super::impulse::{Dice, FADE, Impulse, Recipe, factor};
+
+/// All impulses of a noise that may be seen in a frame; strokes run at `angle`, clockwise from +x, in radians.
+pub fn impulses((width, height): (usize, usize), recipe: &Recipe, angle: f64) -> Vec<Impulse> {
+    let side = 2.0 * recipe.radius_px;
+    let wanted = 4.0 * recipe.overlap / std::f64::consts::PI;
+    let cells = |length: usize| -1..=((length as f64 + recipe.radius_px) / side).floor() as i32;
+    let mut found = Vec::new();
+    for a in cells(width) {
+        for b in cells(height) {
+            for number in 0.. {
+                if f64::from(number) * FADE >= wanted {
+                    break;
+                }
+                let dice = Dice::of([a as u32, b as u32, number], recipe.key);
+                let (factor, [x, y]) = (factor(wanted, dice.rank), dice.place);
+                if factor > 0.0 {
+                    found.push(Impulse {
+                        of: dice.of,
+                        at: DVec2::new(f64::from(a) + x, f64::from(b) + y) * side,
+                        depth: 1.0,
+                        factor,
+                        phase: dice.phase,
+                        angle: angle + dice.spread(recipe),
+                        sure: 1.0,
+                        radius_px: recipe.radius_px,
+                        spacing_px: recipe.spacing_px,
+                        plane: DVec3::ZERO,
+                    });
+                }
+            }
+        }
+    }
+    found
+}

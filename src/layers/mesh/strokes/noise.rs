@@ -1,0 +1,166 @@
+//! One noise of a layer in one frame: from its description to its value at every pixel.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::aim::{Aim, Follows, Grows};
+use super::impulse::{Recipe, impulses};
+use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
+use super::sum::{Noise, Shown, Trim, sum};
+use super::surface::Surface;
+use super::synth::{Codes, Ready, SMOOTH};
+use super::{Given, even, flat, grid, visible};
+
+/// A layer in one frame.
+pub struct Scene<'a> {
+    /// Its strokes.
+    pub ready: &'a Ready,
+    /// What the layer hands out.
+    pub given: &'a Given<'a>,
+    /// Its triangles in camera coordinates.
+    pub surface: Surface<'a>,
+    /// What pixels show.
+    pub shown: Shown<'a>,
+    /// Where the light goes, in camera coordinates.
+    light: DVec3,
+    /// How many times larger all is drawn than the document says.
+    pub scale: f64,
+    /// The number of the drawing.
+    drawing: u32,
+}
+
+/// The tensors of a mesh, turned at each vertex, and half its size.
+type Tensors = (Vec<DMat3>, f64);
+
+impl<'a> Scene<'a> {
+    /// The layer in the frame.
+    pub fn new(ready: &'a Ready, given: &'a Given<'a>) -> Self {
+        let eye = given.eye;
+        let seen = given.world.iter().map(|(at, normal)| (eye.seen(*at), eye.turn * *normal)).collect();
+        let (mesh, pieces, size_px) = (given.mesh, &*ready.pieces, given.size_px);
+        let surface = Surface { mesh, pieces, seen, placed: given.placed, both: given.both, eye, size_px };
+        let (inverse, triangle) = (&*given.inverse, &*given.triangle);
+        let shown = Shown { size_px, focal_px: eye.focal_px, inverse, triangle };
+        let drawing = (given.t * ready.duration * ready.strokes.redraw + 1e-9).floor() as u32;
+        let (light, scale) = (eye.turn * -given.toward, ready.scale * given.magnified);
+        Scene { ready, given, surface, shown, light, scale, drawing }
+    }
+
+    /// The spacing of a noise, in pixels.
+    pub fn spacing_px(&self, noise: &Wanted) -> f64 {
+        noise.spacing * self.ready.strokes.size * self.scale
+    }
+
+    /// One of its noises.
+    pub fn noise(&self, wanted: &Wanted) -> Noise {
+        let strokes = &self.ready.strokes;
+        let direction = wanted.direction.as_ref().unwrap_or(&strokes.direction);
+        let anchor = wanted.anchor.unwrap_or(strokes.anchor);
+        let vary = wanted.vary.as_ref().or(strokes.vary.as_ref()).filter(|_| anchor == Anchor::Surface);
+        let tensors = |smooth: f64, is: bool| is.then(|| self.tensors(smooth)).unwrap_or_default();
+        let own = tensors(direction.smooth, direction.along == Along::Curvature);
+        let of_vary = tensors(SMOOTH, vary.is_some_and(|vary| vary.by == By::Curvature));
+        let axis = |triangle: u32| self.axis(direction, triangle);
+        let flow = |uv: DVec2| self.image(&direction.image).map_or(DVec2::ZERO, |codes| flow(codes, uv));
+        let bright = |vary: &Vary, uv: DVec2| self.image(&vary.image).map_or(0.0, |codes| brightness(codes, uv));
+        let brightness = |uv: DVec2| vary.map_or(0.0, |vary| bright(vary, uv));
+        let along = match direction.along {
+            Along::Screen => Follows::Screen,
+            Along::Curvature => Follows::Curvature(&own.0, own.1),
+            Along::Light => Follows::Light(self.light),
+            Along::Axis => Follows::Axis(&axis),
+            Along::Outline => Follows::Outline,
+            Along::Image => Follows::Image(&flow),
+        };
+        let by = |vary: &Vary| {
+            let by = match vary.by {
+                By::Light => Grows::Light(self.light),
+                By::Curvature => Grows::Curvature(&of_vary.0, of_vary.1),
+                By::Facing => Grows::Facing,
+                By::Image => Grows::Image(&brightness),
+            };
+            (by, [vary.low, vary.high])
+        };
+        let turn = (direction.turn + wanted.turn).to_radians();
+        let aim = Aim { along, angle: direction.angle.to_radians(), turn, vary: vary.map(by) };
+        self.made(wanted, anchor, &aim)
+    }
+
+    fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {
+        let (strokes, shown) = (&self.ready.strokes, &self.shown);
+        let spacing_px = self.spacing_px(wanted);
+        let recipe = Recipe {
+            key: Recipe::key(strokes.seed, self.drawing, wanted.seed),
+            spacing_px,
+            radius_px: spacing_px * wanted.regularity,
+            overlap: wanted.overlap,
+            spread: wanted.spread.to_radians(),
+        };
+        let mut found = match anchor {
+            Anchor::Surface => {
+                let mut points = impulses(&self.surface, &recipe, aim);
+                let trim = match wanted.trim {
+                    Ends::Depth => Trim::Depth(wanted.reach),
+                    Ends::Triangle => Trim::Triangle,
+                    Ends::Object => {
+                        visible::weigh(shown, wanted.reach, &mut points);
+                        Trim::Object
+                    }
+                };
+                sum(shown, &points, wanted.overlap, trim)
+            }
+            Anchor::Screen => {
+                sum(shown, &grid::impulses(shown.size_px, &recipe, aim.drawn()), wanted.overlap, Trim::Object)
+            }
+            Anchor::Texture => {
+                let px_per_m = self.ready.px_per_m * self.scale;
+                flat::sum(&self.surface, shown, &recipe, aim, px_per_m, wanted.reach)
+            }
+        };
+        if wanted.even {
+            even::even(shown.size_px, shown.triangle, spacing_px, &mut found);
+        }
+        found
+    }
+
+    fn tensors(&self, smooth: f64) -> Tensors {
+        let Some(curvature) = self.ready.curvature(smooth) else { return Tensors::default() };
+        let turned = curvature.tensors.iter().zip(&self.given.mesh.vertices).map(|(tensor, vertex)| {
+            let turn = self.given.eye.turn * self.given.placed.turn_at(vertex.position);
+            turn * *tensor * turn.transpose()
+        });
+        (turned.collect(), curvature.half_m)
+    }
+
+    /// The axis of a direction as it is turned at the first corner of a triangle.
+    fn axis(&self, direction: &Direction, triangle: u32) -> DVec3 {
+        self.surface.turn_at(triangle) * DVec3::from(direction.axis).normalize_or_zero()
+    }
+
+    fn image(&self, name: &str) -> Option<&Codes> {
+        self.ready.images.get(name).map(|codes| &**codes)
+    }
+}
+
+/// The vector of a flow map, to the right and up.
+fn flow(codes: &Codes, uv: DVec2) -> DVec2 {
+    let (width, height) = (codes.width(), codes.height());
+    let (x, y) = (uv.x * width as f64 - 0.5, (1.0 - uv.y) * height as f64 - 0.5);
+    let (left, top) = (x.floor(), y.floor());
+    let (across, down) = (x - left, y - top);
+    let at = |x: f64, y: f64| {
+        let [r, g, _] = *codes.get(x.rem_euclid(width as f64) as usize, y.rem_euclid(height as f64) as usize);
+        DVec2::new(f64::from(r), f64::from(g))
+    };
+    let above = at(left, top).lerp(at(left + 1.0, top), across);
+    let below = at(left, top + 1.0).lerp(at(left + 1.0, top + 1.0), across);
+    (above.lerp(below, down) - 128.0) / 127.0
+}
+
+/// The brightness of the pixel of an image at texture coordinates, from 0 to 1.
+fn brightness(codes: &Codes, uv: DVec2) -> f64 {
+    let (width, height) = (codes.width() as f64, codes.height() as f64);
+    let x = (uv.x * width).floor().rem_euclid(width) as usize;
+    let y = ((1.0 - uv.y) * height).floor().rem_euclid(height) as usize;
+    let [r, g, b] = codes.get(x, y).map(f64::from);
+    (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255.0
+}

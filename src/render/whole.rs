@@ -1,0 +1,115 @@
+//! Groups on whose surfaces something is drawn: that needs all of a frame at once, so it is made once for all its rows, and
+//! for all samples of a pixel from one frame that is as many times larger.
+
+use rayon::prelude::*;
+
+use super::Synth;
+use super::stage::Group;
+use crate::base::pixels::Rgba;
+use crate::layers::parts::moment::{Columns, Moment};
+use crate::layers::parts::pass::{COLOR, Which};
+use crate::layers::ready::{Still, Surfaces};
+
+/// The groups of a scene at one time that are made whole.
+pub struct Wholes {
+    /// How many samples a pixel has in each direction.
+    each_way: usize,
+    /// One for each group; `None` for those that are made row by row.
+    groups: Vec<Option<Whole>>,
+}
+
+/// All pixels of a group.
+pub struct Whole {
+    width: usize,
+    /// Their colors, premultiplied.
+    color: Vec<Rgba>,
+    /// How far away they are, in meters.
+    depth: Vec<f64>,
+    /// Which layer each is of.
+    layer: Vec<u32>,
+}
+
+/// Whether a group of a scene is made whole.
+fn is_whole(synth: &Synth, group: &Group) -> bool {
+    matches!(group, Group::World(layers) if layers.iter().any(|&layer| synth.layers[layer].has_strokes()))
+}
+
+impl Wholes {
+    /// Makes them at a scene time. Of several samples a pixel, any will do.
+    pub fn new(samples: &[Synth], scene_time: f64) -> Wholes {
+        let each_way = (1..).take_while(|n| n * n <= samples.len()).last().unwrap_or(1);
+        let Some(synth) = samples.first() else { return Wholes { each_way, groups: Vec::new() } };
+        let size = (synth.size.0 * each_way, synth.size.1 * each_way);
+        let moment = Moment { magnified: each_way as u32, ..synth.stage.moment(scene_time, size) };
+        let groups = synth.stage.groups.iter();
+        let make = |group| is_whole(synth, group).then(|| Whole::new(synth, group, &moment, COLOR_OF_ALL));
+        Wholes { each_way, groups: groups.map(make).collect() }
+    }
+
+    /// The colors and the depths of a group in these columns and rows of one of the samples, if it is among them.
+    pub fn of(&self, group: usize, sample: usize, columns: Columns, rows: &[usize]) -> Option<(Vec<Rgba>, Vec<f64>)> {
+        let whole = self.groups.get(group)?.as_ref()?;
+        let (each, across, down) = (self.each_way, sample % self.each_way, sample / self.each_way);
+        let count = match columns {
+            Columns::All => whole.width / each,
+            Columns::Some(columns) => columns.len(),
+        };
+        let at = |y: &usize| {
+            let row = (y * each + down) * whole.width + across;
+            (0..count).map(move |cell| row + columns.at(cell) * each)
+        };
+        Some(rows.iter().flat_map(at).map(|i| (whole.color[i], whole.depth[i])).unzip())
+    }
+}
+
+/// The finished color.
+const COLOR_OF_ALL: Which = Which { pass: &COLOR, of: None };
+
+impl Whole {
+    fn new(synth: &Synth, group: &Group, moment: &Moment, which: Which) -> Whole {
+        let layers = group.layers();
+        let stills: Vec<(usize, Box<dyn Still + '_>)> =
+            layers.iter().map(|&layer| (layer, synth.layers[layer].at(moment))).collect();
+        let mut whole = surfaces(&stills, moment.size_px);
+        whole.draw(&stills, which);
+        whole
+    }
+
+    fn draw(&mut self, stills: &[(usize, Box<dyn Still + '_>)], which: Which) {
+        let Whole { color, depth, layer, .. } = self;
+        for (own, still) in stills {
+            still.strokes(which, &Surfaces { depth, layer, own: *own as u32 }, color);
+        }
+    }
+}
+
+/// The surfaces of a group, with nothing drawn on them.
+fn surfaces(stills: &[(usize, Box<dyn Still + '_>)], (width, height): (usize, usize)) -> Whole {
+    let mut color = vec![[0.0; 4]; width * height];
+    let mut depth = vec![f64::INFINITY; color.len()];
+    let mut layer = vec![u32::MAX; color.len()];
+    let width_or_1 = width.max(1);
+    let rows = color.par_chunks_mut(width_or_1).zip(depth.par_chunks_mut(width_or_1));
+    rows.zip(layer.par_chunks_mut(width_or_1)).enumerate().for_each(|(y, ((color, depth), layer))| {
+        let mut before = depth.to_vec();
+        for (own, still) in stills {
+            still.surface(y, Columns::All, depth, color);
+            let nearer = layer.iter_mut().zip(&mut before).zip(&*depth).filter(|((_, before), now)| *now < before);
+            nearer.for_each(|((layer, before), now)| (*layer, *before) = (*own as u32, *now));
+        }
+    });
+    Whole { width, color, depth, layer }
+}
+
+/// What a pass shows that is drawn on the surfaces of a group, in these columns and rows; transparent elsewhere. `None` if
+/// nothing is drawn there.
+pub fn pass(synth: &Synth, group: &Group, moment: &Moment, which: Which) -> Option<Vec<Rgba>> {
+    is_whole(synth, group).then(|| {
+        let stills: Vec<(usize, Box<dyn Still + '_>)> =
+            group.layers().iter().map(|&layer| (layer, synth.layers[layer].at(moment))).collect();
+        let mut whole = surfaces(&stills, moment.size_px);
+        whole.color.fill([0.0; 4]);
+        whole.draw(&stills, which);
+        whole.color
+    })
+}
