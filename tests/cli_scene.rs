@@ -313,3 +313,48 @@ fn what_tools_ask_for() {
         assert!(manual.contains(&format!(".SH \"PLICA {command}\"")), "{command}");
     }
 }
+
+#[test]
+fn styles_are_listed_shown_applied_and_saved() {
+    let folder = folder();
+    let list = ok(plica(folder.path(), &["style", "list"]));
+    assert!(list.lines().count() == 9 && list.contains("\nfelt-tip        broad pens in"), "{list}");
+    let shown = ok(plica(folder.path(), &["style", "show", "charcoal"]));
+    let line = ok(plica(folder.path(), &["style", "show", "charcoal", "--json"]));
+    let table: serde_json::Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(table["noises"]["broad"]["spacing"], 18);
+    assert!(line.lines().count() == 1 && serde_json::from_str::<serde_json::Value>(&line).unwrap() == table);
+    let meshes = serde_json::json!({ "m": { "path": "m.obj" } });
+    let layers = [serde_json::json!({ "kind": "mesh", "name": "a", "mesh": "m", "strokes": { "ink": "#102030" } })];
+    let scene = serde_json::json!({ "plica": 1, "camera": {}, "meshes": meshes, "layers": layers });
+    std::fs::write(folder.path().join("s.json"), scene.to_string()).unwrap();
+    let apply = |more: &[&str]| plica(folder.path(), &[&["style", "apply"], more].concat());
+    let get = |what: &str| ok(plica(folder.path(), &["get", "s.json", what]));
+    assert_eq!(apply(&["charcoal", "s.json", "--layer", "a"]).messages, "charcoal is applied to a\n");
+    let strokes: serde_json::Value = serde_json::from_str(&get("layers.a.strokes")).unwrap();
+    assert_eq!(strokes, serde_json::json!({ "style": "charcoal", "ink": "#102030" }));
+    let saved = plica(folder.path(), &["style", "save", "s.json", "-o", "mine.json"]);
+    assert!(saved.status == 0 && saved.messages.starts_with("done: mine.json"), "{saved:?}");
+    // Its own kind of file is replaced, the scene is not.
+    assert_eq!(plica(folder.path(), &["style", "save", "s.json", "-o", "mine.json"]).status, 0);
+    assert_ne!(plica(folder.path(), &["style", "save", "s.json", "-o", "s.json"]).status, 0);
+    ok(apply(&["hatching", "s.json"]));
+    ok(apply(&["mine.json", "s.json"]));
+    assert_eq!(
+        (get("layers.a.strokes.style"), get("layers.a.strokes.noises.broad.spacing")),
+        ("\"none\"\n".into(), "18\n".into())
+    );
+    ok(apply(&["stipple", "s.json", "--whole"]));
+    assert_eq!(
+        (get("layers.a.strokes.style"), get("layers.a.strokes.marks.dots.opacity")),
+        ("\"none\"\n".into(), "1\n".into())
+    );
+    for (args, told) in [
+        (&["stiple", "s.json"][..], "did you mean \"stipple\"?), and no such file"),
+        (&["s.json", "s.json"], "s.json: is no style"),
+        (&["stipple", "s.json", "--layer", "b"], "s.json: there is no layer \"b\""),
+    ] {
+        let refused = apply(args);
+        assert!(refused.status != 0 && refused.messages.contains(told), "{refused:?}");
+    }
+}

@@ -53,11 +53,16 @@ pub const SVG: Kind = Kind {
 /// A table of jump vectors, as `plica field` writes it.
 pub const CSV: Kind =
     Kind { name: "table that plica field wrote", is: |found| found.head.starts_with(CSV_HEADER.as_bytes()) };
+/// A style, as `plica style save` writes it.
+pub const STYLE: Kind = Kind {
+    name: "style that plica style save wrote",
+    is: |found| found.head.starts_with(b"{") && found.head.windows(8).any(|eight| eight == b"\"ground\""),
+};
 /// OpenEXR.
 pub const EXR: Kind = Kind { name: "OpenEXR picture", is: |found| found.head.starts_with(b"\x76\x2f\x31\x01") };
 
 /// The kinds above.
-pub const KINDS: [Kind; 4] = [PNG, SVG, CSV, EXR];
+pub const KINDS: [Kind; 5] = [PNG, SVG, CSV, STYLE, EXR];
 
 impl Kind {
     /// Whether the file at `path` is of this kind.

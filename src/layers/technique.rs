@@ -222,6 +222,8 @@ pub struct Kind {
     pub starts: Starts,
     /// Settings that change what its layers look like.
     pub presets: &'static [Preset],
+    /// The styles that its layers can be drawn in, if they can.
+    pub styles: Option<&'static Styles>,
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,
 }
@@ -259,6 +261,32 @@ pub struct Preset {
     pub wants: &'static str,
     /// What it sets: a JSON Merge Patch (RFC 7396) on the layer.
     pub patch: &'static str,
+}
+
+/// The styles that layers of a technique can be drawn in.
+#[derive(Debug)]
+pub struct Styles {
+    /// Where a layer says in which it is: a JSON pointer.
+    pub field: &'static str,
+    /// Those that the program brings.
+    pub list: &'static [Style],
+    /// What the field is to be for the style of this name, if it is this now.
+    pub named: fn(now: Option<&Value>, name: &str) -> Value,
+    /// What the field is to be for a table that is no style of the program.
+    pub own: fn(table: Value) -> Value,
+    /// The table of everything that is in force by what is written in the field.
+    pub whole: fn(written: &Value) -> Result<Value, String>,
+}
+
+/// A style.
+#[derive(Debug)]
+pub struct Style {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is for, in one line.
+    pub help: &'static str,
+    /// Its table: JSON.
+    pub table: &'static str,
 }
 
 /// How new things in a document begin, and which lists ascend.

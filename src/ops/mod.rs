@@ -33,6 +33,7 @@ pub mod scene_options;
 pub mod schema;
 pub mod set;
 pub mod sprites;
+pub mod style;
 pub mod synth;
 pub mod tutor;
 #[cfg(feature = "window")]
@@ -49,6 +50,7 @@ pub enum Command {
     Tutor(tutor::Args),
     Set(set::Args),
     Profile(profile::Args),
+    Style(style::Args),
     Get(get::Args),
     Check(check::Args),
     Probe(probe::Args),
@@ -75,6 +77,7 @@ impl Command {
             Command::Tutor(_) => Err(Error::Usage("tutor opens a terminal of its own".into())),
             Command::Set(args) => set::run(args, context),
             Command::Profile(args) => profile::run(args, context),
+            Command::Style(args) => style::run(args, context),
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),

@@ -30,6 +30,7 @@ mod references;
 pub mod schema;
 mod shape;
 mod start;
+pub mod styles;
 pub mod words;
 
 pub use clip::Clip;

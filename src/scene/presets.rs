@@ -51,32 +51,40 @@ impl Found {
     /// There is no such layer, or the preset is not for it.
     pub fn apply(&self, document: &Document, name: Option<&str>) -> Result<Applied, String> {
         let Preset { name: own, wants, .. } = self.preset;
-        let (index, layer) = self.layer(document, name)?;
+        let (index, layer) = layer_of(document, name, own, self.kind.name)?;
         let edit = Edit::merge(document, &format!("/layers/{index}"), &self.patch()?);
         let done = if edit.is_empty() { "changes nothing in" } else { "is applied to" };
         let wants = if wants.is_empty() { String::new() } else { format!("; it wants {wants}") };
         Ok(Applied { told: format!("{own} {done} {}{wants}", layer.name()), edit })
     }
 
-    fn layer<'a>(&self, document: &'a Document, name: Option<&str>) -> Result<(usize, &'a dyn Technique), String> {
-        let (own, kind) = (self.preset.name, self.kind.name);
-        let layers = document.scene().layers.iter().map(|layer| layer.technique()).enumerate();
-        let mut named = layers.filter(|(_, layer)| name.is_none_or(|name| layer.name() == name));
-        let first = named.clone().next();
-        name.map_or(Ok(0), |name| document.scene().layer_called(name))?;
-        let found = named.find(|(_, layer)| layer.kind().name == kind);
-        found.ok_or_else(|| match (name, first) {
-            (Some(name), Some((_, other))) => {
-                format!("{own} is for layers of kind {kind}; {name} is of kind {}", other.kind().name)
-            }
-            _ => format!("{own} is for layers of kind {kind}, and the scene has none"),
-        })
-    }
-
     /// What it changes: a JSON Merge Patch (RFC 7396) on the layer.
     fn patch(&self) -> Result<Value, String> {
         json::parse(self.preset.patch).map_err(|problem| format!("{}: {problem}", self.preset.name))
     }
+}
+
+/// The layer `name`, or the first one of a kind, for something called `own`.
+///
+/// # Errors
+/// There is no such layer, or it is of another kind.
+pub(super) fn layer_of<'a>(
+    document: &'a Document,
+    name: Option<&str>,
+    own: &str,
+    kind: &str,
+) -> Result<(usize, &'a dyn Technique), String> {
+    let layers = document.scene().layers.iter().map(|layer| layer.technique()).enumerate();
+    let mut named = layers.filter(|(_, layer)| name.is_none_or(|name| layer.name() == name));
+    let first = named.clone().next();
+    name.map_or(Ok(0), |name| document.scene().layer_called(name))?;
+    let found = named.find(|(_, layer)| layer.kind().name == kind);
+    found.ok_or_else(|| match (name, first) {
+        (Some(name), Some((_, other))) => {
+            format!("{own} is for layers of kind {kind}; {name} is of kind {}", other.kind().name)
+        }
+        _ => format!("{own} is for layers of kind {kind}, and the scene has none"),
+    })
 }
 
 impl Edit {

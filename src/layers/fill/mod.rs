@@ -28,6 +28,7 @@ pub static KIND: Kind = Kind {
     template: None,
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: &[],
+    styles: None,
     example: include_str!("example.json"),
 };
 

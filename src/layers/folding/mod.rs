@@ -69,6 +69,7 @@ pub static KIND: Kind = Kind {
     template: Some(Template { of: List::Images, layer: starts::template }),
     starts: Starts { start: starts::start, beyond: starts::beyond, ascending: starts::ascending, item: starts::item },
     presets: &[],
+    styles: None,
     example: include_str!("example.json"),
 };
 

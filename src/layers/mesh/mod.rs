@@ -38,6 +38,7 @@ pub static KIND: Kind = Kind {
     template: Some(Template { of: List::Meshes, layer: template }),
     starts: Starts::PLAIN,
     presets: &[],
+    styles: Some(&strokes::restyle::STYLES),
     example: include_str!("example.json"),
 };
 

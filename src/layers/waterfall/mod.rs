@@ -65,6 +65,7 @@ pub static KIND: Kind = Kind {
     template: Some(Template { of: List::Clips, layer: template }),
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: presets::PRESETS,
+    styles: None,
     example: include_str!("example.json"),
 };
 

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::add_here;
-use super::{conflicts, messages, profiles};
+use super::{conflicts, messages, profiles, styles};
 use crate::base::maths::ten_to;
 use crate::base::problem;
 use crate::scene::Edit;
@@ -196,6 +196,7 @@ fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
             _ => return Err(format!("{pointer} has no kinds")),
         },
         Then::Preset => return profiles::apply(state, word),
+        Then::Style => return styles::apply(state, word),
         Then::Go => return messages::go_to(state, call, word),
         Then::Answer(question) => return conflicts::answer(state, question.about, word, choice),
     };

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::command::Table;
 use super::{fields, profiles};
+use crate::scene::styles;
 use crate::scene::{address, field};
 use crate::tui::state::State;
 
@@ -27,7 +28,7 @@ pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
     PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
 }
 
-/// The lines that `typed` can be completed to: names of commands, of presets, of fields, and paths of the scene after `set` and `get`.
+/// The lines that `typed` can be completed to: names of commands, of presets, of styles, of fields, and paths of the scene after `set` and `get`.
 pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
     match typed.split_once(' ') {
         None => table.names().into_iter().filter(|name| name.starts_with(typed)).collect(),
@@ -42,6 +43,10 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
         Some(("profile", name)) => {
             let names = profiles::offered(state).map(|found| found.preset.name).filter(|own| own.starts_with(name));
             names.map(|own| format!("profile {own}")).collect()
+        }
+        Some(("style", name)) => {
+            let names = styles::all().map(|style| style.name).filter(|own| own.starts_with(name));
+            names.map(|own| format!("style {own}")).collect()
         }
         Some(_) => Vec::new(),
     }

@@ -31,6 +31,7 @@ mod playing;
 mod profiles;
 mod scripts;
 mod selecting;
+mod styles;
 pub mod tutor;
 mod typing;
 mod undoing;
@@ -56,6 +57,7 @@ pub static TABLE: Table = Table(&[
     help::COMMANDS,
     messages::COMMANDS,
     profiles::COMMANDS,
+    styles::COMMANDS,
     placing::COMMANDS,
     playing::COMMANDS,
     camera::COMMANDS,

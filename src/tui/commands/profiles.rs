@@ -39,7 +39,7 @@ pub fn offered(state: &State) -> impl Iterator<Item = Found> {
 }
 
 /// The technique and the name of the layer that is shown.
-fn shown(state: &State) -> Option<(&'static str, String)> {
+pub(super) fn shown(state: &State) -> Option<(&'static str, String)> {
     let index = tree::layer_of(&state.cursor.node)?;
     let layer = state.document().scene().layers.get(index)?.technique();
     Some((layer.kind().name, layer.name().to_owned()))

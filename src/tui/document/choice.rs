@@ -28,6 +28,8 @@ pub enum Then {
     Become(String),
     /// This preset is applied to the layer.
     Preset,
+    /// The layer is drawn in this style.
+    Style,
     /// The cursor goes to the chosen address.
     Go,
     /// It answers a question.

@@ -72,6 +72,32 @@ fn a_preset_that_cannot_be_applied_says_why() {
 }
 
 #[test]
+fn a_layer_is_drawn_in_a_style_in_one_step() {
+    let scene = r##"{ "plica": 1, "camera": {}, "meshes": { "m": { "path": "m.obj" } }, "layers": [
+        { "kind": "mesh", "name": "one", "mesh": "m" },
+        { "kind": "mesh", "name": "two", "mesh": "m", "strokes": { "ink": "#20304a", "marks": [] } },
+        { "kind": "fill", "name": "sky" }] }"##;
+    for (shows, changed, written) in [
+        ("/layers/1", 1, json!({ "style": "charcoal", "ink": "#20304a" })),
+        ("/layers/2", 0, json!({ "style": "charcoal" })),
+    ] {
+        let mut state = state_of(scene);
+        state.show(shows);
+        let before = state.document().json().clone();
+        press(&mut state, ": \"style charc\" Tab Enter");
+        assert_eq!(at(&state, &format!("/layers/{changed}/strokes")), written, "{shows}");
+        assert!(said_last(&state).1.starts_with("charcoal is applied to "), "{:?}", said_last(&state));
+        press(&mut state, "u");
+        assert_eq!(state.document().json(), &before, "one step of undo");
+        press(&mut state, ": \"style\" Enter w Enter");
+        assert_eq!(at(&state, &format!("/layers/{changed}/strokes/style")), json!("watercolor"));
+    }
+    let mut state = state_of(scene);
+    press(&mut state, ": \"style oil\" Enter");
+    assert!(said_last(&state).1.starts_with("there is no style \"oil\""), "{:?}", said_last(&state));
+}
+
+#[test]
 fn names_are_completed() {
     let mut state = shown("/layers/1");
     press(&mut state, ": \"profile fi\" Tab");

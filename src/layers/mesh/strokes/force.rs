@@ -97,7 +97,21 @@ pub fn whole(force: &Force) -> Value {
     if let Value::Object(fields) = &mut whole {
         fields.retain(|_, value| !value.is_null());
     }
+    short(&mut whole);
     whole
+}
+
+/// Writes whole numbers as such.
+fn short(value: &mut Value) {
+    match value {
+        Value::Number(number) => {
+            let whole = number.as_f64().filter(|number| number.fract() == 0.0 && number.abs() < 1e9);
+            whole.into_iter().for_each(|number| *value = (number as i64).into());
+        }
+        Value::Array(items) => items.iter_mut().for_each(short),
+        Value::Object(fields) => fields.values_mut().for_each(short),
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
 }
 
 /// A mark with all fields of its kind that have a value.

@@ -18,6 +18,7 @@ pub mod model;
 pub mod noise;
 pub mod passes;
 pub mod pieces;
+pub mod restyle;
 pub mod rim;
 pub mod styles;
 pub mod sum;

@@ -4,6 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::layers::technique;
+
 /// Where strokes come from. Its doc comments say what each is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -31,23 +33,27 @@ pub enum Style {
     Painterly,
 }
 
-macro_rules! table {
-    ($name:literal) => {
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/styles/", $name, ".json"))
+macro_rules! style {
+    ($name:literal, $help:literal) => {
+        technique::Style {
+            name: $name,
+            help: $help,
+            table: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/styles/", $name, ".json")),
+        }
     };
 }
 
-/// All of them but none: with its name, what it is for, and its table.
-pub const STYLES: [(Style, &str, &str, &str); 9] = [
-    (Style::Hatching, "hatching", "parallel pen strokes that grow denser in the dark", table!("hatching")),
-    (Style::CrossHatching, "cross-hatching", "pen strokes in layers across one another", table!("cross-hatching")),
-    (Style::Stipple, "stipple", "dots that grow denser in the dark", table!("stipple")),
-    (Style::Engraving, "engraving", "even lines round the form that swell in the dark", table!("engraving")),
-    (Style::Graphite, "graphite", "soft pencil on rough paper", table!("graphite")),
-    (Style::Charcoal, "charcoal", "broad, dusty strokes of charcoal", table!("charcoal")),
-    (Style::Watercolor, "watercolor", "washes of the surface's own color, with darker edges", table!("watercolor")),
-    (Style::FeltTip, "felt-tip", "broad pens in the surface's own color", table!("felt-tip")),
-    (Style::Painterly, "painterly", "thick brush strokes round the form", table!("painterly")),
+/// The styles that the program brings.
+pub const LIST: &[technique::Style] = &[
+    style!("hatching", "parallel pen strokes that grow denser in the dark"),
+    style!("cross-hatching", "pen strokes in layers across one another"),
+    style!("stipple", "dots that grow denser in the dark"),
+    style!("engraving", "even lines round the form that swell in the dark"),
+    style!("graphite", "soft pencil on rough paper"),
+    style!("charcoal", "broad, dusty strokes of charcoal"),
+    style!("watercolor", "washes of the surface's own color, with darker edges"),
+    style!("felt-tip", "broad pens in the surface's own color"),
+    style!("painterly", "thick brush strokes round the form"),
 ];
 
 impl Style {
@@ -62,7 +68,8 @@ impl Style {
 
     /// Its table; empty for none.
     pub fn table(self) -> Value {
-        let table = STYLES.iter().find(|(style, ..)| *style == self).map_or("{}", |(_, _, _, table)| table);
+        let name = serde_json::to_value(self).unwrap_or_default();
+        let table = LIST.iter().find(|style| name == style.name).map_or("{}", |style| style.table);
         serde_json::from_str(table).unwrap_or_default() // a test reads them all
     }
 }

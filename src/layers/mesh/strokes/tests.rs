@@ -6,7 +6,9 @@ use super::check;
 use super::force::{self, Strokes, in_force};
 use super::marks::{Ink, Outline, Pigment, Set};
 use super::model::{Along, Direction, Force, Noise};
-use super::styles::{STYLES, Style};
+use super::restyle::STYLES;
+use super::styles::Style;
+use crate::layers::technique;
 
 fn read(written: Value) -> Strokes {
     serde_json::from_value(written).unwrap()
@@ -62,9 +64,10 @@ fn without_a_style_there_is_only_what_is_written() {
 
 #[test]
 fn every_style_is_whole_and_says_so_itself() {
-    for (style, name, ..) in STYLES {
+    for technique::Style { name, .. } in STYLES.list {
         let found = read(json!({ "style": name }));
-        assert_eq!(found.style, style, "{name}");
+        let style = found.style;
+        assert!(style != Style::None && (style == Style::default()) == (*name == "hatching"), "{name}");
         assert_eq!(check::problems(&found), [], "{name}");
         assert_ne!(style.table(), Value::Null, "{name}");
         // Written whole, over nothing, it is the same.
@@ -76,9 +79,17 @@ fn every_style_is_whole_and_says_so_itself() {
     assert_eq!(Style::named(Some(&json!("felt-tip"))), Style::FeltTip);
 }
 
-fn over_nothing(mut whole: Value) -> Value {
-    whole["style"] = "none".into();
-    whole
+fn over_nothing(whole: Value) -> Value {
+    (STYLES.own)(whole)
+}
+
+#[test]
+fn another_style_keeps_all_but_noises_and_marks() {
+    let now = json!({ "ink": "#20304a", "style": "stipple", "noises": { "a": null }, "marks": [] });
+    assert_eq!((STYLES.named)(Some(&now), "charcoal"), json!({ "style": "charcoal", "ink": "#20304a" }));
+    assert_eq!((STYLES.named)(None, "charcoal"), json!({ "style": "charcoal" }));
+    let whole = (STYLES.whole)(&json!({ "style": "stipple", "size": 2 })).unwrap();
+    assert_eq!((&whole["size"], &whole["marks"][0]["opacity"], whole.get("style")), (&json!(2), &json!(1), None));
 }
 
 #[test]
@@ -87,7 +98,7 @@ fn what_is_not_written_is_told() {
         "marks": [{ "name": "contour" }, { "name": "cross", "from": 0.5 }] }));
     for (path, expected) in [
         ("/direction/along", Some(json!("curvature"))),
-        ("/noises/line/spacing", Some(json!(5.0))),
+        ("/noises/line/spacing", Some(json!(5))),
         ("/marks/0/width", Some(json!(1.2))),
         ("/marks/1/amount", Some(json!(0.55))),
         ("/marks/1/width", None),
