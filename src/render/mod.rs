@@ -53,6 +53,11 @@ impl Synth {
         self.layers.iter().any(|layer| layer.has_strokes())
     }
 
+    /// Bytes that its strokes need while a frame is drawn, with so many samples a pixel in each direction.
+    pub fn stroke_bytes(&self, each_way: u32) -> u64 {
+        whole::bytes(self, each_way)
+    }
+
     /// The same, seen by another camera.
     #[cfg(feature = "window")]
     pub fn seen_from(&self, camera: Camera) -> Synth {

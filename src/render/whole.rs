@@ -29,6 +29,15 @@ pub struct Whole {
     layer: Vec<u32>,
 }
 
+/// Bytes that a pixel takes while it is drawn: what a layer hands out, a few noises, and the drawing.
+const PIXEL_BYTES: u64 = 160;
+
+/// Bytes that a frame needs for what is made whole, with so many samples a pixel in each direction.
+pub fn bytes(synth: &Synth, each_way: u32) -> u64 {
+    let pixels = synth.size.0 as u64 * synth.size.1 as u64 * u64::from(each_way) * u64::from(each_way);
+    if synth.has_strokes() { pixels * PIXEL_BYTES } else { 0 }
+}
+
 /// Whether a group of a scene is made whole.
 fn is_whole(synth: &Synth, group: &Group) -> bool {
     matches!(group, Group::World(layers) if layers.iter().any(|&layer| synth.layers[layer].has_strokes()))

@@ -285,18 +285,27 @@ impl<'a> Renderer<'a> {
         let band = if bands.is_some() { Bands::PIXELS } else { cpu::BAND };
         let own = crate::render::frame_size(opened.document.scene(), &opened.materials);
         let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));
-        let share = opened.materials.budget.take(frame_bytes(own, size, args.samples as usize, band), place)?;
+        let bytes = frame_bytes(own, size, args.samples as usize, band);
+        let share = opened.materials.budget.take(bytes, &place)?;
         let samples = match (&bands, args.samples) {
             (Some(_), _) => Vec::new(),
             (None, 1) => vec![opened.synth()?],
             (None, n) => opened.samples(n)?,
         };
+        let pictures = bands.as_ref().map(Bands::pictures);
+        let first = samples.first().or(pictures.as_ref());
+        let strokes = first.map_or(0, |synth| synth.stroke_bytes(args.samples));
+        let share = share.and(opened.materials.budget.take(strokes, place)?);
         #[cfg(not(feature = "window"))]
         if args.gpu {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));
         }
         #[cfg(feature = "window")]
-        let gpu = if args.gpu { Some(Box::new(crate::render::gpu::Gpu::new()?)) } else { None };
+        // Strokes are the CPU's work, and their samples come from one frame.
+        let gpu = match args.gpu && strokes == 0 {
+            true => Some(Box::new(crate::render::gpu::Gpu::new()?)),
+            false => None,
+        };
         Ok(Renderer {
             opened,
             samples,

@@ -46,6 +46,8 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let band = size.0 * size.1;
     let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
     let samples = if each_way == 1 { vec![opened.synth()?] } else { opened.samples(each_way)? };
+    let strokes = samples.first().map_or(0, |synth| synth.stroke_bytes(each_way));
+    let _strokes = opened.materials.budget.take(strokes, "frames")?;
     let samples: Vec<Synth> = samples.iter().map(|synth| asked.only(synth)).collect();
     for (i, &(frame, number)) in todo.iter().enumerate() {
         context.check_cancelled()?;

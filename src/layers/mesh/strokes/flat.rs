@@ -35,14 +35,14 @@ pub fn sum(surface: &Surface, shown: &Shown, recipe: &Recipe, aim: &Aim, px_per_
     let sums = rows.into_par_iter().enumerate().map(|(y, of_row)| {
         let mut sums = vec![[0.0; 2]; width];
         for flat in of_row.into_iter().map(|i| &flats[i as usize]) {
-            for x in flat.from.0..flat.to.0 {
+            for (x, sum) in (flat.from.0..).zip(&mut sums[flat.from.0..flat.to.0]) {
                 let i = y * width + x;
                 if shown.triangle[i] == u32::MAX {
                     continue;
                 }
                 let ray = surface.eye.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
                 let [n, p] = kernel(flat, recipe, ray / shown.inverse[i] - flat.at, px_per_m, reach);
-                sums[x] = [sums[x][0] + n as f32, sums[x][1] + p as f32];
+                *sum = [sum[0] + n as f32, sum[1] + p as f32];
             }
         }
         sums

@@ -56,7 +56,7 @@ impl<'a> Scene<'a> {
         let direction = wanted.direction.as_ref().unwrap_or(&strokes.direction);
         let anchor = wanted.anchor.unwrap_or(strokes.anchor);
         let vary = wanted.vary.as_ref().or(strokes.vary.as_ref()).filter(|_| anchor == Anchor::Surface);
-        let tensors = |smooth: f64, is: bool| is.then(|| self.tensors(smooth)).unwrap_or_default();
+        let tensors = |smooth: f64, is: bool| if is { self.tensors(smooth) } else { Tensors::default() };
         let own = tensors(direction.smooth, direction.along == Along::Curvature);
         let of_vary = tensors(SMOOTH, vary.is_some_and(|vary| vary.by == By::Curvature));
         let axis = |triangle: u32| self.axis(direction, triangle);

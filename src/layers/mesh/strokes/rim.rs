@@ -132,7 +132,9 @@ mod tests {
         for (i, found) in found.iter().enumerate() {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
             let all = marked.iter().enumerate().filter(|(_, marked)| **marked);
-            let away = all.map(|(k, _)| ((k % width) as f64 - x).hypot((k / width) as f64 - y));
+            let away = all.map(|(k, _)| {
+                glam::DVec2::new((k % width) as f64, (k / width) as f64).distance(glam::DVec2::new(x, y))
+            });
             let least = away.fold(f64::INFINITY, f64::min);
             assert!((found - least).abs() < 1e-12, "{x} {y}: {found} {least}");
         }
