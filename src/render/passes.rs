@@ -303,7 +303,8 @@ mod tests {
 
     #[test]
     fn lines_lie_over_the_dimmed_frame_and_other_passes_alone() {
-        let asked = |holds| Asked { pass: Box::leak(Box::new(Pass { name: "test", help: "", holds })), layer: None };
+        let asked =
+            |holds| Asked { pass: Box::leak(Box::new(Pass { name: "test", help: "", holds })), of: None, layer: None };
         let picture = Linear::from_cells(2, 1, vec![[0.0; 4], [1.0; 4]]);
         let frame = || Linear::filled(2, 1, [1.0, 0.0, 0.0, 1.0]);
         let shown = view_over(&asked(Holds::Speed), &picture, frame);
