@@ -1,6 +1,6 @@
 //! The pictures of a layer's sprites, and those between them, as files.
 
-use glam::DVec2;
+use glam::{DVec2, Vec4};
 use serde_json::{Value, json};
 
 use super::between::texels;
@@ -66,7 +66,7 @@ fn shown(synth: &Synth, track: usize, key: usize, u: f64) -> Linear {
     let mut own = Vec::new();
     let side = synth.pictures.side;
     texels((&synth.pictures, &synth.residues), &mix, 0, 0..side, &mut own);
-    Linear::from_cells(side, side, own.into_iter().map(|texel| shaded(texel, [1.0; 3])).collect())
+    Linear::from_cells(side, side, own.into_iter().map(|texel| shaded(texel, Vec4::ONE).to_array()).collect())
 }
 
 /// All keys, a row for each track.

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::Vec4;
+
 use super::sprites::residue::Residues;
 use super::sprites::{Pictures, Place};
 use crate::base::pixels::Rgba;
@@ -80,7 +82,7 @@ pub fn texels(
     mix: &Mix,
     level: usize,
     rows: Range<usize>,
-    out: &mut Vec<Rgba>,
+    out: &mut Vec<Vec4>,
 ) {
     let side = pictures.side >> level;
     let key = |(place, weight): (Place, f32)| Key { texels: &pictures.key(place).levels[level].1, side, weight };
@@ -88,11 +90,11 @@ pub fn texels(
     // Central differences, in texels of the largest level.
     let slopes = mix.slopes.map(|slope| slope.map(|v| v / (2 << level) as f32));
     // What is there is overwritten.
-    out.resize(rows.len() * side, [0.0; 4]);
+    out.resize(rows.len() * side, Vec4::ZERO);
     for (y, out) in rows.zip(out.chunks_exact_mut(side)) {
         match mix.keys() {
             [a, b] if slopes != [[0.0; 2]; 2] => {
-                advected([key(*a).around(y, slopes[0]), key(*b).around(y, slopes[1])], out);
+                advected(&key(*a).around(y, slopes[0]), &key(*b).around(y, slopes[1]), out);
             }
             keys => weighted(keys.iter().map(|of| (key(*of).row(y), of.1)), out),
         }
@@ -111,6 +113,7 @@ struct Key<'a> {
 }
 
 /// A row of a key with those above and below it, its weight, and what a difference to the right and down adds.
+#[derive(Clone, Copy)]
 struct Around<'a> {
     above: &'a [Rgba],
     own: &'a [Rgba],
@@ -132,52 +135,51 @@ impl<'a> Key<'a> {
 }
 
 impl Around<'_> {
+    /// The same, of this length as far as the compiler sees.
+    #[inline(always)]
+    fn of(self, len: usize) -> Self {
+        Around { above: &self.above[..len], own: &self.own[..len], below: &self.below[..len], ..self }
+    }
+
     /// What a texel's neighbors add to a color.
     #[inline(always)]
-    fn add(&self, color: Rgba, [left, x, right]: [usize; 3]) -> Rgba {
+    fn add(&self, color: Vec4, [left, x, right]: [usize; 3]) -> Vec4 {
         let [across, down] = self.slope;
-        std::array::from_fn(|c| {
-            let color = color[c] + across * (self.own[right][c] - self.own[left][c]);
-            color + down * (self.below[x][c] - self.above[x][c])
-        })
+        let color = color + across * (Vec4::from(self.own[right]) - Vec4::from(self.own[left]));
+        color + down * (Vec4::from(self.below[x]) - Vec4::from(self.above[x]))
     }
 }
 
 /// A row of two keys with their slopes: all at once, since most of the time goes into fetching and storing texels.
-fn advected([a, b]: [Around; 2], out: &mut [Rgba]) {
+fn advected(a: &Around, b: &Around, out: &mut [Vec4]) {
     let last = out.len() - 1;
-    let [a, b] = [a, b].map(|key| Around {
-        // The same length as far as the compiler sees.
-        above: &key.above[..=last],
-        own: &key.own[..=last],
-        below: &key.below[..=last],
-        ..key
-    });
-    let texel = |at: [usize; 3]| {
-        let faded = std::array::from_fn(|c| a.own[at[1]][c] * a.weight + b.own[at[1]][c] * b.weight);
-        b.add(a.add(faded, at), at)
-    };
-    out[0] = texel([0, 0, 1.min(last)]);
-    for (left, out) in out[1..last].iter_mut().enumerate() {
-        *out = texel([left, left + 1, left + 2]);
+    let (a, b) = (a.of(out.len()), b.of(out.len()));
+    out[0] = faded(&a, &b, [0, 0, 1.min(last)]);
+    for x in 1..last {
+        out[x] = faded(&a, &b, [x - 1, x, x + 1]);
     }
-    out[last] = texel([last.saturating_sub(1), last, last]);
+    out[last] = faded(&a, &b, [last.saturating_sub(1), last, last]);
+}
+
+/// A texel between two keys.
+#[inline(always)]
+fn faded(a: &Around, b: &Around, at: [usize; 3]) -> Vec4 {
+    let faded = Vec4::from(a.own[at[1]]) * a.weight + Vec4::from(b.own[at[1]]) * b.weight;
+    b.add(a.add(faded, at), at)
 }
 
 /// A row of keys by their weights.
-fn weighted<'a>(keys: impl Iterator<Item = (&'a [Rgba], f32)>, out: &mut [Rgba]) {
-    out.fill([0.0; 4]);
+fn weighted<'a>(keys: impl Iterator<Item = (&'a [Rgba], f32)>, out: &mut [Vec4]) {
+    out.fill(Vec4::ZERO);
     for (key, weight) in keys {
-        let add = |(out, texel): (&mut Rgba, &Rgba)| *out = std::array::from_fn(|c| out[c] + texel[c] * weight);
-        out.iter_mut().zip(key).for_each(add);
+        out.iter_mut().zip(key).for_each(|(out, texel)| *out += Vec4::from(*texel) * weight);
     }
 }
 
 /// Adds random numbers to the colors, as far as these cover.
-fn add_residue(random: &[[f32; 1]], weight: f32, out: &mut [Rgba]) {
+fn add_residue(random: &[[f32; 1]], weight: f32, out: &mut [Vec4]) {
     for (texel, [random]) in out.iter_mut().zip(random) {
-        let more = weight * random * texel[3];
-        *texel = [texel[0] + more, texel[1] + more, texel[2] + more, texel[3]];
+        *texel += Vec4::new(1.0, 1.0, 1.0, 0.0) * (weight * random * texel.w);
     }
 }
 
@@ -227,7 +229,7 @@ mod tests {
         let mut out = Vec::new();
         let residues = pictures.residues(Random(1), 3);
         texels((&pictures, &residues), &mix(u, kind), level, 0..SIDE >> level, &mut out);
-        out
+        out.into_iter().map(Rgba::from).collect()
     }
 
     #[test]
@@ -262,6 +264,7 @@ mod tests {
             let (pictures, mut rows) = (pictures(4), Vec::new());
             let residues = pictures.residues(Random(1), 3);
             texels((&pictures, &residues), &mix(0.3, kind), 0, 5..9, &mut rows);
+            let rows: Vec<Rgba> = rows.into_iter().map(Rgba::from).collect();
             assert_eq!(rows, shown(0.3, kind, 0)[5 * SIDE..9 * SIDE], "{kind}");
         }
     }

@@ -1,30 +1,24 @@
-//! Colors of sprites: read between texels, kept within bounds, tinted and blended.
+//! Colors of sprites: read between texels, kept within bounds, tinted and blended. Four numbers at a time are one for the
+//! processor.
 
-use crate::base::pixels::Rgba;
+use glam::Vec4;
 
 /// How much of a sprite is before the surface behind it.
 pub fn before(surface: f64, depth: f64, soft: f64) -> f64 {
     if soft > 0.0 { ((surface - depth) / soft).clamp(0.0, 1.0) } else { f64::from(u8::from(depth < surface)) }
 }
 
-/// A color as read from texels, kept within bounds and tinted.
+/// A color as read from texels, kept within bounds and tinted; the tint is 0 or more, and its last number 1.
 #[inline(always)]
-pub fn shaded(color: Rgba, [r, g, b]: [f32; 3]) -> Rgba {
-    let a = within(color[3], 1.0);
-    let tinted: Rgba = std::array::from_fn(|c| within(color[c], a) * [r, g, b, 1.0][c]);
-    tinted.map(|v| within(v, a))
-}
-
-/// A number kept between 0 and `most`; unlike `clamp` it is two instructions for four numbers at once.
-#[inline(always)]
-fn within(v: f32, most: f32) -> f32 {
-    let v = if v > 0.0 { v } else { 0.0 };
-    if v < most { v } else { most }
+pub fn shaded(color: Vec4, tint: Vec4) -> Vec4 {
+    let color = color.max(Vec4::ZERO);
+    let most = Vec4::splat(color.w).min(Vec4::ONE);
+    (color.min(most) * tint).min(most)
 }
 
 /// The bilinear read of texels at a place from -1/2 to 1/2.
 #[inline(always)]
-pub fn read(texels: &[Rgba], side: usize, [across, along]: [f64; 2]) -> Rgba {
+pub fn read(texels: &[Vec4], side: usize, [across, along]: [f64; 2]) -> Vec4 {
     let ([left, right], u) = neighbors((across + 0.5) * side as f64, side);
     let ([above, below], v) = neighbors((along + 0.5) * side as f64, side);
     let before = mean(texels[above * side + left], texels[below * side + left], v);
@@ -43,21 +37,20 @@ pub fn neighbors(place: f64, side: usize) -> ([usize; 2], f32) {
 
 /// What is this share of the way from one color to another.
 #[inline(always)]
-pub fn mean(a: Rgba, b: Rgba, share: f32) -> Rgba {
-    std::array::from_fn(|c| a[c] + (b[c] - a[c]) * share)
+pub fn mean(a: Vec4, b: Vec4, share: f32) -> Vec4 {
+    a + (b - a) * share
 }
 
-/// Adds light to what is there.
+/// Light added to what is there.
 #[inline(always)]
-pub fn screen(there: &mut Rgba, color: &Rgba, opacity: f32) {
-    let own = color.map(|v| v * opacity);
-    *there = std::array::from_fn(|c| own[c] + there[c] * (1.0 - own[c]));
+pub fn screen(there: Vec4, color: Vec4, opacity: f32) -> Vec4 {
+    let own = color * opacity;
+    own + there * (Vec4::ONE - own)
 }
 
-/// Covers what is there.
+/// A color over what is there.
 #[inline(always)]
-pub fn over(there: &mut Rgba, color: &Rgba, opacity: f32) {
-    let own = color.map(|v| v * opacity);
-    let rest = 1.0 - own[3];
-    *there = std::array::from_fn(|c| own[c] + there[c] * rest);
+pub fn over(there: Vec4, color: Vec4, opacity: f32) -> Vec4 {
+    let own = color * opacity;
+    own + there * (1.0 - own.w)
 }

@@ -11,7 +11,7 @@ use super::synth::Synth;
 use crate::base::pixels::Rgba;
 
 /// Rows of a strip: few enough that what is drawn on stays close to the processor, and that all threads have work.
-const ROWS: usize = 32;
+const ROWS: usize = 64;
 
 /// Where a frame is looked at, and what is there already.
 pub struct Canvas<'a> {

@@ -104,7 +104,7 @@ fn sprite(synth: &Synth, atlas: &Atlas, splat: &Splat) -> Sprite {
         turn: splat.turn.as_vec2().to_array(),
         side: (synth.pictures.side >> splat.level) as f32,
         mirrored: f32::from(u8::from(splat.mirrored)),
-        tint: splat.tint,
+        tint: splat.tint.truncate().to_array(),
         opacity: splat.opacity as f32,
         slopes: [a, b, c, d].map(|slope| slope / each),
         keys,

@@ -50,7 +50,7 @@ fn color(synth: &Synth, splat: &Splat, [x, y]: [f64; 2]) -> Rgba {
     texels((&synth.pictures, &synth.residues), &splat.mix, splat.level, 0..side, &mut own);
     let Some(place) = inside(splat, x, y) else { return [0.0; 4] };
     let opacity = splat.opacity * before(f64::INFINITY, splat.depth, synth.values.soft);
-    shaded(read(&own, side, place), splat.tint).map(|v| v * opacity as f32)
+    (shaded(read(&own, side, place), splat.tint) * opacity as f32).to_array()
 }
 
 fn entries(layer: &WaterfallLayer, splat: &Splat, color: Rgba) -> Vec<Entry> {

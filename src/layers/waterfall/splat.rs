@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec4};
 use rayon::prelude::*;
 
 use super::between::{Mix, catmull, hermite, residue};
@@ -53,8 +53,8 @@ pub struct Splat {
     pub mirrored: bool,
     /// How much it covers.
     pub opacity: f64,
-    /// What its color is multiplied by.
-    pub tint: [f32; 3],
+    /// What its color is multiplied by; its alpha by 1.
+    pub tint: Vec4,
     /// The level of the pictures that it shows.
     pub level: usize,
     /// The key that it has left, by its number among those that it runs through, and how far it is to the next.
@@ -125,7 +125,7 @@ fn splat(synth: &Synth, eye: &Eye, frame: (usize, usize), line: &Line, alive: Al
         turn,
         mirrored,
         opacity,
-        tint: [0, 1, 2].map(|c| (tint[c] * look.gain) as f32),
+        tint: (DVec3::from_slice(&tint) * look.gain).as_vec3().extend(1.0),
         level,
         key,
         mix,

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::Vec4;
+
 use super::between::texels;
 use super::cells::{Drawn, inside};
 use super::color::{before, mean, neighbors, over, screen, shaded};
@@ -17,23 +19,31 @@ const BLOCK: usize = 64;
 #[derive(Default)]
 pub struct Scratch {
     /// Rows of texels of a sprite.
-    texels: Vec<Rgba>,
-    /// A row between two rows of texels.
-    row: Vec<Rgba>,
+    texels: Vec<Vec4>,
+    /// A row between two rows of texels; its ends are there twice.
+    row: Vec<Vec4>,
     /// What each column of a sprite that is not turned reads.
     reads: Vec<Read>,
     /// How far columns are from the middle of a turned sprite.
     aside: Vec<f32>,
-    /// The colors of a sprite in a row of the frame.
-    colors: Vec<Rgba>,
+    /// What each column of a turned sprite reads in a row.
+    corners: Vec<Corner>,
     /// The nearest surface of each block of columns, in meters.
     nearest: Vec<f64>,
 }
 
-/// The texels left and right of a place, and its share of the way.
+/// Where in the row the texel left of a place is, and the share of the way to the next.
+#[derive(Clone, Copy)]
 struct Read {
-    texels: [usize; 2],
+    left: u32,
     share: f32,
+}
+
+/// Where among the texels the one left of a place and above is, and the shares of the ways to the next ones.
+#[derive(Clone, Copy)]
+struct Corner {
+    first: u32,
+    share: [f32; 2],
 }
 
 /// Some rows of a frame.
@@ -82,14 +92,13 @@ impl<'a> Strip<'a> {
         let columns = if straight { self.find_reads(drawn, side) } else { self.find_places(drawn) };
         let clear = self.is_clear(splat, &columns);
         for y in rows {
-            let at = self.places[1][y];
-            let covered = if straight {
-                if self.straight(splat, at, (side, made.start)) { columns.clone() } else { 0..0 }
+            let row = Row { at: self.places[1][y], side, made_from: made.start, clear };
+            let cells = (y - self.first) * width;
+            if straight {
+                self.straight(splat, &row, cells + columns.start..cells + columns.end);
             } else {
-                self.turned(drawn, at, (side, made.start))
-            };
-            let from = (y - self.first) * width;
-            self.blend(splat, clear, from + covered.start..from + covered.end);
+                self.turned(drawn, &row, cells);
+            }
         }
     }
 
@@ -109,8 +118,8 @@ impl<'a> Strip<'a> {
             let across = (self.places[0][x] - splat.middle.x) / splat.size_px.x;
             let across = if splat.mirrored { -across } else { across };
             if across.abs() < 0.5 {
-                let (texels, share) = neighbors((across + 0.5) * side as f64, side);
-                self.scratch.reads.push(Read { texels, share });
+                let at = (across + 0.5) * side as f64 + 0.5;
+                self.scratch.reads.push(Read { left: at as u32, share: (at - 1.0 - (at.floor() - 1.0)) as f32 });
             } else if self.scratch.reads.is_empty() {
                 from = x + 1;
             }
@@ -126,60 +135,100 @@ impl<'a> Strip<'a> {
         drawn.columns.clone()
     }
 
-    /// The colors of a sprite that is not turned, in the row at `y`, if it is there: rows and columns of texels are weighed
-    /// apart from one another.
-    fn straight(&mut self, splat: &Splat, y: f64, (side, made_from): (usize, usize)) -> bool {
-        let along = (y - splat.middle.y) / splat.size_px.y;
+    /// Draws a row of a sprite that is not turned, if it is there: rows and columns of texels are weighed apart from one
+    /// another.
+    fn straight(&mut self, splat: &Splat, row: &Row, cells: Range<usize>) {
+        let along = (row.at - splat.middle.y) / splat.size_px.y;
         if along.abs() >= 0.5 {
-            return false;
+            return;
         }
-        let ([above, below], share) = neighbors((along + 0.5) * side as f64, side);
-        let Scratch { texels, row, reads, colors, .. } = &mut *self.scratch;
-        let of = |y: usize| &texels[(y - made_from) * side..][..side];
-        row.clear();
-        row.extend(of(above).iter().zip(of(below)).map(|(a, b)| mean(*a, *b, share)));
-        colors.clear();
-        colors.extend(reads.iter().map(|read| {
-            let [left, right] = read.texels;
-            shaded(mean(row[left], row[right], read.share), splat.tint)
-        }));
-        true
+        let ([above, below], share) = neighbors((along + 0.5) * row.side as f64, row.side);
+        let Scratch { texels, row: between, reads, .. } = &mut *self.scratch;
+        let of = |y: usize| &texels[(y - row.made_from) * row.side..][..row.side];
+        between.resize(row.side + 2, Vec4::ZERO);
+        let pairs = of(above).iter().zip(of(below));
+        between[1..].iter_mut().zip(pairs).for_each(|(out, (a, b))| *out = mean(*a, *b, share));
+        (between[0], between[row.side + 1]) = (between[1], between[row.side]);
+        let between = &between[..];
+        let colors = reads.iter().map(|read| {
+            let pair = &between[read.left as usize..][..2];
+            mean(pair[0], pair[1], read.share)
+        });
+        let (depth, out) = (&self.depth[cells.clone()], &mut self.out[cells]);
+        Blend::new(self.synth, splat, row.clear).put(colors, depth, out);
     }
 
-    /// The colors of a turned sprite in the row at `y`, and the columns that it covers.
-    fn turned(&mut self, drawn: &Drawn, y: f64, (side, made_from): (usize, usize)) -> Range<usize> {
+    /// Draws a row of a turned sprite; `cells` is the number of the row's first cell.
+    fn turned(&mut self, drawn: &Drawn, row: &Row, cells: usize) {
         let splat = drawn.splat;
-        let columns = span(drawn, &self.places[0], y);
-        let map = Map::new(splat, y - splat.middle.y, side);
-        let Scratch { texels, aside, colors, .. } = &mut *self.scratch;
+        let columns = span(drawn, &self.places[0], row.at);
+        let map = Map::new(splat, row);
+        let Scratch { texels, aside, corners, .. } = &mut *self.scratch;
         let aside = &aside[columns.start - drawn.columns.start..columns.end - drawn.columns.start];
-        colors.clear();
-        colors.extend(aside.iter().map(|dx| {
-            let [(x, u), (y, v)] = map.at(*dx);
-            let pair = |y: usize| {
-                let first = (y - made_from) * side + x;
-                let pair = &texels[first..first + 2];
-                mean(pair[0], pair[1], u)
-            };
-            shaded(mean(pair(y), pair(y + 1), v), splat.tint)
-        }));
-        columns
+        corners.clear();
+        corners.extend(aside.iter().map(|dx| map.at(*dx)));
+        let texels = &texels[..];
+        let colors = corners.iter().map(|Corner { first, share: [u, v] }| {
+            let above = &texels[*first as usize..][..row.side + 2];
+            let below = &above[row.side..];
+            mean(mean(above[0], above[1], *u), mean(below[0], below[1], *u), *v)
+        });
+        let cells = cells + columns.start..cells + columns.end;
+        let (depth, out) = (&self.depth[cells.clone()], &mut self.out[cells]);
+        Blend::new(self.synth, splat, row.clear).put(colors, depth, out);
+    }
+}
+
+/// A row of the frame that a sprite is drawn in.
+struct Row {
+    /// Where it is, in pixels.
+    at: f64,
+    /// Texels of a side.
+    side: usize,
+    /// The first row of texels that is there.
+    made_from: usize,
+    /// Whether all surfaces are too far behind to matter.
+    clear: bool,
+}
+
+/// How a sprite is blended with what is there.
+struct Blend {
+    mixing: Mixing,
+    clear: bool,
+    opacity: f32,
+    tint: Vec4,
+    depth: f64,
+    soft: f64,
+}
+
+impl Blend {
+    fn new(synth: &Synth, splat: &Splat, clear: bool) -> Blend {
+        Blend {
+            mixing: synth.blend,
+            clear,
+            opacity: splat.opacity as f32,
+            tint: splat.tint,
+            depth: splat.depth,
+            soft: synth.values.soft,
+        }
     }
 
-    /// Blends colors with cells.
-    fn blend(&mut self, splat: &Splat, clear: bool, cells: Range<usize>) {
-        let (opacity, soft) = (splat.opacity as f32, self.synth.values.soft);
-        let (out, colors) = (&mut self.out[cells.clone()], &self.scratch.colors);
-        let pairs = out.iter_mut().zip(colors);
-        match (self.synth.blend, clear) {
-            (Mixing::Screen, true) => pairs.for_each(|(out, color)| screen(out, color, opacity)),
-            (Mixing::Over, true) => pairs.for_each(|(out, color)| over(out, color, opacity)),
-            (blend, false) => pairs.zip(&self.depth[cells]).for_each(|((out, color), behind)| {
-                let opacity = opacity * before(*behind, splat.depth, soft) as f32;
-                match blend {
-                    Mixing::Screen => screen(out, color, opacity),
-                    Mixing::Over => over(out, color, opacity),
-                }
+    /// Blends colors as read from texels with cells.
+    #[inline(always)]
+    fn put(&self, colors: impl Iterator<Item = Vec4>, depth: &[f64], out: &mut [Rgba]) {
+        let put = |out: &mut Rgba, color: Vec4| *out = color.to_array();
+        let opacity = |behind: &f64| self.opacity * before(*behind, self.depth, self.soft) as f32;
+        let cells = out.iter_mut().zip(colors.map(|color| shaded(color, self.tint)));
+        match (self.mixing, self.clear) {
+            (Mixing::Screen, true) => {
+                cells.for_each(|(out, color)| put(out, screen((*out).into(), color, self.opacity)))
+            }
+            (Mixing::Over, true) => cells.for_each(|(out, color)| put(out, over((*out).into(), color, self.opacity))),
+            (Mixing::Screen, false) => cells.zip(depth).for_each(|((out, color), behind)| {
+                put(out, screen((*out).into(), color, opacity(behind)));
+            }),
+            (Mixing::Over, false) => cells.zip(depth).for_each(|((out, color), behind)| {
+                put(out, over((*out).into(), color, opacity(behind)));
             }),
         }
     }
@@ -227,30 +276,32 @@ fn span(drawn: &Drawn, places: &[f64], y: f64) -> Range<usize> {
 struct Map {
     /// Across and along the sprite: at its middle, and for each pixel beside it, in texels.
     axes: [[f32; 2]; 2],
-    /// The last texel.
-    last: f32,
+    side: f32,
+    made_from: f32,
 }
 
 impl Map {
-    /// The row that is `dy` below the middle.
-    fn new(splat: &Splat, dy: f64, side: usize) -> Map {
-        let Splat { size_px, turn, .. } = splat;
+    fn new(splat: &Splat, row: &Row) -> Map {
+        let Splat { middle, size_px, turn, .. } = splat;
         let axis = |at: f64, each: f64, size: f64| {
-            let scale = side as f64 / size;
-            [(at * scale + (side - 1) as f64 / 2.0) as f32, (each * scale) as f32]
+            let scale = row.side as f64 / size;
+            [(at * scale + (row.side - 1) as f64 / 2.0) as f32, (each * scale) as f32]
         };
-        let sense = if splat.mirrored { -1.0 } else { 1.0 };
+        let (dy, sense) = (row.at - middle.y, if splat.mirrored { -1.0 } else { 1.0 });
         let across = axis(sense * turn.y * dy, sense * turn.x, size_px.x);
-        Map { axes: [across, axis(turn.x * dy, -turn.y, size_px.y)], last: (side - 1) as f32 }
+        let along = axis(turn.x * dy, -turn.y, size_px.y);
+        Map { axes: [across, along], side: row.side as f32, made_from: row.made_from as f32 }
     }
 
-    /// The texel before a place across and along, and the share of the way to the next; edges repeat.
+    /// What a column this far beside the middle reads; edges repeat. Small whole numbers are exact in single precision.
     #[inline(always)]
-    fn at(&self, dx: f32) -> [(usize, f32); 2] {
-        self.axes.map(|[middle, each]| {
-            let at = (middle + dx * each).clamp(0.0, self.last);
-            let before = (at as usize).min(self.last as usize - 1);
-            (before, at - before as f32)
-        })
+    fn at(&self, dx: f32) -> Corner {
+        let place = |[middle, each]: [f32; 2]| {
+            let at = (middle + dx * each).max(0.0).min(self.side - 1.0);
+            let before = at.min(self.side - 2.0) as i32 as f32;
+            (before, at - before)
+        };
+        let ((x, u), (y, v)) = (place(self.axes[0]), place(self.axes[1]));
+        Corner { first: ((y - self.made_from) * self.side + x) as i32 as u32, share: [u, v] }
     }
 }
