@@ -155,8 +155,8 @@ fn advected(a: &Around, b: &Around, out: &mut [Vec4]) {
     let last = out.len() - 1;
     let (a, b) = (a.of(out.len()), b.of(out.len()));
     out[0] = faded(&a, &b, [0, 0, 1.min(last)]);
-    for x in 1..last {
-        out[x] = faded(&a, &b, [x - 1, x, x + 1]);
+    for (left, out) in out[1..last].iter_mut().enumerate() {
+        *out = faded(&a, &b, [left, left + 1, left + 2]);
     }
     out[last] = faded(&a, &b, [last.saturating_sub(1), last, last]);
 }

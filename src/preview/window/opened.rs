@@ -165,15 +165,18 @@ impl Opened {
         let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
         let asked = state.pass.as_deref().map(|pass| Asked::parse(pass, &show.scene)).transpose();
         state.no_pass = asked.as_ref().err().cloned();
-        // Strokes are drawn by the CPU, as passes are.
-        let asked = asked.ok().flatten().or_else(|| show.frames.has_strokes().then_some(Asked::FRAME));
+        // Strokes are drawn by the CPU, as passes are, and so are sprites where the CPU would only pretend to be a GPU: that
+        // takes several times as long.
+        let by_cpu = show.frames.has_strokes() || show.has_sprites() && self.gpu.device().is_software();
+        let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));
+        let left_out = state.thin.left_out();
+        let frame = (&*thinned(frame.0, left_out), frame.1);
         if let Some(asked) = asked {
             let times = (frame.1, other.as_ref().map(|(_, t)| *t), state.shows("view-still"));
-            let wanted = For { asked, revision, own: state.own, times };
+            let wanted = For { asked, revision, own: state.own, times, left_out };
             let (frame, other) = self.passes.follow(&self.gpu, wanted, frame, other)?;
             return Ok(Pictures { frame, other, scale: show.frame_scale / self.passes.each as f64 });
         }
-        let frame = (&*thinned(frame.0, state.thin.left_out()), frame.1);
         let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
         Ok(Pictures { frame, other, scale: show.frame_scale })
     }

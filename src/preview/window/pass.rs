@@ -1,4 +1,4 @@
-//! A pass in place of the frame. It is computed by the CPU, since it is what the reference is made from, and made again only
+//! A pass in place of the frame, or a frame that the CPU draws. It is what the reference is made from, and made again only
 //! where something that it shows has changed.
 
 use std::borrow::Cow;
@@ -33,6 +33,8 @@ pub struct For {
     pub own: Option<OwnView>,
     /// The scene times of the frame and of what it is compared with, and whether the frame is the still picture.
     pub times: (f64, Option<f64>, bool),
+    /// How many sprites are left out after each that is shown.
+    pub left_out: u32,
 }
 
 impl Kept {

@@ -69,6 +69,11 @@ impl Device {
         self.lost.load(Ordering::Acquire)
     }
 
+    /// Whether the processor draws what a GPU would.
+    pub fn is_software(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// The adapter's name, for people.
     pub fn name(&self) -> String {
         self.adapter.get_info().name
