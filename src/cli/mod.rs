@@ -87,7 +87,7 @@ fn refuse(error: clap::Error) -> ! {
 fn run(line: CommandLine, context: &mut Context, cancel: Arc<AtomicBool>) -> Result<()> {
     let log = files::log::start(line.log.as_deref())?;
     process::report_panics(log);
-    let _registered = process::cancel_on_signals(cancel)?;
+    process::cancel_on_signals(cancel)?;
     match line.command {
         #[cfg(feature = "tui")]
         Some(Command::Edit(args)) => tui::run(tui::Options::of(&args)?)?,

@@ -9,18 +9,19 @@ use std::time::Duration;
 
 use crate::base::error::{Error, Result};
 use crate::base::system::process;
-use crate::base::system::signals::{self, Answer, Registration, Signal};
+use crate::base::system::signals::{self, Answer, Signal};
 use crate::base::text::printable;
 use crate::files::temporary;
 
 /// How long work may take to notice that it is cancelled: a person should not wait longer for the prompt.
 const GRACE: Duration = Duration::from_millis(400);
 
-/// Lets the first signal to end cancel the work; a second one, or patience running out, ends the process.
+/// Lets the first signal to end cancel the work; a second one, or patience running out, ends the process. That holds until
+/// the process is gone: a second signal on its way out changes nothing.
 ///
 /// # Errors
 /// When signals cannot be listened to.
-pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
+pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<()> {
     let handler = move |signal| match signal {
         Signal::Stop | Signal::Continue | Signal::Resize => Answer::Pass,
         _ if cancel.swap(true, Ordering::Relaxed) => end(),
@@ -34,7 +35,8 @@ pub fn cancel_on_signals(cancel: Arc<AtomicBool>) -> Result<Registration> {
             Answer::Done
         }
     };
-    signals::handle(handler).map_err(|error| Error::at("signals", error))
+    std::mem::forget(signals::handle(handler).map_err(|error| Error::at("signals", error))?);
+    Ok(())
 }
 
 fn end() -> ! {
