@@ -40,6 +40,9 @@ pub struct Found<'a> {
 /// How many first bytes are looked at.
 const HEAD: usize = 512;
 
+/// A longer file is no style, in bytes.
+const LONGEST_STYLE: u64 = 1 << 20;
+
 /// The first line of a table of jump vectors.
 pub const CSV_HEADER: &str = "x,y,dx,dy,length,degrees";
 
@@ -54,12 +57,17 @@ pub const SVG: Kind = Kind {
 pub const CSV: Kind =
     Kind { name: "table that plica field wrote", is: |found| found.head.starts_with(CSV_HEADER.as_bytes()) };
 /// A style, as `plica style save` writes it.
-pub const STYLE: Kind = Kind {
-    name: "style that plica style save wrote",
-    is: |found| found.head.starts_with(b"{") && found.head.windows(8).any(|eight| eight == b"\"ground\""),
-};
+pub const STYLE: Kind =
+    Kind { name: "style that plica style save wrote", is: |found| found.head.starts_with(b"{") && is_style(found) };
 /// OpenEXR.
 pub const EXR: Kind = Kind { name: "OpenEXR picture", is: |found| found.head.starts_with(b"\x76\x2f\x31\x01") };
+
+/// Whether a file holds the table of a style, whole; a scene that has one in it is none.
+fn is_style(found: &Found) -> bool {
+    let text = if found.length <= LONGEST_STYLE { fs::read_to_string(found.path).ok() } else { None };
+    let table = text.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+    table.is_some_and(|table| ["ground", "noises", "marks"].iter().all(|field| table.get(field).is_some()))
+}
 
 /// The kinds above.
 pub const KINDS: [Kind; 5] = [PNG, SVG, CSV, STYLE, EXR];
@@ -389,13 +397,15 @@ mod tests {
     #[test]
     fn other_files_are_replaced_by_their_own_kind_only() {
         let folder = tempfile::tempdir().unwrap();
-        let heads: [(&[u8], Option<Kind>); 6] = [
+        let heads: [(&[u8], Option<Kind>); 8] = [
             (PNG_FILE, Some(PNG)),
             (b"<?xml version=\"1.0\"?>\n<svg>", Some(SVG)),
             (b"x,y,dx,dy,length,degrees\n", Some(CSV)),
             (b"x,y\n1,2\n", None),
             (b"\x76\x2f\x31\x01....", Some(EXR)),
             (b"{\"plica\": 1}", None),
+            (br#"{"ground": "paper", "noises": {}, "marks": []}"#, Some(STYLE)),
+            (br#"{"layers": [{"strokes": {"ground": "paper", "noises": {}, "marks": []}}]}"#, None),
         ];
         for (head, kind) in heads {
             let path = folder.path().join("there");

@@ -153,8 +153,10 @@ impl Walk {
     fn list(&mut self, shape: Shape, items: &[Value], min: usize, max: usize) {
         if !(min..=max).contains(&items.len()) {
             let count = items.len();
-            let wanted = if min == max { format!("{min}") } else { format!("at least {min}") };
-            let items = if min == 1 { "item" } else { "items" };
+            let (few, bound) = if count < min { ("at least ", min) } else { ("at most ", max) };
+            let few = if min == max { "" } else { few };
+            let wanted = format!("{few}{bound}");
+            let items = if bound == 1 { "item" } else { "items" };
             self.report(format!("expected {wanted} {items}, found {count}"), None);
         }
         self.items(items, |walk, item| walk.value(shape, item));

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use serde_json::Value;
 
 use super::force::Strokes;
 use super::marks::Set;
@@ -45,9 +46,10 @@ pub fn problems(strokes: &Strokes) -> Vec<Problem> {
         problems.extend(noise.direction.iter().flat_map(|own| of_direction(own, &format!("{path}/direction"))));
         problems.extend(noise.vary.iter().flat_map(|own| of_vary(own, &format!("{path}/vary"))));
     }
-    let written = strokes.written.get("marks").and_then(serde_json::Value::as_array).into_iter().flatten();
+    let written = strokes.written.get("marks").and_then(Value::as_array).into_iter().flatten();
     let names = written.enumerate().filter_map(|(i, mark)| Some((format!("/marks/{i}/name"), mark["name"].as_str()?)));
     problems.extend(rules::names(names));
+    problems.extend(nothing_left_out(strokes));
     problems.extend(strokes.marks.iter().flat_map(|mark| of_mark(strokes, mark)));
     problems.extend(nothing(strokes));
     problems
@@ -121,8 +123,13 @@ fn of_mark(strokes: &Strokes, mark: &Mark) -> Vec<Problem> {
             "" => format!("the mark {name} names no noise"),
             noise => format!("the mark {name} is made of the noise {}, which is not there", quoted(noise)),
         };
-        let known = nearest(noise, strokes.noises.keys().map(String::as_str));
-        problems.push(Problem::error(within(field), message).hint(known.unwrap_or("add it to noises".into())));
+        let known = nearest(noise, strokes.noises.keys().map(String::as_str)).unwrap_or("add it to noises".into());
+        let taken_out = strokes.written.get("noises").and_then(|own| own.get(noise)).is_some_and(Value::is_null);
+        let (at, known) = match taken_out {
+            true => (Pointer("/noises").join(noise), format!("{known}: give the mark one of them, or \"off\": true")),
+            false => (within(field), known),
+        };
+        problems.push(Problem::error(at, message).hint(known));
     }
     if let Set::Ink(super::marks::Ink { color, .. }) | Set::Outline(super::marks::Outline { color, .. }) = &set
         && !["ink", "paper", "scene"].contains(&color.as_str())
@@ -137,6 +144,23 @@ fn of_mark(strokes: &Strokes, mark: &Mark) -> Vec<Problem> {
         problems.push(Problem::error(within("/strength"), message));
     }
     problems
+}
+
+/// Warnings for marks that are to be left out and are not there.
+fn nothing_left_out(strokes: &Strokes) -> Vec<Problem> {
+    let table = strokes.style.table();
+    let of = |table: &Value| table["marks"].as_array().cloned().unwrap_or_default();
+    let (written, styles) = (of(&strokes.written), of(&table));
+    let known = || styles.iter().filter_map(|mark| mark["name"].as_str());
+    let off = written.iter().enumerate().filter(|(_, mark)| mark["off"] == true);
+    let named = off.filter_map(|(i, mark)| Some((i, mark["name"].as_str()?)));
+    let unknown = named.filter(|(_, name)| !known().any(|own| own == *name));
+    let problem = |(i, name): (usize, &str)| {
+        let message = format!("the style has no mark {} that could be left out", quoted(name));
+        let problem = Problem::warning(format!("/marks/{i}/name"), message);
+        problem.hint(nearest(name, known()).unwrap_or_else(|| "remove it".into()))
+    };
+    unknown.filter(|(i, _)| written[*i].get("kind").is_none()).map(problem).collect()
 }
 
 /// A warning if nothing will show.

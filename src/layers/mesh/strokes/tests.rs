@@ -126,7 +126,11 @@ fn what_is_wrong_is_told_with_its_place_and_the_cure() {
         ),
         (
             json!({ "noises": { "a": null } }),
-            "/marks: the mark \"light\" is made of the noise \"a\", which is not there (there are \"b\", \"c\")",
+            "/noises/a: the mark \"light\" is made of the noise \"a\", which is not there (there are \"b\", \"c\": give the mark one of them, or \"off\": true)",
+        ),
+        (
+            json!({ "marks": [{ "name": "drak", "off": true }] }),
+            "/marks/0/name: warning: the style has no mark \"drak\" that could be left out (did you mean \"dark\"?)",
         ),
         (
             json!({ "marks": [{ "name": "light", "grain": { "noise": "bb", "amount": 1 } }] }),
