@@ -96,7 +96,7 @@ impl Surface<'_> {
         a * weights.x + b * weights.y + c * weights.z
     }
 
-    /// 1 / the depth of a triangle's plane at a pixel; see [`Impulse::plane`].
+    /// 1 / the depth of a triangle's plane at a pixel; see `plane` of an impulse.
     pub fn plane(&self, facet: &Facet) -> DVec3 {
         let [a, b, c] = facet.corners;
         let normal = (b - a).cross(c - a);
