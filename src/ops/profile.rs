@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::scene_options::{RecoveryOptions, SceneOptions};
 use super::{Context, set};
 use crate::base::error::{Error, Result};
-use crate::scene::presets::{self, Applied};
-use crate::scene::{Document, Edit};
+use crate::scene::Document;
+use crate::scene::presets;
 
 /// List presets of layers, show one, or apply one to a layer
 #[derive(clap::Args)]
@@ -63,17 +63,6 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 
 fn apply(args: &Apply, context: &mut Context) -> Result<()> {
     let found = presets::find(&args.name).map_err(Error::Usage)?;
-    let told = std::cell::RefCell::default();
-    let make = |document: &Document| -> Result<Edit> {
-        let applied = found.apply(document, args.layer.as_deref());
-        let Applied { edit, told: words } = applied.map_err(|why| Error::at(args.scene.display(), why))?;
-        told.replace(words);
-        Ok(edit)
-    };
-    let elsewhere = set::change(&args.scene, (&args.recovery, &args.reading), make)?;
-    context.messages.say(&told.take());
-    if elsewhere {
-        context.messages.say("that was in the editor that has the scene open; save it there");
-    }
-    Ok(())
+    let make = |document: &Document| found.apply(document, args.layer.as_deref());
+    set::apply(&args.scene, (&args.recovery, &args.reading), make, context)
 }

@@ -13,6 +13,7 @@ use crate::base::problem::{self, Problem};
 use crate::files::session::{Mode, Overwrite, Session, Taken};
 use crate::preview::editor::script;
 use crate::scene::field::{self, Kind};
+use crate::scene::presets::Applied;
 use crate::scene::{Document, Edit, address};
 
 /// Set values in a scene
@@ -87,6 +88,29 @@ pub fn change(
         applied.and_then(|_| session.undo());
     })?;
     Ok(false)
+}
+
+/// Makes one change to a scene, as [`change`], and tells what it did; `make` says in words why it cannot be made.
+///
+/// # Errors
+/// As [`change`].
+pub fn apply(
+    scene: &Path,
+    options: (&RecoveryOptions, &SceneOptions),
+    make: impl Fn(&Document) -> std::result::Result<Applied, String>,
+    context: &mut Context,
+) -> Result<()> {
+    let told = RefCell::default();
+    let elsewhere = change(scene, options, |document| {
+        let Applied { edit, told: words } = make(document).map_err(|why| Error::at(scene.display(), why))?;
+        told.replace(words);
+        Ok(edit)
+    })?;
+    context.messages.say(&told.take());
+    if elsewhere {
+        context.messages.say("that was in the editor that has the scene open; save it there");
+    }
+    Ok(())
 }
 
 /// Refuses standard input, which cannot be written back.

@@ -12,9 +12,8 @@ use super::{Context, opened::Unloaded, set};
 use crate::base::error::{Error, Result};
 use crate::files::draft::DraftFile;
 use crate::files::{outputs, scene, write};
-use crate::scene::presets::Applied;
 use crate::scene::styles::{self, Source};
-use crate::scene::{Document, Edit, json};
+use crate::scene::{Document, json};
 
 /// List the styles that meshes can be drawn in, show one, put a layer into one, or keep that of a layer
 #[derive(clap::Args)]
@@ -105,19 +104,8 @@ fn apply(args: &Apply, context: &mut Context) -> Result<()> {
         (None, Ok(style)) => Source::Named(style),
         (None, Err(why)) => return Err(Error::Usage(format!("{why}, and no such file"))),
     };
-    let told = std::cell::RefCell::default();
-    let make = |document: &Document| -> Result<Edit> {
-        let applied = styles::apply(document, args.layer.as_deref(), source, args.whole);
-        let Applied { edit, told: words } = applied.map_err(|why| Error::at(args.scene.display(), why))?;
-        told.replace(words);
-        Ok(edit)
-    };
-    let elsewhere = set::change(&args.scene, (&args.recovery, &args.reading), make)?;
-    context.messages.say(&told.take());
-    if elsewhere {
-        context.messages.say("that was in the editor that has the scene open; save it there");
-    }
-    Ok(())
+    let make = |document: &Document| styles::apply(document, args.layer.as_deref(), source, args.whole);
+    set::apply(&args.scene, (&args.recovery, &args.reading), make, context)
 }
 
 /// The table in a file.
