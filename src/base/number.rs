@@ -19,6 +19,12 @@ pub fn text(number: f64) -> String {
     if is_whole(number) { format!("{number:.0}") } else { number.to_string() }
 }
 
+/// Rounds away the floating-point noise of a computed number.
+pub fn tidy(value: f64) -> f64 {
+    let rounded = (value * 1e9).round() / 1e9;
+    if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -24,6 +24,7 @@ pub mod profiles;
 pub mod recovery;
 pub mod scene;
 pub mod session;
+pub mod styles;
 pub mod temporary;
 mod through;
 pub mod video;

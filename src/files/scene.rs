@@ -63,6 +63,11 @@ pub(super) fn is_whole(text: &str) -> bool {
 }
 
 fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
+    text_of(place, from, limits, "a scene is a JSON file")
+}
+
+/// The text of a file, which is to be `what` it is.
+pub(super) fn text_of(place: &str, from: impl Read, limits: &Limits, what: &str) -> Result<String> {
     let mut bytes = Vec::new();
     // One byte more than allowed distinguishes a file that is too large from one that just fits.
     from.take(limits.scene.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| Error::at(place, error))?;
@@ -72,7 +77,7 @@ fn text(place: &str, from: impl Read, limits: &Limits) -> Result<String> {
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Error::at(place, format!("is not text: byte {at} is not UTF-8")).cure("a scene is a JSON file")
+        Error::at(place, format!("is not text: byte {at} is not UTF-8")).cure(what)
     })
 }
 

@@ -95,6 +95,12 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
+    /// The names of what stands in the list or the map at `path` though it is not written, as what a style has, in order;
+    /// what is written there lies over it by name. `None` where nothing does.
+    fn laid(&self, _path: &str) -> Option<Vec<String>> {
+        None
+    }
+
     /// The columns that follow from the items of the list at `path`.
     fn derived(&self, _path: &str) -> &'static [Derived] {
         &[]
@@ -139,6 +145,11 @@ pub trait Technique: Any + Send + Sync {
     /// The names of what a pass can be of in the layer, if it is of things that have names.
     fn pass_names(&self, _pass: &Pass) -> Vec<&str> {
         Vec::new()
+    }
+
+    /// Whether the layer shows something in a pass that its technique adds.
+    fn has_pass(&self, _pass: &Pass) -> bool {
+        true
     }
 
     /// What changes in the layer over the scene time, item by item.
@@ -268,6 +279,8 @@ pub struct Preset {
 pub struct Styles {
     /// Where a layer says in which it is: a JSON pointer.
     pub field: &'static str,
+    /// The field, within that, with the name of the style.
+    pub name: &'static str,
     /// Those that the program brings.
     pub list: &'static [Style],
     /// What the field is to be for the style of this name, if it is this now.

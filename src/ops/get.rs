@@ -1,4 +1,4 @@
-//! `plica get`: one value of a scene, or its default, as the editor that has the scene open sees it.
+//! `plica get`: one value of a scene, or what counts where it is not set, as the editor that has the scene open sees it.
 
 use std::path::PathBuf;
 
@@ -28,7 +28,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     let pointer = address::resolve(&document, &args.path)?;
     let value =
-        field::value(&document, &pointer).ok_or_else(|| Error::at(&args.path, "is not set, and has no default"))?;
+        field::counting(&document, &pointer).ok_or_else(|| Error::at(&args.path, "is not set, and has no default"))?;
     let text = crate::scene::json::to_text(&value);
     context.print(text.trim_end())
 }

@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::Context;
 use super::scene_options::{RecoveryOptions, SceneOptions};
 use crate::base::error::{Error, Result};
+use crate::base::number;
 use crate::base::problem::{self, Problem};
 use crate::files::session::{Mode, Overwrite, Session, Taken};
 use crate::preview::editor::script;
@@ -22,7 +23,7 @@ pub struct Args {
     /// The scene
     scene: PathBuf,
     /// What to set, for example layers.face.zones."left eye".feather=4; a value that is not JSON is text; null removes
-    /// something optional
+    /// something optional; PATH*=2, +=, -= and /= change a number
     #[arg(required = true, value_name = "PATH=VALUE")]
     settings: Vec<String>,
     #[command(flatten)]
@@ -157,6 +158,7 @@ pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<(E
     let (mut edits, mut told) = (Vec::new(), Vec::new());
     for setting in settings {
         let (path, value) = parse(setting)?;
+        let (path, value) = relative(&document, path, value)?;
         let pointer = address::resolve(&document, path)?;
         let (edit, lost) = Edit::set_told(&document, &pointer, meant(&document, &pointer, value, setting, path));
         told.extend(lost.map(|lost| format!("{path}: {lost}")));
@@ -166,6 +168,30 @@ pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<(E
         edits.push(edit);
     }
     Ok((Edit::all(edits), told))
+}
+
+/// A setting as `PATH*=2` changes the number that counts there; any other is as it is.
+fn relative<'a>(document: &Document, path: &'a str, by: Value) -> Result<(&'a str, Value)> {
+    let Some((sign, Some(change))) = path.chars().last().filter(|sign| "+-*/".contains(*sign)).zip(Some(by.as_f64()))
+    else {
+        return Ok((path, by));
+    };
+    let field = &path[..path.len() - sign.len_utf8()];
+    // A name may end with such a sign.
+    let pointer = address::resolve(document, field).ok().filter(|_| address::resolve(document, path).is_err());
+    let Some(old) = pointer.and_then(|pointer| field::counting(document, &pointer)?.as_f64()) else {
+        return Ok((path, by));
+    };
+    let new = match sign {
+        '+' => old + change,
+        '-' => old - change,
+        '*' => old * change,
+        _ => old / change,
+    };
+    match new.is_finite() {
+        true => Ok((field, number::json(number::tidy(new)))),
+        false => Err(Error::at(path, format!("{old} {sign} {change} is not a finite number"))),
+    }
 }
 
 /// The problem with its place written as in `path`, the form in which the person gave `pointer`.

@@ -11,8 +11,11 @@ use super::writing::Replacing;
 use super::{Context, opened::Unloaded, set};
 use crate::base::error::{Error, Result};
 use crate::files::draft::DraftFile;
-use crate::files::{outputs, scene, write};
-use crate::scene::styles::{self, Source};
+use crate::files::limits::Limits;
+use crate::files::styles as own;
+use crate::files::{outputs, write};
+use crate::layers::technique::Style;
+use crate::scene::styles::{self, NOTHING, Source};
 use crate::scene::{Document, json};
 
 /// List the styles that meshes can be drawn in, show one, put a layer into one, or keep that of a layer
@@ -24,7 +27,7 @@ pub struct Args {
 
 #[derive(clap::Subcommand)]
 enum What {
-    /// List all styles: the name, what it is for
+    /// List all styles, your own in ~/.config/plica/styles too: the name, what it is for
     List,
     /// Print the table of a style
     Show {
@@ -42,7 +45,7 @@ enum What {
 
 #[derive(clap::Args)]
 struct Apply {
-    /// The style, or a file that `style save` wrote
+    /// The style, a file that `style save` wrote, or none, which takes the style away
     name: String,
     /// The scene
     scene: PathBuf,
@@ -77,9 +80,7 @@ struct Save {
 /// Lists, shows, applies or saves styles.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     match args.what {
-        What::List => {
-            styles::all().try_for_each(|style| context.print(format_args!("{:<16}{}", style.name, style.help)))
-        }
+        What::List => names().iter().try_for_each(|(name, help)| context.print(format_args!("{name:<16}{help}"))),
         What::Show { name, json } => {
             let style = styles::find(&name).map_err(Error::Usage)?;
             if !json {
@@ -94,28 +95,56 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 }
 
 fn apply(args: &Apply, context: &mut Context) -> Result<()> {
-    let named = styles::find(&args.name);
-    let table = match &named {
-        Err(_) if Path::new(&args.name).is_file() => Some(read(Path::new(&args.name), &args.reading)?),
-        _ => None,
-    };
-    let source = match (&table, named) {
-        (Some(table), _) => Source::Own(table, &args.name),
-        (None, Ok(style)) => Source::Named(style),
-        (None, Err(why)) => return Err(Error::Usage(format!("{why}, and no such file"))),
-    };
-    let make = |document: &Document| styles::apply(document, args.layer.as_deref(), source, args.whole);
+    let meant = Meant::of(&args.name, Path::new(&args.name), &args.reading.options()?.limits)?;
+    let make = |document: &Document| styles::apply(document, args.layer.as_deref(), meant.source(), args.whole);
     set::apply(&args.scene, (&args.recovery, &args.reading), make, context)
 }
 
-/// The table in a file.
-fn read(path: &Path, reading: &SceneOptions) -> Result<Value> {
-    let text = scene::read_text(path, &reading.options()?.limits)?;
-    let table = json::parse(&text).map_err(|problem| Error::at(path.display(), problem))?;
-    if !table.is_object() || table.get("plica").is_some() {
-        return Err(Error::at(path.display(), "is no style").cure("plica style save writes one"));
+/// What a layer is to be drawn in, by what a person calls it.
+pub enum Meant {
+    /// A style of the program.
+    Named(&'static Style),
+    /// A table, and where it is from.
+    Own(Value, String),
+    /// No style.
+    Nothing,
+}
+
+impl Meant {
+    /// A style of the program, one of the person's own, or a `file`.
+    ///
+    /// # Errors
+    /// There is none, or the file is no style.
+    pub fn of(name: &str, file: &Path, limits: &Limits) -> Result<Meant> {
+        let own = |path: &Path| Ok(Meant::Own(own::read(path, limits)?, path.display().to_string()));
+        let why = match styles::find(name) {
+            Ok(style) => return Ok(Meant::Named(style)),
+            Err(_) if name == NOTHING => return Ok(Meant::Nothing),
+            Err(why) => why,
+        };
+        match own::own().iter().find(|(known, _)| known == name) {
+            Some((_, path)) => own(path),
+            None if file.is_file() => own(file),
+            None => Err(Error::Usage(format!("{why}, and no such file"))),
+        }
     }
-    Ok(table)
+
+    /// As the edit wants it.
+    pub fn source(&self) -> Source<'_> {
+        match self {
+            Meant::Named(style) => Source::Named(style),
+            Meant::Own(table, place) => Source::Own(table, place),
+            Meant::Nothing => Source::Nothing,
+        }
+    }
+}
+
+/// The names of all styles, each with what it is for.
+pub fn names() -> Vec<(String, String)> {
+    let known = styles::all().map(|style| (style.name.to_owned(), style.help.to_owned()));
+    let own = own::own().into_iter().map(|(name, path)| (name, format!("your own: {}", path.display())));
+    let nothing = (NOTHING.to_owned(), "without a style: takes it away".to_owned());
+    known.chain(own).chain([nothing]).collect()
 }
 
 fn save(args: &Save, context: &mut Context) -> Result<()> {

@@ -14,6 +14,7 @@ use crate::layers::KINDS;
 use crate::layers::parts::moment::Columns;
 use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass, Which};
 use crate::layers::ready::Still;
+use crate::layers::technique::Technique;
 use crate::scene::Scene;
 
 /// A pass of a scene, or of one of its layers.
@@ -72,9 +73,17 @@ impl Asked {
         let index = |layer: &str| {
             let hint = nearest(layer, known.iter().copied()).unwrap_or_default();
             let also = |told| format!("there is no {name} {} ({hint}), and {told}", quoted(layer));
-            scene.layer_called(layer).map_err(|told| if known.is_empty() { told } else { also(told) })
+            let none =
+                |told| if is_shown(pass, None, scene) { told } else { format!("{told}, and no layer has {name}") };
+            scene.layer_called(layer).map_err(|told| if known.is_empty() { none(told) } else { also(told) })
         };
         Ok(Asked { pass, of, layer: layer.map(index).transpose()? })
+    }
+
+    /// That the pass is empty, if no layer has something in it.
+    pub fn emptiness(&self, scene: &Scene) -> Option<String> {
+        let empty = !is_shown(self.pass, self.layer, scene);
+        empty.then(|| format!("no layer has {}: the picture is empty", self.words(scene)))
     }
 
     fn which(&self) -> Which<'_> {
@@ -111,6 +120,13 @@ impl Asked {
         }
         lines(self.which(), &self.only(synth), time, Columns::Some(columns), rows)
     }
+}
+
+/// Whether a layer, or the one with this index, has something in a pass.
+fn is_shown(pass: &Pass, layer: Option<usize>, scene: &Scene) -> bool {
+    let mut layers = scene.layers.iter().enumerate().filter(|(i, _)| layer.is_none_or(|only| only == *i));
+    let has = |layer: &dyn Technique| layer.kind().passes.contains(pass) && layer.has_pass(pass);
+    PASSES.iter().any(|common| *common == pass) || layers.any(|(_, layer)| has(layer.technique()))
 }
 
 /// These rows of a pass, other than color: of the topmost group that covers a pixel, its nearest surface.

@@ -5,7 +5,7 @@
 use serde_json::Value;
 
 use super::Document;
-use super::field::name_of;
+use super::field::{self, name_of};
 use super::schema::{Body, Place, Shape};
 use crate::base::error::{Error, Result};
 use crate::base::pointer::{self, Pointer};
@@ -102,7 +102,8 @@ fn follow(document: &Document, address: &str, tokens: Vec<Token>) -> Result<Stri
     let mut place = Place::root(document.json());
     let mut path = String::new();
     for token in tokens {
-        let key = key(place, &token);
+        let laid = || field::laid(document, &path).is_some_and(|names| names.contains(&token.text));
+        let key = key(place, &token).or_else(|| (!token.text.is_empty() && laid()).then(|| token.text.clone()));
         let Some(below) = key.as_deref().and_then(|key| place.step(key)) else {
             return Err(unknown(document, address, &path, place, &token.text));
         };
@@ -137,7 +138,7 @@ fn within(text: &str, count: usize) -> bool {
 }
 
 fn unknown(document: &Document, address: &str, path: &str, place: Place, token: &str) -> Error {
-    let names = names_below(place);
+    let names = field::laid(document, path).unwrap_or_else(|| names_below(place));
     let inside = if path.is_empty() { "a scene".into() } else { self::address(document, path) };
     let what = match place.shape.body() {
         Body::List(..) if names.is_empty() => format!("{inside} is empty"),

@@ -27,7 +27,7 @@ impl Edit {
         let json = document.json();
         let Some(place) = Place::of(json, path) else { return (Edit::add(path, value), None) };
         if value.is_null() && (place.shape.allows_null() || !place.required) {
-            return (if place.set { Edit::remove(path) } else { Edit::default() }, None);
+            return (cleared(document, path, place.set), None);
         }
         if let (Some((parent, last)), Some(name)) = (Pointer(path).split(), value.as_str())
             && let Some(holder) = Place::of(json, parent)
@@ -38,6 +38,11 @@ impl Edit {
         }
         let others = others(document, path, &value).map(|other| Edit::remove(&other));
         (Edit::all(std::iter::once(write(document, path, value)).chain(others)), None)
+    }
+
+    /// Removes what is written at `path`.
+    pub fn unset(document: &Document, path: &str) -> Edit {
+        Edit::remove(&field::as_written(document, path).0)
     }
 
     /// Adds `item` to the list at `list`, before the one at `index` (or at the end).
@@ -92,6 +97,18 @@ impl Edit {
         let place = Place::of(document.json(), path)?;
         Some(write(document, path, Fresh::at(document, path).value(place.shape)))
     }
+}
+
+/// Removes an optional value; where something stands there all the same, as what a style has, `null` is written if that
+/// clears it.
+fn cleared(document: &Document, path: &str, set: bool) -> Edit {
+    let is_clear = |edit: &Edit| document.apply(edit).is_ok_and(|with| field::in_force(&with, path).is_none());
+    let removed = if set { Edit::unset(document, path) } else { Edit::default() };
+    if is_clear(&removed) {
+        return removed;
+    }
+    let null = write(document, path, Value::Null);
+    if is_clear(&null) { null } else { removed }
 }
 
 /// The camera that the first layers in space need, if these are some and the scene has none.
@@ -150,6 +167,30 @@ fn others<'a>(document: &'a Document, path: &'a str, value: &Value) -> impl Iter
 
 /// Writes `value` at `path`, creating parents that are not written from their defaults.
 pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
+    let (path, missing) = field::as_written(document, path);
+    match missing {
+        None => write_at(document, &path, value),
+        Some((item, name)) => write_into(document, (&item, &name), &path, value),
+    }
+}
+
+/// Writes `value` at a `path` in an item that is not written yet, which stands there by its name.
+fn write_into(document: &Document, (item, name): (&str, &str), path: &str, mut value: Value) -> Edit {
+    if item == path {
+        if let Value::Object(fields) = &mut value {
+            fields.insert("name".into(), name.into());
+        }
+        return write_at(document, item, value);
+    }
+    let begun = write_at(document, item, json!({ "name": name }));
+    let Ok(with) = document.apply(&begun) else { return begun };
+    let inside = write_at(&with, path, value);
+    // One operation rather than two, where it can be.
+    let whole = with.apply(&inside).ok().and_then(|with| with.json().pointer(item).cloned());
+    whole.map_or_else(|| Edit::all([begun, inside]), |whole| write_at(document, item, whole))
+}
+
+fn write_at(document: &Document, path: &str, value: Value) -> Edit {
     let json = document.json();
     if json.pointer(path).is_some() {
         return Edit::replace(path, value);
@@ -178,7 +219,7 @@ pub(super) fn write(document: &Document, path: &str, value: Value) -> Edit {
                 },
                 _ => {}
             }
-            write(document, parent, holder)
+            write_at(document, parent, holder)
         }
     }
 }

@@ -7,6 +7,7 @@ use super::Document;
 use super::json_schema::range_text;
 use super::schema::{Body, Place, Shape};
 use crate::base::pointer::{self, Pointer};
+use crate::layers::technique::Technique;
 
 /// One place in a document.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,15 +102,99 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
     place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
 }
 
+/// The value that counts at `pointer`: as [`value`], or what is in force.
+pub fn counting(document: &Document, pointer: &str) -> Option<Value> {
+    value(document, pointer)
+        .filter(|value| !value.is_null())
+        .or_else(|| in_force(document, pointer))
+        .or_else(|| value(document, pointer))
+}
+
 /// The formula of the thing at `pointer`, by its tag; `None` if it has none.
 pub fn formula(document: &Document, pointer: &str) -> Option<&'static str> {
     let place = Place::of(document.json(), pointer)?;
     place.shape.branch(place.value)?.formula()
 }
 
-/// Whether there is a value at `pointer`, written or by default.
+/// Whether there is a value at `pointer`: written, by default, or in force.
 pub fn is_there(document: &Document, pointer: &str) -> bool {
     Place::of(document.json(), pointer).is_some_and(|place| place.value.is_some_and(|value| !value.is_null()))
+        || in_force(document, pointer).is_some()
+}
+
+/// The layer that a place belongs to, and the way from it to there.
+pub fn layer_of<'a>(document: &'a Document, pointer: &'a str) -> Option<(&'a dyn Technique, &'a str)> {
+    let (index, way) = Pointer(pointer).item_of("/layers")?;
+    Some((document.scene().layers.get(index)?.technique(), way))
+}
+
+/// The value that its layer has for a place, if that is not in the schema.
+pub fn in_force(document: &Document, pointer: &str) -> Option<Value> {
+    let (layer, way) = layer_of(document, pointer)?;
+    layer.automatic(way)
+}
+
+/// The tokens of all that stands in the list or the map at `pointer`, in order, if some of it need not be written: the
+/// names of that, then of what else is written. `None` elsewhere.
+pub fn laid(document: &Document, pointer: &str) -> Option<Vec<String>> {
+    let (layer, way) = layer_of(document, pointer)?;
+    let mut all = layer.laid(way)?;
+    let written = match document.json().pointer(pointer) {
+        Some(Value::Object(map)) => map.keys().cloned().collect(),
+        Some(Value::Array(items)) => (0..items.len()).map(|i| token(items, i)).collect(),
+        _ => Vec::new(),
+    };
+    let more: Vec<String> = written.into_iter().filter(|token| !all.contains(token)).collect();
+    all.extend(more);
+    Some(all)
+}
+
+/// The token of an item of a list with names: its name, if that cannot be taken for an index.
+fn token(items: &[Value], index: usize) -> String {
+    let name = name_of(items.get(index)).filter(|name| pointer::index(name).is_none() && name != "-");
+    name.unwrap_or_else(|| index.to_string())
+}
+
+/// The same pointer with names in place of indices in lists that [`laid`] knows, which stay as they are whatever is
+/// written.
+pub fn by_name(document: &Document, pointer: &str) -> String {
+    let mut place = Some(Place::root(document.json()));
+    let mut path = String::new();
+    for step in Pointer(pointer).tokens() {
+        let list = place.filter(|place| place.shape.laid().is_some()).and_then(|place| place.value?.as_array());
+        let index = pointer::index(&step).filter(|index| list.is_some_and(|list| *index < list.len()));
+        let step = index.zip(list).map_or_else(|| step.clone(), |(index, list)| token(list, index));
+        pointer::push(&mut path, &step);
+        place = place.and_then(|place| place.step(&step));
+    }
+    path
+}
+
+/// The same pointer as it is in the document, with indices in place of names. If the item of a name is not written, that is
+/// the place after the last item, and that place comes with its name.
+pub fn as_written(document: &Document, pointer: &str) -> (String, Option<(String, String)>) {
+    let mut place = Some(Place::root(document.json()));
+    let (mut path, mut missing) = (String::new(), None);
+    for step in Pointer(pointer).tokens() {
+        let is_named = place.is_some_and(|place| place.shape.laid().is_some() && list_of(place).is_some());
+        let items = place.and_then(list_of).filter(|_| is_named && pointer::index(&step).is_none() && step != "-");
+        place = place.and_then(|place| place.step(&step));
+        match items {
+            None => pointer::push(&mut path, &step),
+            Some(items) => {
+                let at = items.iter().position(|item| name_of(Some(item)).is_some_and(|name| name == *step));
+                pointer::push(&mut path, &at.unwrap_or(items.len()).to_string());
+                missing = missing.or(at.is_none().then(|| (path.clone(), step)));
+            }
+        }
+    }
+    (path, missing)
+}
+
+/// The items of the list at a place, written or not; `None` if it is no list.
+fn list_of(place: Place<'_>) -> Option<&[Value]> {
+    matches!(place.shape.body(), Body::List(..))
+        .then(|| place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice))
 }
 
 /// The places directly below `pointer`: the fields of an object in the schema's order, including those that are not

@@ -173,6 +173,12 @@ impl Shape {
         self.text("reference")
     }
 
+    /// How something in this list or map is left out that stands there though it is not written, as what a style has: by
+    /// `null`, or by a field of it that is true. Names lead to items of such a list, also to those that are not written.
+    pub fn laid(self) -> Option<&'static str> {
+        self.site.get("laid").and_then(Value::as_str)
+    }
+
     /// The fields of an object of which exactly one is written; a new object has the first.
     pub fn either(self) -> impl Iterator<Item = &'static str> + Clone {
         self.body.get("either").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
@@ -333,7 +339,12 @@ impl<'a> Place<'a> {
         match self.shape.body() {
             Body::List(item, ..) => {
                 let items = here.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice);
-                let index = if token == "-" { items.len() } else { pointer::index(token)? };
+                let index = if token == "-" { Some(items.len()) } else { pointer::index(token) };
+                let named = || {
+                    let at = items.iter().position(|item| item.get("name").is_some_and(|name| name == token));
+                    self.shape.laid().map(|_| at.unwrap_or(items.len()))
+                };
+                let index = index.or_else(named)?;
                 let value = items.get(index);
                 let known = index <= items.len();
                 known.then_some(Place { shape: item, value, set: self.set && value.is_some(), required: true })

@@ -5,7 +5,8 @@ use serde_json::Value;
 
 use super::presets::{Applied, layer_of};
 use super::{Document, Edit, json};
-use crate::base::problem;
+use crate::base::pointer::Pointer;
+use crate::base::problem::{self, Problem};
 use crate::layers::KINDS;
 use crate::layers::technique::{Kind, Style, Styles};
 
@@ -16,7 +17,12 @@ pub enum Source<'a> {
     Named(&'static Style),
     /// A table of one's own, and where it is from.
     Own(&'a Value, &'a str),
+    /// None.
+    Nothing,
 }
+
+/// What a layer is drawn in if it is in no style.
+pub const NOTHING: &str = "none";
 
 /// All styles.
 pub fn all() -> impl Iterator<Item = &'static Style> + Clone {
@@ -48,25 +54,54 @@ pub fn apply(document: &Document, name: Option<&str>, source: Source, whole: boo
     let own = match source {
         Source::Named(style) => style.name,
         Source::Own(_, place) => place,
+        Source::Nothing => NOTHING,
     };
     let fits = |kind: &Kind| match source {
         Source::Named(style) => has(kind, style),
-        Source::Own(..) => kind.styles.is_some(),
+        Source::Own(..) | Source::Nothing => kind.styles.is_some(),
     };
     let (index, styles, path) = styled(document, name, own, &fits)?;
     let now = document.json().pointer(&path);
     let mut value = match source {
         Source::Named(style) => (styles.named)(now, style.name),
         Source::Own(table, _) => (styles.own)(table.clone()),
+        Source::Nothing => Value::Null,
     };
-    if whole {
+    if whole && !value.is_null() {
         value = (styles.own)((styles.whole)(&value)?);
     }
-    let same = now.is_some_and(|now| json::same(now, &value));
+    let same = json::same(now.unwrap_or(&Value::Null), &value);
     let edit = if same { Edit::default() } else { Edit::set(document, &path, value) };
-    let done = if same { "changes nothing in" } else { "is applied to" };
+    if let Source::Own(_, place) = source {
+        fits_into(document, &edit, &path).map_err(|why| format!("{place}: {why}"))?;
+    }
     let layer = document.scene().layers[index].technique().name();
-    Ok(Applied { told: format!("{own} {done} {layer}"), edit })
+    let told = match (source, same) {
+        (Source::Nothing, _) => format!("{layer} is drawn in no style"),
+        (_, true) => format!("{own} changes nothing in {layer}"),
+        (_, false) => format!("{own} is applied to {layer}"),
+    };
+    Ok(Applied { told, edit })
+}
+
+/// Whether a table of one's own fits at `path`; what is wrong has its place in the table.
+fn fits_into(document: &Document, edit: &Edit, path: &str) -> Result<(), String> {
+    let Err(problems) = document.apply(edit) else { return Ok(()) };
+    let own =
+        |problem: &Problem| Some(Problem { path: Pointer(&problem.path).below(path)?.to_owned(), ..problem.clone() });
+    problems.iter().find_map(own).map_or(Ok(()), |problem| Err(problem.to_string()))
+}
+
+/// What changes the style of a layer to that of this name, if `pointer` is where the name is written and the style is one of the
+/// program: what is written over the old one goes with it.
+pub fn renamed(document: &Document, pointer: &str, name: &str) -> Option<Edit> {
+    let (index, way) = Pointer(pointer).item_of("/layers")?;
+    let styles = document.scene().layers.get(index)?.technique().kind().styles?;
+    if way.strip_prefix(styles.field) != Some(styles.name) || styles.list.iter().all(|style| style.name != name) {
+        return None;
+    }
+    let path = format!("/layers/{index}{}", styles.field);
+    Some(Edit::set(document, &path, (styles.named)(document.json().pointer(&path), name)))
 }
 
 /// The table of everything that is in force in the layer `name`, or in the first one that is drawn in a style.

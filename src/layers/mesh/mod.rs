@@ -36,7 +36,8 @@ pub static KIND: Kind = Kind {
     passes: &[strokes::passes::NOISE, strokes::passes::TONE, strokes::passes::INK],
     looks: marks::LOOKS,
     template: Some(Template { of: List::Meshes, layer: template }),
-    starts: Starts::PLAIN,
+    // A new mark needs no noise.
+    starts: Starts { beyond: |_, list| (list == "marks").then(|| ("kind", "outline".into())), ..Starts::PLAIN },
     presets: &[],
     styles: Some(&strokes::restyle::STYLES),
     example: include_str!("example.json"),
@@ -99,9 +100,17 @@ impl Technique for MeshLayer {
         self.strokes.as_ref()?.automatic(path.strip_prefix("/strokes")?)
     }
 
+    fn laid(&self, path: &str) -> Option<Vec<String>> {
+        self.strokes.as_ref()?.laid(path.strip_prefix("/strokes")?)
+    }
+
     fn pass_names(&self, pass: &Pass) -> Vec<&str> {
         let noises = self.strokes.iter().filter(|_| *pass == strokes::passes::NOISE).flat_map(|own| own.noises.keys());
         noises.map(String::as_str).collect()
+    }
+
+    fn has_pass(&self, _pass: &Pass) -> bool {
+        self.strokes.is_some()
     }
 
     fn bounds(&self, _path: &str) -> Rect {

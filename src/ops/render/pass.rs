@@ -32,6 +32,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let scene = read.document.scene().clone();
     let asked = Asked::parse(args.pass.as_deref().unwrap_or(COLOR.name), &scene);
     let asked = asked.map_err(|what| Error::Usage(format!("--pass: {what}")))?;
+    asked.emptiness(&scene).iter().for_each(|told| context.messages.say(told));
     let frames = match &args.frames {
         Some(text) => range::parse(text, scene.timeline.frames())?,
         None => (0..scene.timeline.frames()).collect(),

@@ -9,6 +9,7 @@ use crate::base::maths::ten_to;
 use crate::base::problem;
 use crate::scene::Edit;
 use crate::scene::field::{self, Kind};
+use crate::scene::styles::renamed as restyled;
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::entry::Entry;
@@ -49,7 +50,7 @@ pub fn current(state: &State) -> Option<(Row, Cell)> {
 
 fn enter(state: &mut State, call: &Call) -> Done {
     let (row, cell) = current(state).ok_or("there is nothing to edit here: o adds an item")?;
-    let missing = field::value(state.document(), &cell.pointer).is_none_or(|value| value.is_null());
+    let missing = !field::is_there(state.document(), &cell.pointer);
     if cell.is_node() && missing {
         state.scene.writable()?;
         return add_here(state, 1);
@@ -189,7 +190,10 @@ fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
         Then::Set(pointers) => {
             let bool = |pointer: &str| field::field(document, pointer).is_some_and(|field| field.kind == Kind::Bool);
             let value = |pointer: &str| if bool(pointer) { Value::from(word == "true") } else { Value::from(word) };
-            (Edit::all(pointers.iter().map(|pointer| Edit::set(document, pointer, value(pointer)))), None)
+            let set = |pointer: &String| {
+                restyled(document, pointer, word).unwrap_or_else(|| Edit::set(document, pointer, value(pointer)))
+            };
+            (Edit::all(pointers.iter().map(set)), None)
         }
         Then::Become(pointer) => match field::field(document, pointer).map(|field| field.kind) {
             Some(Kind::Tagged { tag, .. }) => Edit::set_told(document, &format!("{pointer}/{tag}"), word.into()),

@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 
 use super::command::Table;
 use super::{fields, profiles};
-use crate::scene::styles;
-use crate::scene::{address, field};
+use crate::base::pointer::Pointer;
+use crate::ops::style;
+use crate::scene::{Document, address, field};
+use crate::tui::document::derived;
 use crate::tui::state::State;
 
 /// Commands that take the path of a file, and whether it is relative to the scene.
@@ -45,7 +47,7 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
             names.map(|own| format!("profile {own}")).collect()
         }
         Some(("style", name)) => {
-            let names = styles::all().map(|style| style.name).filter(|own| own.starts_with(name));
+            let names = style::names().into_iter().map(|(own, _)| own).filter(|own| own.starts_with(name));
             names.map(|own| format!("style {own}")).collect()
         }
         Some(_) => Vec::new(),
@@ -64,14 +66,24 @@ fn paths(state: &State, typed: &str) -> Vec<String> {
         parent => address::resolve(document, parent).ok(),
     };
     let holder = pointer.as_deref().map(|pointer| address::address(document, pointer)).unwrap_or_default();
-    let children = pointer.map(|pointer| field::children(document, &pointer)).unwrap_or_default();
+    let children = pointer.map(|pointer| below(document, &pointer)).unwrap_or_default();
     // The name as an address spells it, with quotes if it has spaces.
-    let name = |child: field::Child| {
-        let whole = address::address(document, &child.pointer);
+    let name = |child: String| {
+        let whole = address::address(document, &child);
         whole.strip_prefix(holder.as_str()).unwrap_or(&whole).trim_start_matches('.').to_owned()
     };
     let begins = |name: &String| name.trim_start_matches('"').starts_with(last.trim_start_matches('"'));
     children.into_iter().map(name).filter(begins).map(|name| format!("{parent}{name}")).collect()
+}
+
+/// The places directly below a place, also those that stand there though they are not written.
+fn below(document: &Document, pointer: &str) -> Vec<String> {
+    let children = || match derived::place(document, pointer) {
+        Some(place) => field::below(place, pointer).into_iter().map(|(child, _)| child.pointer).collect(),
+        None => Vec::new(),
+    };
+    let laid = field::laid(document, pointer);
+    laid.map_or_else(children, |tokens| tokens.iter().map(|token| Pointer(pointer).join(token)).collect())
 }
 
 /// Where the last step of an address begins: after the last dot outside quotes.

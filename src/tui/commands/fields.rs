@@ -54,6 +54,9 @@ fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &
     }
     let value = place.value.filter(|value| !value.is_null());
     let tokens: Vec<String> = match place.shape.body() {
+        Body::List(..) | Body::Map(_) if place.shape.laid().is_some() => {
+            field::laid(document, pointer).unwrap_or_default()
+        }
         Body::List(..) => (0..field::count(place).clamp(1, MOST_ITEMS)).map(|i| i.to_string()).collect(),
         Body::Map(_) | Body::Row(_) => field::steps(place).into_iter().map(|(token, _)| token).collect(),
         Body::Object | Body::Tagged(_) => {

@@ -202,6 +202,7 @@ pub fn reveal(state: &mut State, pointer: &str) {
 /// Shows the node or the field at `pointer`, with the cursor on one of its numbers. Fields of unnamed items are shown in the
 /// table of these items.
 fn reveal_part(state: &mut State, at: &str, part: usize) {
+    let at = &*field::by_name(state.document(), at);
     let kind = field::field(state.document(), at).map(|field| field.kind);
     let node = field::is_there(state.document(), at) && kind.is_some_and(|kind| is_node(&kind));
     let parent = || Pointer(at).split().map_or("", |(parent, _)| parent);

@@ -8,8 +8,8 @@ use super::fields;
 use crate::base::pointer::Pointer;
 use crate::scene::address;
 use crate::scene::field::{self, Field, Kind};
-use crate::tui::document::sheet;
 use crate::tui::document::sheet::{Cell, Part};
+use crate::tui::document::{derived, sheet};
 use crate::tui::keys::OWN_FILE;
 use crate::tui::state::{Mode, Pages, Pane, State};
 use crate::tui::text::wrap::wrapped;
@@ -160,7 +160,7 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
 fn value(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> String {
     let number = cell.filter(|cell| cell.is_number()).and_then(|cell| Some((cell, cell.number(state.document())?)));
     let Some((cell, number)) = number else {
-        let value = field::value(state.document(), at).unwrap_or_default();
+        let value = derived::value(state.document(), at).unwrap_or_default();
         return sheet::summary(field, &value);
     };
     let unit = if cell.part == Part::Degrees { Some("degrees, counter-clockwise") } else { field.unit };

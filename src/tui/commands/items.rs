@@ -8,9 +8,11 @@ use serde_json::{Map, Value, json as value};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
+use crate::base::problem::quoted;
 use crate::files::{clips, paths};
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
+use crate::scene::schema::Place;
 use crate::scene::{Edit, json};
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
@@ -114,7 +116,12 @@ fn add_file(state: &mut State, path: &str) -> Done {
 
 /// Adds so many items at the cursor. If a path or a kind is needed, it is typed or chosen next.
 pub fn add_here(state: &mut State, times: usize) -> Done {
-    let pointer = target(state).unwrap_or(state.cursor.node.clone());
+    let mut pointer = target(state).unwrap_or(state.cursor.node.clone());
+    if let Some(holder) = Pointer(&pointer).parent().filter(|_| field::is_there(state.document(), &pointer))
+        && field::laid(state.document(), holder).is_some()
+    {
+        pointer.truncate(holder.len());
+    }
     let field = field::field(state.document(), &pointer).ok_or("nothing can be added here")?;
     let there = field::is_there(state.document(), &pointer);
     let in_list = match (&field.kind, there) {
@@ -137,7 +144,8 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         }
         (Kind::Object, false) => add_object(state, &pointer),
         (Kind::List(_), _) => insert(state, &pointer.clone(), end(), times),
-        (Kind::Map(_), _) => ask_for_path(state, &pointer),
+        (Kind::Map(_), _) if List::entry(&Pointer(&pointer).join("")).is_some() => ask_for_path(state, &pointer),
+        (Kind::Map(_), _) => insert_entry(state, &pointer, &field.name),
         _ => match item_of(state.document(), &pointer).map(owned) {
             Some((list, index)) => insert(state, &list, index + 1, times),
             None if List::entry(&pointer).is_some() => ask_for_path(state, &pointer),
@@ -167,6 +175,15 @@ fn ask_for_path(state: &mut State, pointer: &str) -> Done {
 fn add_object(state: &mut State, pointer: &str) -> Done {
     let edit = Edit::begin(state.document(), pointer).ok_or("nothing can be added here")?;
     state.edit(edit, false)
+}
+
+/// Adds an entry to a map in which nothing is written yet.
+fn insert_entry(state: &mut State, map: &str, name: &str) -> Done {
+    let entry = [(name.trim_end_matches('s').to_owned(), Value::Object(Map::new()))].into_iter().collect();
+    let (edit, pointer) = Edit::insert_entries(state.document(), map, entry).ok_or("nothing can be added here")?;
+    state.edit(edit, false)?;
+    go_to(state, &pointer);
+    Ok(())
 }
 
 fn insert(state: &mut State, list: &str, index: usize, times: usize) -> Done {
@@ -202,11 +219,17 @@ pub fn go_to(state: &mut State, pointer: &str) {
 
 /// Deletes items in one edit, the last first; a field goes back to its default.
 fn delete(state: &mut State, call: &Call) -> Done {
-    let pointers: Vec<String> = targets(state, call)?.into_iter().rev().collect();
+    let targets = targets(state, call)?;
+    let mut pointers: Vec<String> =
+        targets.iter().rev().map(|pointer| field::as_written(state.document(), pointer).0).collect();
+    if targets.iter().rev().ne(&pointers) {
+        // Rows by name may be written in any order.
+        pointers.sort_by_key(|pointer| std::cmp::Reverse(item_of(state.document(), pointer).map(|(_, index)| index)));
+    }
     let written = |pointer: &&String| !pointer.is_empty() && state.document().json().pointer(pointer).is_some();
     let edits: Vec<Edit> = pointers.iter().filter(written).map(|pointer| Edit::remove(pointer)).collect();
     if edits.is_empty() {
-        return Err("there is nothing to delete here".into());
+        return Err(targets.first().and_then(|target| kept(state.document(), target)).unwrap_or(NOTHING.into()));
     }
     pointers.iter().try_for_each(|pointer| unused(state.document(), pointer))?;
     let top = *state.cursor.rows().start();
@@ -216,6 +239,20 @@ fn delete(state: &mut State, call: &Call) -> Done {
         state.settle();
     }
     Ok(())
+}
+
+const NOTHING: &str = "there is nothing to delete here";
+
+/// How something is left out that stands in a list or a map though it is not written.
+fn kept(document: &Document, pointer: &str) -> Option<String> {
+    let (holder, name) = Pointer(pointer).split()?;
+    let laid = Place::of(document.json(), holder)?.shape.laid().filter(|_| field::is_there(document, pointer))?;
+    let address = address::address(document, pointer);
+    let setting = if laid == "null" { format!("{address}=null") } else { format!("{address}.{laid}=true") };
+    Some(plain(&format!(
+        "{} is the style's, and nothing of it is written here (:set {setting} leaves it out)",
+        quoted(&name)
+    )))
 }
 
 /// The block of items that an edit of whole rows applies to: their list, the first and the last index.

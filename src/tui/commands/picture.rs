@@ -115,6 +115,8 @@ fn pass(state: &mut State, call: &Call) -> Done {
         "" => None,
         text => Some(Asked::parse(text, state.document().scene())?),
     };
+    let empty = asked.as_ref().and_then(|asked| asked.emptiness(state.document().scene()));
+    empty.into_iter().for_each(|told| state.say(told));
     take_pass(state, asked);
     let words = state.picture.pass.as_ref().map(|asked| asked.words(state.document().scene()));
     state.ask(Effect::View(Some(views::show_pass(words.as_deref()))));

@@ -36,7 +36,7 @@ fn set(state: &mut State, call: &Call) -> Done {
 
 fn get(state: &mut State, call: &Call) -> Done {
     let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
-    let value = field::value(state.document(), &pointer);
+    let value = field::counting(state.document(), &pointer);
     let value = value.ok_or_else(|| format!("{} is not set, and has no default", call.text))?;
     state.say(plain(&value.to_string()));
     Ok(())

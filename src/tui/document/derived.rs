@@ -1,20 +1,16 @@
 //! What a layer makes of the fields of a document: the values of those that are not set, and columns that follow from
 //! others.
 
-use serde_json::Value;
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value};
 
 use crate::base::pointer::Pointer;
 use crate::layers::parts::derived::Derived;
-use crate::layers::technique::Technique;
 use crate::scene::Document;
-use crate::scene::field::{self, Field, Kind};
+use crate::scene::field::{self, Field, Kind, layer_of};
+use crate::scene::schema::Place;
 use crate::tui::text::numbers;
-
-/// The layer that a place belongs to, and the way from it to there.
-pub fn layer_of<'a>(document: &'a Document, pointer: &'a str) -> Option<(&'a dyn Technique, &'a str)> {
-    let (index, way) = Pointer(pointer).item_of("/layers")?;
-    Some((document.scene().layers.get(index)?.technique(), way))
-}
 
 /// The value at a place; if it is not set and the schema has no default, the one that its layer has for it.
 pub fn value(document: &Document, pointer: &str) -> Option<Value> {
@@ -24,8 +20,16 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
 
 /// The value that a layer has for a field that is not set.
 pub fn automatic(document: &Document, pointer: &str) -> Option<Value> {
-    let (layer, way) = layer_of(document, pointer)?;
-    Some(numbers::mapped(layer.automatic(way)?, numbers::tidy))
+    Some(numbers::mapped(field::in_force(document, pointer)?, numbers::tidy))
+}
+
+/// What is at `pointer`, as a form shows it: what is not written but in force is an object in which nothing is written.
+pub fn place<'a>(document: &'a Document, pointer: &str) -> Option<Place<'a>> {
+    static NOTHING: LazyLock<Value> = LazyLock::new(|| Value::Object(Map::new()));
+    let place = Place::of(document.json(), pointer)?;
+    let missing = place.value.is_none_or(Value::is_null);
+    let stands = missing && field::in_force(document, pointer).is_some_and(|value| value.is_object());
+    Some(if stands { Place { value: Some(&NOTHING), ..place } } else { place })
 }
 
 /// What is known of a column.

@@ -3,6 +3,7 @@
 
 use serde_json::Value;
 
+use super::derived;
 use crate::base::pointer::Pointer;
 use crate::scene::schema::{Body, Place};
 use crate::scene::{Document, address, field};
@@ -51,14 +52,14 @@ impl Listed {
 /// Every place of the document, from the top down.
 pub fn list(document: &Document) -> Vec<Listed> {
     let mut all = Vec::new();
-    below(Place::root(document.json()), "", "", &mut all);
+    below(document, Place::root(document.json()), ("", ""), &mut all);
     all
 }
 
-fn below(place: Place, at: &str, address: &str, all: &mut Vec<Listed>) {
+fn below(document: &Document, place: Place, (at, address): (&str, &str), all: &mut Vec<Listed>) {
     let body = place.shape.body();
     let items = matches!(body, Body::List(..));
-    for (token, inner) in field::steps(place) {
+    for (token, inner) in steps(document, place, at) {
         let (pointer, address) =
             (Pointer(at).join(&token), address::below(address, (place.shape, body), &token, inner));
         let mut words = match field::name_of(inner.value) {
@@ -86,7 +87,14 @@ fn below(place: Place, at: &str, address: &str, all: &mut Vec<Listed>) {
         };
         all.push(Listed { pointer: pointer.clone(), address: address.clone(), node, words, numbers });
         if node {
-            below(inner, &pointer, &address, all);
+            below(document, inner, (&pointer, &address), all);
         }
     }
+}
+
+/// The places directly below one, also those that stand there though they are not written.
+fn steps<'a>(document: &'a Document, place: Place<'a>, at: &str) -> Vec<(String, Place<'a>)> {
+    let laid = place.shape.laid().and_then(|_| field::laid(document, at));
+    let step = |token: String| derived::place(document, &Pointer(at).join(&token)).map(|inner| (token, inner));
+    laid.map_or_else(|| field::steps(place), |tokens| tokens.into_iter().filter_map(step).collect())
 }

@@ -9,9 +9,13 @@ pub fn is_item(document: &Document, path: &str) -> bool {
     item_of(document, path).is_some()
 }
 
-/// The list and the index of an item.
+/// The list and the index of an item that is written.
 pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize)> {
     let (list, last) = Pointer(path).split()?;
     let is_list = matches!(field::field(document, list)?.kind, Kind::List(_));
-    Some((list, pointer::index(&last).filter(|_| is_list)?))
+    let named = || {
+        let (written, missing) = field::as_written(document, path);
+        pointer::index(&Pointer(&written).split()?.1).filter(|_| missing.is_none())
+    };
+    Some((list, pointer::index(&last).or_else(named).filter(|_| is_list)?))
 }

@@ -161,10 +161,15 @@ impl Block {
 impl Sheet {
     /// The node at `node`; empty if there is none.
     pub fn of(document: &Document, node: &str) -> Sheet {
-        let place = Place::of(document.json(), node);
+        let place = derived::place(document, node);
         let body = place.map(|place| place.shape.body());
+        let laid = field::laid(document, node).map(|tokens| {
+            let row = |token: String| Block { pointer: Pointer(node).join(token), items: None };
+            tokens.into_iter().map(row)
+        });
         let table = matches!(body, Some(Body::List(..) | Body::Map(_)));
         let blocks = match (place, body) {
+            (Some(_), Some(Body::List(..) | Body::Map(_))) if laid.is_some() => laid.into_iter().flatten().collect(),
             (Some(place), Some(Body::List(..))) => {
                 vec![Block { pointer: node.to_owned(), items: Some(field::count(place)) }]
             }
@@ -223,7 +228,8 @@ impl Sheet {
                 let parent = Pointer(&block.pointer).split();
                 let place = parent.as_ref().and_then(|(parent, _)| Place::of(json, parent));
                 let (Some((parent, name)), Some(place)) = (parent, place) else { return };
-                let Some((child, place)) = field::child(place, parent, &name) else { return };
+                let Some((child, _)) = field::child(place, parent, &name) else { return };
+                let Some(place) = derived::place(&self.document, &block.pointer) else { return };
                 rows.push(match self.table {
                     true => item(&self.document, child, place),
                     false => form_row(&self.document, child, place),
@@ -247,6 +253,7 @@ impl Sheet {
 
     /// The row of a place in the document.
     pub fn position(&self, pointer: &str) -> Option<usize> {
+        let pointer = &*field::by_name(&self.document, pointer);
         let mut first = 0;
         for block in &self.blocks {
             match block.items {
@@ -283,7 +290,7 @@ fn item(document: &Document, child: Child, place: Place) -> Row {
     let label = Pointer(&child.pointer).split().map(|(_, token)| token).unwrap_or_default();
     let field = Arc::new(child.field);
     let mut cells = match &field.kind {
-        Kind::Object | Kind::Tagged { .. } => {
+        Kind::Object | Kind::Tagged { .. } if place.value.is_some_and(|value| !value.is_null()) => {
             let inner = field::below(place, &child.pointer).into_iter();
             inner.fold(Vec::new(), |row, (child, place)| {
                 joined(row, cells(document, (&child.name, &child.pointer), &Arc::new(child.field), place, true))

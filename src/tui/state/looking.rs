@@ -4,7 +4,7 @@ use kurbo::Point;
 
 use super::State;
 use crate::layers::parts::picking::{Picking, Picks, Sight};
-use crate::tui::document::derived;
+use crate::scene::field;
 use crate::tui::graphics::clip::ClipView;
 use crate::tui::graphics::viewport::Viewport;
 
@@ -53,7 +53,7 @@ impl Looking {
 /// Where the layer that the tree's cursor is in has its picks, and whether the cursor is on the node for them.
 pub fn picks(state: &State) -> Option<(usize, Picks, bool)> {
     let node = &state.cursor.node;
-    let (layer, way) = derived::layer_of(state.document(), node)?;
+    let (layer, way) = field::layer_of(state.document(), node)?;
     let index = node[..node.len() - way.len()].rsplit('/').next()?.parse().ok()?;
     layer.picks().map(|picks| (index, picks, picks.node == way))
 }

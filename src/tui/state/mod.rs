@@ -177,7 +177,7 @@ impl State {
 
     /// Shows another node, with the cursor on its first row.
     pub fn show(&mut self, node: impl Into<String>) {
-        let node = node.into();
+        let node = field::by_name(self.document(), &node.into());
         if node != self.cursor.node {
             self.cursor.unselect();
             (self.cursor.node, self.cursor.row, self.cursor.column) = (node, 0, 0);

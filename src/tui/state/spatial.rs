@@ -14,7 +14,6 @@ use crate::layers::parts::readout::Fact;
 use crate::layers::space::eye::{Eye, NEAR_M, Ray};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
-use crate::tui::document::derived;
 use crate::tui::text::numbers;
 
 /// The place of something in space: the field that has it, and where that is.
@@ -22,7 +21,7 @@ pub type Place = (String, DVec3);
 
 /// The place of what is at `pointer`; `None` if it has none in space.
 pub fn place(document: &Document, pointer: &str) -> Option<Place> {
-    let (layer, _) = derived::layer_of(document, pointer)?;
+    let (layer, _) = field::layer_of(document, pointer)?;
     let in_space = layer.kind().space == Space::World;
     let is_object = matches!(field::field(document, pointer)?.kind, Kind::Object | Kind::Tagged { .. });
     let children = if in_space && is_object { field::children(document, pointer) } else { Vec::new() };
@@ -79,7 +78,7 @@ pub fn moved(state: &State, document: &Document, pointer: &str) -> Option<Edit> 
 /// # Errors
 /// Why there is none.
 pub fn aimed(state: &State, pointer: &str, ray: &Ray) -> Result<(String, Value), String> {
-    let (layer, way) = derived::layer_of(state.document(), pointer).ok_or("nothing there goes to a place")?;
+    let (layer, way) = field::layer_of(state.document(), pointer).ok_or("nothing there goes to a place")?;
     let (path, value) = layer.aimed(way, ray)?;
     Ok((format!("{}{path}", &pointer[..pointer.len() - way.len()]), numbers::rounded(value)))
 }
@@ -133,7 +132,7 @@ pub fn aim_from(state: &State) -> Result<Option<Point>, String> {
 const SEARCHED: f64 = 256.0;
 
 fn goal(state: &State, pointer: &str) -> Result<Goal, String> {
-    let (layer, way) = derived::layer_of(state.document(), pointer).ok_or("nothing there goes to a place")?;
+    let (layer, way) = field::layer_of(state.document(), pointer).ok_or("nothing there goes to a place")?;
     layer.goal(way)
 }
 
@@ -146,7 +145,7 @@ pub fn aiming(state: &State) -> Option<Result<Vec<Fact>, String>> {
         let name = field.strip_prefix(&pointer)?.strip_prefix('/')?;
         let mut item = field::value(state.document(), &pointer)?;
         item.as_object_mut()?.insert(name.to_owned(), to);
-        let (layer, _) = derived::layer_of(state.document(), &pointer)?;
+        let (layer, _) = field::layer_of(state.document(), &pointer)?;
         let fact = |of: &Derived| Some(Fact { name: of.name, value: layer.derive(of, &item)?, unit: of.unit });
         Some(goal.told.iter().filter_map(fact).collect())
     };

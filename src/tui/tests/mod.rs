@@ -15,6 +15,7 @@ mod falling;
 pub mod finding;
 mod images;
 mod items;
+mod laid;
 mod lines;
 mod macros;
 mod pasting;

@@ -4,7 +4,7 @@
 use kurbo::Vec2;
 use serde_json::Value;
 
-pub use crate::base::number::text as exact;
+pub use crate::base::number::{text as exact, tidy};
 use crate::base::{maths, number, text};
 
 /// The most decimals that a table shows; an entry shows all of them.
@@ -72,12 +72,6 @@ pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
     } else {
         Vec2::new(tidy(vector.x * length / old), tidy(vector.y * length / old))
     }
-}
-
-/// Rounds away the floating-point noise of a computed number.
-pub fn tidy(value: f64) -> f64 {
-    let rounded = (value * 1e9).round() / 1e9;
-    if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
 }
 
 /// Every number of a value with six decimals at most: what was pointed at is no more exact.

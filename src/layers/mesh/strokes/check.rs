@@ -51,8 +51,22 @@ pub fn problems(strokes: &Strokes) -> Vec<Problem> {
     problems.extend(rules::names(names));
     problems.extend(nothing_left_out(strokes));
     problems.extend(strokes.marks.iter().flat_map(|mark| of_mark(strokes, mark)));
+    problems.extend(unused(strokes));
     problems.extend(nothing(strokes));
     problems
+}
+
+/// Warnings for noises that are written and that no mark is made of.
+fn unused(strokes: &Strokes) -> Vec<Problem> {
+    let sets: Vec<Set> = strokes.marks.iter().filter_map(Set::of).collect();
+    let used: Vec<&str> = sets.iter().flat_map(Set::noises).map(|(_, name)| name).collect();
+    let written = strokes.written.get("noises").and_then(Value::as_object).into_iter().flatten();
+    let unused = written.filter(|(name, noise)| !noise.is_null() && !used.contains(&name.as_str()));
+    let problem = |name: &String| {
+        let message = format!("no mark is made of the noise {}", quoted(name));
+        Problem::warning(Pointer("/noises").join(name), message).hint("name it as the noise of a mark, or remove it")
+    };
+    unused.map(|(name, _)| problem(name)).collect()
 }
 
 fn is_color(text: &str) -> bool {

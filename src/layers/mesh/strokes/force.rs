@@ -2,7 +2,7 @@
 //! another field by field, lists of named things by their names; anything else replaces.
 
 use std::ops::Deref;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -11,23 +11,30 @@ use serde_json::{Map, Value};
 use super::marks::Set;
 use super::model::{Force, Mark};
 use super::styles::Style;
+use crate::base::pointer::{self, Pointer};
 
 /// The fields that null clears; null in any other is as if nothing were written.
 const CLEARED: [&str; 6] = ["vary", "grain", "creases", "anchor", "noise", "direction"];
 
 /// Strokes as they are written, with what that means.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Strokes {
     /// What is written.
     pub written: Value,
-    force: Arc<Force>,
+    force: Arc<(Force, OnceLock<Value>)>,
+}
+
+impl PartialEq for Strokes {
+    fn eq(&self, other: &Self) -> bool {
+        self.written == other.written
+    }
 }
 
 impl Deref for Strokes {
     type Target = Force;
 
     fn deref(&self) -> &Force {
-        &self.force
+        &self.force.0
     }
 }
 
@@ -37,7 +44,7 @@ impl<'de> Deserialize<'de> for Strokes {
         let style = Style::named(written.get("style"));
         let mut force: Force = serde_json::from_value(in_force(&style.table(), &written)).map_err(de::Error::custom)?;
         force.style = style;
-        Ok(Strokes { written, force: Arc::new(force) })
+        Ok(Strokes { written, force: Arc::new((force, OnceLock::new())) })
     }
 }
 
@@ -58,18 +65,38 @@ impl JsonSchema for Strokes {
 }
 
 impl Strokes {
-    /// The value in force of the field at `path`, relative to the strokes, if it is not written.
+    /// Everything in force as JSON.
+    fn whole(&self) -> &Value {
+        self.force.1.get_or_init(|| whole(self))
+    }
+
+    /// The value in force at `path`, relative to the strokes. Marks are at their names or where they are written.
     pub fn automatic(&self, path: &str) -> Option<Value> {
         if path == "/style" {
             return Some(Value::from("hatching"));
         }
-        let whole = whole(&self.force);
-        let Some((index, field)) = path.strip_prefix("/marks/").and_then(|rest| rest.split_once('/')) else {
-            return whole.pointer(path).cloned();
+        let Some(of_mark) = path.strip_prefix("/marks/") else { return self.whole().pointer(path).cloned() };
+        let (token, field) = of_mark.split_at(of_mark.find('/').unwrap_or(of_mark.len()));
+        let token = Pointer(&format!("/{token}")).tokens().next()?;
+        let name = match pointer::index(&token) {
+            Some(index) => self.written.get("marks")?.get(index)?.get("name")?.as_str()?.to_owned(),
+            None => token,
         };
-        let name = self.written.get("marks")?.get(index.parse::<usize>().ok()?)?.get("name")?;
-        let marks = whole.get("marks")?.as_array()?;
-        marks.iter().find(|mark| mark.get("name") == Some(name))?.pointer(&format!("/{field}")).cloned()
+        let marks = self.whole().get("marks")?.as_array()?;
+        marks.iter().find(|mark| mark["name"] == name)?.pointer(field).cloned()
+    }
+
+    /// The names of the style's noises or marks.
+    pub fn laid(&self, path: &str) -> Option<Vec<String>> {
+        let table = self.style.table();
+        match path {
+            "/noises" => Some(table["noises"].as_object().into_iter().flat_map(Map::keys).cloned().collect()),
+            "/marks" => {
+                let marks = table["marks"].as_array().into_iter().flatten();
+                Some(marks.filter_map(|mark| mark["name"].as_str()).map(str::to_owned).collect())
+            }
+            _ => None,
+        }
     }
 
     /// Where the mark of this name is written, relative to the strokes; the list if it is the style's alone.

@@ -48,10 +48,10 @@ pub struct Force {
     #[schemars(extend("unit" = "1"))]
     pub seed: u32,
     /// The noises that marks are made of, by name; null takes away one of the style's.
-    #[schemars(with = "BTreeMap<String, Option<Noise>>")]
+    #[schemars(with = "BTreeMap<String, Option<Noise>>", extend("laid" = "null"))]
     pub noises: BTreeMap<String, Noise>,
     /// What is drawn, in this order. One of a name that the style has changes that; any other is added at the end.
-    #[schemars(length(max = 64))]
+    #[schemars(length(max = 64), extend("laid" = "off"))]
     pub marks: Vec<Mark>,
 }
 

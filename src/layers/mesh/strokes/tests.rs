@@ -129,6 +129,10 @@ fn what_is_wrong_is_told_with_its_place_and_the_cure() {
             "/noises/a: the mark \"light\" is made of the noise \"a\", which is not there (there are \"b\", \"c\": give the mark one of them, or \"off\": true)",
         ),
         (
+            json!({ "style": "watercolor", "noises": { "a": { "spacing": 9 } } }),
+            "/noises/a: warning: no mark is made of the noise \"a\" (name it as the noise of a mark, or remove it)",
+        ),
+        (
             json!({ "marks": [{ "name": "drak", "off": true }] }),
             "/marks/0/name: warning: the style has no mark \"drak\" that could be left out (did you mean \"dark\"?)",
         ),
