@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use kurbo::Vec2;
 
@@ -73,6 +74,11 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// Whether it has sprites: they are drawn after all surfaces of their group.
     fn has_sprites(&self) -> bool {
         false
+    }
+
+    /// The same layer, whose frames are given up once `stop` is set, with anything in them; `None` if they never take long.
+    fn stoppable(&self, _stop: &Arc<AtomicBool>) -> Option<Arc<dyn Ready>> {
+        None
     }
 
     /// Whether something is drawn on its surfaces: that needs all of a frame at once ([`Still::strokes`]), and the GPU

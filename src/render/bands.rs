@@ -65,7 +65,7 @@ impl<'a> Bands<'a> {
                 part.map_err(|problem| problem.under(&format!("/layers/{i}")))
             });
             let layers = layers.collect::<Result<_, _>>()?;
-            Ok(Synth { size: self.size, layers, stage: self.stage.clone() })
+            Ok(Synth { size: self.size, layers, stage: self.stage.clone(), ..Synth::default() })
         };
         let made = self.samples.iter().map(synth).collect();
         if self.materials.stopped() { Err(Problem::error("", "stopped")) } else { made }
@@ -84,6 +84,9 @@ impl<'a> Bands<'a> {
             let rows = i * most..((i + 1) * most).min(height);
             cpu::finish_rows(&self.part(0..width, rows.clone())?, (time, &wholes), rows, out);
         }
+        if self.materials.stopped() {
+            return Err(Problem::error("", "stopped"));
+        }
         Ok(Grid::from_cells(width, height, cells))
     }
 
@@ -92,7 +95,7 @@ impl<'a> Bands<'a> {
         let layers = self.samples.first().into_iter().flatten();
         // A part without pixels needs nothing.
         let layers = layers.filter_map(|prepared| prepared.part(0..0, 0..0, self.materials).ok());
-        Synth { size: self.size, layers: layers.collect(), stage: self.stage.clone() }
+        Synth { size: self.size, layers: layers.collect(), stage: self.stage.clone(), ..Synth::default() }
     }
 
     /// The color of the pixel in column `x`, row `y` at `time`; transparent beyond the frame.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Synth;
 use super::stage::Group;
-use super::whole::Wholes;
+use super::whole::{Kept, Wholes};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
 use crate::layers::parts::moment::Columns;
 use crate::layers::ready::Still;
@@ -113,7 +113,8 @@ pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are
 /// computed, but of layers that are made whole, so that a small view of a large picture is cheap.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
-    mean_lattice(std::slice::from_ref(synth), scene_time, columns, rows)
+    let at = (scene_time, &*Kept::of(synth, scene_time));
+    mean_lines(std::slice::from_ref(synth), at, Columns::Some(columns), rows)
 }
 
 /// The same for several samples per pixel.

@@ -1,6 +1,7 @@
 //! All layers together: the synthesis of a scene, and its frames on the CPU (the reference) and the GPU.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use kurbo::Vec2;
 
@@ -30,6 +31,7 @@ pub mod stage;
 mod whole;
 
 use stage::Stage;
+use whole::Kept;
 
 /// Everything that a frame of a scene needs except the time.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +42,10 @@ pub struct Synth {
     pub layers: Vec<Arc<dyn Ready>>,
     /// What they are shown in.
     pub stage: Arc<Stage>,
+    /// Once it is set, frames are given up, with anything in them.
+    pub stop: Option<Arc<AtomicBool>>,
+    /// What was made whole of the last frame of which some pixels were wanted.
+    pub kept: Kept,
 }
 
 impl Synth {
@@ -56,6 +62,18 @@ impl Synth {
     /// Bytes that its strokes need while a frame is drawn, with so many samples a pixel in each direction.
     pub fn stroke_bytes(&self, each_way: u32) -> u64 {
         whole::bytes(self, each_way)
+    }
+
+    /// Whether its frames are given up.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
+    /// The same, whose frames are given up once `stop` is set.
+    #[cfg(feature = "window")]
+    pub fn stoppable(&self, stop: &Arc<AtomicBool>) -> Synth {
+        let layer = |layer: &Arc<dyn Ready>| layer.stoppable(stop).unwrap_or_else(|| layer.clone());
+        Synth { layers: self.layers.iter().map(layer).collect(), stop: Some(stop.clone()), ..self.clone() }
     }
 
     /// The same, seen by another camera.
@@ -77,7 +95,7 @@ impl Synth {
         let camera = self.stage.camera.as_ref().map(|camera| camera.unmoved());
         let stage = Stage { camera, ..(*self.stage).clone() };
         let layers = self.layers.iter().map(|layer| layer.clone().unmoved()).collect();
-        Synth { size: self.size, layers, stage: Arc::new(stage) }
+        Synth { layers, stage: Arc::new(stage), ..self.clone() }
     }
 }
 
@@ -128,7 +146,8 @@ fn synth_at(scene: &Scene, with: (&Materials, &Textures, Vec2), previous: Option
         layer.technique().synth(&making, before).map_err(|problem| problem.under(&format!("/layers/{i}")))
     };
     let layers = scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()?;
-    Ok(Synth { size: frame_size(scene, materials), layers, stage: Arc::new(Stage::of(scene)) })
+    let (size, stage, stop) = (frame_size(scene, materials), Arc::new(Stage::of(scene)), materials.stop.clone());
+    Ok(Synth { size, layers, stage, stop, kept: Kept::default() })
 }
 
 /// The layers that others show as textures. What they have in common with `previous` is reused.

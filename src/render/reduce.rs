@@ -8,7 +8,7 @@ pub fn reduced(synth: &Synth, factor: usize) -> Synth {
     let mut pictures = Reduced::new(factor);
     let layers = synth.layers.iter().map(|layer| layer.reduced(&mut pictures)).collect();
     let size = (synth.size.0.div_ceil(factor), synth.size.1.div_ceil(factor));
-    Synth { size, layers, stage: synth.stage.clone() }
+    Synth { size, layers, ..synth.clone() }
 }
 
 #[cfg(test)]

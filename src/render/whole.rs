@@ -1,16 +1,19 @@
 //! Groups on whose surfaces something is drawn: that needs all of a frame at once, so it is made once for all its rows, and
 //! for all samples of a pixel from one frame that is as many times larger.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use rayon::prelude::*;
 
 use super::Synth;
-use super::stage::Group;
+use super::stage::{Group, Stage};
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::pass::{COLOR, Which};
-use crate::layers::ready::{Still, Surfaces};
+use crate::layers::ready::{Ready, Still, Surfaces};
 
 /// The groups of a scene at one time that are made whole.
+#[derive(Debug)]
 pub struct Wholes {
     /// How many samples a pixel has in each direction.
     each_way: usize,
@@ -18,7 +21,39 @@ pub struct Wholes {
     groups: Vec<Option<Whole>>,
 }
 
+/// What was made whole last, for those who want some pixels of a frame after others.
+#[derive(Clone, Debug, Default)]
+pub struct Kept(Arc<Mutex<Option<(MadeOf, Arc<Wholes>)>>>);
+
+/// The scene time, the stage and the layers.
+type MadeOf = (f64, Arc<Stage>, Vec<Arc<dyn Ready>>);
+
+impl Kept {
+    /// What is made whole of one frame: as it is kept, or made now.
+    pub fn of(synth: &Synth, scene_time: f64) -> Arc<Wholes> {
+        if !synth.has_strokes() {
+            return Arc::new(Wholes::new(std::slice::from_ref(synth), scene_time));
+        }
+        let mut kept = synth.kept.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same = |(time, stage, layers): &MadeOf| {
+            let mut pairs = layers.iter().zip(&synth.layers);
+            *time == scene_time && Arc::ptr_eq(stage, &synth.stage) && pairs.all(|(own, other)| Arc::ptr_eq(own, other))
+        };
+        if let Some((_, wholes)) = kept.as_ref().filter(|(made_of, _)| is_same(made_of)) {
+            return wholes.clone();
+        }
+        // Room for the next, before that is made.
+        *kept = None;
+        let wholes = Arc::new(Wholes::new(std::slice::from_ref(synth), scene_time));
+        if !synth.is_stopped() {
+            *kept = Some(((scene_time, synth.stage.clone(), synth.layers.clone()), wholes.clone()));
+        }
+        wholes
+    }
+}
+
 /// All pixels of a group.
+#[derive(Debug)]
 pub struct Whole {
     width: usize,
     /// Their colors, premultiplied.
@@ -121,4 +156,58 @@ pub fn pass(synth: &Synth, group: &Group, moment: &Moment, which: Which) -> Opti
         whole.draw(&stills, which);
         whole.color
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use glam::DVec3;
+
+    use super::*;
+    use crate::base::mesh::{Mesh, Vertex};
+    use crate::layers::parts::materials::Materials;
+    use crate::render::cpu;
+    use crate::scene::Scene;
+
+    fn synth(stop: Option<Arc<AtomicBool>>) -> Synth {
+        let scene: Scene = serde_json::from_str(
+            r#"{"plica": 1, "size": [40, 30], "camera": {"position": [0, 0, 2]}, "meshes": {"m": {"path": "m.obj"}},
+                "layers": [{"kind": "mesh", "name": "m", "mesh": "m", "sides": "both", "strokes": {}}]}"#,
+        )
+        .unwrap();
+        let corner = |[x, y]: [f64; 2]| Vertex { position: DVec3::new(x, y, 0.0), ..Vertex::default() };
+        let vertices = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(corner).to_vec();
+        let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2]], ..Mesh::default() });
+        let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), stop, ..Materials::default() };
+        crate::render::synth(&scene, &materials, None).unwrap()
+    }
+
+    #[test]
+    fn a_frame_is_made_once_for_all_that_want_pixels_of_it() {
+        let synth = synth(None);
+        let first = Kept::of(&synth, 0.25);
+        assert!(Arc::ptr_eq(&first, &Kept::of(&synth.clone(), 0.25)));
+        assert!(!Arc::ptr_eq(&first, &Kept::of(&synth, 0.5)), "another time");
+        let last = Kept::of(&synth, 0.5);
+        let other = Synth { stage: Arc::new((*synth.stage).clone()), ..synth.clone() };
+        assert!(!Arc::ptr_eq(&last, &Kept::of(&other, 0.5)), "another camera");
+        assert_eq!(cpu::lattice(&synth, 0.5, &[9, 20], &[11]).cells()[1], *cpu::linear(&synth, 0.5).get(20, 11));
+    }
+
+    #[test]
+    fn what_is_stopped_is_neither_drawn_nor_kept() {
+        let stop = Arc::new(AtomicBool::new(true));
+        let synth = synth(Some(stop.clone()));
+        let first = Kept::of(&synth, 0.0);
+        let paper = |wholes: &Wholes| {
+            let colors = &wholes.groups[0].as_ref().unwrap().color;
+            // Without noise only outlines are drawn.
+            colors.iter().filter(|color| color[3] == 1.0 && color[0] > 0.8).count()
+        };
+        stop.store(false, Ordering::Relaxed);
+        let second = Kept::of(&synth, 0.0);
+        assert!(!Arc::ptr_eq(&first, &second));
+        assert_ne!(paper(&first), paper(&second));
+    }
 }

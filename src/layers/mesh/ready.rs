@@ -1,12 +1,13 @@
 //! What a mesh layer gives once it is ready.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{marks, plan, probe};
+use super::{marks, plan, probe, strokes};
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
@@ -18,6 +19,11 @@ use crate::layers::space::fit::Bounds;
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
         Box::new(Seen::new(self, moment))
+    }
+
+    fn stoppable(&self, stop: &Arc<AtomicBool>) -> Option<Arc<dyn Ready>> {
+        let strokes = strokes::Ready { stop: Some(stop.clone()), ..(**self.strokes.as_ref()?).clone() };
+        Some(Arc::new(Synth { strokes: Some(Arc::new(strokes)), ..self.clone() }))
     }
 
     fn has_strokes(&self) -> bool {

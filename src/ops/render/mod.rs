@@ -146,7 +146,10 @@ fn write(
     for &(frame, number) in todo {
         context.check_cancelled()?;
         context.messages.step("frame", *done, total);
-        sink.frame(number, renderer.frame(timeline.time_of(frame))?)?;
+        let drawn = renderer.frame(timeline.time_of(frame))?;
+        // What is drawn then may be incomplete.
+        context.check_cancelled()?;
+        sink.frame(number, drawn)?;
         *done += 1;
     }
     context.check_cancelled()?;

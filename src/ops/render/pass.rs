@@ -59,6 +59,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
             samples => cpu::mean(samples, time),
         };
         let shown = || view_over(&asked, &picture, || cpu::linear(&samples[0], time));
+        context.check_cancelled()?;
         files.write(number, &picture, *asked.pass == COLOR, shown)?;
     }
     context.messages.step("frame", todo.len() as u64, todo.len() as u64);

@@ -85,6 +85,8 @@ fn said(state: &State) -> (String, Color) {
         Some(words.progress.clone().unwrap_or_else(|| state.waits_for()))
     } else if let Some(work) = state.work.filter(|work| work.percent.is_some()) {
         Some(work.to_string())
+    } else if state.drawing {
+        Some("drawing the frame".to_owned())
     } else if let Some(why) = &state.no_pass {
         Some(why.clone())
     } else if let Some(pass) = &state.pass {
@@ -253,6 +255,7 @@ mod tests {
         state.work = Some(Work { what: "synthesising", percent: Some(34) });
         assert_eq!(said(&state).0, "synthesising: 34 %");
         assert_eq!(said(&State { work: state.work, ..State::for_tests() }).0, "synthesising: 34 %", "later ones too");
+        assert_eq!(said(&State { drawing: true, ..State::for_tests() }).0, "drawing the frame");
         state.words.progress = Some("fetching sea.jpg: 34 %".into());
         assert_eq!(said(&state).0, "fetching sea.jpg: 34 %");
         state.words.progress = None;

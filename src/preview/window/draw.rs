@@ -20,7 +20,7 @@ impl App {
         if opened.is_seen() {
             let began = Instant::now();
             self.letters.begin();
-            match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, &self.letters) {
+            match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, (&self.letters, &self.proxy)) {
                 _ if opened.gpu.device().is_lost() => self.reopen()?,
                 Ok(Drawn::Yes) => self.drawn(),
                 Ok(Drawn::Again) => opened.window.request_redraw(),

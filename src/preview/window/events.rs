@@ -127,6 +127,10 @@ impl ApplicationHandler<Event> for App {
                 app.redraw();
                 Ok(())
             }
+            Event::Drawn => {
+                app.redraw();
+                Ok(())
+            }
             Event::Sent(sent) => app.sent(event_loop, *sent),
             Event::Fonts(fonts) => {
                 app.letters.take_fonts(*fonts);

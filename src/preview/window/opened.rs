@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use kurbo::Size;
 use winit::dpi::{LogicalSize, PhysicalSize};
-use winit::event_loop::ActiveEventLoop;
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorIcon, Fullscreen, Window};
 
 use super::mouse::Shape;
@@ -14,6 +14,7 @@ use super::screen::{Drawn, Pictures, Screen, Strokes};
 use super::show::{Cached, Show, jump_at, seen, thinned, under};
 use super::state::{BAR_PX, State};
 use super::text::Letters;
+use super::worker::Event;
 use super::x11::Desk;
 use super::{Manner, PLACE, chrome};
 use crate::base::error::{Error, Result};
@@ -122,7 +123,7 @@ impl Opened {
         state: &mut State,
         show: Option<&Show>,
         marks: &mut Cached,
-        letters: &Letters,
+        (letters, wake): (&Letters, &EventLoopProxy<Event>),
     ) -> Result<Drawn> {
         let pictures = match show {
             Some(show) => {
@@ -136,12 +137,9 @@ impl Opened {
                     let synth = seen(&show.synth, state.own_camera().as_ref());
                     under(&show.scene, &synth, state.transport.scene_time(&state.timeline), at)
                 });
-                self.pictures(state, show, marks.revision)?
+                self.pictures(state, show, (marks.revision, wake))?
             }
-            None => {
-                let frame = self.gpu.texture(&Synth { size: (1, 1), ..Synth::default() }, 0.0)?;
-                Pictures { frame, other: None, scale: 1.0 }
-            }
+            None => self.nothing()?,
         };
         let chrome = chrome::draw(state, letters);
         let layers = [&marks.fixed, &marks.moving, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
@@ -150,7 +148,18 @@ impl Opened {
         drawn
     }
 
-    fn pictures(&mut self, state: &mut State, show: &Show, revision: u64) -> Result<Pictures> {
+    /// A picture with nothing in it.
+    fn nothing(&mut self) -> Result<Pictures> {
+        let frame = self.gpu.texture(&Synth { size: (1, 1), ..Synth::default() }, 0.0)?;
+        Ok(Pictures { frame, other: None, scale: 1.0 })
+    }
+
+    fn pictures(
+        &mut self,
+        state: &mut State,
+        show: &Show,
+        (revision, wake): (u64, &EventLoopProxy<Event>),
+    ) -> Result<Pictures> {
         let time = state.transport.scene_time(&state.timeline);
         let last = state.timeline.time_of(state.timeline.frames() - 1);
         let (frame, other) = if state.shows("view-seam") {
@@ -174,9 +183,12 @@ impl Opened {
         if let Some(asked) = asked {
             let times = (frame.1, other.as_ref().map(|(_, t)| *t), state.shows("view-still"));
             let wanted = For { asked, revision, own: state.own, times, left_out };
-            let (frame, other) = self.passes.follow(&self.gpu, wanted, frame, other)?;
-            return Ok(Pictures { frame, other, scale: show.frame_scale / self.passes.each as f64 });
+            let textures = self.passes.follow(&self.gpu, &wanted, (frame, other), wake)?;
+            state.drawing = self.passes.is_making();
+            let scale = show.frame_scale / self.passes.each.max(1) as f64;
+            return textures.map_or_else(|| self.nothing(), |(frame, other)| Ok(Pictures { frame, other, scale }));
         }
+        state.drawing = false;
         let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
         Ok(Pictures { frame, other, scale: show.frame_scale })
     }

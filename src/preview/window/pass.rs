@@ -1,10 +1,18 @@
 //! A pass in place of the frame, or a frame that the CPU draws. It is what the reference is made from, and made again only
-//! where something that it shows has changed.
+//! where something that it shows has changed: what takes long beside the event loop.
 
 use std::borrow::Cow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver};
+use std::time::{Duration, Instant};
+
+use winit::event_loop::EventLoopProxy;
 
 use super::own_view::OwnView;
-use crate::base::error::Result;
+use super::worker::Event;
+use crate::base::error::{Error, Result};
+use crate::base::fault;
 use crate::base::pixels::{Linear, decode, encode};
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
@@ -13,14 +21,27 @@ use crate::render::passes::{self, Asked};
 /// At most so many pixels are computed; larger frames are thinned out.
 const MOST: usize = 1 << 22;
 
+/// What is not made within this time is made beside the event loop, which shows what was there before.
+const SHORT: Duration = Duration::from_millis(100);
+/// What has taken this long is given up where the window looks from elsewhere by then.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 /// The textures of a pass, and what they were made for.
 #[derive(Default)]
 pub struct Kept {
     made_for: Option<For>,
-    textures: Option<(wgpu::Texture, Option<wgpu::Texture>)>,
+    textures: Option<Textures>,
     /// Pixels of the frame a pixel of the textures.
     pub each: usize,
+    making: Option<Making>,
 }
+
+/// Of the frame, and of the one that it is shown beside or compared with.
+pub type Textures = (wgpu::Texture, Option<wgpu::Texture>);
+/// The same as numbers, and how many pixels of the frame one of them stands for.
+type Pictures = (Linear, Option<Linear>, usize);
+/// A scene and its time.
+type At<'a> = (&'a Synth, f64);
 
 /// What the textures of a pass depend on.
 #[derive(Clone, PartialEq)]
@@ -38,26 +59,95 @@ pub struct For {
 }
 
 impl Kept {
-    /// The textures: of the frame, and of the one that it is shown beside or compared with.
+    /// The textures; those from before as long as others are being made, if there were any. Where that ends later,
+    /// `wake` is told.
     pub fn follow(
         &mut self,
         gpu: &Gpu,
-        wanted: For,
-        frame: (&Synth, f64),
-        other: Option<(Cow<'_, Synth>, f64)>,
-    ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
-        if let Some(textures) = self.textures.as_ref().filter(|_| self.made_for.as_ref() == Some(&wanted)) {
-            return Ok(textures.clone());
+        wanted: &For,
+        (frame, other): (At, Option<(Cow<'_, Synth>, f64)>),
+        wake: &EventLoopProxy<Event>,
+    ) -> Result<Option<Textures>> {
+        if self.made_for.as_ref() == Some(wanted) {
+            self.making = None;
+        } else if frame.0.has_strokes() {
+            self.making.take_if(|making| making.gives_way_to(wanted));
+            let other = || other.as_ref().map(|(synth, time)| (&**synth, *time));
+            let making = self.making.get_or_insert_with(|| Making::start(wanted, (frame, other()), wake));
+            if let Some((made_for, pictures)) = making.ended() {
+                self.making = None;
+                self.take(gpu, made_for, &pictures?)?;
+            }
+            if self.making.is_none() && self.made_for.as_ref() != Some(wanted) {
+                self.making = Some(Making::start(wanted, (frame, other()), wake));
+            }
+        } else {
+            let other = other.as_ref().map(|(synth, time)| (&**synth, *time));
+            self.take(gpu, wanted.clone(), &pictures(&wanted.asked, frame, other))?;
         }
-        let mut make = |(synth, time): (&Synth, f64)| {
-            let (picture, each) = passes::thinned(&wanted.asked, synth, time, MOST);
-            self.each = each;
-            upload(gpu, &wanted.asked, &picture)
-        };
-        let textures = (make(frame)?, other.as_ref().map(|(synth, time)| make((synth, *time))).transpose()?);
-        self.made_for = Some(wanted);
-        self.textures = Some(textures.clone());
-        Ok(textures)
+        Ok(self.textures.clone())
+    }
+
+    /// Whether something is being made.
+    pub fn is_making(&self) -> bool {
+        self.making.is_some()
+    }
+
+    fn take(&mut self, gpu: &Gpu, made_for: For, (frame, other, each): &Pictures) -> Result<()> {
+        let frame = upload(gpu, &made_for.asked, frame)?;
+        let other = other.as_ref().map(|other| upload(gpu, &made_for.asked, other)).transpose()?;
+        (self.textures, self.each, self.made_for) = (Some((frame, other)), *each, Some(made_for));
+        Ok(())
+    }
+}
+
+fn pictures(asked: &Asked, (synth, time): At, other: Option<At>) -> Pictures {
+    let (frame, each) = passes::thinned(asked, synth, time, MOST);
+    let other = other.map(|(synth, time)| passes::thinned(asked, synth, time, MOST).0);
+    (frame, other, each)
+}
+
+/// Pictures that are being made beside the event loop.
+struct Making {
+    made_for: For,
+    begun: Instant,
+    stop: Arc<AtomicBool>,
+    made: Receiver<Result<Pictures>>,
+}
+
+impl Making {
+    fn start(wanted: &For, (frame, other): (At, Option<At>), wake: &EventLoopProxy<Event>) -> Making {
+        let (stop, (sender, made)) = (Arc::new(AtomicBool::new(false)), mpsc::channel());
+        let own = |(synth, time): At| (synth.stoppable(&stop), time);
+        let (frame, other, asked, wake) = (own(frame), other.map(own), wanted.asked.clone(), wake.clone());
+        std::thread::spawn(move || {
+            let other = other.as_ref().map(|(synth, time)| (synth, *time));
+            let made = fault::caught(|| pictures(&asked, (&frame.0, frame.1), other));
+            // Nobody listens where something else is wanted by now, or once the window is gone.
+            let _ = sender.send(made.map_err(|fault| Error::at("window", fault)));
+            let _ = wake.send_event(Event::Drawn);
+        });
+        Making { made_for: wanted.clone(), begun: Instant::now(), stop, made }
+    }
+
+    /// Whether it is given up for something else. While only the time runs on, it is not.
+    fn gives_way_to(&self, wanted: &For) -> bool {
+        let own = &self.made_for;
+        own.revision != wanted.revision
+            || own.asked != wanted.asked
+            || own.own != wanted.own && self.begun.elapsed() > PATIENCE
+    }
+
+    /// What was made, once it is.
+    fn ended(&self) -> Option<(For, Result<Pictures>)> {
+        let rest = SHORT.saturating_sub(self.begun.elapsed());
+        self.made.recv_timeout(rest).ok().map(|made| (self.made_for.clone(), made))
+    }
+}
+
+impl Drop for Making {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
     }
 }
 

@@ -39,6 +39,8 @@ pub struct State {
     pub pass: Option<String>,
     /// Why it cannot be shown.
     pub no_pass: Option<String>,
+    /// Whether the picture is still being made: an older one shows.
+    pub drawing: bool,
     /// JSON pointer of what is selected in the editor.
     pub selection: Option<String>,
     /// The pointer on the screen, while it is in the window.
@@ -101,6 +103,7 @@ impl Default for State {
             switches: Switches::default(),
             pass: None,
             no_pass: None,
+            drawing: false,
             selection: None,
             pointer: None,
             words: Words::default(),

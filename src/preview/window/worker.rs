@@ -44,6 +44,8 @@ pub enum Event {
     Problems(Vec<Problem>),
     /// What a scene needs is on the GPU: it can be shown.
     Sent(Box<Sent>),
+    /// A picture that was made beside the event loop.
+    Drawn,
     /// The fonts of the system.
     Fonts(Box<Fonts>),
     /// A signal asks for the end.

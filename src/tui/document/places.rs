@@ -83,7 +83,7 @@ fn below(document: &Document, place: Place, (at, address): (&str, &str), all: &m
                 false
             }
             Some(Value::Array(_) | Value::Object(_)) => true,
-            _ => false,
+            _ => inner.shape.laid().is_some() && field::laid(document, &pointer).is_some(),
         };
         all.push(Listed { pointer: pointer.clone(), address: address.clone(), node, words, numbers });
         if node {

@@ -22,20 +22,22 @@ use crate::tui::graphics::request::Request;
 pub struct Worker {
     slot: Arc<(Mutex<Option<Request>>, Condvar)>,
     running: Running,
+    /// Stops what is running.
+    stop: Arc<AtomicBool>,
 }
 
-/// The running synthesis: its scene, when it began, and how to stop it.
-type Running = Arc<Mutex<Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>>>;
+/// What is running: of which scene, and since when.
+type Running = Arc<Mutex<Option<(Arc<Scene>, Instant)>>>;
 
-/// A synthesis that has taken this long is cancelled for a newer one. Quicker ones finish, so that a held key shows steps.
+/// What has taken this long is cancelled for a newer scene. Quicker work is finished, so that a held key shows steps.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 impl Worker {
     /// Starts the thread.
     pub fn start(options: files::Options, events: mpsc::Sender<Event>) -> Worker {
         let slot = Arc::new((Mutex::new(None), Condvar::new()));
-        let running = Running::default();
-        let (shared, in_thread) = (slot.clone(), running.clone());
+        let (running, stop) = (Running::default(), Arc::new(AtomicBool::new(false)));
+        let (shared, in_thread) = (slot.clone(), (running.clone(), stop.clone()));
         std::thread::spawn(move || {
             let mut studio = Studio::new(options, in_thread);
             while let Some(request) = next(&shared) {
@@ -44,7 +46,7 @@ impl Worker {
                     Ok(false) => return,
                     Err(fault) => {
                         // Its state may be incomplete, so start again with an empty one.
-                        studio = Studio::new(studio.options, studio.running);
+                        studio = Studio::new(studio.options, (studio.running, studio.stop));
                         let told = Event::Synthesised(Box::new(Err(Problem::error("", fault))));
                         if events.send(told).and_then(|()| events.send(Event::Made(request.scene))).is_err() {
                             return;
@@ -53,16 +55,16 @@ impl Worker {
                 }
             }
         });
-        Worker { slot, running }
+        Worker { slot, running, stop }
     }
 
     /// Sends a request. It replaces an earlier one that has not begun yet.
     pub fn ask(&self, request: Request) {
-        if let Some((scene, begun, stop)) = &*self.running.lock().unwrap_or_else(PoisonError::into_inner)
+        if let Some((scene, begun)) = &*self.running.lock().unwrap_or_else(PoisonError::into_inner)
             && begun.elapsed() >= PATIENCE
             && (request.fresh || !Arc::ptr_eq(scene, &request.scene))
         {
-            stop.store(true, Ordering::Relaxed);
+            self.stop.store(true, Ordering::Relaxed);
         }
         let mut slot = self.slot.0.lock().unwrap_or_else(PoisonError::into_inner);
         let fresh = request.fresh || slot.as_ref().is_some_and(|waiting| waiting.fresh);
@@ -103,12 +105,14 @@ struct Studio {
     made: Option<Made>,
     picture: Option<Arc<TerminalPicture>>,
     running: Running,
+    stop: Arc<AtomicBool>,
 }
 
 impl Studio {
-    fn new(options: files::Options, running: Running) -> Studio {
-        let studio = Studio { options, cache: files::materials::Cache::default(), made: None, picture: None, running };
-        studio.run(None);
+    fn new(options: files::Options, (running, stop): (Running, Arc<AtomicBool>)) -> Studio {
+        let cache = files::materials::Cache::until(stop.clone());
+        let studio = Studio { options, cache, made: None, picture: None, running, stop };
+        studio.ends();
         studio
     }
 
@@ -120,12 +124,10 @@ impl Studio {
             if events.send(Event::Synthesising).is_err() {
                 return false;
             }
-            let (begun, stop) = (Instant::now(), Arc::new(AtomicBool::new(false)));
-            self.run(Some((request.scene.clone(), begun, stop.clone())));
+            let begun = self.begins(&request.scene);
             self.cache.progress = Some(Arc::new(reading(begun, events.clone())));
-            let result = self.synthesise(request, stop.clone());
-            self.run(None);
-            if stop.load(Ordering::Relaxed) && result.is_err() {
+            let result = self.synthesise(request);
+            if self.ends() && result.is_err() {
                 // A newer request has stopped it, and is served next.
                 return true;
             }
@@ -140,29 +142,38 @@ impl Studio {
             }
         }
         let Some(Made { scene, synth, materials }) = &self.made else { return true };
+        let begun = self.begins(scene);
         let probed = request.probe.and_then(|asked| Probed::new(asked, scene, synth, materials));
+        let probed = probed.filter(|_| !synth.is_stopped());
         if probed.is_some_and(|probed| events.send(Event::Probed(Arc::new(probed))).is_err()) {
             return false;
         }
-        let Some(wanted) = request.picture.clone() else { return true };
-        let begun = Instant::now();
-        let picture = TerminalPicture::new(synth, scene, request.time, wanted, self.picture.as_deref());
+        let picture = request.picture.clone();
+        let before = self.picture.as_deref();
+        let picture = picture.map(|wanted| TerminalPicture::new(synth, scene, request.time, wanted, before));
+        // If it was stopped, a newer request is served next.
+        let Some(picture) = picture.filter(|_| !self.ends()) else { return true };
         let ms = begun.elapsed().as_secs_f64() * 1000.0;
         self.picture = Some(picture.clone());
         events.send(Event::Picture(picture, ms)).is_ok()
     }
 
-    fn run(&self, what: Option<(Arc<Scene>, Instant, Arc<AtomicBool>)>) {
-        *self.running.lock().unwrap_or_else(PoisonError::into_inner) = what;
+    /// Something begins, which may be stopped.
+    fn begins(&self, scene: &Arc<Scene>) -> Instant {
+        let (begun, mut running) = (Instant::now(), self.running.lock().unwrap_or_else(PoisonError::into_inner));
+        self.stop.store(false, Ordering::Relaxed);
+        *running = Some((scene.clone(), begun));
+        begun
+    }
+
+    /// It ends; whether it was stopped.
+    fn ends(&self) -> bool {
+        *self.running.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// The synthesis, with a warning if there is one.
-    fn synthesise(
-        &mut self,
-        request: &Request,
-        stop: Arc<AtomicBool>,
-    ) -> Result<(Arc<Synth>, Option<Problem>), Problem> {
-        self.cache.stop = Some(stop);
+    fn synthesise(&mut self, request: &Request) -> Result<(Arc<Synth>, Option<Problem>), Problem> {
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
         let previous = self.made.as_ref().map(|made| &*made.synth);

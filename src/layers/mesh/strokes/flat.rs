@@ -7,6 +7,7 @@ use super::aim::Aim;
 use super::impulse::{Dice, FADE, MOST, Recipe, factor};
 use super::sum::{EDGE, Noise, Shown, normalized};
 use super::surface::{Facet, Surface, mixed};
+use super::synth::is_set;
 use crate::base::maths::{TAU, cos, exp, sin, smoothstep};
 use crate::layers::space::eye::NEAR_M;
 
@@ -34,7 +35,7 @@ pub fn sum(surface: &Surface, shown: &Shown, recipe: &Recipe, aim: &Aim, px_per_
     }
     let sums = rows.into_par_iter().enumerate().map(|(y, of_row)| {
         let mut sums = vec![[0.0; 2]; width];
-        for flat in of_row.into_iter().map(|i| &flats[i as usize]) {
+        for flat in of_row.into_iter().map(|i| &flats[i as usize]).take_while(|_| !is_set(shown.stop)) {
             for (x, sum) in (flat.from.0..).zip(&mut sums[flat.from.0..flat.to.0]) {
                 let i = y * width + x;
                 if shown.triangle[i] == u32::MAX {
@@ -71,6 +72,9 @@ fn flats(surface: &Surface, recipe: &Recipe, aim: &Aim, (px_per_m, reach): (f64,
     let mut found = Vec::new();
     let mut facet: Option<(u32, Option<(Facet, f64)>)> = None;
     surface.pieces.of(0..count, |piece| {
+        if is_set(surface.stop) {
+            return;
+        }
         if facet.as_ref().is_none_or(|(of, _)| *of != piece.triangle) {
             let own = surface.any_facet(piece.triangle).map(|own| {
                 let [a, b, c] = own.corners;

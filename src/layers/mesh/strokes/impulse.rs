@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::aim::Aim;
 use super::pieces::Piece;
 use super::surface::{Facet, Surface, mixed};
+use super::synth::is_set;
 use crate::base::maths::TAU;
 use crate::base::random::{pcg4d, unit};
 use crate::layers::space::eye::NEAR_M;
@@ -83,6 +84,9 @@ pub fn impulses(surface: &Surface, recipe: &Recipe, aim: &Aim) -> Vec<Impulse> {
             let mut found = Vec::new();
             let mut facet: Option<(u32, Option<(Facet, DVec3)>)> = None;
             surface.pieces.of(lump * LUMP..((lump + 1) * LUMP).min(count), |piece| {
+                if is_set(surface.stop) {
+                    return;
+                }
                 if facet.as_ref().is_none_or(|(of, _)| *of != piece.triangle) {
                     let own = surface.facet(piece.triangle).map(|facet| (facet, surface.plane(&facet)));
                     facet = Some((piece.triangle, own));

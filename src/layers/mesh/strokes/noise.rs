@@ -7,7 +7,7 @@ use super::impulse::{Recipe, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
 use super::sum::{Noise, Shown, Trim, sum};
 use super::surface::Surface;
-use super::synth::{Codes, Ready, SMOOTH};
+use super::synth::{Codes, Ready, SMOOTH, is_set};
 use super::{Given, even, flat, grid, visible};
 
 /// A layer in one frame.
@@ -37,9 +37,10 @@ impl<'a> Scene<'a> {
         let eye = given.eye;
         let seen = given.world.iter().map(|(at, normal)| (eye.seen(*at), eye.turn * *normal)).collect();
         let (mesh, pieces, size_px) = (given.mesh, &*ready.pieces, given.size_px);
-        let surface = Surface { mesh, pieces, seen, placed: given.placed, both: given.both, eye, size_px };
+        let stop = ready.stop.as_deref();
+        let surface = Surface { mesh, pieces, seen, placed: given.placed, both: given.both, eye, size_px, stop };
         let (inverse, triangle) = (&*given.inverse, &*given.triangle);
-        let shown = Shown { size_px, focal_px: eye.focal_px, inverse, triangle };
+        let shown = Shown { size_px, focal_px: eye.focal_px, inverse, triangle, stop };
         let drawing = (given.t * ready.duration * ready.strokes.redraw + 1e-9).floor() as u32;
         let (light, scale) = (eye.turn * -given.toward, ready.scale * given.magnified);
         Scene { ready, given, surface, shown, light, scale, drawing }
@@ -52,6 +53,10 @@ impl<'a> Scene<'a> {
 
     /// One of its noises.
     pub fn noise(&self, wanted: &Wanted) -> Noise {
+        if is_set(self.shown.stop) {
+            let count = self.given.triangle.len();
+            return Noise { value: vec![0.0; count], share: vec![0.0; count] };
+        }
         let strokes = &self.ready.strokes;
         let direction = wanted.direction.as_ref().unwrap_or(&strokes.direction);
         let anchor = wanted.anchor.unwrap_or(strokes.anchor);

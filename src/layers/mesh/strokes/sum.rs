@@ -1,11 +1,13 @@
 //! The sum of all kernels: tile by tile, in the order of the impulses, so that the bits do not depend on threads.
 
 use std::ops::Range;
+use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::impulse::Impulse;
+use super::synth::is_set;
 use crate::base::maths::{TAU, cos, exp, sin, smoothstep};
 
 /// The side of a tile, in pixels.
@@ -38,6 +40,8 @@ pub struct Shown<'a> {
     pub inverse: &'a [f64],
     /// The triangle of the layer that each pixel shows, `u32::MAX` where it shows none.
     pub triangle: &'a [u32],
+    /// Once it is set, the sum counts no more.
+    pub stop: Option<&'a AtomicBool>,
 }
 
 /// A noise at each pixel: mean 0 and variance 1 on the layer.
@@ -61,7 +65,8 @@ pub fn sum(shown: &Shown, impulses: &[Impulse], overlap: f64, trim: Trim) -> Noi
             let (x, y) = (i % across * TILE, i / across * TILE);
             let columns = x..(x + TILE).min(width);
             Tile::new(shown, columns, y..(y + TILE).min(height), trim).map(|mut tile| {
-                bin.iter().for_each(|&k| tile.add(&impulses[k as usize]));
+                let wanted = bin.iter().take_while(|_| !is_set(shown.stop));
+                wanted.for_each(|&k| tile.add(&impulses[k as usize]));
                 tile
             })
         })
@@ -315,7 +320,8 @@ mod tests {
     fn a_kernel_is_its_formula() {
         let (width, height) = (100, 90);
         let (inverse, triangle) = (vec![0.5; width * height], vec![0; width * height]);
-        let shown = Shown { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle };
+        let shown =
+            Shown { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
         let own = impulse((61.3, 63.9));
         let found = sum(&shown, &[own], 16.0, Trim::Depth(0.5));
         let curve = |d: f64| (exp(-std::f64::consts::PI * d * d / 400.0) - EDGE) / (1.0 - EDGE);
@@ -341,7 +347,8 @@ mod tests {
         // e = |1/z - 1/2| * 2 * 100 / 20.
         let inverse: Vec<f64> = (0..width * height).map(|i| if i % width < 30 { 0.5 } else { 0.5 + 0.075 }).collect();
         let triangle: Vec<u32> = (0..width * height).map(|i| if i / width < 5 { u32::MAX } else { 0 }).collect();
-        let shown = Shown { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle };
+        let shown =
+            Shown { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
         let found = sum(&shown, &[own], 16.0, Trim::Depth(0.5));
         let all = sum(&shown, &[own], 16.0, Trim::Object);
         for y in 0..height {

@@ -1,5 +1,7 @@
 //! A mesh as one eye sees it: its triangles in camera coordinates, and what is known of each.
 
+use std::sync::atomic::AtomicBool;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use super::super::pose::Placed;
@@ -23,6 +25,8 @@ pub struct Surface<'a> {
     pub eye: Eye,
     /// Width and height of the frame, in pixels.
     pub size_px: (usize, usize),
+    /// Once it is set, what is made of it counts no more.
+    pub stop: Option<&'a AtomicBool>,
 }
 
 /// A triangle as it is seen.

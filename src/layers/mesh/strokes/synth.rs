@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::check;
 use super::curvature::Curvature;
@@ -34,6 +35,8 @@ pub struct Ready {
     pub duration: f64,
     /// How many times larger they are drawn than the document says.
     pub scale: f64,
+    /// Once it is set, frames are given up, with anything in them.
+    pub stop: Option<Arc<AtomicBool>>,
 }
 
 /// The codes of an image: red, green, blue.
@@ -65,7 +68,8 @@ impl Ready {
             images.insert(name.to_owned(), Arc::new(codes(&picture)));
         }
         let Making { px_per_m, duration, .. } = *making;
-        Ok(Ready { strokes: strokes.clone(), pieces, curvatures, images, px_per_m, duration, scale: 1.0 })
+        let stop = making.materials.stop.clone();
+        Ok(Ready { strokes: strokes.clone(), pieces, curvatures, images, px_per_m, duration, scale: 1.0, stop })
     }
 
     /// The same for frames that are so many times smaller on each side.
@@ -77,6 +81,11 @@ impl Ready {
     pub fn curvature(&self, smooth: f64) -> Option<Arc<Curvature>> {
         self.curvatures.iter().find(|(known, _)| *known == smooth).map(|(_, curvature)| curvature.clone())
     }
+}
+
+/// Whether it is set.
+pub fn is_set(stop: Option<&AtomicBool>) -> bool {
+    stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
 }
 
 /// How far the curvatures that strokes need are smoothed.
