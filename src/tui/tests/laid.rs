@@ -46,7 +46,7 @@ fn all_that_is_in_force_has_a_row_and_what_is_not_written_is_dimmed() {
 #[test]
 fn an_edit_of_what_a_style_has_writes_that_field_alone_in_one_step() {
     for (node, keys, expected) in [
-        ("noises", "Enter / \"spacing\" Enter i \"9\" Enter", json!({ "noises": { "a": { "spacing": 9 } } })),
+        ("noises", "Enter i \"9\" Enter", json!({ "noises": { "a": { "spacing": 9 } } })),
         ("noises", "l i \"*2\" Enter", json!({ "noises": { "a": { "regularity": 4.8 } } })),
         (
             "noises",
@@ -58,7 +58,7 @@ fn an_edit_of_what_a_style_has_writes_that_field_alone_in_one_step() {
             "j Enter / \"amount\" Enter i \"0.5\" Enter",
             json!({ "marks": [{ "name": "middle", "amount": 0.5 }] }),
         ),
-        ("tone", "/ \"dark\" Enter i \"0.1\" Enter", json!({ "tone": { "dark": 0.1 } })),
+        ("tone", "j i \"0.1\" Enter", json!({ "tone": { "dark": 0.1 } })),
         ("noises", "l i \"4\" Enter u", json!({})),
         ("marks", "j Enter / \"amount\" Enter i \"0.5\" Enter u", json!({})),
     ] {
