@@ -5,6 +5,7 @@
 mod display;
 
 use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
 
 use display::{Display, Place, View, corner};
 use plica::base::pixels::Frame;
@@ -135,4 +136,39 @@ fn the_editor_is_told_where_the_window_looks_from() {
     assert_eq!((told.target, told.fov), (target.to_array(), fov));
     view.keys(&["0"]);
     assert_eq!(replies.recv_timeout(display::PATIENCE).unwrap(), None);
+}
+
+#[test]
+fn a_frame_that_takes_long_holds_no_key_and_gives_way_to_a_newer_scene() {
+    let Some(display) = Display::open() else { return };
+    let place = stone();
+    let scene = |strokes: &str| {
+        let own = format!(r#""mesh": "stone", "strokes": {strokes} }}"#);
+        std::fs::write(&place.scene, SCENE.replace(r#""mesh": "stone" }"#, &own)).unwrap();
+    };
+    // Minutes of work.
+    let names = || (0..32).map(|i| format!("n{i}"));
+    let noise = |name| format!(r#""{name}": {{ "spacing": 2, "overlap": 128 }}"#);
+    let mark = |name| format!(r#"{{ "name": "{name}", "kind": "ink", "noise": "{name}" }}"#);
+    let [noises, marks] =
+        [names().map(noise).collect::<Vec<_>>(), names().map(mark).collect()].map(|all: Vec<String>| all.join(", "));
+    let heavy = format!(r#"{{ "style": "none", "noises": {{ {noises} }}, "marks": [ {marks} ] }}"#);
+    let shown = |view: &mut View, what: &str| shows(view, what, &round(&place, 0.0));
+
+    scene("{}");
+    let mut view = View::open(&display, &place);
+    view.keys(&["1"]);
+    shown(&mut view, "strokes");
+    scene(&heavy);
+    std::thread::sleep(Duration::from_secs(3));
+    scene(r##"{ "ink": "#902010" }"##);
+    shown(&mut view, "the newer scene");
+    scene(&heavy);
+    std::thread::sleep(Duration::from_secs(3));
+    view.keys(&["q"]);
+    let begun = Instant::now();
+    while view.process.try_wait().unwrap().is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(5), "q is obeyed while a frame is drawn");
+        std::thread::sleep(Duration::from_millis(50));
+    }
 }

@@ -12,6 +12,7 @@ use super::parts::derived::Derived;
 use super::parts::goal::Goal;
 use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{List, Materials, Use};
+use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::picking::Picks;
@@ -169,6 +170,21 @@ pub trait Technique: Any + Send + Sync {
         _pixel: (usize, usize),
         _moment: &Moment,
     ) -> Result<Option<ReadOut>, Problem> {
+        Ok(None)
+    }
+
+    /// How what is drawn on the layer moves with it, while the camera goes so many steps in several ways, in numbers; `None` if
+    /// nothing is drawn on it, or once `step`, which is told how much is done of how much, says that it is cancelled.
+    ///
+    /// # Errors
+    /// As [`Technique::synth`].
+    fn measure(
+        &self,
+        _making: &Making,
+        _moment: &Moment,
+        _steps: u32,
+        _step: &mut dyn FnMut(u64, u64) -> bool,
+    ) -> Result<Option<Measures>, Problem> {
         Ok(None)
     }
 

@@ -24,6 +24,7 @@ pub mod field;
 pub mod get;
 pub mod lines;
 pub mod man;
+pub mod measure;
 pub mod new;
 pub mod opened;
 pub mod probe;
@@ -54,6 +55,7 @@ pub enum Command {
     Get(get::Args),
     Check(check::Args),
     Probe(probe::Args),
+    Measure(measure::Args),
     Lines(lines::Args),
     Sprites(sprites::Args),
     Render(render::Args),
@@ -81,6 +83,7 @@ impl Command {
             Command::Get(args) => get::run(args, context),
             Command::Check(args) => check::run(args, context),
             Command::Probe(args) => probe::run(args, context),
+            Command::Measure(args) => measure::run(args, context),
             Command::Lines(args) => lines::run(args, context),
             Command::Sprites(args) => sprites::run(args, context),
             Command::Render(args) => render::run(args, context),

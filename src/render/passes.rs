@@ -126,7 +126,7 @@ impl Asked {
 fn is_shown(pass: &Pass, layer: Option<usize>, scene: &Scene) -> bool {
     let mut layers = scene.layers.iter().enumerate().filter(|(i, _)| layer.is_none_or(|only| only == *i));
     let has = |layer: &dyn Technique| layer.kind().passes.contains(pass) && layer.has_pass(pass);
-    PASSES.iter().any(|common| *common == pass) || layers.any(|(_, layer)| has(layer.technique()))
+    PASSES.contains(&pass) || layers.any(|(_, layer)| has(layer.technique()))
 }
 
 /// These rows of a pass, other than color: of the topmost group that covers a pixel, its nearest surface.

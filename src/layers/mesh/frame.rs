@@ -160,13 +160,25 @@ impl<'a> Seen<'a> {
         Some(given)
     }
 
-    /// The frame of the layer alone, with its strokes.
-    fn alone(&self) -> Vec<Rgba> {
+    /// The frame of the layer alone, without strokes, and how far away it is.
+    fn bare(&self) -> (Vec<Rgba>, Vec<f64>) {
         let (width, height) = self.moment.size_px;
         let mut depth = vec![f64::INFINITY; width * height];
         let mut out = vec![[0.0; 4]; depth.len()];
         let rows = depth.par_chunks_mut(width.max(1)).zip(out.par_chunks_mut(width.max(1))).enumerate();
         rows.for_each(|(y, (depth, out))| self.surface(y, Columns::All, depth, out));
+        (out, depth)
+    }
+
+    /// What its strokes are drawn from if nothing else is there.
+    pub fn given_alone(&self) -> Option<Given<'_>> {
+        let depth = self.bare().1;
+        self.given(&Surfaces { depth: &depth, layer: &vec![0; depth.len()], own: 0 })
+    }
+
+    /// The frame of the layer alone, with its strokes.
+    fn alone(&self) -> Vec<Rgba> {
+        let (mut out, depth) = self.bare();
         let layer = vec![0; depth.len()];
         self.strokes(
             Which { pass: &pass::COLOR, of: None },

@@ -1,7 +1,10 @@
 //! A mesh in space, seen by the scene's camera. What its surface shows is a slot of its own (`surface/`).
 
+#[cfg(test)]
+mod checks;
 pub mod frame;
 pub mod marks;
+pub mod measure;
 pub mod model;
 pub mod plan;
 pub mod pose;
@@ -18,6 +21,7 @@ use serde_json::{Value, json};
 
 use self::model::MeshLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
+use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::readout::ReadOut;
@@ -120,11 +124,22 @@ impl Technique for MeshLayer {
     fn probe(
         &self,
         making: &Making,
-        _ready: Option<&dyn Ready>,
+        ready: Option<&dyn Ready>,
         pixel: (usize, usize),
         moment: &Moment,
     ) -> Result<Option<ReadOut>, Problem> {
-        probe::probe(self, making, pixel, moment).map(Some)
+        let ready = ready.and_then(|ready| ready.downcast());
+        probe::probe(self, (making, ready), pixel, moment).map(Some)
+    }
+
+    fn measure(
+        &self,
+        making: &Making,
+        moment: &Moment,
+        steps: u32,
+        step: &mut dyn FnMut(u64, u64) -> bool,
+    ) -> Result<Option<Measures>, Problem> {
+        measure::measure(self, making, moment, steps, step)
     }
 
     fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {

@@ -1,7 +1,8 @@
 //! One pixel of a mesh layer explained.
 
-use super::frame::{Spot, View};
+use super::frame::{Seen, Spot, View};
 use super::model::MeshLayer;
+use super::strokes;
 use super::synth::Synth;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;
@@ -12,10 +13,30 @@ use crate::layers::ready::Making;
 ///
 /// # Errors
 /// If the mesh is not there; the problem's path is relative to the layer.
-pub fn probe(layer: &MeshLayer, making: &Making, pixel: (usize, usize), moment: &Moment) -> Result<ReadOut, Problem> {
+pub fn probe(
+    layer: &MeshLayer,
+    (making, ready): (&Making, Option<&Synth>),
+    pixel: (usize, usize),
+    moment: &Moment,
+) -> Result<ReadOut, Problem> {
     let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
     let view = View::new(&mesh, layer.sides, &layer.pose.at(moment.t), making.place, moment);
-    Ok(read_out(layer, spot(&view, pixel, moment)))
+    let spot = spot(&view, pixel, moment);
+    let mut read = read_out(layer, spot);
+    if layer.strokes.is_some() && spot.is_some() {
+        let made = if ready.is_none() { Some(Synth::new(layer, making, None)?) } else { None };
+        let synth = ready.or(made.as_ref());
+        read.entries.extend(synth.map(|synth| of_strokes(synth, pixel, moment)).unwrap_or_default());
+    }
+    Ok(read)
+}
+
+/// What its strokes are in a pixel, as if nothing hid the layer.
+fn of_strokes(synth: &Synth, (x, y): (usize, usize), moment: &Moment) -> Vec<Entry> {
+    let seen = Seen::new(synth, moment);
+    let given = synth.strokes.as_deref().zip(seen.given_alone());
+    let i = y * moment.size_px.0 + x;
+    given.map_or_else(Vec::new, |(ready, given)| strokes::explain::entries(ready, &given, i))
 }
 
 /// The triangle in column `x`, row `y` of what was synthesised.

@@ -7,6 +7,7 @@ pub mod derived;
 pub mod goal;
 pub mod marks;
 pub mod materials;
+pub mod measures;
 pub mod moment;
 pub mod pass;
 pub mod picking;

@@ -6,13 +6,13 @@ use rayon::prelude::*;
 
 use super::ink::{Sheet, draw};
 use super::marks::Set;
-use super::model::{Noise as Wanted, ToneOf};
+use super::model::{Force, Noise as Wanted, ToneOf};
 use super::noise::Scene;
 use super::rim::Pixels;
 use super::sum::Noise;
 use super::tone::Range;
 use super::{Given, Ready, passes};
-use crate::base::pixels::Rgba;
+use crate::base::pixels::{Rgba, linear_from_srgb, srgb_from_linear};
 use crate::layers::parts::pass::{COLOR, Which};
 use crate::layers::space::raster::NONE;
 
@@ -49,18 +49,54 @@ pub fn pass(ready: &Ready, given: &Given, which: Which) -> Vec<Rgba> {
 /// The noise of this name, or that of the first mark that has one.
 fn asked<'a>(ready: &'a Ready, name: Option<&str>) -> Option<&'a Wanted> {
     let strokes = &ready.strokes;
-    let sets: Vec<Set> = strokes.marks.iter().filter_map(Set::of).collect();
-    let first = || sets.iter().find_map(|set| Some(set.noises().next()?.1));
-    strokes.noises.get(name.or_else(first)?)
+    strokes.noises.get(name.or_else(|| main_noise(strokes))?)
+}
+
+/// The name of the noise of the first mark that has one.
+pub fn main_noise(strokes: &Force) -> Option<&str> {
+    let first = strokes.marks.iter().find_map(|mark| Some(Set::of(mark)?.noises().next()?.1.to_owned()))?;
+    strokes.noises.keys().find(|name| **name == first).map(String::as_str)
+}
+
+/// The lightness of every pixel, as an sRGB code from 0 to 1, of a grey surface of one tone without outlines.
+pub fn grey(ready: &Ready, given: &Given) -> Vec<f32> {
+    const CODE: f64 = 0.5;
+    let light = linear_from_srgb(CODE) as f32;
+    let own = |triangle: &u32| if *triangle == NONE { [0.0; 4] } else { [light, light, light, 1.0] };
+    let shaded: Vec<Rgba> = given.triangle.iter().map(own).collect();
+    let sets: Vec<Set> = ready.strokes.marks.iter().filter_map(Set::of).collect();
+    let sets: Vec<Set> = sets.into_iter().filter(|set| !matches!(set, Set::Outline(_))).collect();
+    let drawn = made(&Scene::new(ready, given), &sets, &shaded, &vec![CODE as f32; shaded.len()]).0;
+    let code = |[r, g, b, _]: &Rgba| {
+        let [r, g, b] = [r, g, b].map(|v| f64::from(*v));
+        srgb_from_linear(0.2126 * r + 0.7152 * g + 0.0722 * b) as f32
+    };
+    drawn.par_iter().map(code).collect()
 }
 
 /// The color of every pixel, premultiplied, and how much ink there is.
 fn drawing(scene: &Scene) -> (Vec<Rgba>, Vec<f32>) {
-    let (strokes, given) = (&scene.ready.strokes, scene.given);
-    let sets: Vec<Set> = strokes.marks.iter().filter_map(Set::of).collect();
+    let sets: Vec<Set> = scene.ready.strokes.marks.iter().filter_map(Set::of).collect();
+    made(scene, &sets, &scene.given.shaded, &tones(scene))
+}
+
+/// The same of these marks, on a surface of these shaded colors and tones.
+fn made(scene: &Scene, sets: &[Set], shaded: &[Rgba], tone: &[f32]) -> (Vec<Rgba>, Vec<f32>) {
+    let strokes = &scene.ready.strokes;
     let names: BTreeSet<&str> = sets.iter().flat_map(Set::noises).map(|(_, name)| name).collect();
     let wanted = names.into_iter().filter_map(|name| Some((name.to_owned(), strokes.noises.get(name)?)));
     let noises: BTreeMap<String, Noise> = wanted.map(|(name, wanted)| (name, scene.noise(wanted))).collect();
+    sheet_of(scene, (shaded, tone), &noises, |sheet| draw(strokes, sets, sheet))
+}
+
+/// Makes something of what a drawing is made from: of these shaded colors and tones, and these noises.
+pub fn sheet_of<R>(
+    scene: &Scene,
+    (shaded, tone): (&[Rgba], &[f32]),
+    noises: &BTreeMap<String, Noise>,
+    make: impl FnOnce(&Sheet) -> R,
+) -> R {
+    let given = scene.given;
     let plane = |triangle: u32| scene.surface.any_facet(triangle).map(|facet| scene.surface.plane(&facet));
     let pixels = Pixels {
         size_px: given.size_px,
@@ -70,13 +106,11 @@ fn drawing(scene: &Scene) -> (Vec<Rgba>, Vec<f32>) {
         normal: &given.normal,
         plane: &|triangle| plane(triangle).unwrap_or_default(),
     };
-    let sheet =
-        Sheet { pixels: &pixels, shaded: &given.shaded, tone: &tones(scene), noises: &noises, scale: scene.scale };
-    draw(strokes, &sets, &sheet)
+    make(&Sheet { pixels: &pixels, shaded, tone, noises, scale: scene.scale })
 }
 
 /// The tone of every pixel of the layer.
-fn tones(scene: &Scene) -> Vec<f32> {
+pub fn tones(scene: &Scene) -> Vec<f32> {
     let (tone, given) = (&scene.ready.strokes.tone, scene.given);
     let range = Range { dark: tone.dark, light: tone.light, gamma: tone.gamma };
     let at = |i: usize| match tone.of {

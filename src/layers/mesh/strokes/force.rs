@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use serde_json::{Map, Value};
 
 use super::marks::Set;
-use super::model::{Force, Mark};
+use super::model::{Anchor, Force, Mark};
 use super::styles::Style;
 use crate::base::pointer::{self, Pointer};
 
@@ -65,6 +65,14 @@ impl JsonSchema for Strokes {
 }
 
 impl Strokes {
+    /// The same with all noises fixed to the same.
+    pub fn anchored(&self, anchor: Anchor) -> Strokes {
+        let mut force = self.force.0.clone();
+        force.anchor = anchor;
+        force.noises.values_mut().for_each(|noise| noise.anchor = None);
+        Strokes { written: self.written.clone(), force: Arc::new((force, OnceLock::new())) }
+    }
+
     /// Everything in force as JSON.
     fn whole(&self) -> &Value {
         self.force.1.get_or_init(|| whole(self))
@@ -88,15 +96,12 @@ impl Strokes {
 
     /// The names of the style's noises or marks.
     pub fn laid(&self, path: &str) -> Option<Vec<String>> {
-        let table = self.style.table();
-        match path {
-            "/noises" => Some(table["noises"].as_object().into_iter().flat_map(Map::keys).cloned().collect()),
-            "/marks" => {
-                let marks = table["marks"].as_array().into_iter().flatten();
-                Some(marks.filter_map(|mark| mark["name"].as_str()).map(str::to_owned).collect())
-            }
-            _ => None,
-        }
+        let of = |list: &Value| match list {
+            Value::Object(noises) => noises.keys().cloned().collect(),
+            Value::Array(marks) => marks.iter().filter_map(|mark| Some(mark["name"].as_str()?.to_owned())).collect(),
+            _ => Vec::new(),
+        };
+        ["/noises", "/marks"].contains(&path).then(|| of(&self.style.table()[&path[1..]]))
     }
 
     /// Where the mark of this name is written, relative to the strokes; the list if it is the style's alone.

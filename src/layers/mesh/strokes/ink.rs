@@ -43,6 +43,17 @@ struct Cell {
     bare: f64,
 }
 
+/// How a pixel is inked.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inked {
+    /// The share of such places that is.
+    pub share: f64,
+    /// What the noise is below where it is.
+    pub threshold: f64,
+    /// How much it covers.
+    pub covered: f64,
+}
+
 /// What is drawn of one mark.
 type Brush<'a> = Box<dyn Fn(&mut Cell) + Sync + 'a>;
 
@@ -84,28 +95,37 @@ fn linear(text: &str) -> DVec3 {
 impl Sheet<'_> {
     /// Ink where a noise is below a threshold that follows the tone.
     fn ink<'a>(&'a self, strokes: &'a Force, ink: &'a Ink) -> Option<Brush<'a>> {
-        let (noise, of) = (self.noises.get(&ink.noise)?, strokes.noises.get(&ink.noise)?);
-        let grain = ink.grain.as_ref().and_then(|grain| Some((self.noises.get(&grain.noise)?, grain.amount)));
-        let soft = ink.softness * PI / (of.spacing * strokes.size);
+        self.noises.get(&ink.noise).and(strokes.noises.get(&ink.noise))?;
         let paint = Paint::new(&ink.color, ink.shade, strokes);
         Some(Box::new(move |cell| {
-            let tone = f64::from(self.tone[cell.i]);
-            let inked = (ink.amount * strokes.amount * share(tone, ink.from, ink.to)).clamp(0.0, 1.0);
-            if inked == 0.0 {
-                return;
+            if let Some(inked) = self.inked(strokes, ink, cell.i).filter(|inked| inked.share > 0.0) {
+                cell.cover(&paint, inked.covered);
             }
-            let mut x = f64::from(noise.value[cell.i]);
-            if let Some((grain, amount)) = grain {
-                x = (1.0 - amount * amount).sqrt() * x + amount * f64::from(grain.value[cell.i]);
-            }
-            let x = if ink.side == Side::High { -x } else { x };
-            let below = x - threshold(inked, of.even);
-            let covered = match soft > 0.0 {
-                true => 1.0 - smoothstep(-soft, soft, below),
-                false => f64::from(u8::from(below < 0.0)),
-            };
-            cell.cover(&paint, (ink.opacity * (covered + 4.0 * ink.rim * covered * (1.0 - covered))).min(1.0));
         }))
+    }
+
+    /// How a pixel is inked; `None` if the noise is not there.
+    pub fn inked(&self, strokes: &Force, ink: &Ink, i: usize) -> Option<Inked> {
+        let (noise, of) = (self.noises.get(&ink.noise)?, strokes.noises.get(&ink.noise)?);
+        let tone = f64::from(self.tone[i]);
+        let inked = (ink.amount * strokes.amount * share(tone, ink.from, ink.to)).clamp(0.0, 1.0);
+        if inked == 0.0 {
+            return Some(Inked::default());
+        }
+        let mut x = f64::from(noise.value[i]);
+        let grain = ink.grain.as_ref().and_then(|grain| Some((self.noises.get(&grain.noise)?, grain.amount)));
+        if let Some((grain, amount)) = grain {
+            x = (1.0 - amount * amount).sqrt() * x + amount * f64::from(grain.value[i]);
+        }
+        let x = if ink.side == Side::High { -x } else { x };
+        let threshold = threshold(inked, of.even);
+        let (below, soft) = (x - threshold, ink.softness * PI / (of.spacing * strokes.size));
+        let covered = match soft > 0.0 {
+            true => 1.0 - smoothstep(-soft, soft, below),
+            false => f64::from(u8::from(below < 0.0)),
+        };
+        let covered = (ink.opacity * (covered + 4.0 * ink.rim * covered * (1.0 - covered))).min(1.0);
+        Some(Inked { share: inked, threshold, covered })
     }
 
     /// More or less pigment in the color.
@@ -131,20 +151,26 @@ impl Sheet<'_> {
     }
 
     /// A line along rims.
-    fn outline<'a>(&'a self, strokes: &Force, outline: &'a Outline) -> Brush<'a> {
+    fn outline<'a>(&'a self, strokes: &'a Force, outline: &'a Outline) -> Brush<'a> {
+        let paint = Paint::new(&outline.color, outline.shade, strokes);
+        let covered = self.outlined(strokes, outline);
+        Box::new(move |cell| cell.cover(&paint, covered(cell.i)))
+    }
+
+    /// How much a line along rims covers each pixel.
+    pub fn outlined<'a>(&'a self, strokes: &Force, outline: &'a Outline) -> impl Fn(usize) -> f64 + Sync + 'a {
         let crease = outline.creases.map(|degrees| cos(degrees.to_radians()));
         let rim = self.pixels.rim(&Rules { step_px: outline.step * self.scale, crease });
         let away = distances(self.pixels.size_px, &rim);
         let noise = outline.noise.as_ref().and_then(|name| self.noises.get(name));
-        let paint = Paint::new(&outline.color, outline.shade, strokes);
         // A hard edge is the limit of a soft one.
         let soft = (outline.softness * self.scale).max(1e-9);
         let half = outline.width * strokes.size * self.scale / 2.0;
-        Box::new(move |cell| {
-            let x = noise.map_or(0.0, |noise| f64::from(noise.value[cell.i]));
-            let inside = half * (1.0 + outline.vary * x) - away[cell.i];
-            cell.cover(&paint, outline.opacity * (inside / soft + 0.5).clamp(0.0, 1.0));
-        })
+        move |i| {
+            let x = noise.map_or(0.0, |noise| f64::from(noise.value[i]));
+            let inside = half * (1.0 + outline.vary * x) - away[i];
+            outline.opacity * (inside / soft + 0.5).clamp(0.0, 1.0)
+        }
     }
 
     /// How a value grows to the right and down: the mean of the differences to the pixels of the layer on both sides.

@@ -3,9 +3,9 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::aim::{Aim, Follows, Grows};
-use super::impulse::{Recipe, impulses};
+use super::impulse::{Impulse, Recipe, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
-use super::sum::{Noise, Shown, Trim, sum};
+use super::sum::{Noise, Shown, Trim, covers, sum};
 use super::surface::Surface;
 use super::synth::{Codes, Ready, SMOOTH, is_set};
 use super::{Given, even, flat, grid, visible};
@@ -57,6 +57,27 @@ impl<'a> Scene<'a> {
             let count = self.given.triangle.len();
             return Noise { value: vec![0.0; count], share: vec![0.0; count] };
         }
+        self.aimed(wanted, |anchor, aim| self.made(wanted, anchor, aim))
+    }
+
+    /// The impulses of one of its noises that reach a pixel; `None` for a texture, which has none in the frame.
+    pub fn reaching(&self, wanted: &Wanted, (x, y): (usize, usize)) -> Option<Vec<Impulse>> {
+        let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let (points, trim) = self.impulses(wanted)?;
+        let reaches = |impulse: &Impulse| {
+            let away = (impulse.at - at).abs();
+            away.max_element() < impulse.radius_px && covers(&self.shown, trim, impulse, (x, y)) > 0.0
+        };
+        Some(points.into_iter().filter(reaches).collect())
+    }
+
+    /// All impulses of one of its noises, and what their kernels cover; `None` for a texture.
+    pub fn impulses(&self, wanted: &Wanted) -> Option<(Vec<Impulse>, Trim)> {
+        self.aimed(wanted, |anchor, aim| self.points(wanted, anchor, aim))
+    }
+
+    /// Makes something of the anchor of a noise and how its impulses run.
+    fn aimed<R>(&self, wanted: &Wanted, make: impl FnOnce(Anchor, &Aim) -> R) -> R {
         let strokes = &self.ready.strokes;
         let direction = wanted.direction.as_ref().unwrap_or(&strokes.direction);
         let anchor = wanted.anchor.unwrap_or(strokes.anchor);
@@ -87,20 +108,24 @@ impl<'a> Scene<'a> {
         };
         let turn = (direction.turn + wanted.turn).to_radians();
         let aim = Aim { along, angle: direction.angle.to_radians(), turn, vary: vary.map(by) };
-        self.made(wanted, anchor, &aim)
+        make(anchor, &aim)
     }
 
-    fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {
-        let (strokes, shown) = (&self.ready.strokes, &self.shown);
+    fn recipe(&self, wanted: &Wanted) -> Recipe {
         let spacing_px = self.spacing_px(wanted);
-        let recipe = Recipe {
-            key: Recipe::key(strokes.seed, self.drawing, wanted.seed),
+        Recipe {
+            key: Recipe::key(self.ready.strokes.seed, self.drawing, wanted.seed),
             spacing_px,
             radius_px: spacing_px * wanted.regularity,
             overlap: wanted.overlap,
             spread: wanted.spread.to_radians(),
-        };
-        let mut found = match anchor {
+        }
+    }
+
+    /// The impulses of a noise, and what their kernels cover; `None` for a texture.
+    fn points(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Option<(Vec<Impulse>, Trim)> {
+        let (shown, recipe) = (&self.shown, self.recipe(wanted));
+        match anchor {
             Anchor::Surface => {
                 let mut points = impulses(&self.surface, &recipe, aim);
                 let trim = match wanted.trim {
@@ -111,18 +136,24 @@ impl<'a> Scene<'a> {
                         Trim::Object
                     }
                 };
-                sum(shown, &points, wanted.overlap, trim)
+                Some((points, trim))
             }
-            Anchor::Screen => {
-                sum(shown, &grid::impulses(shown.size_px, &recipe, aim.drawn()), wanted.overlap, Trim::Object)
-            }
-            Anchor::Texture => {
+            Anchor::Screen => Some((grid::impulses(shown.size_px, &recipe, aim.drawn()), Trim::Object)),
+            Anchor::Texture => None,
+        }
+    }
+
+    fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {
+        let shown = &self.shown;
+        let mut found = match self.points(wanted, anchor, aim) {
+            Some((points, trim)) => sum(shown, &points, wanted.overlap, trim),
+            None => {
                 let px_per_m = self.ready.px_per_m * self.scale;
-                flat::sum(&self.surface, shown, &recipe, aim, px_per_m, wanted.reach)
+                flat::sum(&self.surface, shown, &self.recipe(wanted), aim, px_per_m, wanted.reach)
             }
         };
         if wanted.even {
-            even::even(shown.size_px, shown.triangle, spacing_px, &mut found);
+            even::even(shown.size_px, shown.triangle, self.spacing_px(wanted), &mut found);
         }
         found
     }

@@ -237,6 +237,11 @@ fn reached(middle: f64, radius: f64, of: &Range<usize>) -> Range<usize> {
     within(from)..within(to)
 }
 
+/// How much of a kernel a pixel shows.
+pub fn covers(shown: &Shown, trim: Trim, impulse: &Impulse, (x, y): (usize, usize)) -> f32 {
+    trimmed(shown, trim, impulse, y, x..x + 1).next().unwrap_or(0.0)
+}
+
 /// How much of a kernel the pixels of a row show.
 fn trimmed(shown: &Shown, trim: Trim, impulse: &Impulse, y: usize, columns: Range<usize>) -> impl Iterator<Item = f32> {
     let row = y * shown.size_px.0;
