@@ -77,7 +77,6 @@ impl Synth {
     }
 
     /// The same, seen by another camera.
-    #[cfg(feature = "window")]
     pub fn seen_from(&self, camera: Camera) -> Synth {
         let stage = Stage { camera: Some(camera), ..(*self.stage).clone() };
         Synth { stage: Arc::new(stage), ..self.clone() }

@@ -11,7 +11,7 @@ use super::{Synth, cpu, whole};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
 use crate::base::problem::{nearest, quoted};
 use crate::layers::KINDS;
-use crate::layers::parts::moment::Columns;
+use crate::layers::parts::moment::{Columns, Space};
 use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass, Which};
 use crate::layers::ready::Still;
 use crate::layers::technique::Technique;
@@ -124,9 +124,14 @@ impl Asked {
 
 /// Whether a layer, or the one with this index, has something in a pass.
 fn is_shown(pass: &Pass, layer: Option<usize>, scene: &Scene) -> bool {
+    let textures = scene.textures();
     let mut layers = scene.layers.iter().enumerate().filter(|(i, _)| layer.is_none_or(|only| only == *i));
-    let has = |layer: &dyn Technique| layer.kind().passes.contains(pass) && layer.has_pass(pass);
-    PASSES.contains(&pass) || layers.any(|(_, layer)| has(layer.technique()))
+    let common = PASSES.contains(&pass);
+    let has = |layer: &dyn Technique| match common {
+        true => layer.kind().space == Space::World,
+        false => layer.kind().passes.contains(pass) && layer.has_pass(pass),
+    };
+    *pass == COLOR || layers.any(|(i, layer)| has(layer.technique()) && !textures.contains(&i))
 }
 
 /// These rows of a pass, other than color: of the topmost group that covers a pixel, its nearest surface.

@@ -36,8 +36,10 @@ impl Edit {
         {
             return turn(document, parent, holder, (last.as_str(), name, variant));
         }
+        let users = layer_users(document, path).map(|user| Edit::replace(&user, value.clone()));
+        let users: Vec<Edit> = users.collect();
         let others = others(document, path, &value).map(|other| Edit::remove(&other));
-        (Edit::all(std::iter::once(write(document, path, value)).chain(others)), None)
+        (Edit::all(std::iter::once(write(document, path, value.clone())).chain(others).chain(users)), None)
     }
 
     /// Removes what is written at `path`.
@@ -97,6 +99,14 @@ impl Edit {
         let place = Place::of(document.json(), path)?;
         Some(write(document, path, Fresh::at(document, path).value(place.shape)))
     }
+}
+
+/// The places that name a layer whose own name is at `path`: it is renamed everywhere.
+fn layer_users<'a>(document: &'a Document, path: &'a str) -> impl Iterator<Item = String> + 'a {
+    let layer = Pointer(path).item_of("/layers").filter(|(_, way)| *way == "/name");
+    let layer = layer.and_then(|(index, _)| document.scene().layers.get(index));
+    let name = layer.map(|layer| layer.technique().name());
+    name.into_iter().flat_map(|name| document.scene().users_of(List::Layers, name))
 }
 
 /// Removes an optional value; where something stands there all the same, as what a style has, `null` is written if that
@@ -201,7 +211,8 @@ fn write_at(document: &Document, path: &str, value: Value) -> Edit {
         _ => {
             let Some(place) = Place::of(json, parent) else { return Edit::add(path, value) };
             let fresh = Fresh::at(document, parent);
-            let default = place.value.filter(|value| !value.is_null());
+            let standing = field::in_force(document, parent);
+            let default = place.value.filter(|value| !value.is_null()).or(standing.as_ref());
             // Half of a size alone would make a frame that is one pixel wide or high.
             let frame = (parent == "/size").then(|| json!([FRAME.0, FRAME.1]));
             let default = default.or(frame.as_ref());

@@ -1,11 +1,11 @@
 //! Fields for people: what a form, a line of help and completion need to know about one place in a document. Made from
 //! the schema alone.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::Document;
 use super::json_schema::range_text;
 use super::schema::{Body, Place, Shape};
+use super::{Document, FRAME};
 use crate::base::pointer::{self, Pointer};
 use crate::layers::technique::Technique;
 
@@ -128,8 +128,16 @@ pub fn layer_of<'a>(document: &'a Document, pointer: &'a str) -> Option<(&'a dyn
     Some((document.scene().layers.get(index)?.technique(), way))
 }
 
-/// The value that its layer has for a place, if that is not in the schema.
+/// The value that its layer, or the scene, has for a place, if that is not in the schema.
 pub fn in_force(document: &Document, pointer: &str) -> Option<Value> {
+    let scene = document.scene();
+    if let Some(way) = pointer.strip_prefix("/camera") {
+        return scene.camera.as_ref()?.automatic(way);
+    }
+    if pointer == "/size" {
+        let sized = scene.layers.iter().any(|layer| layer.technique().frame_of().is_some());
+        return (!sized).then(|| json!([FRAME.0, FRAME.1]));
+    }
     let (layer, way) = layer_of(document, pointer)?;
     layer.automatic(way)
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::eye::Eye;
 use crate::base::geometry::Xyz;
@@ -115,6 +115,18 @@ impl Camera {
         ([position, target, up], fov)
     }
 
+    /// What stands for a field of a key that does not name it: what the other keys say at its time.
+    pub fn automatic(&self, path: &str) -> Option<Value> {
+        let (index, field) = path.strip_prefix("/keys/")?.split_once('/')?;
+        let at = self.keys.get(index.parse::<usize>().ok()?)?.at;
+        match field {
+            "position" => Some(json!(self.components(at, self.position, |key| key.position))),
+            "target" => Some(json!(self.components(at, self.target, |key| key.target))),
+            "fov" => Some(json!(self.components(at, [self.fov], |key| key.fov.map(|fov| [fov]))[0])),
+            _ => None,
+        }
+    }
+
     /// How many pixels of a frame of this size a meter at its target is, at the beginning.
     pub fn px_per_m(&self, size: (usize, usize)) -> f64 {
         let ([position, target, _], _) = self.view(0.0);
@@ -206,6 +218,22 @@ mod tests {
             assert!((found - DVec3::from(position)).length() < 1e-12, "{t}: {found}");
             assert_eq!((target, found_fov), (DVec3::new(0.0, 0.8, 0.0), fov), "{t}");
         }
+    }
+
+    #[test]
+    fn what_a_key_does_not_name_is_what_the_others_say() {
+        let camera = camera(
+            r#"{"target": [0, 1, 0], "between": "linear", "keys": [{"at": 0, "position": [0, 1, 4]}, {"at": 0.5, "fov": 20},
+                {"at": 1, "position": [2, 1, 4]}]}"#,
+        );
+        for (path, expected) in [
+            ("/keys/1/position", json!([1.0, 1.0, 4.0])),
+            ("/keys/1/target", json!([0.0, 1.0, 0.0])),
+            ("/keys/0/fov", json!(20.0)),
+        ] {
+            assert_eq!(camera.automatic(path), Some(expected), "{path}");
+        }
+        assert_eq!((camera.automatic("/keys/3/fov"), camera.automatic("/fov")), (None, None));
     }
 
     #[test]

@@ -65,10 +65,20 @@ impl App {
         self.pointed();
     }
 
+    /// Learns which keys are held with the mouse while somebody else has the keyboard, as the editor mostly has.
+    fn look_at_keys(&mut self) {
+        if let Some((shift, alt)) = self.opened.as_ref().and_then(Opened::held_elsewhere) {
+            self.mouse.hold(Held { alt, shift });
+        }
+    }
+
     /// A button of the mouse goes down or up.
     fn press(&mut self, event_loop: &ActiveEventLoop, button: Button, pressed: bool) {
         let mut asked = Asked::Nothing;
-        self.opened.iter().filter(|_| pressed).for_each(Opened::clicked);
+        if pressed {
+            self.look_at_keys();
+            self.opened.iter().for_each(Opened::clicked);
+        }
         self.leading(|app| {
             asked = match pressed {
                 true => app.mouse.pressed(&mut app.state, button),
@@ -96,6 +106,7 @@ impl App {
     }
 
     fn wheel(&mut self, delta: MouseScrollDelta) {
+        self.look_at_keys();
         let steps = match delta {
             MouseScrollDelta::PixelDelta(by) => by.y / WHEEL_PX,
             MouseScrollDelta::LineDelta(_, 0.0) => return,

@@ -99,6 +99,11 @@ impl Opened {
         self.desk.iter().for_each(Desk::take_the_keyboard);
     }
 
+    /// Whether Shift, and whether Alt or Ctrl, are held, if somebody else has the keyboard and that can be known.
+    pub fn held_elsewhere(&self) -> Option<(bool, bool)> {
+        self.desk.as_ref().filter(|_| !self.window.has_focus())?.held()
+    }
+
     /// See [`Desk::wheel_is_a_button`].
     pub fn wheel_is_a_button(&self) -> bool {
         self.desk.as_ref().is_some_and(Desk::wheel_is_a_button)

@@ -4,7 +4,7 @@
 use winit::raw_window_handle::{HasWindowHandle, RawWindowHandle};
 use winit::window::Window;
 use x11rb::protocol::xinput::{ConnectionExt as _, DeviceClassData, DeviceType};
-use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, InputFocus, MapState, PropMode};
+use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, InputFocus, KeyButMask, MapState, PropMode};
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
@@ -57,6 +57,14 @@ impl Desk {
         if let Err(error) = ask() {
             tracing::info!("the window may have no keyboard: {error}");
         }
+    }
+
+    /// Whether Shift, and whether Alt or Ctrl, are held: who has the keyboard is told, but a window may be dragged in
+    /// without it.
+    pub fn held(&self) -> Option<(bool, bool)> {
+        let held = u16::from(self.server.query_pointer(self.window).ok()?.reply().ok()?.mask);
+        let is_held = |key: KeyButMask| held & u16::from(key) != 0;
+        Some((is_held(KeyButMask::SHIFT), is_held(KeyButMask::MOD1) || is_held(KeyButMask::CONTROL)))
     }
 
     /// Whether the window is there to be seen: neither minimised nor on another desktop.

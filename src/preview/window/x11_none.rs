@@ -22,6 +22,11 @@ impl Desk {
     }
 
     /// See `x11.rs`.
+    pub fn held(&self) -> Option<(bool, bool)> {
+        match *self {}
+    }
+
+    /// See `x11.rs`.
     pub fn is_seen(&self) -> bool {
         match *self {}
     }

@@ -231,7 +231,7 @@ fn delete(state: &mut State, call: &Call) -> Done {
     if edits.is_empty() {
         return Err(targets.first().and_then(|target| kept(state.document(), target)).unwrap_or(NOTHING.into()));
     }
-    pointers.iter().try_for_each(|pointer| unused(state.document(), pointer))?;
+    pointers.iter().try_for_each(|pointer| unused(state.document(), pointer, &pointers))?;
     let top = *state.cursor.rows().start();
     state.edit(Edit::all(edits), false)?;
     if state.cursor.selected_from.take().is_some() {
@@ -380,10 +380,14 @@ fn reorder(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Refuses to delete a picture, a mesh or a clip that is used.
-fn unused(document: &Document, path: &str) -> Done {
-    let Some((list, name)) = List::entry(path) else { return Ok(()) };
-    let users = document.scene().users_of(list, &name);
+/// Refuses to delete a picture, a mesh, a clip or a layer that is used.
+fn unused(document: &Document, path: &str, deleted: &[String]) -> Done {
+    let layer = Pointer(path).item_of("/layers").filter(|(_, way)| way.is_empty());
+    let layer = layer.and_then(|(index, _)| document.scene().layers.get(index));
+    let layer = layer.map(|layer| (List::Layers, layer.technique().name().to_owned()));
+    let Some((list, name)) = List::entry(path).or(layer) else { return Ok(()) };
+    let stays = |user: &String| !deleted.iter().any(|path| Pointer(user).is_within(path));
+    let users = document.scene().users_of(list, &name).filter(stays);
     let users: Vec<String> = users.map(|path| address::address(document, &path)).collect();
     match users.as_slice() {
         [] => Ok(()),

@@ -1,4 +1,4 @@
-//! Renames items that have a name; and images, meshes and clips, to which others refer by name.
+//! Renames items that have a name; and images, meshes and clips, to which others refer by name, as they do to layers.
 
 use super::command::{Call, Command, Done, command};
 use super::items::{go_to, target};
@@ -10,9 +10,13 @@ use crate::tui::state::{Mode, State};
 use crate::tui::text::line::Line;
 use crate::tui::text::said::unquoted;
 
-pub const COMMANDS: &[Command] =
-    &[command("rename", "[NAME]", "Rename the node or row; an image, a mesh or a clip is renamed everywhere", rename)
-        .change()];
+pub const COMMANDS: &[Command] = &[command(
+    "rename",
+    "[NAME]",
+    "Rename the node or row; an image, a mesh, a clip or a layer is renamed everywhere",
+    rename,
+)
+.change()];
 
 fn rename(state: &mut State, call: &Call) -> Done {
     let path = target(state)?;

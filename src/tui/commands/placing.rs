@@ -5,7 +5,7 @@ use kurbo::{Point, Vec2};
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
 use crate::base::problem::quoted;
-use crate::render::overlay;
+use crate::render::{overlay, passes};
 use crate::scene::address;
 use crate::tui::events::Effect;
 use crate::tui::layout::picture;
@@ -102,15 +102,27 @@ fn dropped(state: &mut State, call: &Call, dragged: &str) -> Done {
 /// Why a window's mouse changes nothing.
 const BUSY: &str = "something is being typed or chosen: end that first (Esc)";
 
-/// Goes to what is at a place of the picture: an anchor near it, else the zone.
+/// Goes to what is at a place of the picture: an anchor near it, else the zone; else the layer in space that is seen there.
 fn select(state: &mut State, call: &Call, at: Point) -> Done {
     if !matches!(state.typing.mode, Mode::Normal) {
         return Err(BUSY.into());
     }
     let (width, height) = state.picture.size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
-    let hit = overlay::pick(state.document().scene(), at, reach_px).ok_or("there is nothing to select there")?;
-    call.obey(state, &format!("go {}{}", hit.path, hit.cell))
+    match overlay::pick(state.document().scene(), at, reach_px) {
+        Some(hit) => call.obey(state, &format!("go {}{}", hit.path, hit.cell)),
+        None => {
+            let layer = seen_at(state, at).ok_or("there is nothing to select there")?;
+            call.obey(state, &format!("go /layers/{layer}"))
+        }
+    }
+}
+
+/// The layer in space that a window shows at a place of the picture.
+fn seen_at(state: &State, at: Point) -> Option<usize> {
+    let synth = state.picture.synth.as_ref()?;
+    let own = state.outside.camera.clone().map(|camera| synth.seen_from(camera));
+    passes::topmost(own.as_ref().unwrap_or(synth), state.play.time, (at.x as usize, at.y as usize))
 }
 
 /// In an entry, types the coordinate of the window's pointer. Otherwise moves the picture's cursor there, and unless the point

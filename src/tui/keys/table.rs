@@ -53,11 +53,7 @@ pub static KEYS: LazyLock<Vec<KeyRow>> = LazyLock::new(|| {
 
 /// The rows of the window's view menu for which the editor has no command of its own: key, line and help.
 static OF_WINDOW: LazyLock<Vec<[String; 3]>> = LazyLock::new(|| {
-    let made = |row: &KeyRow| {
-        let [first, rest] = row.help.split_at(1).into();
-        let help = format!("Window: {}{rest}", first.to_lowercase());
-        [format!("z {}", row.key), format!("view {}", row.command), help]
-    };
+    let made = |row: &KeyRow| [format!("z {}", row.key), format!("view {}", row.command), row.help.to_owned()];
     let rows = window::KEYS.iter().filter(|row| row.context == window::VIEW).map(made);
     rows.filter(|[key, ..]| OWN.iter().all(|own| own.context != EVERYWHERE || own.key != *key)).collect()
 });

@@ -23,6 +23,7 @@ pub mod picking;
 mod picture;
 mod profiles;
 mod screens;
+mod space;
 pub mod support;
 mod table;
 mod told;
