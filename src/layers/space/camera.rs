@@ -3,10 +3,11 @@
 use glam::{DMat3, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::eye::Eye;
 use crate::base::geometry::Xyz;
+use crate::base::number;
 use crate::base::problem::Problem;
 use crate::base::text::short;
 use crate::layers::check;
@@ -119,10 +120,11 @@ impl Camera {
     pub fn automatic(&self, path: &str) -> Option<Value> {
         let (index, field) = path.strip_prefix("/keys/")?.split_once('/')?;
         let at = self.keys.get(index.parse::<usize>().ok()?)?.at;
+        let place = |at: Xyz| at.map(number::json).into_iter().collect();
         match field {
-            "position" => Some(json!(self.components(at, self.position, |key| key.position))),
-            "target" => Some(json!(self.components(at, self.target, |key| key.target))),
-            "fov" => Some(json!(self.components(at, [self.fov], |key| key.fov.map(|fov| [fov]))[0])),
+            "position" => Some(place(self.components(at, self.position, |key| key.position))),
+            "target" => Some(place(self.components(at, self.target, |key| key.target))),
+            "fov" => Some(number::json(self.components(at, [self.fov], |key| key.fov.map(|fov| [fov]))[0])),
             _ => None,
         }
     }
@@ -199,6 +201,8 @@ fn view_problem([position, target, up]: [DVec3; 3]) -> Option<(&'static str, &'s
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     fn camera(json: &str) -> Camera {
@@ -226,11 +230,9 @@ mod tests {
             r#"{"target": [0, 1, 0], "between": "linear", "keys": [{"at": 0, "position": [0, 1, 4]}, {"at": 0.5, "fov": 20},
                 {"at": 1, "position": [2, 1, 4]}]}"#,
         );
-        for (path, expected) in [
-            ("/keys/1/position", json!([1.0, 1.0, 4.0])),
-            ("/keys/1/target", json!([0.0, 1.0, 0.0])),
-            ("/keys/0/fov", json!(20.0)),
-        ] {
+        for (path, expected) in
+            [("/keys/1/position", json!([1, 1, 4])), ("/keys/1/target", json!([0, 1, 0])), ("/keys/0/fov", json!(20))]
+        {
             assert_eq!(camera.automatic(path), Some(expected), "{path}");
         }
         assert_eq!((camera.automatic("/keys/3/fov"), camera.automatic("/fov")), (None, None));

@@ -70,6 +70,6 @@ fn a_click_on_a_mesh_goes_to_its_layer() {
         run(&mut state, "go layers.0");
         update(&mut state, said(ToEditor::Pointer { x, y: 400.0 }));
         update(&mut state, said(ToEditor::Command("select-point".into())));
-        assert_eq!(state.focused(), expected, "{:?}", state.message);
+        assert!(state.focused().starts_with(expected), "{}: {:?}", state.focused(), state.message);
     }
 }
