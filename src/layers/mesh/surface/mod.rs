@@ -3,6 +3,7 @@
 pub mod layer;
 pub mod plain;
 pub mod texture;
+pub mod view_map;
 
 use std::fmt::Debug;
 use std::sync::Arc;
