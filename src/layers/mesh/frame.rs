@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::model::Sides;
 use super::pose::Placed;
 use super::strokes::{self, Given};
-use super::surface::StillSurface;
+use super::surface::{Place, Reader, StillSurface};
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
@@ -111,7 +111,7 @@ impl<'a> Seen<'a> {
         let place = if moment.magnified > 1 { CENTRE } else { synth.place };
         let view = View::new(&synth.mesh, synth.sides, &placed, place, moment);
         let light = (synth.light.toward(), synth.light.ambient);
-        Seen { synth, moment, placed, view, light, surface: synth.surface.at(moment), alone: OnceLock::new() }
+        Seen { synth, moment, placed, view, light, surface: synth.surface.at(moment, &placed), alone: OnceLock::new() }
     }
 
     /// How much light falls on a spot.
@@ -121,9 +121,9 @@ impl<'a> Seen<'a> {
     }
 
     /// The light that a spot sends to the camera: linear, premultiplied.
-    fn shaded(&self, spot: &Spot) -> Rgba {
+    fn shaded(&self, spot: &Spot, reader: &mut Reader) -> Rgba {
         let light = self.lit(spot);
-        let [r, g, b, a] = self.surface.color(spot.uv);
+        let [r, g, b, a] = reader(&Place { hit: spot.hit, position: spot.position, uv: spot.uv });
         [r * light, g * light, b * light, a]
     }
 
@@ -150,10 +150,11 @@ impl<'a> Seen<'a> {
         let cells = cells.zip(given.shaded.par_chunks_mut(width)).zip(given.light.par_chunks_mut(width));
         cells.enumerate().for_each(|(y, (((triangle, normal), shaded), light))| {
             let layer = &surfaces.layer[y * width..];
+            let mut reader = self.surface.reader();
             self.view.row_of(y, Columns::All, &mut vec![f64::INFINITY; width], |x, spot| {
                 if layer[x] == surfaces.own {
                     (triangle[x], normal[x]) = (spot.hit.triangle as u32, spot.normal.as_vec3());
-                    (shaded[x], light[x]) = (self.shaded(&spot), self.lit(&spot));
+                    (shaded[x], light[x]) = (self.shaded(&spot, &mut reader), self.lit(&spot));
                 }
             });
         });
@@ -206,17 +207,19 @@ impl Still for Seen<'_> {
     }
 
     fn surface(&self, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
-        self.view.row_of(y, columns, depth, |cell, spot| out[cell] = self.shaded(&spot));
+        let mut reader = self.surface.reader();
+        self.view.row_of(y, columns, depth, |cell, spot| out[cell] = self.shaded(&spot, &mut reader));
     }
 
     fn pass(&self, pass: &Pass, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
+        let mut reader = self.surface.reader();
         self.view.row_of(y, columns, depth, |cell, spot| {
             let [x, y, z] = match pass.name {
                 name if name == pass::DEPTH.name => [spot.hit.depth; 3],
                 name if name == pass::NORMAL.name => spot.normal.to_array(),
                 name if name == pass::UV.name => [spot.uv.x, spot.uv.y, spot.hit.triangle as f64 + 1.0],
                 name if name == pass::SHADE.name => {
-                    out[cell] = self.shaded(&spot);
+                    out[cell] = self.shaded(&spot, &mut reader);
                     return;
                 }
                 _ => return,

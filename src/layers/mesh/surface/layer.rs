@@ -7,10 +7,11 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ReadySurface, Slot, StillSurface, place};
+use super::{Reader, ReadySurface, Slot, StillSurface, place};
 use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
+use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::plan::{Bind, Drawn};
@@ -50,7 +51,7 @@ impl Shown {
 }
 
 impl ReadySurface for Shown {
-    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn StillSurface + 'a> {
+    fn at<'a>(&'a self, moment: &'a Moment, _placed: &Placed) -> Box<dyn StillSurface + 'a> {
         let own = self.moment(moment);
         let still = self.0.layer.at(&own);
         let (width, height) = self.0.size_px;
@@ -85,9 +86,15 @@ impl ReadySurface for Shown {
 /// The layer's picture at one time.
 struct Still(Linear);
 
-impl StillSurface for Still {
+impl Still {
     fn color(&self, uv: DVec2) -> Rgba {
         let size = (self.0.width(), self.0.height());
         bilinear_repeated(size, place(uv, size), |i| self.0.cells()[i])
+    }
+}
+
+impl StillSurface for Still {
+    fn reader(&self) -> Reader<'_> {
+        Box::new(|place| self.color(place.uv))
     }
 }

@@ -8,17 +8,19 @@ pub mod view_map;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
+use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::materials::Use;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Bind;
 use crate::layers::ready::Making;
+use crate::layers::space::raster::Hit;
 
 /// What the surface of a mesh shows, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -75,8 +77,8 @@ pub trait Slot {
 
 /// A surface ready for any time.
 pub trait ReadySurface: Debug + Send + Sync {
-    /// The surface at one time, on the CPU: the reference.
-    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn StillSurface + 'a>;
+    /// The surface of a mesh that is placed so, at one time, on the CPU: the reference.
+    fn at<'a>(&'a self, moment: &'a Moment, placed: &Placed) -> Box<dyn StillSurface + 'a>;
 
     /// The same for the GPU: a color that counts where the picture is not used, and the picture.
     fn plan(&self, moment: &Moment) -> (Rgba, Option<Bind>);
@@ -95,8 +97,22 @@ pub trait ReadySurface: Debug + Send + Sync {
 
 /// A surface at one time.
 pub trait StillSurface: Sync {
-    /// Its color at a place, before light falls on it: linear light, premultiplied.
-    fn color(&self, uv: DVec2) -> Rgba;
+    /// What tells its color at one place after the other, before light falls on it: linear light, premultiplied.
+    fn reader(&self) -> Reader<'_>;
+}
+
+/// Tells the color of a surface at a place.
+pub type Reader<'a> = Box<dyn FnMut(&Place) -> Rgba + 'a>;
+
+/// A place on a surface as a pixel shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The triangle, and where on it.
+    pub hit: Hit,
+    /// The place in the world.
+    pub position: DVec3,
+    /// The texture coordinates.
+    pub uv: DVec2,
 }
 
 /// The place of texture coordinates in a picture of this width and height, in pixels: v = 0 is its bottom edge.

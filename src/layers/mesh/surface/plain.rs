@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ReadySurface, Slot, StillSurface};
+use super::{Reader, ReadySurface, Slot, StillSurface};
 use crate::base::color;
 use crate::base::pixels::{Rgba, decode};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::check;
+use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Bind;
 use crate::layers::ready::Making;
@@ -45,7 +45,7 @@ impl Slot for Plain {
 struct Paint(Rgba);
 
 impl ReadySurface for Paint {
-    fn at<'a>(&'a self, _moment: &'a Moment) -> Box<dyn StillSurface + 'a> {
+    fn at<'a>(&'a self, _moment: &'a Moment, _placed: &Placed) -> Box<dyn StillSurface + 'a> {
         Box::new(*self)
     }
 
@@ -63,7 +63,7 @@ impl ReadySurface for Paint {
 }
 
 impl StillSurface for Paint {
-    fn color(&self, _uv: DVec2) -> Rgba {
-        self.0
+    fn reader(&self) -> Reader<'_> {
+        Box::new(|_| self.0)
     }
 }

@@ -6,11 +6,12 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ReadySurface, Slot, StillSurface, place};
+use super::{Reader, ReadySurface, Slot, StillSurface, place};
 use crate::base::picture::Picture;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
+use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Bind;
@@ -43,7 +44,7 @@ impl Slot for Texture {
 struct Image(Arc<Picture>);
 
 impl ReadySurface for Image {
-    fn at<'a>(&'a self, _moment: &'a Moment) -> Box<dyn StillSurface + 'a> {
+    fn at<'a>(&'a self, _moment: &'a Moment, _placed: &Placed) -> Box<dyn StillSurface + 'a> {
         Box::new(Still(&self.0))
     }
 
@@ -66,10 +67,16 @@ impl ReadySurface for Image {
 
 struct Still<'a>(&'a Picture);
 
-impl StillSurface for Still<'_> {
+impl Still<'_> {
     fn color(&self, uv: DVec2) -> Rgba {
         let (x, y) = place(uv, (self.0.width(), self.0.height()));
         self.0.read_repeated(x, y)
+    }
+}
+
+impl StillSurface for Still<'_> {
+    fn reader(&self) -> Reader<'_> {
+        Box::new(|place| self.color(place.uv))
     }
 }
 
