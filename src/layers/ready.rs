@@ -81,10 +81,14 @@ pub trait Ready: Any + Debug + Send + Sync {
         None
     }
 
-    /// Whether something is drawn on its surfaces: that needs all of a frame at once ([`Still::strokes`]), and the GPU
-    /// cannot do it yet.
+    /// Whether something is drawn on its surfaces: that needs all of a frame at once ([`Still::strokes`]).
     fn has_strokes(&self) -> bool {
         false
+    }
+
+    /// Whether the CPU alone can draw it.
+    fn by_cpu(&self) -> bool {
+        self.has_strokes()
     }
 
     /// The same layer with nothing that moves.

@@ -54,9 +54,14 @@ impl Synth {
         self.stage.moment(t, self.size)
     }
 
-    /// Whether it has what the CPU alone can draw.
+    /// Whether it has strokes.
     pub fn has_strokes(&self) -> bool {
         self.layers.iter().any(|layer| layer.has_strokes())
+    }
+
+    /// Whether it has what the CPU alone can draw.
+    pub fn by_cpu(&self) -> bool {
+        self.layers.iter().any(|layer| layer.by_cpu())
     }
 
     /// Bytes that its strokes need while a frame is drawn, with so many samples a pixel in each direction.
@@ -113,7 +118,12 @@ pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> 
 /// As [`synth`].
 pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth>, Problem> {
     let textures = textures(scene, materials, None)?;
-    places(n).map(|place| synth_at(scene, (materials, &textures, place), None)).collect()
+    let mut made: Vec<Synth> = Vec::new();
+    for place in places(n) {
+        let next = synth_at(scene, (materials, &textures, place), made.last())?;
+        made.push(next);
+    }
+    Ok(made)
 }
 
 /// The places of the n x n samples in a pixel.

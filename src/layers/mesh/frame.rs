@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::model::Sides;
 use super::pose::Placed;
 use super::strokes::{self, Given};
-use super::surface::{Place, Reader, StillSurface};
+use super::surface::{self, Place, Reader, StillSurface};
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
@@ -55,6 +55,11 @@ impl Spot {
             spot.normal = -spot.normal;
         }
         spot
+    }
+
+    /// The place on the surface.
+    fn place(&self) -> Place {
+        Place { hit: self.hit, position: self.position, uv: self.uv }
     }
 }
 
@@ -122,8 +127,8 @@ impl<'a> Seen<'a> {
 
     /// The light that a spot sends to the camera: linear, premultiplied.
     fn shaded(&self, spot: &Spot, reader: &mut Reader) -> Rgba {
-        let light = self.lit(spot);
-        let [r, g, b, a] = reader(&Place { hit: spot.hit, position: spot.position, uv: spot.uv });
+        let light = if self.surface.is_lit() { self.lit(spot) } else { 1.0 };
+        let [r, g, b, a] = reader(&spot.place());
         [r * light, g * light, b * light, a]
     }
 
@@ -212,6 +217,12 @@ impl Still for Seen<'_> {
     }
 
     fn pass(&self, pass: &Pass, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
+        if surface::PASSES.contains(pass) {
+            // Other surfaces have nothing there, and hide what is behind them.
+            let mut reader = self.surface.pass(pass);
+            let mut read = |spot: &Spot| reader.as_mut().map_or([0.0; 4], |reader| reader(&spot.place()));
+            return self.view.row_of(y, columns, depth, |cell, spot| out[cell] = read(&spot));
+        }
         let mut reader = self.surface.reader();
         self.view.row_of(y, columns, depth, |cell, spot| {
             let [x, y, z] = match pass.name {

@@ -37,7 +37,14 @@ pub static KIND: Kind = Kind {
     bundle: None,
     counted: &[],
     overlays: marks::OVERLAYS,
-    passes: &[strokes::passes::NOISE, strokes::passes::TONE, strokes::passes::INK],
+    passes: &[
+        strokes::passes::NOISE,
+        strokes::passes::TONE,
+        strokes::passes::INK,
+        surface::PASSES[0],
+        surface::PASSES[1],
+        surface::PASSES[2],
+    ],
     looks: marks::LOOKS,
     template: Some(Template { of: List::Meshes, layer: template }),
     // A new mark needs no noise.

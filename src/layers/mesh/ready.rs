@@ -30,6 +30,10 @@ impl Ready for Synth {
         self.strokes.is_some()
     }
 
+    fn by_cpu(&self) -> bool {
+        self.has_strokes() || self.surface.by_cpu()
+    }
+
     fn plan(&self, moment: &Moment) -> Plan {
         plan::plan(self, moment)
     }

@@ -41,8 +41,9 @@ impl Synth {
     /// If the mesh, or what its surface or its strokes name, is not there; the problem's path is relative to the layer.
     pub fn new(layer: &MeshLayer, making: &Making, previous: Option<&Synth>) -> Result<Synth, Problem> {
         let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
-        let surface = layer.surface.slot().synth(making).map_err(|problem| problem.under("/surface"))?;
         let before = previous.filter(|previous| Arc::ptr_eq(&previous.mesh, &mesh));
+        let shown = layer.surface.slot().synth(&mesh, making, before.map(|previous| &*previous.surface));
+        let surface = shown.map_err(|problem| problem.under("/surface"))?;
         let before = before.and_then(|previous| previous.strokes.as_deref());
         let ready = |own: &Strokes| strokes::Ready::new(own, &mesh, making, before).map(Arc::new);
         let strokes = layer.strokes.as_ref().map(ready).transpose().map_err(|problem| problem.under("/strokes"))?;

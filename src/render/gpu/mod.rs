@@ -115,10 +115,10 @@ impl Gpu {
         Ok((first, second))
     }
 
-    /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once. Strokes are the CPU's work, and so
-    /// is all of a frame that has them.
+    /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once. What the CPU alone can draw
+    /// makes all of a frame its work.
     pub fn frame(&mut self, synth: &Synth, scene_time: f64) -> Result<Frame> {
-        if synth.has_strokes() {
+        if synth.by_cpu() {
             return Ok(cpu::frame(synth, scene_time));
         }
         let frame = self.frame_once(synth, scene_time);

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Reader, ReadySurface, Slot, StillSurface, place};
+use super::{Before, Reader, ReadySurface, Slot, StillSurface, place};
+use crate::base::mesh::Mesh;
 use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
@@ -35,7 +36,7 @@ impl Slot for LayerSurface {
         true
     }
 
-    fn synth(&self, making: &Making) -> Result<Arc<dyn ReadySurface>, Problem> {
+    fn synth(&self, _mesh: &Arc<Mesh>, making: &Making, _before: Before) -> Result<Arc<dyn ReadySurface>, Problem> {
         let missing = || Problem::error("/layer", format!("the layer \"{}\" is not there", self.layer));
         Ok(Arc::new(Shown(making.textures.get(&self.layer).cloned().ok_or_else(missing)?)))
     }

@@ -5,6 +5,7 @@ pub mod plain;
 pub mod texture;
 pub mod view_map;
 
+use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -12,15 +13,20 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::materials::Use;
 use crate::layers::parts::moment::Moment;
+use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::Bind;
 use crate::layers::ready::Making;
 use crate::layers::space::raster::Hit;
+
+/// The passes that kinds of surface add.
+pub const PASSES: [Pass; 3] = [view_map::passes::INDEPENDENT, view_map::passes::DEPENDENT, view_map::passes::COVERAGE];
 
 /// What the surface of a mesh shows, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,6 +38,8 @@ pub enum Surface {
     Texture(texture::Texture),
     /// A layer at its own time, by the texture coordinates of the mesh.
     Layer(layer::LayerSurface),
+    /// Pictures of the object, each laid on it from its own camera.
+    ViewMap(view_map::model::ViewMap),
 }
 
 impl Default for Surface {
@@ -47,6 +55,7 @@ impl Surface {
             Surface::Plain(surface) => surface,
             Surface::Texture(surface) => surface,
             Surface::Layer(surface) => surface,
+            Surface::ViewMap(surface) => surface,
         }
     }
 }
@@ -68,20 +77,28 @@ pub trait Slot {
         false
     }
 
-    /// Prepares it for any time.
+    /// Prepares it for a mesh and any time. What it has in common with what was made before is reused.
     ///
     /// # Errors
-    /// If something that it names is not there.
-    fn synth(&self, making: &Making) -> Result<Arc<dyn ReadySurface>, Problem>;
+    /// If something that it names is not there or does not fit, or it is cancelled.
+    fn synth(&self, mesh: &Arc<Mesh>, making: &Making, before: Before) -> Result<Arc<dyn ReadySurface>, Problem>;
 }
 
+/// What was made of a surface before.
+pub type Before<'a> = Option<&'a dyn ReadySurface>;
+
 /// A surface ready for any time.
-pub trait ReadySurface: Debug + Send + Sync {
+pub trait ReadySurface: Any + Debug + Send + Sync {
     /// The surface of a mesh that is placed so, at one time, on the CPU: the reference.
     fn at<'a>(&'a self, moment: &'a Moment, placed: &Placed) -> Box<dyn StillSurface + 'a>;
 
     /// The same for the GPU: a color that counts where the picture is not used, and the picture.
     fn plan(&self, moment: &Moment) -> (Rgba, Option<Bind>);
+
+    /// Whether the CPU alone can draw it.
+    fn by_cpu(&self) -> bool {
+        false
+    }
 
     /// The same with nothing that moves.
     fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface>;
@@ -95,10 +112,27 @@ pub trait ReadySurface: Debug + Send + Sync {
     }
 }
 
+impl dyn ReadySurface {
+    /// The surface as its kind's own type, for that kind.
+    pub fn downcast<T: ReadySurface>(&self) -> Option<&T> {
+        (self as &dyn Any).downcast_ref()
+    }
+}
+
 /// A surface at one time.
 pub trait StillSurface: Sync {
     /// What tells its color at one place after the other, before light falls on it: linear light, premultiplied.
     fn reader(&self) -> Reader<'_>;
+
+    /// Whether light falls on it; if not, its light is in its colors.
+    fn is_lit(&self) -> bool {
+        true
+    }
+
+    /// What tells what a pass of its kind has at one place after the other; `None` for all other passes.
+    fn pass(&self, _pass: &Pass) -> Option<Reader<'_>> {
+        None
+    }
 }
 
 /// Tells the color of a surface at a place.

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Reader, ReadySurface, Slot, StillSurface};
+use super::{Before, Reader, ReadySurface, Slot, StillSurface};
 use crate::base::color;
+use crate::base::mesh::Mesh;
 use crate::base::pixels::{Rgba, decode};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
@@ -35,7 +36,7 @@ impl Slot for Plain {
         check::color(&self.color, "/color").into_iter().collect()
     }
 
-    fn synth(&self, _making: &Making) -> Result<Arc<dyn ReadySurface>, Problem> {
+    fn synth(&self, _mesh: &Arc<Mesh>, _making: &Making, _before: Before) -> Result<Arc<dyn ReadySurface>, Problem> {
         Ok(Arc::new(Paint(color::parse(&self.color).map_or([0.0; 4], decode))))
     }
 }

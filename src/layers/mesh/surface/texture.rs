@@ -6,7 +6,8 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Reader, ReadySurface, Slot, StillSurface, place};
+use super::{Before, Reader, ReadySurface, Slot, StillSurface, place};
+use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
@@ -35,7 +36,7 @@ impl Slot for Texture {
         true
     }
 
-    fn synth(&self, making: &Making) -> Result<Arc<dyn ReadySurface>, Problem> {
+    fn synth(&self, _mesh: &Arc<Mesh>, making: &Making, _before: Before) -> Result<Arc<dyn ReadySurface>, Problem> {
         Ok(Arc::new(Image(making.materials.picture(&self.image, "/image")?)))
     }
 }

@@ -1,5 +1,33 @@
 //! View maps (Grimm and Kowalski 2002): pictures laid on the surface, each with its camera. Some make up the base coat,
 //! some are seen only near where they were taken from. They are mixed once, on the surface, in cells of several sizes.
 
+pub mod atlas;
+pub mod balance;
+pub mod blend;
+pub mod camera;
+pub mod cells;
 pub mod check;
+pub mod coat;
+pub mod compare;
+pub mod entries;
+pub mod gauge;
+pub mod id;
+pub mod lists;
+pub mod map;
+pub mod mix;
 pub mod model;
+pub mod paint;
+pub mod passes;
+pub mod ready;
+pub mod report;
+pub mod sample;
+pub mod slot;
+pub mod view;
+pub mod wanted;
+
+use crate::layers::mesh::synth::Synth;
+
+/// The view map of a mesh layer that was made ready, if it has one.
+pub fn of(ready: &dyn crate::layers::ready::Ready) -> Option<&ready::Ready> {
+    ready.downcast::<Synth>()?.surface.downcast()
+}

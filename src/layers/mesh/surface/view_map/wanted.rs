@@ -1,0 +1,123 @@
+//! What a document asks of a view map, with the pictures that it names.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::atlas::By;
+use super::camera::{Camera, nearest_turn};
+use super::entries::Reach;
+use super::map::Wanted;
+use super::model::{self, Atlas, Feeds, ViewCamera, ViewMap};
+use super::paint::Paint;
+use super::view::{Extremes, Fade, View, nearest_on_axis};
+use crate::base::color;
+use crate::base::maths::tan;
+use crate::base::mesh::Mesh;
+use crate::base::picture::Picture;
+use crate::base::pixels::decode;
+use crate::base::problem::Problem;
+use crate::layers::parts::materials::Materials;
+use crate::layers::space::eye::Eye;
+
+/// How much the shape of a picture may differ from that of its camera.
+const SHAPE_OFF: f64 = 0.01;
+/// The field of view of a camera that has none, in degrees.
+const FOV: f64 = 40.0;
+
+/// What is to be filled.
+///
+/// # Errors
+/// If a picture is not there or does not fit; the problem's path is relative to the surface.
+pub fn wanted(map: &ViewMap, mesh: &Arc<Mesh>, materials: &Materials) -> Result<Wanted, Problem> {
+    let views = map.views.iter().enumerate().filter(|(_, view)| view.active);
+    let views = views.map(|(number, own)| {
+        view(own, number, mesh, materials).map_err(|problem| problem.under(&format!("/views/{number}")))
+    });
+    let [r, g, b, _] = color::parse(&map.missing).map_or([0.0; 4], decode);
+    Ok(Wanted {
+        mesh: mesh.clone(),
+        by: laid_flat(map, mesh),
+        first: map.cells,
+        levels: map.levels.map(|levels| levels as usize),
+        missing: [r, g, b],
+        views: views.collect::<Result<_, _>>()?,
+    })
+}
+
+/// How the mesh is laid flat.
+pub fn laid_flat(map: &ViewMap, mesh: &Mesh) -> By {
+    match map.atlas {
+        Some(Atlas::Uv) => By::Uv,
+        None if mesh.without_uv.is_none() => By::Uv,
+        Some(Atlas::Box) | None => By::Box,
+    }
+}
+
+/// A view with its pictures.
+///
+/// # Errors
+/// As [`wanted`]; the problem's path is relative to the view.
+fn view(own: &model::View, number: usize, mesh: &Mesh, materials: &Materials) -> Result<View, Problem> {
+    let picture = materials.picture(&own.image, "/image")?;
+    let size = (picture.width(), picture.height());
+    let beside = |name: &Option<String>, path: &str| -> Result<Option<Arc<Picture>>, Problem> {
+        let Some(name) = name else { return Ok(None) };
+        let other = materials.picture(name, path)?;
+        let own = (other.width(), other.height());
+        if own == size {
+            return Ok(Some(other));
+        }
+        let problem = Problem::error(path, format!("{}x{}, the picture is {}x{}", own.0, own.1, size.0, size.1));
+        Err(problem.hint("make it as large as the picture"))
+    };
+    let (mask, guide) = (beside(&own.mask, "/mask")?, beside(&own.changed, "/changed")?);
+    let (camera, target) = camera(&own.camera, size, mesh)?;
+    let half = |degrees: f64| tan(degrees.to_radians() / 2.0);
+    Ok(View {
+        name: own.name.clone(),
+        number,
+        camera,
+        paint: Paint { picture, mask, guide, feather_px: own.feather, gain: own.gain },
+        base: own.kind != Feeds::Dependent,
+        dependent: own.kind != Feeds::Independent,
+        extremes: match &own.extremes {
+            model::Extremes::Auto { reach } => Extremes::Auto(half(*reach)),
+            model::Extremes::Cone { degrees } => Extremes::Cone(half(*degrees)),
+            model::Extremes::Points { points } => {
+                let points: Vec<DVec2> = points.iter().map(|point| DVec2::from(*point)).collect();
+                Extremes::points(&camera, target, &points)
+            }
+        },
+        fade: Fade { linear: own.fade == model::Fade::Linear, hold: own.hold },
+        reach: Reach { closer: own.closer, farther: own.farther },
+        edge_px: own.edge,
+    })
+}
+
+/// The camera of a view whose picture has this size, and what it looks at.
+///
+/// # Errors
+/// If the picture has another shape.
+fn camera(own: &ViewCamera, size: (usize, usize), mesh: &Mesh) -> Result<(Camera, DVec3), Problem> {
+    let (Some(matrix), Some(focal)) = (own.matrix, own.focal) else {
+        let [position, target] = [own.position, own.target].map(|place| DVec3::from(place.unwrap_or_default()));
+        let up = DVec3::from(own.up.unwrap_or([0.0, 1.0, 0.0]));
+        let eye = Eye::new([position, target, up], own.fov.unwrap_or(FOV), size);
+        return Ok((Camera::of_eye(&eye, size), target));
+    };
+    let whole = own.size.map_or(size, |[width, height]| (width as usize, height as usize));
+    let shape = |(width, height): (usize, usize)| width as f64 / height as f64;
+    if (shape(size) / shape(whole) - 1.0).abs() > SHAPE_OFF {
+        let [(width, height), (own_width, own_height)] = [size, whole];
+        let message = format!("the picture is {width}x{height}, its camera is for {own_width}x{own_height}");
+        return Err(Problem::error("", message).hint("give camera.size the size that focal and center are for"));
+    }
+    let middle = own.center.map_or(DVec2::new(whole.0 as f64, whole.1 as f64) / 2.0, DVec2::from);
+    let row = |k: usize| DVec3::new(matrix[k][0], matrix[k][1], matrix[k][2]);
+    let turn = nearest_turn(DMat3::from_cols(row(0), row(1), row(2)).transpose());
+    let shift = DVec3::new(matrix[0][3], matrix[1][3], matrix[2][3]);
+    let camera = Camera::of_turn(turn, shift, DVec2::from(focal), middle, whole).resized(size);
+    let centre = mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
+    Ok((camera, nearest_on_axis(&camera, centre)))
+}
