@@ -118,12 +118,7 @@ pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> 
 /// As [`synth`].
 pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth>, Problem> {
     let textures = textures(scene, materials, None)?;
-    let mut made: Vec<Synth> = Vec::new();
-    for place in places(n) {
-        let next = synth_at(scene, (materials, &textures, place), made.last())?;
-        made.push(next);
-    }
-    Ok(made)
+    places(n).map(|place| synth_at(scene, (materials, &textures, place), None)).collect()
 }
 
 /// The places of the n x n samples in a pixel.

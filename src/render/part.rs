@@ -67,6 +67,7 @@ pub fn frame(synth: &Synth, scene_time: f64, part: &Part) -> Frame {
 
 /// As [`frame`], of a pass, to look at: each dot is the pixel in its middle, since numbers of triangles have no mean.
 pub fn pass(synth: &Synth, scene_time: f64, part: &Part, asked: &Asked) -> Frame {
+    let asked = asked.looked_at();
     let columns = Line::new(part.corner.x, part.scale, part.dots.0, 1, synth.size.0);
     let rows = Line::new(part.corner.y, part.scale, part.dots.1, 1, synth.size.1);
     let pixels = passes::view(asked.pass, &asked.lattice(synth, scene_time, &columns.pixels, &rows.pixels));

@@ -86,6 +86,12 @@ impl Asked {
         empty.then(|| format!("no layer has {}: the picture is empty", self.words(scene)))
     }
 
+    /// What is looked at in place of it, if it is not that itself.
+    pub fn looked_at(&self) -> Asked {
+        let pass = if let Holds::Codes(other) = self.pass.holds { other } else { self.pass };
+        Asked { pass, ..self.clone() }
+    }
+
     fn which(&self) -> Which<'_> {
         Which { pass: self.pass, of: self.of.as_deref() }
     }
@@ -252,7 +258,7 @@ fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
             let [r, g, b] = heat(if high > low { (z - low) / (high - low) } else { 0.5 });
             [code(r), code(g), code(b), 255]
         }
-        Holds::Share => {
+        Holds::Share | Holds::Codes(_) => {
             let share = code(x);
             [share, share, share, 255]
         }

@@ -10,7 +10,7 @@ const LARGEST: f64 = 1e9;
 
 /// The units of numbers, each with the range of numbers that have no range of their own; `None` if they may be any
 /// finite number. The schema has the unit of every number.
-pub(super) const UNITS: [(&str, Option<(f64, f64)>); 15] = [
+pub(super) const UNITS: [(&str, Option<(f64, f64)>); 16] = [
     (PLAIN, Some((-LARGEST, LARGEST))),
     ("px", Some((-LARGEST, LARGEST))),
     ("m", Some((-LARGEST, LARGEST))),
@@ -21,6 +21,7 @@ pub(super) const UNITS: [(&str, Option<(f64, f64)>); 15] = [
     ("m/s2", Some((-LARGEST, LARGEST))),
     ("1/s", Some((-LARGEST, LARGEST))),
     ("texels", Some((-LARGEST, LARGEST))),
+    ("layers", Some((-LARGEST, LARGEST))),
     ("percent", Some((0.0, 100.0))),
     ("fps", Some((-LARGEST, LARGEST))),
     ("frames", Some((-LARGEST, LARGEST))),

@@ -217,7 +217,7 @@ impl Still for Seen<'_> {
     }
 
     fn pass(&self, pass: &Pass, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
-        if surface::PASSES.contains(pass) {
+        if surface::PASSES.contains(pass) || *pass == surface::COLORS {
             // Other surfaces have nothing there, and hide what is behind them.
             let mut reader = self.surface.pass(pass);
             let mut read = |spot: &Spot| reader.as_mut().map_or([0.0; 4], |reader| reader(&spot.place()));

@@ -26,6 +26,8 @@ pub enum Holds {
     Speed,
     /// One number from 0 to 1, in all three channels.
     Share,
+    /// Numbers that only mean something apart; this pass is looked at in place of it.
+    Codes(&'static Pass),
     /// A number of mean 0 and variance 1, and what else is known of it.
     Noise,
 }

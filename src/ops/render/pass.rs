@@ -11,7 +11,7 @@ use crate::files::outputs;
 use crate::layers::parts::pass::COLOR;
 use crate::ops::Context;
 use crate::ops::opened::Unloaded;
-use crate::render::passes::{Asked, view_over};
+use crate::render::passes::{Asked, view, view_over};
 use crate::render::{self, Synth, cpu};
 
 /// Renders the pass that `args` ask for, or the finished light if they only name OpenEXR files.
@@ -58,7 +58,13 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
             [synth] => asked.picture(synth, time),
             samples => cpu::mean(samples, time),
         };
-        let shown = || view_over(&asked, &picture, || cpu::linear(&samples[0], time));
+        let shown = || {
+            let other = asked.looked_at();
+            if other == asked {
+                return view_over(&asked, &picture, || cpu::linear(&samples[0], time));
+            }
+            view(other.pass, &other.picture(&samples[0], time))
+        };
         context.check_cancelled()?;
         files.write(number, &picture, *asked.pass == COLOR, shown)?;
     }

@@ -70,7 +70,7 @@ impl Kept {
     ) -> Result<Option<Textures>> {
         if self.made_for.as_ref() == Some(wanted) {
             self.making = None;
-        } else if frame.0.has_strokes() {
+        } else if frame.0.by_cpu() {
             self.making.take_if(|making| making.gives_way_to(wanted));
             let other = || other.as_ref().map(|(synth, time)| (&**synth, *time));
             let making = self.making.get_or_insert_with(|| Making::start(wanted, (frame, other()), wake));
@@ -94,16 +94,18 @@ impl Kept {
     }
 
     fn take(&mut self, gpu: &Gpu, made_for: For, (frame, other, each): &Pictures) -> Result<()> {
-        let frame = upload(gpu, &made_for.asked, frame)?;
-        let other = other.as_ref().map(|other| upload(gpu, &made_for.asked, other)).transpose()?;
+        let asked = made_for.asked.looked_at();
+        let frame = upload(gpu, &asked, frame)?;
+        let other = other.as_ref().map(|other| upload(gpu, &asked, other)).transpose()?;
         (self.textures, self.each, self.made_for) = (Some((frame, other)), *each, Some(made_for));
         Ok(())
     }
 }
 
 fn pictures(asked: &Asked, (synth, time): At, other: Option<At>) -> Pictures {
-    let (frame, each) = passes::thinned(asked, synth, time, MOST);
-    let other = other.map(|(synth, time)| passes::thinned(asked, synth, time, MOST).0);
+    let asked = asked.looked_at();
+    let (frame, each) = passes::thinned(&asked, synth, time, MOST);
+    let other = other.map(|(synth, time)| passes::thinned(&asked, synth, time, MOST).0);
     (frame, other, each)
 }
 

@@ -27,6 +27,8 @@ use crate::layers::space::raster::Hit;
 
 /// The passes that kinds of surface add.
 pub const PASSES: [Pass; 3] = [view_map::passes::INDEPENDENT, view_map::passes::DEPENDENT, view_map::passes::COVERAGE];
+/// What is looked at in place of one of them.
+pub const COLORS: Pass = view_map::passes::COLORS;
 
 /// What the surface of a mesh shows, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -22,6 +22,8 @@ pub mod ready;
 pub mod report;
 pub mod sample;
 pub mod slot;
+#[cfg(test)]
+mod tests;
 pub mod view;
 pub mod wanted;
 

@@ -154,6 +154,7 @@ pub struct ViewCamera {
     pub fov: Option<f64>,
     /// Three rows of a world-to-camera matrix: x right, y down, z forward.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("unit" = "1"))]
     pub matrix: Option<[[f64; 4]; 3]>,
     /// Its focal lengths across and down, beside a matrix.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -4,6 +4,7 @@ use super::super::Reader;
 use super::map::Map;
 use super::ready::Looked;
 use super::sample;
+use crate::base::pixels::linear_from_srgb;
 use crate::layers::parts::pass::{Holds, Pass};
 
 /// The base coat.
@@ -19,8 +20,10 @@ pub const DEPENDENT: Pass = Pass {
 pub const COVERAGE: Pass = Pass {
     name: "coverage",
     help: "how opaque that is, how much of the base coat is known, the number of the view that counts most",
-    holds: Holds::Share,
+    holds: Holds::Codes(&COLORS),
 };
+/// The same to look at: each view in a color of its own.
+pub const COLORS: Pass = Pass { name: "coverage-colors", help: "which views are seen, by colors", holds: Holds::Light };
 
 /// The least opacity at which a view counts.
 const LEAST_OPACITY: f64 = 1e-6;
@@ -51,6 +54,34 @@ pub fn reader<'a>(looked: &'a Looked, map: &'a Map, pass: &Pass) -> Option<Reade
             let number = most.map_or(0, |view| map.wanted.views[view].number + 1);
             [(left * sample.opacity) as f32, sample.known as f32, number as f32, 1.0]
         })),
+        name if name == COLORS.name => {
+            let colors: Vec<[f64; 3]> = map.wanted.views.iter().map(|view| color(view.number + 1)).collect();
+            Some(Box::new(move |place| {
+                let Some(spot) = spots(place) else { return [0.0; 4] };
+                let mut sum = [0.0; 3];
+                reader.everyone(&spot, |view, share| {
+                    sum.iter_mut().zip(colors[view]).for_each(|(sum, light)| *sum += share * light);
+                });
+                let [r, g, b] = sum.map(|light| light as f32);
+                [r, g, b, 1.0]
+            }))
+        }
         _ => None,
     }
+}
+
+/// The color of the view with this number: linear light.
+pub fn color(number: usize) -> [f64; 3] {
+    const STEP: f64 = 0.618_034;
+    const SATURATION: f64 = 0.65;
+    const VALUE: f64 = 0.95;
+    let turn = STEP * (number as f64 - 1.0);
+    let sixths = (turn - turn.floor()) * 6.0;
+    // How far each channel is from the one that is full.
+    let channel = |at: f64| {
+        let away = (sixths - at).abs();
+        let full = (2.0 - away.min(6.0 - away)).clamp(0.0, 1.0);
+        linear_from_srgb(VALUE * (1.0 - SATURATION * (1.0 - full)))
+    };
+    [channel(0.0), channel(2.0), channel(4.0)]
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::cells::NONE;
-use super::coat::State;
+use super::coat::{self, State};
 use super::gauge::Gauges;
 use super::map::Map;
 use super::mix::{Part, mix};
@@ -60,18 +60,47 @@ impl<'a> Reader<'a> {
         let at: DVec2 = map.atlas.at(spot.triangle, spot.weights);
         let depth = spot.depth.clamp(0.0, finest as f64);
         let near = depth - depth.floor();
+        let mut all = 0.0;
         for (k, share) in [1.0 - near, near].into_iter().enumerate().filter(|(_, share)| *share > 0.0) {
             let number = depth as usize + k;
             let layer = &map.cells.layers[number];
             let four = layer.four(chart, at * layer.resolution);
             let sum: f64 = four.iter().filter(|(cell, _)| *cell != NONE).map(|(_, weight)| weight).sum();
             if sum > 0.0 {
+                all += share;
                 for (out, (cell, weight)) in found[4 * k..].iter_mut().zip(four) {
                     *out = (number, cell, if cell == NONE { 0.0 } else { share * weight / sum });
                 }
             }
         }
+        // Where a layer has no cell, the other counts alone.
+        if all > 0.0 && all < 1.0 {
+            found.iter_mut().for_each(|(.., weight)| *weight /= all);
+        }
         found
+    }
+
+    /// What is where there are no cells at all.
+    fn missing(&self) -> Sample {
+        let missing = self.map.wanted.missing.map(f64::from);
+        Sample { independent: missing, over: missing, ..Sample::default() }
+    }
+
+    /// Calls `each` with the share that each view has at a place in what is shown there: near its camera, and in the base
+    /// coat.
+    pub fn everyone(&mut self, spot: &Spot, mut each: impl FnMut(usize, f64)) {
+        let map = self.map;
+        self.gauges.set(&map.wanted.views, spot.point, spot.eye);
+        for (layer, cell, weight) in self.cells(spot).into_iter().filter(|(.., weight)| *weight > 0.0) {
+            let opacity = if self.gauges.none() { 0.0 } else { self.mixed(layer, cell) };
+            if opacity > 0.0 {
+                self.parts.iter().for_each(|part| each(part.view, weight * part.share));
+            }
+            let whole = coat::parts(&map.lists[layer], cell, layer, &map.wanted.views, &mut self.parts);
+            if whole > 0.0 {
+                self.parts.iter().for_each(|part| each(part.view, weight * (1.0 - opacity) * part.share / whole));
+            }
+        }
     }
 
     /// What is at a place. `each` is told the share that each view has there in what depends on the direction.
@@ -80,7 +109,11 @@ impl<'a> Reader<'a> {
         let map = self.map;
         let mut sample = Sample::default();
         self.gauges.set(&map.wanted.views, spot.point, spot.eye);
-        for (layer, cell, weight) in self.cells(spot).into_iter().filter(|(.., weight)| *weight > 0.0) {
+        let cells = self.cells(spot);
+        if cells.iter().all(|(.., weight)| *weight <= 0.0) {
+            return self.missing();
+        }
+        for (layer, cell, weight) in cells.into_iter().filter(|(.., weight)| *weight > 0.0) {
             let opacity = if self.gauges.none() { 0.0 } else { self.mixed(layer, cell) };
             let (lists, coat) = (&map.lists[layer], &map.coats[layer]);
             let mut dependent = [0.0; 3];

@@ -1,11 +1,11 @@
 //! A view map in the document, as a kind of surface.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::super::{Before, ReadySurface, Slot};
 use super::blend::Points;
 use super::check;
-use super::map::{Map, Watch};
+use super::map::{Map, Wanted, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
 use super::wanted::wanted;
@@ -13,6 +13,9 @@ use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::ready::Making;
+
+/// The maps that are in use: several samples of a frame, and what looks at one pixel, share them.
+static ALIVE: Mutex<Vec<Weak<Map>>> = Mutex::new(Vec::new());
 
 /// The most cells of the finest layer.
 const MOST_CELLS: f64 = 16_777_216.0;
@@ -41,8 +44,8 @@ impl Slot for ViewMap {
         let wanted = wanted(self, mesh, materials)?;
         let points = Points::new(&self.blend, mesh);
         let before = before.and_then(|before| before.downcast::<Ready>());
-        if let Some(before) = before.filter(|before| before.map.wanted.same(&wanted)) {
-            return Ok(Arc::new(Ready { map: before.map.clone(), points }));
+        if let Some(map) = alive(&wanted) {
+            return Ok(Arc::new(Ready { map, points }));
         }
         let pixels =
             |i: usize| wanted.views.get(i).map_or(0, |view| view.camera.size_px.0 * view.camera.size_px.1) as u64;
@@ -50,9 +53,17 @@ impl Slot for ViewMap {
         let sizes: Vec<u64> = (0..wanted.views.len()).map(pixels).collect();
         let watch = Watch { stopped: &|| materials.stopped(), done: &|view| materials.made(sizes[view]) };
         let map = Map::new(wanted, before.map(|before| &*before.map), &watch);
-        let map = map.ok_or_else(|| Problem::error("", "stopped"))?;
-        Ok(Arc::new(Ready { map: Arc::new(map), points }))
+        let map = Arc::new(map.ok_or_else(|| Problem::error("", "stopped"))?);
+        ALIVE.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(&map));
+        Ok(Arc::new(Ready { map, points }))
     }
+}
+
+/// The same map, if it is in use.
+fn alive(wanted: &Wanted) -> Option<Arc<Map>> {
+    let mut alive = ALIVE.lock().unwrap_or_else(PoisonError::into_inner);
+    alive.retain(|map| map.strong_count() > 0);
+    alive.iter().filter_map(Weak::upgrade).find(|map| map.wanted.same(wanted))
 }
 
 /// What is wrong with so many layers, if they have too many cells: the surface covers half of a unit of the atlas.

@@ -1,0 +1,269 @@
+//! View maps over meshes made here: depths and cells are the numbers that formulas give, and what must not change does not.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::atlas::{Atlas, By};
+use super::camera::Camera;
+use super::cells::{Cells, NONE};
+use super::coat::State;
+use super::compare::compare;
+use super::entries::{Entry, Reach};
+use super::gauge::Gauges;
+use super::id::Seen;
+use super::map::{Map, Wanted, Watch};
+use super::mix::{Part, mix};
+use super::paint::Paint;
+use super::view::{Extremes, Fade, View};
+use crate::base::maths::{TAU, cos, sin};
+use crate::base::mesh::{Mesh, Vertex};
+use crate::base::picture::Picture;
+use crate::layers::space::eye::Eye;
+
+/// Squares of 2 m that face front, at these depths; they lie beside one another in the texture.
+fn squares(at: &[f64]) -> Arc<Mesh> {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let square = |(i, z): (usize, &f64)| {
+        corners.map(|[x, y]| Vertex {
+            position: DVec3::new(x, y, *z),
+            normal: DVec3::Z,
+            uv: DVec2::new(x / 2.0 + 2.0 * i as f64, y / 2.0),
+        })
+    };
+    let triangles = (0..at.len() as u32).flat_map(|i| [[0, 1, 2], [0, 2, 3]].map(|t: [u32; 3]| t.map(|c| c + 4 * i)));
+    Arc::new(Mesh {
+        vertices: at.iter().enumerate().flat_map(square).collect(),
+        triangles: triangles.collect(),
+        ..Mesh::default()
+    })
+}
+
+/// A ball of 1 m.
+fn ball() -> Arc<Mesh> {
+    let (around, down) = (24, 12);
+    let vertex = |i: usize| {
+        let (u, v) = ((i % (around + 1)) as f64 / around as f64, (i / (around + 1)) as f64 / down as f64);
+        let (a, b) = (u * TAU, v * TAU / 2.0);
+        let normal = DVec3::new(sin(b) * sin(a), cos(b), sin(b) * cos(a));
+        Vertex { position: normal, normal, uv: DVec2::new(u, 1.0 - v) }
+    };
+    let corner = |x: usize, y: usize| (y * (around + 1) + x) as u32;
+    let pair = |i: usize| {
+        let (x, y) = (i % around, i / around);
+        let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+        [[a, d, b], [b, d, c]]
+    };
+    Arc::new(Mesh {
+        vertices: (0..(around + 1) * (down + 1)).map(vertex).collect(),
+        triangles: (0..around * down).flat_map(pair).collect(),
+        ..Mesh::default()
+    })
+}
+
+fn camera(position: [f64; 3], fov: f64, size: usize) -> Camera {
+    Camera::of_eye(&Eye::new([position.into(), DVec3::ZERO, DVec3::Y], fov, (size, size)), (size, size))
+}
+
+/// A picture with waves of its own.
+fn waves(size: usize, phase: f64) -> Arc<Picture> {
+    let wave = |x: f64| (0.5 + 0.4 * sin(x)) as f32;
+    let cell = |i: usize| {
+        let (x, y) = ((i % size) as f64 / size as f64, (i / size) as f64 / size as f64);
+        [wave(9.0 * x + phase), wave(7.0 * y - phase), wave(5.0 * (x + y)), 1.0]
+    };
+    Arc::new(Picture::from_cells(size, size, (0..size * size).map(cell).collect()))
+}
+
+fn view(position: [f64; 3], number: usize) -> View {
+    const SIZE: usize = 40;
+    let paint = Paint { picture: waves(SIZE, number as f64), mask: None, guide: None, feather_px: 0.0, gain: [1.0; 3] };
+    View {
+        name: number.to_string(),
+        number,
+        camera: camera(position, 40.0, SIZE),
+        paint,
+        base: true,
+        dependent: true,
+        extremes: Extremes::Auto(1.0),
+        fade: Fade::default(),
+        reach: Reach::default(),
+        edge_px: 0.0,
+    }
+}
+
+fn wanted(mesh: Arc<Mesh>, views: Vec<View>) -> Wanted {
+    Wanted { mesh, by: By::Uv, first: 16, levels: Some(3), missing: [0.2; 3], views }
+}
+
+fn filled(wanted: Wanted, previous: Option<&Map>) -> Map {
+    Map::new(wanted, previous, &Watch { stopped: &|| false, done: &|_| () }).unwrap()
+}
+
+fn round() -> Vec<View> {
+    [[0.0, 0.0, 4.0], [3.0, 1.0, 3.0], [-2.0, 2.0, 3.0]].iter().enumerate().map(|(i, at)| view(*at, i)).collect()
+}
+
+#[test]
+fn twice_the_resolution_or_half_the_distance_is_one_layer_more() {
+    let mesh = squares(&[0.0]);
+    let atlas = Atlas::new(&mesh, By::Uv);
+    let depth = |camera: &Camera| Seen::new(&mesh, &atlas, camera, 16, 0.0).depth.unwrap();
+    let far = camera([0.0, 0.0, 8.0], 10.0, 16);
+    let base = depth(&far);
+    // 4 square meters are half a square of the atlas; a pixel is 8 / focal meters wide.
+    let pixel = 8.0 / far.focal_px.x;
+    let expected = -0.5 * libm::log2(pixel * pixel * 0.5 / 4.0 * 256.0);
+    assert!((base - expected).abs() < 1e-12, "{base} {expected}");
+    let near = Camera { position: [0.0, 0.0, 4.0].into(), ..far };
+    assert!((depth(&far.resized((32, 32))) - base - 1.0).abs() < 1e-12);
+    assert!((depth(&near) - base - 1.0).abs() < 1e-12);
+    let behind = camera([0.0, 0.0, -8.0], 10.0, 16);
+    assert_eq!(Seen::new(&mesh, &atlas, &behind, 16, 0.0).depth, None, "backs are not seen, but hide");
+}
+
+#[test]
+fn the_surface_is_half_a_square_of_the_atlas_in_charts() {
+    let two = Atlas::new(&squares(&[0.0, -1.0]), By::Uv);
+    assert_eq!(two.chart, [0, 0, 1, 1]);
+    assert!((two.areas.iter().sum::<f64>() - 0.5).abs() < 1e-12);
+    // Each square is 0.5 wide: 8 cells of 16, and no more for the sides that they end at.
+    let cells = Cells::new(&two, 16, 3);
+    assert_eq!(cells.layers.iter().map(|layer| layer.len()).collect::<Vec<_>>(), [128, 512, 2048]);
+    assert_eq!(cells.layers[1].find(1, 15, 15), 511);
+    assert_eq!([cells.layers[1].find(1, 16, 0), cells.layers[0].find(0, -1, 3)], [NONE; 2]);
+    assert_eq!(Atlas::new(&squares(&[0.0, -1.0]), By::Box).chart, [0, 0, 1, 1], "no edge in common");
+    let sides = Atlas::new(&ball(), By::Box);
+    assert!(sides.extents.len() >= 6);
+    assert!((sides.areas.iter().sum::<f64>() - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn a_lone_view_is_shown_as_it_is_from_its_own_camera() {
+    let map = filled(Wanted { levels: None, ..wanted(ball(), vec![view([0.0, 1.0, 4.0], 0)]) }, None);
+    let near = compare(&map)[0].unwrap();
+    assert!(near >= 36.0, "{near} dB");
+    let report = super::report::map(&map);
+    assert_eq!((report.charts, report.levels), (1, map.cells.layers.len()));
+    let told: usize = map.origins[0].iter().flatten().sum();
+    assert_eq!(report.bytes, 16 * told as u64);
+    assert!(report.known.iter().zip(&report.cells).all(|(known, cells)| known < cells), "the back is not seen");
+}
+
+#[test]
+fn what_is_hidden_stays_hidden() {
+    let map = filled(wanted(squares(&[0.0, -1.0]), vec![view([0.0, 0.0, 4.0], 0)]), None);
+    for (number, layer) in map.cells.layers.iter().enumerate() {
+        for (cell, place) in layer.cells.iter().enumerate() {
+            let told = !map.lists[number].of(cell as u32).is_empty();
+            assert_eq!(told, place.chart == 0, "layer {number}, {place:?}");
+            let state = if place.chart == 0 { State::Known } else { State::Missing };
+            assert_eq!(map.coats[number].states[cell], state);
+        }
+    }
+}
+
+#[test]
+fn views_of_other_depths_share_a_layer() {
+    let entry = |depth: f32| Entry { color: [1.0; 3], mask: 1.0, facing: 1.0, depth };
+    let shares = |told: &[(f32, f64)]| {
+        let part = |(i, (depth, factor)): (usize, &(f32, f64))| Part::new(i, i, &entry(*depth), *factor, 3);
+        let mut parts: Vec<Part> = told.iter().enumerate().map(part).collect();
+        let opacity = mix(&mut parts);
+        (opacity, parts.iter().map(|part| part.share).collect::<Vec<_>>())
+    };
+    let near = |(opacity, found): (f64, Vec<f64>), whole: f64, expected: &[f64]| {
+        let far = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold((opacity - whole).abs(), f64::max);
+        assert!(far < 1e-6, "{opacity} {found:?}, not {whole} {expected:?}");
+    };
+    near(shares(&[(2.3, 1.0), (2.9, 1.0)]), 1.0, &[0.25, 0.75]);
+    near(shares(&[(0.5, 1.0)]), 1.0, &[1.0]);
+    near(shares(&[(0.5, 0.4)]), 0.4, &[0.4]);
+    // Half faded, it lets half of the other through.
+    near(shares(&[(0.5, 1.0), (3.0, 0.5)]), 1.0, &[0.5, 0.5]);
+}
+
+#[test]
+fn a_view_counts_up_to_its_limits() {
+    let turned = |degrees: f64| DVec3::new(sin(degrees.to_radians()), 0.0, cos(degrees.to_radians()));
+    let gauge = |views: &[View], eye: DVec3| {
+        let mut gauges = Gauges::default();
+        gauges.set(views, DVec3::ZERO, eye);
+        let slot = gauges.slot(0);
+        (slot != NONE).then(|| gauges.gauge(slot, (0..views.len() as u8).map(|view| (view, 1.0))))
+    };
+    let close = |found: Option<f64>, expected: f64| assert!((found.unwrap() - expected).abs() < 1e-9, "{found:?}");
+    let half = (20f64.to_radians() / 2.0, libm::tan(20f64.to_radians() / 2.0)).1;
+    let cone = [View { extremes: Extremes::Cone(half), ..view([0.0, 0.0, 4.0], 0) }];
+    close(gauge(&cone, DVec3::Z), 0.0);
+    close(gauge(&cone, turned(19.999_999)), libm::tan(19.999_999f64.to_radians() / 2.0) / half);
+    assert_eq!(gauge(&cone, turned(20.001)), None);
+    // At its neighbor's camera it is gone, on the other side it goes as far as its reach.
+    let at = turned(10.0) * 4.0;
+    let auto = [view([0.0, 0.0, 4.0], 0), view(at.to_array(), 1)];
+    close(gauge(&auto, turned(10.0)), 1.0);
+    close(gauge(&auto, turned(-10.0)), libm::tan(10f64.to_radians() / 2.0));
+    let points = [[-30.0, 0.0], [0.0, -20.0], [30.0, 0.0], [0.0, 20.0]].map(DVec2::from);
+    for back in [false, true] {
+        let mut points = points.to_vec();
+        if back {
+            points.reverse();
+        }
+        let own = view([0.0, 0.0, 4.0], 0);
+        let extremes = Extremes::points(&own.camera, DVec3::ZERO, &points);
+        let views = [View { extremes, ..own }];
+        close(
+            gauge(&views, turned(29.999_999_9)),
+            libm::tan(29.999_999_9f64.to_radians() / 2.0) / libm::tan(0.261_799_387_799_149_4),
+        );
+        assert_eq!(gauge(&views, turned(31.0)), None);
+        close(gauge(&views, DVec3::Z), 0.0);
+    }
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_threads_nor_on_what_was_filled_before() {
+    let mesh = ball();
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| filled(wanted(mesh.clone(), round()), None))
+    };
+    let (one, two) = (with(1), with(2));
+    let same =
+        |a: &Map, b: &Map| (&a.lists, &a.coats, &a.reports, &a.origins) == (&b.lists, &b.coats, &b.reports, &b.origins);
+    assert!(same(&one, &two));
+    // An edit of one view, of another's kind, and of nothing that is told.
+    let mut edited = one.wanted.clone();
+    edited.views[1].paint.gain = [0.5, 1.0, 1.0];
+    edited.views[2].base = false;
+    let (after, anew) = (filled(edited.clone(), Some(&one)), filled(edited.clone(), None));
+    assert!(same(&after, &anew) && !same(&after, &one));
+    edited.views[0].fade.hold = 0.5;
+    let faded = filled(edited, Some(&after));
+    assert!(Arc::ptr_eq(&faded.lists, &after.lists) && Arc::ptr_eq(&faded.coats, &after.coats));
+}
+
+#[test]
+fn a_stopped_filling_gives_nothing() {
+    let watch = Watch { stopped: &|| true, done: &|_| () };
+    assert!(Map::new(wanted(ball(), round()), None, &watch).is_none());
+}
+
+#[test]
+fn paint_counts_where_it_differs_from_its_guide_inside_its_mask() {
+    let filled =
+        |light: f32, alpha: f32| Picture::from_cells(4, 4, vec![[light * alpha, light * alpha, 0.0, alpha]; 16]);
+    let mut cells = vec![[0.5, 0.5, 0.0, 1.0]; 16];
+    cells[5] = [0.9, 0.5, 0.0, 1.0];
+    let paint = Paint {
+        picture: Arc::new(Picture::from_cells(4, 4, cells)),
+        mask: Some(Arc::new(filled(1.0, 0.5))),
+        guide: Some(Arc::new(filled(0.5, 1.0))),
+        feather_px: 3.0,
+        gain: [2.0, 1.0, 1.0],
+    };
+    let pixels = paint.pixels();
+    // The second pixel from the border has half of what is farther than the feather, and the mask leaves half of that.
+    assert_eq!(pixels[5], [1.8, 0.5, 0.0, 1.0].map(|v: f32| v * 0.25));
+    assert!(pixels.iter().enumerate().all(|(i, pixel)| i == 5 || *pixel == [0.0; 4]));
+}

@@ -1,0 +1,221 @@
+//! View maps in frames, over a mesh made here: as text (`PLICA_UPDATE=1 cargo test --test view_maps` writes it again), and
+//! what must not change a frame. Photographs beside the repository are looked at where they are there.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use plica::base::maths::{TAU, cos, sin};
+use plica::base::mesh::{Mesh, Vertex};
+use plica::base::picture::Picture;
+use plica::base::pixels::{Frame, Linear, Rgba, encode};
+use plica::layers::parts::materials::Materials;
+use plica::render::bands::Bands;
+use plica::render::passes::Asked;
+use plica::render::{self, Synth, cpu};
+use plica::scene::Scene;
+use serde_json::{Value, json};
+
+/// A vase about the y axis.
+fn vase() -> Mesh {
+    let (around, up) = (24, 12);
+    let radius = |v: f64| 0.55 + 0.25 * sin(TAU * (v - 0.1));
+    let vertex = |i: usize| {
+        let (u, v) = ((i % (around + 1)) as f64 / around as f64, (i / (around + 1)) as f64 / up as f64);
+        let (a, slope) = (u * TAU, TAU * 0.25 * cos(TAU * (v - 0.1)) / 2.0);
+        let normal = DVec3::new(sin(a), -slope, cos(a)).normalize();
+        let position = DVec3::new(sin(a) * radius(v), 2.0 * v - 1.0, cos(a) * radius(v));
+        Vertex { position, normal, uv: DVec2::new(u, v) }
+    };
+    let corner = |x: usize, y: usize| (y * (around + 1) + x) as u32;
+    let pair = |i: usize| {
+        let (x, y) = (i % around, i / around);
+        let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    Mesh {
+        vertices: (0..(around + 1) * (up + 1)).map(vertex).collect(),
+        triangles: (0..around * up).flat_map(pair).collect(),
+        ..Mesh::default()
+    }
+}
+
+/// A gray picture, and one with dots that are all of it that counts.
+fn materials() -> Materials {
+    const SIZE: usize = 48;
+    let picture = |cell: &dyn Fn(f64, f64) -> Rgba| {
+        let at = |i: usize| ((i % SIZE) as f64 + 0.5, (i / SIZE) as f64 + 0.5);
+        let cells = (0..SIZE * SIZE).map(|i| cell(at(i).0, at(i).1)).collect();
+        Arc::new(Picture::from_cells(SIZE, SIZE, cells))
+    };
+    let dots = |x: f64, y: f64| {
+        let inside = sin(TAU * x / 8.0) * sin(TAU * y / 8.0) > 0.3;
+        if inside { [0.05, 0.02, 0.0, 1.0] } else { [0.0; 4] }
+    };
+    let plain = picture(&|_, y| [0.9, 0.6 + y as f32 / 200.0, 0.5, 1.0]);
+    Materials {
+        meshes: [("vase".to_owned(), Arc::new(vase()))].into(),
+        pictures: [("plain".to_owned(), plain), ("dots".to_owned(), picture(&dots))].into(),
+        ..Materials::default()
+    }
+}
+
+/// The vase in gray, with dots that are seen from the front: from so many degrees to the right of it.
+fn scene(degrees: f64, layer: &Value) -> Scene {
+    let around = |name: &str, angle: f64| {
+        let (x, z) = (4.0 * sin(angle.to_radians()), 4.0 * cos(angle.to_radians()));
+        json!({ "name": name, "image": "plain", "kind": "independent",
+            "camera": { "position": [x, 0, z], "target": [0, 0, 0], "fov": 36 } })
+    };
+    let dots = json!({ "name": "dots", "image": "dots", "kind": "dependent", "hold": 0.4,
+        "camera": { "position": [0, 0, 4], "fov": 36 }, "extremes": { "kind": "cone", "degrees": 50 } });
+    let views = json!([around("a", 0.0), around("b", 120.0), around("c", 240.0), dots]);
+    let mut mesh = json!({ "kind": "mesh", "name": "vase", "mesh": "vase", "surface": {
+        "kind": "view-map", "cells": 16, "levels": 4, "views": views } });
+    mesh.as_object_mut().unwrap().extend(layer.as_object().unwrap().clone());
+    let angle = degrees.to_radians();
+    let camera = json!({ "position": [4.0 * sin(angle), 0.6, 4.0 * cos(angle)], "target": [0, 0, 0], "fov": 36 });
+    serde_json::from_value(json!({ "plica": 1, "size": [60, 44], "camera": camera,
+        "meshes": { "vase": { "path": "vase.obj" } }, "layers": [mesh],
+        "images": { "plain": { "path": "plain.png" }, "dots": { "path": "dots.png" } } }))
+    .unwrap()
+}
+
+fn synth(scene: &Scene) -> Synth {
+    render::synth(scene, &materials(), None).unwrap()
+}
+
+fn pass(scene: &Scene, name: &str) -> Linear {
+    Asked::parse(name, scene).unwrap().picture(&synth(scene), 0.0)
+}
+
+/// A frame as letters, from dark to light.
+fn letters(frame: &Frame) -> String {
+    let letter = |[r, g, b, a]: &[u8; 4]| {
+        let light = (u32::from(*r) * 2 + u32::from(*g) * 7 + u32::from(*b)) / 10;
+        if *a < 128 { ' ' } else { char::from(b"@%#*+=-:."[(light * 9 / 256) as usize]) }
+    };
+    let row = |y: usize| frame.row(y).iter().map(letter).collect::<String>().trim_end().to_owned();
+    (0..frame.height()).map(|y| row(y) + "\n").collect()
+}
+
+#[test]
+fn a_pattern_is_seen_from_the_front_as_is_kept() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/view_maps/vase.txt");
+    let frames = [0.0, 30.0, 60.0].map(|degrees| letters(&cpu::frame(&synth(&scene(degrees, &json!({}))), 0.0)));
+    let found = frames.join("\n");
+    if std::env::var_os("PLICA_UPDATE").is_some() {
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(&file, &found).unwrap();
+    }
+    assert_eq!(std::fs::read_to_string(&file).unwrap_or_default(), found);
+    assert!(frames[0].contains('@') && !frames[2].contains('@'), "the pattern comes and goes");
+}
+
+#[test]
+fn the_bits_do_not_depend_on_threads_and_parts_are_those_of_the_whole() {
+    let scene = scene(20.0, &json!({}));
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| cpu::linear(&synth(&scene), 0.3))
+    };
+    let whole = with(1);
+    assert!(whole.cells() == with(2).cells());
+    let part = cpu::lattice(&synth(&scene), 0.3, &[3, 20, 31, 44], &[5, 18, 30]);
+    let expected = [5, 18, 30].iter().flat_map(|y| [3, 20, 31, 44].map(|x| *whole.get(x, *y)));
+    assert_eq!(part.cells(), expected.collect::<Vec<Rgba>>());
+    let materials = materials();
+    let bands = Bands::new(&scene, &materials, 2).unwrap();
+    let frame = cpu::frames(&render::samples(&scene, &materials, 2).unwrap(), 0.3);
+    assert!(bands.frame(0.3).unwrap() == frame);
+}
+
+#[test]
+fn a_model_that_is_moved_and_its_camera_with_it_looks_the_same() {
+    let still = cpu::frame(&synth(&scene(20.0, &json!({}))), 0.0);
+    let turned = scene(65.0, &json!({ "pose": { "rotate": [0, 45, 0] } }));
+    let moved = cpu::frame(&synth(&turned), 0.0);
+    let far = still.cells().iter().zip(moved.cells()).filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 2)).count();
+    assert!(far < 8, "{far} pixels differ");
+}
+
+#[test]
+fn passes_tell_what_a_frame_is_made_from() {
+    let scene = scene(10.0, &json!({}));
+    let [frame, base, pattern, coverage] = [
+        cpu::linear(&synth(&scene), 0.0),
+        pass(&scene, "independent"),
+        pass(&scene, "dependent"),
+        pass(&scene, "coverage"),
+    ];
+    let (mut dotted, mut bare) = (0, 0);
+    for i in 0..frame.cells().len() {
+        let [own, base, pattern, coverage] = [&frame, &base, &pattern, &coverage].map(|picture| picture.cells()[i]);
+        let [opacity, known, number, there] = coverage;
+        if there == 0.0 {
+            assert_eq!((own[3], base[3]), (0.0, 0.0));
+            continue;
+        }
+        // Cell by cell, the pattern lies over the base coat.
+        let expected = pattern[0] + (1.0 - opacity) * base[0];
+        assert!((own[0] - expected).abs() < 0.05, "{i}: {own:?} {base:?} {pattern:?}");
+        assert!(known > 0.0 && number == if opacity > 1e-6 { 4.0 } else { 0.0 });
+        dotted += usize::from(opacity > 0.9);
+        bare += usize::from(opacity < 0.1);
+    }
+    assert!(dotted > 20 && bare > 200, "{dotted} {bare}");
+    let colors = Asked::parse("coverage", &scene).unwrap().looked_at().picture(&synth(&scene), 0.0);
+    let [r, g, b, _] = encode(*colors.get(30, 4));
+    assert!(r > g.min(b) || g > r.min(b), "a view has a color: {r} {g} {b}");
+}
+
+#[test]
+fn blend_points_and_strokes_draw_from_it() {
+    let mut blended = scene(0.0, &json!({}));
+    let plica::layers::Layer::Mesh(mesh) = &mut blended.layers[0] else { panic!() };
+    let plica::layers::mesh::surface::Surface::ViewMap(map) = &mut mesh.surface else { panic!() };
+    map.blend.points = serde_json::from_value(json!([{ "position": [0, 0.6, 4] }])).unwrap();
+    let (base, shown) = (pass(&blended, "independent"), cpu::linear(&synth(&blended), 0.0));
+    let same = |(a, b): (&Rgba, &Rgba)| (0..4).all(|c| (a[c] - b[c]).abs() < 1e-6);
+    assert!(base.cells().iter().zip(shown.cells()).all(same), "the base coat alone");
+    let strokes =
+        json!({ "strokes": { "style": "none", "tone": { "of": "color" }, "marks": [{ "name": "i", "kind": "ink" }] } });
+    let tone = pass(&scene(0.0, &strokes), "tone");
+    let dark = tone.cells().iter().filter(|cell| cell[3] > 0.0 && cell[0] < 0.3).count();
+    assert!(dark > 20, "the pattern is dark: {dark}");
+}
+
+#[test]
+fn photographs_come_back_from_their_own_cameras() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/multiview/spot_glossy");
+    let Ok(text) = std::fs::read_to_string(folder.join("cameras.json")) else {
+        let _ = writeln!(std::io::stderr(), "not run: {} is not there", folder.display());
+        return;
+    };
+    let cameras: Value = serde_json::from_str(&text).unwrap();
+    let row = |view: &Value, k: usize| {
+        let turn = view["R"][k].as_array().unwrap().clone();
+        json!([turn[0], turn[1], turn[2], view["t"][k]])
+    };
+    let views = cameras["views"].as_array().unwrap().iter().take(2).enumerate().map(|(i, view)| {
+        json!({ "name": i.to_string(), "image": i.to_string(), "camera": { "focal": [view["fx"], view["fy"]],
+            "center": [view["cx"], view["cy"]], "matrix": [row(view, 0), row(view, 1), row(view, 2)] } })
+    });
+    let views: Vec<Value> = views.collect();
+    let images: Value = (0..2)
+        .map(|i| (i.to_string(), json!({ "path": folder.join(cameras["views"][i]["file"].as_str().unwrap()) })))
+        .collect::<serde_json::Map<_, _>>()
+        .into();
+    let scene: Scene = serde_json::from_value(json!({ "plica": 1, "camera": {}, "images": images,
+        "meshes": { "spot": { "path": folder.join("../../meshes/spot.obj") } },
+        "layers": [{ "kind": "mesh", "name": "spot", "mesh": "spot", "surface": { "kind": "view-map", "views": views } }] }))
+    .unwrap();
+    let loaded = plica::files::materials::load(&folder, &scene, &Default::default(), &mut Default::default());
+    let (materials, _) = loaded.unwrap();
+    let synth = render::synth(&scene, &materials, None).unwrap();
+    let ready = plica::layers::mesh::surface::view_map::of(&*synth.layers[0]).unwrap();
+    let found = plica::layers::mesh::surface::view_map::compare::compare(&ready.map);
+    assert!(found.iter().all(|near| near.unwrap() >= 36.0), "{found:?}");
+}
