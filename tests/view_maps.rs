@@ -12,6 +12,7 @@ use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Linear, Rgba, encode};
 use plica::layers::parts::materials::Materials;
+use plica::layers::parts::readout::Value as Told;
 use plica::render::bands::Bands;
 use plica::render::passes::Asked;
 use plica::render::{self, Synth, cpu};
@@ -111,7 +112,7 @@ fn a_pattern_is_seen_from_the_front_as_is_kept() {
         std::fs::write(&file, &found).unwrap();
     }
     assert_eq!(std::fs::read_to_string(&file).unwrap_or_default(), found);
-    assert!(frames[0].contains('@') && !frames[2].contains('@'), "the pattern comes and goes");
+    assert!(frames[0].contains('%') && !frames[2].contains(['-', '%']), "the pattern comes and goes");
 }
 
 #[test]
@@ -172,6 +173,33 @@ fn passes_tell_what_a_frame_is_made_from() {
 }
 
 #[test]
+fn a_pixel_is_explained() {
+    let scene = scene(10.0, &json!({}));
+    let (synth, materials) = (synth(&scene), materials());
+    let (making, moment) = (render::making(&scene, &materials), synth.moment(0.0));
+    let coverage = pass(&scene, "coverage");
+    let x = (0..60).max_by(|a, b| coverage.get(*a, 20)[0].total_cmp(&coverage.get(*b, 20)[0])).unwrap();
+    let layer = scene.layers[0].technique();
+    for ready in [Some(&*synth.layers[0]), None] {
+        let read = layer.probe(&making, ready, (x, 20), &moment).unwrap().unwrap();
+        let Some(Told::Group(map)) =
+            read.entries.iter().find(|entry| entry.key == "view_map").map(|entry| &entry.value)
+        else {
+            panic!("{read:?}")
+        };
+        let of = |key: &str| &map.iter().find(|entry| entry.key == key).unwrap().value;
+        let Told::Number(opacity) = of("opacity") else { panic!() };
+        assert!((opacity - f64::from(coverage.get(x, 20)[0])).abs() < 1e-6, "{opacity}");
+        let Told::Shares(views) = of("views") else { panic!() };
+        assert_eq!(views[0].0, "dots");
+        let Told::Coordinates(direction, _) = of("direction") else { panic!() };
+        assert!(direction.iter().map(|v| v * v).sum::<f64>() < 0.5, "seen squarely: {direction:?}");
+        let Told::Indices(cell) = of("cell") else { panic!() };
+        assert!(cell[0] < 4 && cell[1] == 0, "{cell:?}");
+    }
+}
+
+#[test]
 fn blend_points_and_strokes_draw_from_it() {
     let mut blended = scene(0.0, &json!({}));
     let plica::layers::Layer::Mesh(mesh) = &mut blended.layers[0] else { panic!() };
@@ -189,8 +217,8 @@ fn blend_points_and_strokes_draw_from_it() {
 
 #[test]
 fn photographs_come_back_from_their_own_cameras() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/multiview/spot_glossy");
-    let Ok(text) = std::fs::read_to_string(folder.join("cameras.json")) else {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let Ok(text) = std::fs::read_to_string(folder.join("multiview/spot_glossy/cameras.json")) else {
         let _ = writeln!(std::io::stderr(), "not run: {} is not there", folder.display());
         return;
     };
@@ -204,15 +232,17 @@ fn photographs_come_back_from_their_own_cameras() {
             "center": [view["cx"], view["cy"]], "matrix": [row(view, 0), row(view, 1), row(view, 2)] } })
     });
     let views: Vec<Value> = views.collect();
-    let images: Value = (0..2)
-        .map(|i| (i.to_string(), json!({ "path": folder.join(cameras["views"][i]["file"].as_str().unwrap()) })))
-        .collect::<serde_json::Map<_, _>>()
-        .into();
+    let image = |i: usize| {
+        let file = cameras["views"][i]["file"].as_str().unwrap();
+        (i.to_string(), json!({ "path": format!("multiview/spot_glossy/{file}") }))
+    };
+    let images: Value = (0..2).map(image).collect::<serde_json::Map<_, _>>().into();
     let scene: Scene = serde_json::from_value(json!({ "plica": 1, "camera": {}, "images": images,
-        "meshes": { "spot": { "path": folder.join("../../meshes/spot.obj") } },
+        "meshes": { "spot": { "path": "meshes/spot.obj" } },
         "layers": [{ "kind": "mesh", "name": "spot", "mesh": "spot", "surface": { "kind": "view-map", "views": views } }] }))
     .unwrap();
-    let loaded = plica::files::materials::load(&folder, &scene, &Default::default(), &mut Default::default());
+    let path = folder.join("scene.plica.json");
+    let loaded = plica::files::materials::load(&path, &scene, &Default::default(), &mut Default::default());
     let (materials, _) = loaded.unwrap();
     let synth = render::synth(&scene, &materials, None).unwrap();
     let ready = plica::layers::mesh::surface::view_map::of(&*synth.layers[0]).unwrap();

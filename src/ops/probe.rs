@@ -149,6 +149,11 @@ fn value(value: &Value) -> Json {
         Value::Coordinates(numbers, _) => json!(numbers),
         Value::Flag { on, .. } => json!(on),
         Value::Color(codes) => json!(codes),
+        Value::Indices(indices) => json!(indices),
+        Value::Shares(shares) => {
+            Json::Object(shares.iter().map(|(name, share)| (name.clone(), json!(share))).collect())
+        }
+        Value::Group(entries) => object(entries),
         Value::Items(items) => items.iter().map(|entries| object(entries)).collect(),
     }
 }
@@ -198,6 +203,20 @@ fn said(label: &str, value: &Value) -> String {
         }
         Value::Flag { on, off } => if *on { label } else { off }.to_owned(),
         Value::Color([r, g, b, a]) => format!("{label} #{}, alpha {a}", hex(&[*r, *g, *b])),
+        Value::Indices(indices) => {
+            let indices: Vec<String> = indices.iter().map(ToString::to_string).collect();
+            format!("{label} {}", indices.join(" "))
+        }
+        Value::Shares(shares) if shares.is_empty() => format!("{label} none"),
+        Value::Shares(shares) => {
+            let shares: Vec<String> = shares.iter().map(|(name, share)| format!("\"{name}\" {share:.3}")).collect();
+            format!("{label} {}", shares.join(", "))
+        }
+        Value::Group(entries) => {
+            let told = entries.iter().filter(|entry| !entry.label.is_empty());
+            let told: Vec<String> = told.map(|entry| said(entry.label, &entry.value)).collect();
+            format!("{label}: {}", told.join(", "))
+        }
         Value::Items(items) => format!("listed {}, {label}:\n  {}", items.len(), table(items).join("\n  ")),
     }
 }

@@ -45,6 +45,7 @@ const OF_ONE_TECHNIQUE: &[&str] = &[
     "tests/profiles.rs",
     "tests/properties.rs",
     "tests/show/mod.rs",
+    "tests/view_maps.rs",
     "tests/waterfall.rs",
     "tests/window.rs",
 ];

@@ -58,7 +58,7 @@ impl Spot {
     }
 
     /// The place on the surface.
-    fn place(&self) -> Place {
+    pub fn place(&self) -> Place {
         Place { hit: self.hit, position: self.position, uv: self.uv }
     }
 }

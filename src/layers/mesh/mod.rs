@@ -120,8 +120,8 @@ impl Technique for MeshLayer {
         noises.map(String::as_str).collect()
     }
 
-    fn has_pass(&self, _pass: &Pass) -> bool {
-        self.strokes.is_some()
+    fn has_pass(&self, pass: &Pass) -> bool {
+        if surface::PASSES.contains(pass) { self.surface.slot().explains() } else { self.strokes.is_some() }
     }
 
     fn bounds(&self, _path: &str) -> Rect {

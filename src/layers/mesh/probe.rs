@@ -9,10 +9,10 @@ use crate::layers::parts::moment::Moment;
 use crate::layers::parts::readout::{Entry, ReadOut, Under, Value};
 use crate::layers::ready::Making;
 
-/// What the pixel in column `x`, row `y` shows of the mesh.
+/// What the pixel in column `x`, row `y` shows of the mesh. What was made of the layer is used, if that is at hand.
 ///
 /// # Errors
-/// If the mesh is not there; the problem's path is relative to the layer.
+/// If the mesh, or what its surface names, is not there; the problem's path is relative to the layer.
 pub fn probe(
     layer: &MeshLayer,
     (making, ready): (&Making, Option<&Synth>),
@@ -20,23 +20,27 @@ pub fn probe(
     moment: &Moment,
 ) -> Result<ReadOut, Problem> {
     let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
-    let view = View::new(&mesh, layer.sides, &layer.pose.at(moment.t), making.place, moment);
+    let placed = layer.pose.at(moment.t);
+    let view = View::new(&mesh, layer.sides, &placed, making.place, moment);
     let spot = spot(&view, pixel, moment);
     let mut read = read_out(layer, spot);
-    if layer.strokes.is_some() && spot.is_some() {
-        let made = if ready.is_none() { Some(Synth::new(layer, making, None)?) } else { None };
-        let synth = ready.or(made.as_ref());
-        read.entries.extend(synth.map(|synth| of_strokes(synth, pixel, moment)).unwrap_or_default());
+    let Some(spot) = spot.filter(|_| layer.strokes.is_some() || layer.surface.slot().explains()) else {
+        return Ok(read);
+    };
+    let made = if ready.is_none() { Some(Synth::new(layer, making, None)?) } else { None };
+    if let Some(synth) = ready.or(made.as_ref()) {
+        read.entries.extend(synth.surface.at(moment, &placed).told(&spot.place()));
+        read.entries.extend(of_strokes(synth, pixel, moment));
     }
     Ok(read)
 }
 
-/// What its strokes are in a pixel, as if nothing hid the layer.
+/// What its strokes are in a pixel, as if nothing hid the layer; nothing without strokes.
 fn of_strokes(synth: &Synth, (x, y): (usize, usize), moment: &Moment) -> Vec<Entry> {
+    let Some(ready) = synth.strokes.as_deref() else { return Vec::new() };
     let seen = Seen::new(synth, moment);
-    let given = synth.strokes.as_deref().zip(seen.given_alone());
     let i = y * moment.size_px.0 + x;
-    given.map_or_else(Vec::new, |(ready, given)| strokes::explain::entries(ready, &given, i))
+    seen.given_alone().map_or_else(Vec::new, |given| strokes::explain::entries(ready, &given, i))
 }
 
 /// The triangle in column `x`, row `y` of what was synthesised.

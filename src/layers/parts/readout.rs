@@ -78,6 +78,12 @@ pub enum Value {
     },
     /// Red, green, blue and alpha, as codes.
     Color([u8; 4]),
+    /// Numbers of things in their lists, or codes.
+    Indices(Vec<usize>),
+    /// How much each of several things counts, by their names: the greatest first.
+    Shares(Vec<(String, f64)>),
+    /// Entries that belong together.
+    Group(Vec<Entry>),
     /// Several things, each with its own entries; those without a label are not told to people.
     Items(Vec<Vec<Entry>>),
 }

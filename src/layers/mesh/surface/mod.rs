@@ -22,6 +22,7 @@ use crate::layers::parts::materials::Use;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::Bind;
+use crate::layers::parts::readout::Entry;
 use crate::layers::ready::Making;
 use crate::layers::space::raster::Hit;
 
@@ -79,6 +80,11 @@ pub trait Slot {
         false
     }
 
+    /// Whether it tells something of each of its places ([`StillSurface::told`]) and has passes.
+    fn explains(&self) -> bool {
+        false
+    }
+
     /// Prepares it for a mesh and any time. What it has in common with what was made before is reused.
     ///
     /// # Errors
@@ -129,6 +135,11 @@ pub trait StillSurface: Sync {
     /// Whether light falls on it; if not, its light is in its colors.
     fn is_lit(&self) -> bool {
         true
+    }
+
+    /// What there is to say of a place.
+    fn told(&self, _place: &Place) -> Option<Entry> {
+        None
     }
 
     /// What tells what a pass of its kind has at one place after the other; `None` for all other passes.

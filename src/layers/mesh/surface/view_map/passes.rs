@@ -1,8 +1,7 @@
 //! What a view map is made from, as pictures of numbers.
 
 use super::super::Reader;
-use super::map::Map;
-use super::ready::Looked;
+use super::looked::Looked;
 use super::sample;
 use crate::base::pixels::linear_from_srgb;
 use crate::layers::parts::pass::{Holds, Pass};
@@ -29,7 +28,8 @@ pub const COLORS: Pass = Pass { name: "coverage-colors", help: "which views are 
 const LEAST_OPACITY: f64 = 1e-6;
 
 /// What tells what a pass has at one place after the other; `None` for passes that are not of view maps.
-pub fn reader<'a>(looked: &'a Looked, map: &'a Map, pass: &Pass) -> Option<Reader<'a>> {
+pub fn reader<'a>(looked: &'a Looked, pass: &Pass) -> Option<Reader<'a>> {
+    let map = looked.map();
     let (mut spots, mut reader) = (looked.spots(), sample::Reader::new(map));
     let left = 1.0 - looked.base();
     let mut shares = vec![0.0; map.wanted.views.len()];

@@ -39,6 +39,10 @@ impl Slot for ViewMap {
         self.atlas == Some(Atlas::Uv)
     }
 
+    fn explains(&self) -> bool {
+        true
+    }
+
     fn synth(&self, mesh: &Arc<Mesh>, making: &Making, before: Before) -> Result<Arc<dyn ReadySurface>, Problem> {
         let materials = making.materials;
         let wanted = wanted(self, mesh, materials)?;
