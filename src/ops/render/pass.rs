@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{Args, Numbered, frame_bytes, numbered};
 use crate::base::error::{Error, Result};
-use crate::base::pixels::Linear;
+use crate::base::pixels::{Frame, Linear};
 use crate::export::animation::range;
 use crate::export::passes::Files;
 use crate::files::outputs;
@@ -58,13 +58,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
             [synth] => asked.picture(synth, time),
             samples => cpu::mean(samples, time),
         };
-        let shown = || {
-            let other = asked.looked_at();
-            if other == asked {
-                return view_over(&asked, &picture, || cpu::linear(&samples[0], time));
-            }
-            view(other.pass, &other.picture(&samples[0], time))
-        };
+        let shown = || shown(&asked, &picture, (&samples[0], time));
         context.check_cancelled()?;
         files.write(number, &picture, *asked.pass == COLOR, shown)?;
     }
@@ -75,4 +69,13 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     };
     context.done(&what, outputs::size(files.paths()), begun);
     Ok(())
+}
+
+/// A pass to look at.
+fn shown(asked: &Asked, picture: &Linear, (synth, time): (&Synth, f64)) -> Frame {
+    let other = asked.looked_at();
+    if other == *asked {
+        return view_over(asked, picture, || cpu::linear(synth, time));
+    }
+    view(other.pass, &other.picture(synth, time))
 }
