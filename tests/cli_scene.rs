@@ -318,7 +318,7 @@ fn what_tools_ask_for() {
 fn styles_are_listed_shown_applied_and_saved() {
     let folder = folder();
     let list = ok(plica(folder.path(), &["style", "list"]));
-    assert!(list.lines().count() == 9 && list.contains("\nfelt-tip        broad pens in"), "{list}");
+    assert!(list.contains("\nfelt-tip        broad pens in") && list.ends_with("takes it away\n"), "{list}");
     let shown = ok(plica(folder.path(), &["style", "show", "charcoal"]));
     let line = ok(plica(folder.path(), &["style", "show", "charcoal", "--json"]));
     let table: serde_json::Value = serde_json::from_str(&shown).unwrap();
@@ -344,11 +344,18 @@ fn styles_are_listed_shown_applied_and_saved() {
         (get("layers.a.strokes.style"), get("layers.a.strokes.noises.broad.spacing")),
         ("\"none\"\n".into(), "18\n".into())
     );
+    let own = folder.path().join("config/plica/styles");
+    std::fs::create_dir_all(&own).unwrap();
+    std::fs::copy(folder.path().join("mine.json"), own.join("sooty.json")).unwrap();
+    assert!(ok(plica(folder.path(), &["style", "list"])).contains("\nsooty           your own: "));
+    assert!(apply(&["sooty", "s.json"]).messages.ends_with("sooty.json changes nothing in a\n"));
     ok(apply(&["stipple", "s.json", "--whole"]));
     assert_eq!(
         (get("layers.a.strokes.style"), get("layers.a.strokes.marks.dots.opacity")),
         ("\"none\"\n".into(), "1\n".into())
     );
+    assert_eq!(apply(&["none", "s.json"]).messages, "a is drawn in no style\n");
+    assert!(!std::fs::read_to_string(folder.path().join("s.json")).unwrap().contains("strokes"));
     for (args, told) in [
         (&["stiple", "s.json"][..], "did you mean \"stipple\"?), and no such file"),
         (&["s.json", "s.json"], "s.json: is no style"),

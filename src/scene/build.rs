@@ -27,7 +27,7 @@ impl Edit {
         let json = document.json();
         let Some(place) = Place::of(json, path) else { return (Edit::add(path, value), None) };
         if value.is_null() && (place.shape.allows_null() || !place.required) {
-            return (cleared(document, path, place.set), None);
+            return (cleared(document, path, place), None);
         }
         if let (Some((parent, last)), Some(name)) = (Pointer(path).split(), value.as_str())
             && let Some(holder) = Place::of(json, parent)
@@ -111,14 +111,18 @@ fn layer_users<'a>(document: &'a Document, path: &'a str) -> impl Iterator<Item 
 
 /// Removes an optional value; where something stands there all the same, as what a style has, `null` is written if that
 /// clears it.
-fn cleared(document: &Document, path: &str, set: bool) -> Edit {
-    let is_clear = |edit: &Edit| document.apply(edit).is_ok_and(|with| field::in_force(&with, path).is_none());
+fn cleared(document: &Document, path: &str, Place { set, shape, .. }: Place) -> Edit {
+    let stands = |with: &Document| field::in_force(with, path).is_some();
     let removed = if set { Edit::unset(document, path) } else { Edit::default() };
-    if is_clear(&removed) {
+    if !shape.allows_null() || !document.apply(&removed).is_ok_and(|with| stands(&with)) {
         return removed;
     }
     let null = write(document, path, Value::Null);
-    if is_clear(&null) { null } else { removed }
+    match document.apply(&null) {
+        Ok(with) if stands(&with) => removed,
+        // What is wrong with that is to be told.
+        Ok(_) | Err(_) => null,
+    }
 }
 
 /// The camera that the first layers in space need, if these are some and the scene has none.

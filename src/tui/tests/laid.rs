@@ -118,6 +118,10 @@ fn null_is_written_where_it_clears_what_stands_there() {
         assert_eq!(at(&state, &format!("{STROKES}{pointer}")), expected, "{setting}: {:?}", state.message);
         assert_eq!(at(&state, STROKES).get("size").is_some(), setting != "size=null");
     }
+    let mut state = shown(r#"{ "noises": { "b": { "spacing": 9 } } }"#, "");
+    press(&mut state, ": \"set layers.ring.strokes.noises.b=null\" Enter");
+    assert!(said_last(&state).1.contains("is made of the noise \"b\", which is not there"), "{:?}", state.message);
+    assert_eq!(at(&state, "/layers/0/strokes/noises/b/spacing"), json!(9), "refused, not half done");
     let mut state = shown(r#"{ "style": "stipple", "marks": [{ "name": "more dots", "off": true }] }"#, "");
     let noises = field::laid(state.document(), "/layers/0/strokes/noises").unwrap();
     let used = at(&state, "/layers/0/strokes/marks").to_string();

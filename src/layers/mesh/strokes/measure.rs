@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::draw::{grey, main_noise};
 use super::model::Anchor;
 use super::noise::Scene;
-use super::statistics::{correlation, median, percentile};
+use super::statistics::{Sums, correlation, median, percentile};
 use super::{Given, Ready};
 use crate::base::maths::{TAU, cos, pow, sin};
 use crate::layers::parts::measures::{Figures, Moved};
@@ -191,13 +191,14 @@ fn slide(own: &[f32], again: &[f32], (width, height): (usize, usize), (x, y): (u
         return None;
     }
     let at = |across: isize, down: isize| {
-        let pair = |&(x, y): &(usize, usize)| {
-            let (to_x, to_y) = (x.checked_add_signed(across)?, y.checked_add_signed(down)?);
-            let there = (to_x < width && to_y < height).then(|| again[to_y * width + to_x])?;
-            (!there.is_nan()).then(|| (own[y * width + x], there))
-        };
-        let pairs: Vec<(f32, f32)> = seen.iter().filter_map(pair).collect();
-        if 2 * pairs.len() < all { None } else { correlation(pairs.iter().copied()) }
+        let mut sums = Sums::default();
+        for &(x, y) in &seen {
+            let (Some(to_x), Some(to_y)) = (x.checked_add_signed(across), y.checked_add_signed(down)) else { continue };
+            if to_x < width && to_y < height && !again[to_y * width + to_x].is_nan() {
+                sums.add(own[y * width + x], again[to_y * width + to_x]);
+            }
+        }
+        if 2 * sums.count < all { None } else { sums.correlation() }
     };
     const SIDE: usize = 2 * FARTHEST as usize + 1;
     let shift = |i: usize| (i % SIDE) as isize - FARTHEST;

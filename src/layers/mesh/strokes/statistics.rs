@@ -1,20 +1,40 @@
 //! What measures are told in: correlations, medians, percentiles.
 
-/// The correlation of pairs; none of fewer than two, or where one side does not vary.
-pub fn correlation(pairs: impl Iterator<Item = (f32, f32)> + Clone) -> Option<f64> {
-    let (mut count, mut sums) = (0.0, [0.0; 2]);
-    for (a, b) in pairs.clone() {
-        count += 1.0;
-        sums = [sums[0] + f64::from(a), sums[1] + f64::from(b)];
+/// The sums that a correlation of pairs follows from.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sums {
+    /// How many pairs there are.
+    pub count: usize,
+    each: [f64; 2],
+    squares: [f64; 2],
+    products: f64,
+}
+
+impl Sums {
+    /// One more pair.
+    #[inline]
+    pub fn add(&mut self, a: f32, b: f32) {
+        let (a, b) = (f64::from(a), f64::from(b));
+        self.count += 1;
+        self.each = [self.each[0] + a, self.each[1] + b];
+        self.squares = [self.squares[0] + a * a, self.squares[1] + b * b];
+        self.products += a * b;
     }
-    let mean = sums.map(|sum| sum / count);
-    let (mut own, mut both) = ([0.0; 2], 0.0);
-    for (a, b) in pairs {
-        let (a, b) = (f64::from(a) - mean[0], f64::from(b) - mean[1]);
-        own = [own[0] + a * a, own[1] + b * b];
-        both += a * b;
+
+    /// The correlation; none of no pairs, or where one side does not vary.
+    pub fn correlation(&self) -> Option<f64> {
+        let [a, b] = self.each;
+        let count = self.count.max(1) as f64;
+        let [own, other] = [self.squares[0] - a * a / count, self.squares[1] - b * b / count];
+        (own > 1e-9 && other > 1e-9).then(|| (self.products - a * b / count) / (own * other).sqrt())
     }
-    (own[0] > 1e-9 && own[1] > 1e-9).then(|| both / (own[0] * own[1]).sqrt())
+}
+
+/// The correlation of pairs, as [`Sums::correlation`].
+pub fn correlation(pairs: impl Iterator<Item = (f32, f32)>) -> Option<f64> {
+    let mut sums = Sums::default();
+    pairs.for_each(|(a, b)| sums.add(a, b));
+    sums.correlation()
 }
 
 /// The value that a share of all values is below, between two of them in proportion; none of none.
