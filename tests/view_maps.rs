@@ -246,6 +246,6 @@ fn photographs_come_back_from_their_own_cameras() {
     let (materials, _) = loaded.unwrap();
     let synth = render::synth(&scene, &materials, None).unwrap();
     let ready = plica::layers::mesh::surface::view_map::of(&*synth.layers[0]).unwrap();
-    let found = plica::layers::mesh::surface::view_map::compare::compare(&ready.map);
+    let found = plica::layers::mesh::surface::view_map::compare::compare(ready.filled());
     assert!(found.iter().all(|near| near.unwrap() >= 36.0), "{found:?}");
 }

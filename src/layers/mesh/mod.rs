@@ -90,8 +90,13 @@ impl Technique for MeshLayer {
     }
 
     fn check_made(&self, making: &Making) -> Vec<Problem> {
-        let made = self.strokes.is_some().then(|| synth::Synth::new(self, making, None));
-        made.and_then(Result::err).into_iter().collect()
+        let surface = self.surface.slot();
+        let made = (self.strokes.is_some() || surface.explains()).then(|| synth::Synth::new(self, making, None));
+        match made {
+            Some(Ok(made)) => surface.check_made(&*made.surface).into_iter().map(|odd| odd.under("/surface")).collect(),
+            Some(Err(problem)) => vec![problem],
+            None => Vec::new(),
+        }
     }
 
     fn uses(&self) -> Vec<Use<'_>> {

@@ -85,6 +85,11 @@ pub trait Slot {
         false
     }
 
+    /// What is odd about it that only shows once it is made.
+    fn check_made(&self, _made: &dyn ReadySurface) -> Vec<Problem> {
+        Vec::new()
+    }
+
     /// Prepares it for a mesh and any time. What it has in common with what was made before is reused.
     ///
     /// # Errors

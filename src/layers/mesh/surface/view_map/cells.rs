@@ -1,7 +1,6 @@
 //! The cells of a surface: squares of its charts in layers, each with four times as many as the one before.
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::atlas::Atlas;
 
@@ -178,15 +177,28 @@ impl Layer {
         Layer { resolution, cells, charts, numbers }
     }
 
-    /// The cells that each triangle meets, as often as it does.
-    pub fn met_by(&self, atlas: &Atlas) -> Vec<u32> {
-        let of = |(corners, chart): (&[DVec2; 3], &u32)| {
-            let mut found = Vec::new();
-            met(&corners.map(|corner| corner * self.resolution), |x, y| found.push(self.find(*chart, x, y)));
-            found
-        };
-        let found = atlas.corners.par_iter().zip(&atlas.chart).flat_map_iter(of);
-        found.filter(|cell| *cell != NONE).collect()
+    /// For each cell, the triangles whose inside has its middle: how many, and the last.
+    pub fn middles(&self, atlas: &Atlas) -> Vec<(u32, u32)> {
+        let mut found = vec![(0, 0); self.cells.len()];
+        for (triangle, (corners, chart)) in atlas.corners.iter().zip(&atlas.chart).enumerate() {
+            let corners = corners.map(|corner| corner * self.resolution);
+            let low = corners[0].min(corners[1]).min(corners[2]);
+            let high = corners[0].max(corners[1]).max(corners[2]);
+            let sense = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).signum();
+            for y in floor(low.y)..=floor(high.y) {
+                for x in floor(low.x)..=floor(high.x) {
+                    let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                    let inside =
+                        |k: usize| (corners[(k + 1) % 3] - corners[k]).perp_dot(middle - corners[k]) * sense > 0.0;
+                    let cell = self.find(*chart, x, y);
+                    if cell != NONE && inside(0) && inside(1) && inside(2) {
+                        let (count, last) = &mut found[cell as usize];
+                        (*count, *last) = (*count + 1, triangle as u32);
+                    }
+                }
+            }
+        }
+        found
     }
 }
 

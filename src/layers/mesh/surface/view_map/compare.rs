@@ -5,7 +5,7 @@ use kurbo::Vec2;
 use rayon::prelude::*;
 
 use super::id::{depth_of, share_of};
-use super::map::Map;
+use super::looked::Filled;
 use super::sample::{Reader, Spot};
 use crate::base::maths::ln;
 use crate::base::pixels::{Rgba, encode};
@@ -17,11 +17,11 @@ const LEAST_NORMAL: f64 = 0.2;
 
 /// The peak signal-to-noise ratio of each active view, in dB; `None` where nothing of it is seen, infinite where there is no
 /// difference at all.
-pub fn compare(map: &Map) -> Vec<Option<f64>> {
-    (0..map.wanted.views.len()).map(|view| one(map, view)).collect()
+pub fn compare(filled: Filled) -> Vec<Option<f64>> {
+    (0..filled.0.wanted.views.len()).map(|view| one(filled, view)).collect()
 }
 
-fn one(map: &Map, view: usize) -> Option<f64> {
+fn one((map, arrays): Filled, view: usize) -> Option<f64> {
     let own = &map.wanted.views[view];
     let (camera, mesh) = (&own.camera, &map.wanted.mesh);
     let seen: Vec<DVec3> = mesh.vertices.iter().map(|vertex| camera.seen(vertex.position)).collect();
@@ -30,7 +30,7 @@ fn one(map: &Map, view: usize) -> Option<f64> {
     let cells = f64::from(map.wanted.first) * f64::from(map.wanted.first);
     let pixels = own.paint.pixels();
     let rows = (0..height).into_par_iter().map(|y| {
-        let (mut sum, mut count, mut reader) = (0_u64, 0_u64, Reader::new(map));
+        let (mut sum, mut count, mut reader) = (0_u64, 0_u64, Reader::new(map, arrays));
         let (mut depth, mut triangles) = (vec![f64::INFINITY; width], vec![NONE; width]);
         raster.row(y, Columns::All, &mut depth, &mut triangles);
         let known = |triangle: usize| {
@@ -51,7 +51,7 @@ fn one(map: &Map, view: usize) -> Option<f64> {
             }
             let depth = depth_of(cells * depth * depth * depth);
             let spot = Spot { triangle: hit.triangle, weights: hit.weights, point, eye: toward, depth };
-            let [r, g, b] = reader.at(&spot, |_, _| ()).over.map(|light| light as f32);
+            let [r, g, b] = reader.at(&spot, None).over.map(|light| light as f32);
             sum += squares([r, g, b, 1.0], picture);
             count += 3;
         });

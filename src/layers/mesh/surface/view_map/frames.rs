@@ -31,6 +31,13 @@ impl Frame {
         Frame { at, normal, along: own.unwrap_or_else(|| flat(other())).normalize_or_zero() }
     }
 
+    /// The direction at a place of the disc.
+    pub fn way(&self, at: DVec2) -> DVec3 {
+        let square = at.length_squared();
+        let flat = 2.0 * (at.x * self.along + at.y * self.normal.cross(self.along));
+        (flat + (1.0 - square) * self.normal) / (1.0 + square)
+    }
+
     /// A direction as a place of a disc: the normal is its middle, the horizon its rim.
     pub fn direction(&self, way: DVec3) -> DVec2 {
         let (flat, up) =
@@ -42,32 +49,65 @@ impl Frame {
 /// The frame of a cell.
 pub fn of(map: &Map, layer: usize, cell: &Cell) -> Option<Frame> {
     let finest = map.cells.layers.len().checked_sub(1)?;
-    let mut wide = 1_usize << (finest - layer);
+    let wide = 1_usize << (finest - layer);
     let corner = [cell.x << (finest - layer), cell.y << (finest - layer)];
-    let mut frames = of_square(map, cell.chart, corner, wide);
-    while wide > 1 {
-        wide /= 2;
-        let mean = |i: usize| {
-            let (x, y) = (i % wide * 2, i / wide * 2);
-            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| frames[(y + down) * wide * 2 + x + right]);
-            let (mut sum, mut count) = ([DVec3::ZERO; 3], 0.0);
-            for frame in four.iter().flatten() {
-                sum = [sum[0] + frame.at, sum[1] + frame.normal, sum[2] + frame.along];
-                count += 1.0;
-            }
-            (count > 0.0).then(|| Frame::new(sum[0] / count, sum[1], sum[2]))
-        };
-        frames = (0..wide * wide).map(mean).collect();
+    let own = map.atlas.chart.iter().enumerate().filter(|(_, chart)| **chart == cell.chart);
+    let own: Vec<usize> = own.map(|(triangle, _)| triangle).collect();
+    let mut frames = of_square(map, (cell.chart, &own), corner, wide);
+    for halvings in 0..finest - layer {
+        frames = halved(&frames, wide >> halvings);
     }
     frames.first().copied().flatten()
 }
 
+/// The frames of all cells, by layer.
+pub fn all(map: &Map) -> Vec<Vec<Frame>> {
+    let none = Frame::new(DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    let mut all: Vec<Vec<Frame>> = map.cells.layers.iter().map(|layer| vec![none; layer.len()]).collect();
+    let Some(finest) = map.cells.layers.last() else { return all };
+    let mut triangles = vec![Vec::new(); map.atlas.extents.len()];
+    map.atlas.chart.iter().enumerate().for_each(|(triangle, chart)| triangles[*chart as usize].push(triangle));
+    for (chart, own) in triangles.iter().enumerate() {
+        let side = (map.atlas.extents[chart].max_element() * finest.resolution) as usize + 1;
+        let mut wide = side.next_power_of_two().max(1 << (map.cells.layers.len() - 1));
+        let mut frames = of_square(map, (chart as u32, own), [0, 0], wide);
+        for (number, layer) in map.cells.layers.iter().enumerate().rev() {
+            for (i, frame) in frames.iter().enumerate() {
+                let cell = layer.find(chart as u32, (i % wide) as i32, (i / wide) as i32);
+                if let Some(frame) = frame.filter(|_| cell != NONE) {
+                    all[number][cell as usize] = frame;
+                }
+            }
+            if number > 0 {
+                frames = halved(&frames, wide);
+                wide /= 2;
+            }
+        }
+    }
+    all
+}
+
+/// The frames of the next coarser cells in a square that is so many wide.
+fn halved(frames: &[Option<Frame>], wide: usize) -> Vec<Option<Frame>> {
+    let half = wide / 2;
+    let mean = |i: usize| {
+        let (x, y) = (i % half * 2, i / half * 2);
+        let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| frames[(y + down) * wide + x + right]);
+        let (mut sum, mut count) = ([DVec3::ZERO; 3], 0.0);
+        for frame in four.iter().flatten() {
+            sum = [sum[0] + frame.at, sum[1] + frame.normal, sum[2] + frame.along];
+            count += 1.0;
+        }
+        (count > 0.0).then(|| Frame::new(sum[0] / count, sum[1], sum[2]))
+    };
+    (0..half * half).map(mean).collect()
+}
+
 /// The frames of the finest cells in a square of a chart, row by row.
-fn of_square(map: &Map, chart: u32, corner: [i32; 2], wide: usize) -> Vec<Option<Frame>> {
+fn of_square(map: &Map, (chart, own): (u32, &[usize]), corner: [i32; 2], wide: usize) -> Vec<Option<Frame>> {
     let Some(layer) = map.cells.layers.last() else { return Vec::new() };
     let mut found: Vec<Option<(f64, Frame)>> = vec![None; wide * wide];
-    let own = map.atlas.chart.iter().enumerate().filter(|(_, own)| **own == chart);
-    for (triangle, _) in own {
+    for &triangle in own {
         let corners = map.atlas.corners[triangle].map(|corner| corner * layer.resolution);
         let low = corners[0].min(corners[1]).min(corners[2]).floor();
         let high = corners[0].max(corners[1]).max(corners[2]).floor();

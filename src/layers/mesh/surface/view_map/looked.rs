@@ -3,18 +3,23 @@
 use glam::DVec3;
 
 use super::super::Place;
+use super::arrays::Arrays;
 use super::blend::Points;
 use super::id::{depth_of, share_of};
 use super::map::Map;
-use super::sample::{Sample, Spot};
+use super::sample::{Reader, Sample, Spot};
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;
 
+/// A map, and its arrays of directions if it has some.
+pub type Filled<'a> = (&'a Map, Option<&'a Arrays>);
+
 /// A view map as one camera sees it at one time.
 pub struct Looked<'a> {
     map: &'a Map,
+    arrays: Option<&'a Arrays>,
     placed: Placed,
     /// `None` without a camera.
     eye: Option<Eye>,
@@ -26,18 +31,24 @@ pub struct Looked<'a> {
 
 impl<'a> Looked<'a> {
     /// The map at one time.
-    pub fn new(map: &'a Map, points: &Points, moment: &Moment, placed: &Placed) -> Looked<'a> {
+    pub fn new(filled: Filled<'a>, points: &Points, moment: &Moment, placed: &Placed) -> Looked<'a> {
+        let (map, arrays) = filled;
         let base = moment.eye.map_or(0.0, |eye| {
             let position = placed.turn.transpose() * (eye.position - placed.position) / placed.scale;
             points.at(position, placed.turn.transpose() * -eye.turn.row(2))
         });
         let samples = f64::from(moment.magnified.max(1));
-        Looked { map, placed: *placed, eye: moment.eye, samples: samples * samples, base }
+        Looked { map, arrays, placed: *placed, eye: moment.eye, samples: samples * samples, base }
     }
 
     /// The map.
     pub fn map(&self) -> &'a Map {
         self.map
+    }
+
+    /// What reads it.
+    pub fn sampler(&self) -> Reader<'a> {
+        Reader::new(self.map, self.arrays)
     }
 
     /// How much of the base coat alone is seen.

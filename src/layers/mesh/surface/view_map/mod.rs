@@ -1,6 +1,7 @@
 //! View maps (Grimm and Kowalski 2002): pictures laid on the surface, each with its camera. Some make up the base coat,
 //! some are seen only near where they were taken from. They are mixed once, on the surface, in cells of several sizes.
 
+pub mod arrays;
 pub mod atlas;
 pub mod balance;
 pub mod blend;
@@ -17,6 +18,7 @@ pub mod lists;
 pub mod looked;
 pub mod map;
 pub mod mix;
+pub mod mixer;
 pub mod model;
 pub mod paint;
 pub mod passes;
@@ -29,6 +31,7 @@ pub mod slot;
 mod tests;
 pub mod view;
 pub mod wanted;
+pub mod warnings;
 
 use crate::layers::mesh::synth::Synth;
 

@@ -2,7 +2,6 @@
 
 use super::super::Reader;
 use super::looked::Looked;
-use super::sample;
 use crate::base::pixels::linear_from_srgb;
 use crate::layers::parts::pass::{Holds, Pass};
 
@@ -30,25 +29,25 @@ const LEAST_OPACITY: f64 = 1e-6;
 /// What tells what a pass has at one place after the other; `None` for passes that are not of view maps.
 pub fn reader<'a>(looked: &'a Looked, pass: &Pass) -> Option<Reader<'a>> {
     let map = looked.map();
-    let (mut spots, mut reader) = (looked.spots(), sample::Reader::new(map));
+    let (mut spots, mut reader) = (looked.spots(), looked.sampler());
     let left = 1.0 - looked.base();
     let mut shares = vec![0.0; map.wanted.views.len()];
     match pass.name {
         name if name == INDEPENDENT.name => Some(Box::new(move |place| {
             let Some(spot) = spots(place) else { return [0.0; 4] };
-            let [r, g, b] = reader.at(&spot, |_, _| ()).independent.map(|light| light as f32);
+            let [r, g, b] = reader.at(&spot, None).independent.map(|light| light as f32);
             [r, g, b, 1.0]
         })),
         name if name == DEPENDENT.name => Some(Box::new(move |place| {
             let Some(spot) = spots(place) else { return [0.0; 4] };
-            let sample = reader.at(&spot, |_, _| ());
+            let sample = reader.at(&spot, None);
             let [r, g, b] = sample.dependent.map(|light| (left * light) as f32);
             [r, g, b, (left * sample.opacity) as f32]
         })),
         name if name == COVERAGE.name => Some(Box::new(move |place| {
             let Some(spot) = spots(place) else { return [0.0; 4] };
             shares.fill(0.0);
-            let sample = reader.at(&spot, |view, share| shares[view] += share);
+            let sample = reader.at(&spot, Some(&mut |view, share| shares[view] += share));
             let first = |best: usize, view: usize| if shares[view] > shares[best] { view } else { best };
             let most = (0..shares.len()).reduce(first).filter(|_| sample.opacity > LEAST_OPACITY);
             let number = most.map_or(0, |view| map.wanted.views[view].number + 1);

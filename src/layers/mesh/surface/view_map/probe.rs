@@ -4,7 +4,6 @@ use super::super::Place;
 use super::cells::{Cell, NONE};
 use super::frames;
 use super::looked::Looked;
-use super::sample::Reader;
 use crate::base::pixels::encode;
 use crate::layers::parts::readout::{Entry, Value};
 
@@ -16,7 +15,7 @@ pub fn entry(looked: &Looked, place: &Place) -> Option<Entry> {
     let map = looked.map();
     let spot = looked.spots()(place)?;
     let mut shares = vec![0.0; map.wanted.views.len()];
-    let sample = Reader::new(map).at(&spot, |view, share| shares[view] += share);
+    let sample = looked.sampler().at(&spot, Some(&mut |view, share| shares[view] += share));
     let finest = map.cells.layers.len().checked_sub(1)?;
     let layer = (spot.depth.clamp(0.0, finest as f64) + 0.5) as usize;
     let chart = map.atlas.chart[spot.triangle];

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use super::super::{Place, Reader, ReadySurface, StillSurface};
+use super::arrays::Arrays;
 use super::blend::Points;
-use super::looked::Looked;
+use super::looked::{Filled, Looked};
 use super::map::Map;
-use super::sample;
 use super::{passes, probe};
+use crate::base::budget::Share;
 use crate::base::pixels::Rgba;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
@@ -21,13 +22,24 @@ use crate::layers::parts::readout::Entry;
 pub struct Ready {
     /// The cells and what they show.
     pub map: Arc<Map>,
+    /// The arrays of directions, if it has some.
+    pub arrays: Option<Arc<Arrays>>,
     /// From where the base coat alone is seen.
     pub points: Points,
+    /// The memory of it all.
+    pub kept: Arc<Share>,
+}
+
+impl Ready {
+    /// The map with its arrays.
+    pub fn filled(&self) -> Filled<'_> {
+        (&self.map, self.arrays.as_deref())
+    }
 }
 
 impl ReadySurface for Ready {
     fn at<'a>(&'a self, moment: &'a Moment, placed: &Placed) -> Box<dyn StillSurface + 'a> {
-        Box::new(Looked::new(&self.map, &self.points, moment, placed))
+        Box::new(Looked::new(self.filled(), &self.points, moment, placed))
     }
 
     fn plan(&self, _moment: &Moment) -> (Rgba, Option<Bind>) {
@@ -50,10 +62,10 @@ impl ReadySurface for Ready {
 
 impl StillSurface for Looked<'_> {
     fn reader(&self) -> Reader<'_> {
-        let (mut spots, mut reader) = (self.spots(), sample::Reader::new(self.map()));
+        let (mut spots, mut reader) = (self.spots(), self.sampler());
         Box::new(move |place| {
             let Some(spot) = spots(place) else { return [0.0; 4] };
-            let [r, g, b] = self.shown(&reader.at(&spot, |_, _| ())).map(|light| light as f32);
+            let [r, g, b] = self.shown(&reader.at(&spot, None)).map(|light| light as f32);
             [r, g, b, 1.0]
         })
     }

@@ -1,6 +1,8 @@
 //! What is known of a filled map and of its views, in numbers.
 
+use super::arrays::Arrays;
 use super::coat::State;
+use super::looked::Filled;
 use super::map::Map;
 use super::view::View;
 
@@ -57,8 +59,14 @@ pub fn views(map: &Map) -> Vec<OfView<'_>> {
     views.map(of).collect()
 }
 
+/// The memory of what views tell, as it is counted.
+pub fn bytes((map, arrays): Filled) -> u64 {
+    let entries: usize = map.lists.iter().map(|lists| lists.views.len()).sum();
+    entries as u64 * ENTRY_BYTES + arrays.map_or(0, Arrays::bytes)
+}
+
 /// The map.
-pub fn map(map: &Map) -> OfMap {
+pub fn map((map, arrays): Filled) -> OfMap {
     let count = |state: State| map.coats.iter().map(|coat| coat.count(state)).collect();
     let depends = |view: &&u8| map.wanted.views[usize::from(**view)].dependent;
     OfMap {
@@ -68,6 +76,6 @@ pub fn map(map: &Map) -> OfMap {
         known: count(State::Known),
         filled: count(State::Filled),
         entries: map.lists.iter().map(|lists| lists.views.iter().filter(depends).count()).collect(),
-        bytes: map.lists.iter().map(|lists| lists.views.len() as u64 * ENTRY_BYTES).sum(),
+        bytes: bytes((map, arrays)),
     }
 }

@@ -2,11 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
+use super::arrays::Arrays;
 use super::cells::NONE;
 use super::coat::{self, State};
-use super::gauge::Gauges;
 use super::map::Map;
-use super::mix::{Part, mix};
+use super::mix::Part;
+use super::mixer::Mixer;
 
 /// A place of the surface as it is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -41,14 +42,18 @@ pub struct Sample {
 /// A map that is read.
 pub struct Reader<'a> {
     map: &'a Map,
-    gauges: Gauges,
+    arrays: Option<&'a Arrays>,
+    mixer: Mixer<'a>,
     parts: Vec<Part>,
 }
 
+/// What is told the share that each view has in what depends on the direction.
+pub type Each<'a> = Option<&'a mut dyn FnMut(usize, f64)>;
+
 impl<'a> Reader<'a> {
-    /// Reads a map.
-    pub fn new(map: &'a Map) -> Reader<'a> {
-        Reader { map, gauges: Gauges::default(), parts: Vec::new() }
+    /// Reads a map; directions by its arrays, if it has some.
+    pub fn new(map: &'a Map, arrays: Option<&'a Arrays>) -> Reader<'a> {
+        Reader { map, arrays, mixer: Mixer::new(map), parts: Vec::new() }
     }
 
     /// The cells that count at a place, by layer, and how much.
@@ -90,12 +95,9 @@ impl<'a> Reader<'a> {
     /// coat.
     pub fn everyone(&mut self, spot: &Spot, mut each: impl FnMut(usize, f64)) {
         let map = self.map;
-        self.gauges.set(&map.wanted.views, spot.point, spot.eye);
+        self.mixer.look(spot.point, spot.eye);
         for (layer, cell, weight) in self.cells(spot).into_iter().filter(|(.., weight)| *weight > 0.0) {
-            let opacity = if self.gauges.none() { 0.0 } else { self.mixed(layer, cell) };
-            if opacity > 0.0 {
-                self.parts.iter().for_each(|part| each(part.view, weight * part.share));
-            }
+            let [.., opacity] = self.mixer.at(layer, cell, |view, share| each(view, weight * share));
             let whole = coat::parts(&map.lists[layer], cell, layer, &map.wanted.views, &mut self.parts);
             if whole > 0.0 {
                 self.parts.iter().for_each(|part| each(part.view, weight * (1.0 - opacity) * part.share / whole));
@@ -105,58 +107,36 @@ impl<'a> Reader<'a> {
 
     /// What is at a place. `each` is told the share that each view has there in what depends on the direction.
     #[inline]
-    pub fn at(&mut self, spot: &Spot, mut each: impl FnMut(usize, f64)) -> Sample {
+    pub fn at(&mut self, spot: &Spot, mut each: Each) -> Sample {
         let map = self.map;
         let mut sample = Sample::default();
-        self.gauges.set(&map.wanted.views, spot.point, spot.eye);
+        let exact = self.arrays.is_none() || each.is_some();
+        if exact {
+            self.mixer.look(spot.point, spot.eye);
+        }
         let cells = self.cells(spot);
         if cells.iter().all(|(.., weight)| *weight <= 0.0) {
             return self.missing();
         }
         for (layer, cell, weight) in cells.into_iter().filter(|(.., weight)| *weight > 0.0) {
-            let opacity = if self.gauges.none() { 0.0 } else { self.mixed(layer, cell) };
-            let (lists, coat) = (&map.lists[layer], &map.coats[layer]);
-            let mut dependent = [0.0; 3];
-            if opacity > 0.0 {
-                for part in &self.parts {
-                    let color = lists.entries[part.entry].color;
-                    dependent.iter_mut().zip(color).for_each(|(sum, light)| *sum += part.share * f64::from(light));
-                    each(part.view, weight * part.share);
-                }
+            let mut found = [0.0; 4];
+            if exact {
+                let mut tell = |view: usize, share: f64| each.iter_mut().for_each(|each| each(view, weight * share));
+                found = self.mixer.at(layer, cell, &mut tell);
             }
+            if let Some(arrays) = self.arrays {
+                found = arrays.read(layer, cell, spot.eye);
+            }
+            let coat = &map.coats[layer];
             let coated = coat.colors[cell as usize].map(f64::from);
             for k in 0..3 {
                 sample.independent[k] += weight * coated[k];
-                sample.dependent[k] += weight * dependent[k];
-                sample.over[k] += weight * (dependent[k] + (1.0 - opacity) * coated[k]);
+                sample.dependent[k] += weight * found[k];
+                sample.over[k] += weight * (found[k] + (1.0 - found[3]) * coated[k]);
             }
-            sample.opacity += weight * opacity;
+            sample.opacity += weight * found[3];
             sample.known += if coat.states[cell as usize] == State::Known { weight } else { 0.0 };
         }
         sample
-    }
-
-    /// Mixes the views that depend on the direction at a cell. Returns how opaque they are.
-    #[inline]
-    fn mixed(&mut self, layer: usize, cell: u32) -> f64 {
-        let lists = &self.map.lists[layer];
-        let range = lists.of(cell);
-        self.parts.clear();
-        let (views, entries) = (&lists.views[range.clone()], &lists.entries[range.clone()]);
-        for (at, (view, entry)) in views.iter().zip(entries).enumerate() {
-            let slot = self.gauges.slot(*view);
-            if slot == NONE {
-                continue;
-            }
-            let strength =
-                views.iter().zip(entries).map(|(view, entry)| (*view, f64::from(entry.mask) * f64::from(entry.facing)));
-            let gauge = self.gauges.gauge(slot, strength);
-            let view = usize::from(*view);
-            let factor = self.map.wanted.views[view].fade.factor(gauge);
-            if factor > 0.0 {
-                self.parts.push(Part::new(range.start + at, view, entry, factor, layer));
-            }
-        }
-        mix(&mut self.parts)
     }
 }

@@ -3,20 +3,27 @@
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::super::{Before, ReadySurface, Slot};
+use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
 use super::check;
 use super::map::{Map, Wanted, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
+use super::report;
+use super::view::View;
 use super::wanted::wanted;
+use super::warnings::warnings;
+use crate::base::budget::Short;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::ready::Making;
 
 /// The maps that are in use: several samples of a frame, and what looks at one pixel, share them.
-static ALIVE: Mutex<Vec<Weak<Map>>> = Mutex::new(Vec::new());
+static ALIVE: Mutex<Vec<Weak<Ready>>> = Mutex::new(Vec::new());
 
+/// The memory of a pixel of a picture while a view looks, in bytes: four pixels of the image of triangles.
+const LOOKED_BYTES: u64 = 4 * 24;
 /// The most cells of the finest layer.
 const MOST_CELLS: f64 = 16_777_216.0;
 
@@ -48,26 +55,45 @@ impl Slot for ViewMap {
         let wanted = wanted(self, mesh, materials)?;
         let points = Points::new(&self.blend, mesh);
         let before = before.and_then(|before| before.downcast::<Ready>());
-        if let Some(map) = alive(&wanted) {
-            return Ok(Arc::new(Ready { map, points }));
+        let side = self.directions.map(|side| side as usize);
+        if let Some(ready) = alive(&wanted, side) {
+            return Ok(Arc::new(Ready { points, ..(*ready).clone() }));
         }
-        let pixels =
-            |i: usize| wanted.views.get(i).map_or(0, |view| view.camera.size_px.0 * view.camera.size_px.1) as u64;
-        materials.expect((0..wanted.views.len()).map(pixels).sum());
-        let sizes: Vec<u64> = (0..wanted.views.len()).map(pixels).collect();
-        let watch = Watch { stopped: &|| materials.stopped(), done: &|view| materials.made(sizes[view]) };
-        let map = Map::new(wanted, before.map(|before| &*before.map), &watch);
-        let map = Arc::new(map.ok_or_else(|| Problem::error("", "stopped"))?);
-        ALIVE.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(&map));
-        Ok(Arc::new(Ready { map, points }))
+        let pixels: Vec<u64> = wanted.views.iter().map(pixels).collect();
+        materials.expect(pixels.iter().sum());
+        // Each thread looks with one view at a time.
+        let looked = pixels.iter().max().copied().unwrap_or(0) * LOOKED_BYTES * rayon::current_num_threads() as u64;
+        let short = |short: Short| short.problem("");
+        let looking = materials.budget.try_take(looked).map_err(short)?;
+        let (stopped, stop) = (|| materials.stopped(), || Problem::error("", "stopped"));
+        let watch = Watch { stopped: &stopped, done: &|view| materials.made(pixels[view]) };
+        let map = Map::new(wanted, before.map(|before| &*before.map), &watch).ok_or_else(stop)?;
+        drop(looking);
+        let elements = side.map_or(0, |side| (map.cells.count() * side * side) as u64 * ELEMENT_BYTES);
+        let kept = materials.budget.try_take(report::bytes((&map, None)) + elements).map_err(short)?;
+        let arrays = side.map(|side| Arrays::new(&map, side, &stopped).ok_or_else(stop)).transpose()?;
+        let ready = Ready { map: Arc::new(map), arrays: arrays.map(Arc::new), points, kept: Arc::new(kept) };
+        let ready = Arc::new(ready);
+        ALIVE.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(&ready));
+        Ok(ready)
+    }
+
+    fn check_made(&self, made: &dyn ReadySurface) -> Vec<Problem> {
+        made.downcast::<Ready>().map_or_else(Vec::new, |made| warnings(self, &made.map))
     }
 }
 
-/// The same map, if it is in use.
-fn alive(wanted: &Wanted) -> Option<Arc<Map>> {
+fn pixels(view: &View) -> u64 {
+    (view.camera.size_px.0 * view.camera.size_px.1) as u64
+}
+
+/// The same map with arrays of the same side, if it is in use.
+fn alive(wanted: &Wanted, side: Option<usize>) -> Option<Arc<Ready>> {
     let mut alive = ALIVE.lock().unwrap_or_else(PoisonError::into_inner);
-    alive.retain(|map| map.strong_count() > 0);
-    alive.iter().filter_map(Weak::upgrade).find(|map| map.wanted.same(wanted))
+    alive.retain(|ready| ready.strong_count() > 0);
+    let same =
+        |ready: &Arc<Ready>| ready.map.wanted.same(wanted) && ready.arrays.as_ref().map(|arrays| arrays.side()) == side;
+    alive.iter().filter_map(Weak::upgrade).find(same)
 }
 
 /// What is wrong with so many layers, if they have too many cells: the surface covers half of a unit of the atlas.

@@ -141,9 +141,9 @@ fn the_surface_is_half_a_square_of_the_atlas_in_charts() {
 #[test]
 fn a_lone_view_is_shown_as_it_is_from_its_own_camera() {
     let map = filled(Wanted { levels: None, ..wanted(ball(), vec![view([0.0, 1.0, 4.0], 0)]) }, None);
-    let near = compare(&map)[0].unwrap();
+    let near = compare((&map, None))[0].unwrap();
     assert!(near >= 36.0, "{near} dB");
-    let report = super::report::map(&map);
+    let report = super::report::map((&map, None));
     assert_eq!((report.charts, report.levels), (1, map.cells.layers.len()));
     let told: usize = map.origins[0].iter().flatten().sum();
     assert_eq!(report.bytes, 16 * told as u64);
@@ -266,4 +266,60 @@ fn paint_counts_where_it_differs_from_its_guide_inside_its_mask() {
     // The second pixel from the border has half of what is farther than the feather, and the mask leaves half of that.
     assert_eq!(pixels[5], [1.8, 0.5, 0.0, 1.0].map(|v: f32| v * 0.25));
     assert!(pixels.iter().enumerate().all(|(i, pixel)| i == 5 || *pixel == [0.0; 4]));
+}
+
+#[test]
+fn arrays_hold_what_is_seen_in_their_directions() {
+    let map = filled(wanted(ball(), round()), None);
+    let frames = super::frames::all(&map);
+    let (layer, side) = (2, 32);
+    let arrays = super::arrays::Arrays::new(&map, side, &|| false).unwrap();
+    let mut mixer = super::mixer::Mixer::new(&map);
+    let mut seen = 0;
+    for cell in (0..map.cells.layers[layer].len()).step_by(17) {
+        let frame = frames[layer][cell];
+        let own = super::frames::of(&map, layer, &map.cells.layers[layer].cells[cell]).unwrap();
+        assert!((own.at - frame.at).length() + (own.normal - frame.normal).length() < 1e-12);
+        assert!(frame.at.dot(frame.normal) > 0.9 && frame.along.dot(frame.normal).abs() < 1e-9);
+        // The middle of an element is read as it was made, to the precision of half floats.
+        let at = DVec2::new(5.0 / 32.0 + 1.0 / 32.0, -3.0 / 16.0 + 1.0 / 32.0);
+        let way = frame.way(at);
+        assert!((way.length() - 1.0).abs() < 1e-12 && (frame.direction(way) - at).length() < 1e-12);
+        mixer.look(frame.at, way);
+        let exact = mixer.at(layer, cell as u32, |_, _| ());
+        let read = arrays.read(layer, cell as u32, way);
+        assert!(exact.iter().zip(read).all(|(a, b)| (a - b).abs() < 1e-3), "{exact:?} {read:?}");
+        seen += usize::from(exact[3] > 0.1);
+        assert_eq!(frame.direction(-frame.normal), DVec2::ZERO);
+        assert!((frame.direction(frame.along * 0.6 - frame.normal * 0.8) - DVec2::X).length() < 1e-12, "on the rim");
+    }
+    assert!(seen > 10, "{seen}");
+    assert!(super::arrays::Arrays::new(&map, side, &|| true).is_none());
+}
+
+#[test]
+fn what_is_odd_is_told_once_it_is_filled() {
+    let told = |mesh: Arc<Mesh>, views: Vec<View>, own: serde_json::Value| -> Vec<(String, String)> {
+        let map = filled(wanted(mesh, views), None);
+        let own = serde_json::from_value(own).unwrap();
+        let found = super::warnings::warnings(&own, &map);
+        found.into_iter().map(|problem| (problem.path, problem.message)).collect()
+    };
+    let own = |count: usize| {
+        let view = |i: usize| serde_json::json!({ "name": i.to_string(), "image": "a", "camera": {} });
+        serde_json::json!({ "views": (0..count).map(view).collect::<Vec<_>>() })
+    };
+    assert_eq!(told(squares(&[0.0]), vec![view([0.0, 0.0, 4.0], 0), view([1.0, 0.0, 4.0], 1)], own(2)), []);
+    let lone = told(squares(&[0.0]), vec![view([0.0, 0.0, 4.0], 0)], own(1));
+    assert!(lone.len() == 1 && lone[0].0 == "/views/0/extremes" && lone[0].1.contains("30 degrees"), "{lone:?}");
+    let mut beyond = view([0.0, 0.0, 4.0], 1);
+    beyond.camera = beyond.camera.resized((400, 400));
+    beyond.paint.picture = waves(400, 0.0);
+    let found = told(squares(&[0.0]), vec![view([0.0, 0.0, -4.0], 0), beyond], own(2));
+    assert!(found[0].1.starts_with("sees nothing of the mesh (it looks 0 degrees past it)"), "{found:?}");
+    assert!(found[1].0 == "/views/1" && found[1].1.contains("100 % of it is finer than layer 2"), "{found:?}");
+    let mut folded = (*squares(&[0.0])).clone();
+    folded.triangles.push([0, 1, 2]);
+    let found = told(Arc::new(folded), vec![view([0.0, 0.0, 4.0], 0), view([1.0, 0.0, 4.0], 1)], own(2));
+    assert!(found.len() == 1 && found[0].1.contains("share their colors"), "{found:?}");
 }

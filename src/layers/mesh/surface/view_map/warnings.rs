@@ -1,0 +1,81 @@
+//! What is odd about a map that only shows once it is filled. Paths are relative to the surface.
+
+use glam::DVec3;
+
+use super::atlas;
+use super::map::Map;
+use super::model::{Extremes, Feeds, View, ViewMap};
+use super::report::{self, OfView};
+use crate::base::maths::acos;
+use crate::base::problem::Problem;
+
+/// The share of a view that may be finer than the finest layer.
+const MOST_BEYOND: f64 = 0.25;
+/// The most levels that there can be.
+const MOST_LEVELS: f64 = 9.0;
+
+/// The share of the finest cells on which a chart may cover itself.
+const MOST_COVERED: f64 = 0.01;
+/// How many times larger the cells of the 95th percentile may be on the surface than those of the 5th.
+const MOST_STRETCHED: f64 = 8.0;
+
+/// Everything odd.
+pub fn warnings(own: &ViewMap, map: &Map) -> Vec<Problem> {
+    let alone = own.views.iter().filter(|view| view.active && view.kind != Feeds::Independent).count() == 1;
+    let all = report::views(map).into_iter().filter_map(|found| {
+        let (number, view) = (found.view.number, own.views.get(found.view.number)?);
+        let problem = of_view(&found, map).or_else(|| of_lone(view).filter(|_| alone))?;
+        Some(problem.under(&format!("/views/{number}")))
+    });
+    all.chain(of_atlas(map)).collect()
+}
+
+/// What is odd about how the mesh is laid flat.
+fn of_atlas(map: &Map) -> Option<Problem> {
+    let middles = map.cells.layers.last()?.middles(&map.atlas);
+    let twice = middles.iter().filter(|(count, _)| *count > 1).count() as f64 / middles.len().max(1) as f64;
+    if twice > MOST_COVERED {
+        let message = format!("on {:.0} % of its cells two places of the surface share their colors", 100.0 * twice);
+        return Some(Problem::warning("", message).hint("set atlas to box"));
+    }
+    let area = |(_, triangle): &(u32, u32)| {
+        let triangle = *triangle as usize;
+        atlas::normal(&map.wanted.mesh, triangle).length() / 2.0 / map.atlas.areas[triangle]
+    };
+    let mut areas: Vec<f64> = middles.iter().filter(|(count, _)| *count > 0).map(area).collect();
+    areas.sort_by(f64::total_cmp);
+    let at = |share: f64| areas.get((share * areas.len().saturating_sub(1) as f64) as usize).copied();
+    let stretched = at(0.95)? / at(0.05)?;
+    (stretched > MOST_STRETCHED).then(|| {
+        let message = format!("its cells are of very different sizes on the surface ({stretched:.0} to 1)");
+        Problem::warning("", message).hint("set atlas to box")
+    })
+}
+
+fn of_view(found: &OfView, map: &Map) -> Option<Problem> {
+    let Some(depth) = found.depth else {
+        let middle = map.wanted.mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
+        let camera = &found.view.camera;
+        let toward = (middle - camera.position).normalize_or_zero();
+        let past = acos((-camera.axes()[2].dot(toward)).clamp(-1.0, 1.0)).to_degrees();
+        let problem = Problem::warning("", format!("sees nothing of the mesh (it looks {past:.0} degrees past it)"));
+        return Some(problem.hint("the camera is in the model's coordinates, y up"));
+    };
+    if found.cells.iter().flatten().all(|cells| *cells == 0) {
+        let problem = Problem::warning("", "nothing of its picture counts");
+        return Some(problem.hint("look at its mask, at changed and at the alpha of the picture"));
+    }
+    let finest = map.cells.layers.len().saturating_sub(1);
+    (found.beyond > MOST_BEYOND).then(|| {
+        let holds = ((depth + 1.0).ceil() + 1.0).max(finest as f64 + 2.0).min(MOST_LEVELS);
+        let message =
+            format!("{:.0} % of it is finer than layer {finest}; levels {holds} would hold it", 100.0 * found.beyond);
+        Problem::warning("", message).hint(format!("set levels to {holds}"))
+    })
+}
+
+fn of_lone(view: &View) -> Option<Problem> {
+    let Extremes::Auto { reach } = &view.extremes else { return None };
+    let message = format!("its extremes are automatic, and there is no other view: it is gone at {reach} degrees");
+    Some(Problem::warning("/extremes", message).hint("make them a cone"))
+}
