@@ -42,7 +42,11 @@ impl Frame {
     pub fn direction(&self, way: DVec3) -> DVec2 {
         let (flat, up) =
             (DVec2::new(way.dot(self.along), way.dot(self.normal.cross(self.along))), way.dot(self.normal));
-        if up < 0.0 { flat.normalize_or_zero() } else { flat / (1.0 + up) }
+        match up < 0.0 {
+            true if flat.length() <= NO_LENGTH => DVec2::ZERO,
+            true => flat.normalize(),
+            false => flat / (1.0 + up),
+        }
     }
 }
 
