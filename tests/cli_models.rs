@@ -194,3 +194,66 @@ fn what_of_a_model_cannot_be_read_is_told() {
     assert_eq!(get(folder.path(), "cat.plica.json", "/layers/0/kind"), json!("picture"));
     assert!(!at("to/far.gltf").exists() && !at("to/far.plica.json").exists() && !at("lost.plica.json").exists());
 }
+
+/// A list of two pictures: of one from the front, and of one from behind for testing; a mesh and the pictures beside it.
+fn shots(folder: &Path) {
+    let (at, look) = (folder.join("shots"), [[1, 0, 0], [0, -1, 0], [0, 0, -1]]);
+    std::fs::create_dir_all(at.join("images")).unwrap();
+    std::fs::copy(folder.join("flat.obj"), at.join("wall.obj")).unwrap();
+    for (name, alpha) in [("front.png", 255), ("back.png", 255)] {
+        RgbaImage::from_pixel(40, 20, image::Rgba([90, 0, 0, alpha])).save(at.join("images").join(name)).unwrap();
+    }
+    let view = |file: &str, split: &str| {
+        json!({ "file": format!("images/{file}"), "split": split, "width": 40, "height": 20, "fx": 30, "fy": 30,
+            "cx": 20, "cy": 10, "R": look, "t": [0, 7, 9] })
+    };
+    let list = json!({ "mesh": "wall.obj", "views": [view("front.png", "train"), view("back.png", "test")] });
+    std::fs::write(at.join("cameras.json"), list.to_string()).unwrap();
+}
+
+#[test]
+fn cameras_of_other_programs_become_views_once() {
+    let folder = folder();
+    let at = folder.path();
+    shots(at);
+    plica(at, &["new", "cat.png", "-o", "a.plica.json"], true);
+    let import = ["views", "import", "shots/cameras.json", "a.plica.json"];
+    let (_, told) = plica(at, &import, true);
+    for line in [
+        "1 pictures for testing are left out; --all takes them",
+        "1 picture laid on wall",
+        "1 of 1 cameras see the mesh",
+    ] {
+        assert!(told.contains(line), "{line}: {told}");
+    }
+    // Files that are elsewhere are copied; the camera of the first picture is that of the scene.
+    assert!(at.join("images/front.png").is_file() && at.join("wall.obj").is_file());
+    let camera = get(at, "a.plica.json", "camera");
+    assert_eq!((&camera["position"], &camera["target"]), (&json!([0, 7, 9]), &json!([0, 7, 0])));
+    let view = get(at, "a.plica.json", "layers.wall.surface.views.front");
+    assert_eq!(view["camera"]["matrix"], json!([[1, 0, 0, 0], [0, -1, 0, 7], [0, 0, -1, 9]]));
+    assert_eq!((&view["image"], view.get("feather")), (&json!("front"), None));
+    let before = std::fs::read_to_string(at.join("a.plica.json")).unwrap();
+    let (_, told) = plica(at, &import, true);
+    assert!(told.contains("1 lie there already"), "{told}");
+    assert_eq!(std::fs::read_to_string(at.join("a.plica.json")).unwrap(), before);
+    // What the wall shows is the picture.
+    assert_eq!(rendered(at, "a.plica.json").get_pixel(40, 30).0, [90, 0, 0, 255]);
+    let lines = plica(at, &["views", "a.plica.json", "--json"], true).0;
+    let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(
+        (&lines[0]["view"], &lines[0]["layer"], &lines[1]["map"]["charts"]),
+        (&json!("front"), &json!("wall"), &json!(1))
+    );
+
+    let (_, told) = plica(at, &["views", "import", "shots/cameras.json", "a.plica.json", "--names", "x*"], false);
+    assert!(told.contains("has no pictures, or none that are meant"), "{told}");
+    plica(
+        at,
+        &["views", "add", "cat", "a.plica.json", "--image", "cat", "--position", "0,7,-5", "--target", "0,7,0"],
+        true,
+    );
+    assert_eq!(get(at, "a.plica.json", "layers.wall.surface.views.cat.camera.position"), json!([0, 7, -5]));
+    let (_, told) = plica(at, &["views", "add", "cat", "a.plica.json", "--image", "cat", "--position", "0,7,5"], false);
+    assert!(told.contains("the name \"cat\" is taken by another view"), "{told}");
+}

@@ -14,7 +14,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 /// `value` with so many decimals (at least one) at most, and no needless zeros.
 pub fn short(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
+    // Without decimals a 0 at the end counts.
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".into() } else { text.into() }
 }
 

@@ -3,6 +3,7 @@
 
 mod beside;
 pub mod cache;
+pub mod cameras;
 pub mod clips;
 pub mod disk;
 pub mod draft;

@@ -48,15 +48,35 @@ pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
 /// # Errors
 /// If the name leads out of the folder, or as [`copy_new`].
 pub fn copy_into(source: &Path, to: &Path, name: &str) -> Result<()> {
-    let target = to.join(name);
-    if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_))) {
+    if !is_below(name) {
         let error = Error::at(source.display(), "is not in the folder of what names it, and cannot be copied with it");
         return Err(error.cure("make the scene where that is"));
     }
+    copy_new(source, &made_within(to, name)?)
+}
+
+/// Writes a new file of this name into the folder `to`, as [`write_new`]; folders in its name are made there.
+///
+/// # Errors
+/// If the name leads out of the folder, or as [`write_new`].
+pub fn put_into(to: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    if !is_below(name) {
+        return Err(Error::at(name, format!("is not below {}", to.display())).cure("name a file below it"));
+    }
+    write_new(&made_within(to, name)?, bytes)
+}
+
+fn is_below(name: &str) -> bool {
+    Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// The path of a file in the folder `to`; folders in its name are made.
+fn made_within(to: &Path, name: &str) -> Result<PathBuf> {
+    let target = to.join(name);
     if let Some(folder) = target.parent().filter(|folder| *folder != to) {
         std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, error))?;
     }
-    copy_new(source, &target)
+    Ok(target)
 }
 
 /// A file being written, moved into place by [`Atomic::commit`]. If dropped before that, it leaves nothing behind.

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use kurbo::Vec2;
+use serde_json::Value;
 
 use super::parts::album::Album;
 use super::parts::marks::{Mark, View};
@@ -78,6 +79,18 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// The same layer, whose frames are given up once `stop` is set, with anything in them; `None` if they never take long.
     fn stoppable(&self, _stop: &Arc<AtomicBool>) -> Option<Arc<dyn Ready>> {
+        None
+    }
+
+    /// What is known of the pictures with cameras that lie on it, one after the other, and of them all, as objects; with
+    /// `compare` also how well each comes back when it is drawn again from its own camera. `None` if it can have none.
+    fn lying(&self, _compare: bool) -> Option<Vec<Value>> {
+        None
+    }
+
+    /// The values with which the pictures that lie on it agree in brightness: their paths in the layer. `None` if it can
+    /// have none.
+    fn balanced(&self) -> Option<Vec<(String, Value)>> {
         None
     }
 

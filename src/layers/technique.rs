@@ -4,6 +4,7 @@
 use std::any::Any;
 use std::sync::Arc;
 
+use glam::DAffine3;
 use kurbo::{Point, Rect};
 use serde_json::{Map, Value};
 
@@ -19,6 +20,7 @@ use super::parts::picking::Picks;
 use super::parts::plan::Program;
 use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
+use super::parts::shots::{Laid, Laying, Lying};
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::space::eye::Ray;
 use super::space::fit::Bounds;
@@ -151,6 +153,22 @@ pub trait Technique: Any + Send + Sync {
     /// Whether the layer shows something in a pass that its technique adds.
     fn has_pass(&self, _pass: &Pass) -> bool {
         true
+    }
+
+    /// The pictures with cameras that lie on the layer; `None` if it can have none.
+    fn lying(&self) -> Option<Vec<Lying<'_>>> {
+        None
+    }
+
+    /// How more pictures with cameras come to lie on the layer; `None` if it can have none.
+    fn lay(&self, _pictures: &[Laid]) -> Option<Laying> {
+        None
+    }
+
+    /// From the coordinates of the layer's model to the world, at a scene time, but for how it bends; `None` if it has no
+    /// model.
+    fn model_to_world(&self, _t: f64) -> Option<DAffine3> {
+        None
     }
 
     /// What changes in the layer over the scene time, item by item.

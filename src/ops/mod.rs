@@ -39,6 +39,7 @@ pub mod synth;
 pub mod tutor;
 #[cfg(feature = "window")]
 pub mod view;
+pub mod views;
 mod writing;
 
 /// What `plica` can be asked to do.
@@ -58,6 +59,7 @@ pub enum Command {
     Measure(measure::Args),
     Lines(lines::Args),
     Sprites(sprites::Args),
+    Views(views::Args),
     Render(render::Args),
     Synth(synth::Args),
     #[cfg(feature = "window")]
@@ -86,6 +88,7 @@ impl Command {
             Command::Measure(args) => measure::run(args, context),
             Command::Lines(args) => lines::run(args, context),
             Command::Sprites(args) => sprites::run(args, context),
+            Command::Views(args) => views::run(args, context),
             Command::Render(args) => render::run(args, context),
             Command::Synth(args) => synth::run(args, context),
             Command::Field(args) => field::run(args, context),

@@ -29,6 +29,7 @@ pub mod presets;
 mod references;
 pub mod schema;
 mod shape;
+pub mod shots;
 mod start;
 pub mod styles;
 pub mod words;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::graphics::TerminalPicture;
 use super::graphics::probed::Probed;
+use crate::layers::space::camera::Camera;
 use crate::preview::editor;
 use crate::render::Synth;
 use crate::scene::{Document, Edit, Scene};
@@ -134,6 +135,8 @@ pub enum Effect {
     Cancel,
     /// Open the preview window, or give it a command.
     View(Option<String>),
+    /// Let the windows look from there, or by the scene's camera again.
+    Look(Option<Box<Camera>>),
     /// Open a picture in another program.
     EditImage(PathBuf),
     /// Draw the whole screen again.

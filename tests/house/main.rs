@@ -28,6 +28,7 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["image", "png", "gif", "webp"], &["files/", "export/"]),
     (&["moxcms", "exr", "tiff", "zune_core", "zune_jpeg"], &["files/picture"]),
     (&["tiny_skia"], &["export/field"]),
+    (&["glob"], &["ops/"]),
 ];
 
 /// The only list of them.

@@ -16,6 +16,7 @@ pub mod synth;
 
 use std::sync::Arc;
 
+use glam::{DAffine3, DMat3, DVec3};
 use kurbo::Rect;
 use serde_json::{Value, json};
 
@@ -25,6 +26,7 @@ use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::readout::ReadOut;
+use super::parts::shots::{Laid, Laying, Lying};
 use super::ready::{Making, Ready};
 use super::technique::{Checked, Kind, Shown, Starts, Technique, Template};
 use crate::base::problem::Problem;
@@ -127,6 +129,26 @@ impl Technique for MeshLayer {
 
     fn has_pass(&self, pass: &Pass) -> bool {
         if surface::PASSES.contains(pass) { self.surface.slot().explains() } else { self.strokes.is_some() }
+    }
+
+    fn item_name(&self, path: &str) -> Option<&str> {
+        self.surface.slot().item_name(path.strip_prefix("/surface")?)
+    }
+
+    fn lying(&self) -> Option<Vec<Lying<'_>>> {
+        Some(self.surface.slot().lying().unwrap_or_default())
+    }
+
+    fn lay(&self, pictures: &[Laid]) -> Option<Laying> {
+        Some(surface::lay(&self.surface, pictures))
+    }
+
+    fn model_to_world(&self, t: f64) -> Option<DAffine3> {
+        let placed = self.pose.at(t);
+        Some(DAffine3::from_mat3_translation(
+            placed.turn * DMat3::from_diagonal(DVec3::splat(placed.scale)),
+            placed.position,
+        ))
     }
 
     fn bounds(&self, _path: &str) -> Rect {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
+use serde_json::Value;
 
 use super::frame::Seen;
 use super::synth::Synth;
@@ -32,6 +33,15 @@ impl Ready for Synth {
 
     fn by_cpu(&self) -> bool {
         self.has_strokes() || self.surface.by_cpu()
+    }
+
+    fn lying(&self, compare: bool) -> Option<Vec<Value>> {
+        self.surface.lying(compare)
+    }
+
+    fn balanced(&self) -> Option<Vec<(String, Value)>> {
+        let balanced = self.surface.balanced()?;
+        Some(balanced.into_iter().map(|(path, value)| (format!("/surface{path}"), value)).collect())
     }
 
     fn plan(&self, moment: &Moment) -> Plan {

@@ -14,3 +14,4 @@ pub mod picking;
 pub mod plan;
 pub mod readout;
 pub mod repeat;
+pub mod shots;

@@ -14,6 +14,7 @@ use super::outbox::{Latest, Measured};
 use super::status::Status;
 use crate::base::error::Result;
 use crate::files::Options;
+use crate::layers::space::camera::Camera;
 use crate::preview::Transport;
 use crate::preview::wire::message::FromEditor;
 use crate::preview::wire::socket::{Door, Listener};
@@ -33,6 +34,8 @@ pub struct Preview {
     keeper: Option<Keeper>,
     /// `None` if no window can join.
     door: Option<Door>,
+    /// How often windows were told where to look from.
+    looked: u64,
 }
 
 impl Preview {
@@ -45,7 +48,7 @@ impl Preview {
     ) -> Preview {
         let shared = Arc::new(Shared::new(Latest::new(document.clone(), revision), Box::new(deliver)));
         let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
-        let mut preview = Preview { shared, scene, options: Options::default(), keeper: None, door: None };
+        let mut preview = Preview { shared, scene, options: Options::default(), keeper: None, door: None, looked: 0 };
         if let Err(error) = preview.listen() {
             preview.shared.lock().refused = Some(error.to_string());
         }
@@ -90,6 +93,12 @@ impl Preview {
     /// again.
     pub fn transport(&self, transport: Transport) {
         self.say(FromEditor::Transport(transport));
+    }
+
+    /// Windows look from there, or by the scene's camera again.
+    pub fn look(&mut self, camera: Option<Camera>) {
+        self.looked += 1;
+        self.say(FromEditor::Look { camera, nth: self.looked });
     }
 
     /// The animation has run on to `time` (scene time, in seconds) by itself, as it does in the windows: those that join

@@ -220,6 +220,7 @@ fn harmless(said: FromEditor) -> Option<FromEditor> {
         | FromEditor::Scene { .. }
         | FromEditor::Selection(_)
         | FromEditor::Transport(_)
+        | FromEditor::Look { .. }
         | FromEditor::Notice(_)
         | FromEditor::Problems(_) => Some(said),
         // The link and the files that it brings.

@@ -104,6 +104,7 @@ impl App {
         match said {
             FromEditor::Selection(pointer) => self.select(pointer),
             FromEditor::Transport(transport) => self.join_in(transport),
+            FromEditor::Look { camera, .. } => self.state.look_from(camera.as_ref()),
             FromEditor::View(command) if command == LOSE_DEVICE => {
                 self.opened.iter().for_each(|opened| opened.gpu.device().raw.destroy());
             }

@@ -25,6 +25,11 @@ impl State {
         self.own.map(|own| own.camera())
     }
 
+    /// Looks from there, by a view of its own, or without by the scene's camera.
+    pub fn look_from(&mut self, camera: Option<&Camera>) {
+        self.own = camera.filter(|_| self.camera.is_some()).map(|camera| OwnView::of(camera, 0.0));
+    }
+
     /// Changes the window's own view, which begins as the scene's.
     fn change_view(&mut self, change: impl FnOnce(&mut OwnView)) {
         let Some(camera) = &self.camera else { return };
@@ -105,6 +110,12 @@ mod tests {
         let eye = Camera::default().at(0.0, (320, 200));
         let seen = eye.project(eye.seen(DVec3::from(Camera::default().target) * 2.0 - DVec3::from(moved.target)));
         assert!((seen - eye.middle_px).distance(DVec2::new(10.0, 0.0)) < 1e-6, "under the pointer: {moved:?}");
+        let other = Camera { position: [1.0, 2.0, 3.0], ..Camera::default() };
+        state.look_from(Some(&other));
+        assert_eq!(state.own_camera(), Some(other.clone()), "the editor says from where");
+        state.look_from(None);
+        assert_eq!(state.own_camera(), None);
+        state.look_from(Some(&other));
         state.take_camera(None);
         assert_eq!(state.own_camera(), None);
     }

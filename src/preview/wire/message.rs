@@ -46,6 +46,13 @@ pub enum FromEditor {
     Selection(Option<String>),
     /// Whether the animation runs, and where it is.
     Transport(Transport),
+    /// Look from somewhere.
+    Look {
+        /// The camera; `None` is the scene's.
+        camera: Option<Camera>,
+        /// How often windows have been told to look somewhere: the same place twice is not the same message.
+        nth: u64,
+    },
     /// An overlay or zoom command, by name.
     View(String),
     /// The overlay and zoom commands in force, for a window that was not there when they were given.
@@ -153,7 +160,8 @@ impl FromEditor {
             FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => true,
             FromEditor::Notice(_) | FromEditor::Problems(_) => true,
             FromEditor::Edited(_) | FromEditor::Bye(_) => true,
-            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::View(_) | FromEditor::Views(_) => false,
+            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => false,
+            FromEditor::View(_) | FromEditor::Views(_) => false,
         }
     }
 }

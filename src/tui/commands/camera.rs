@@ -16,6 +16,7 @@ use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{Bounds, fit};
 use crate::render::frame_size;
 use crate::scene::Scene;
+use crate::tui::events::Effect;
 use crate::tui::state::State;
 use crate::tui::text::numbers::{rounded, short};
 
@@ -75,6 +76,15 @@ fn key(state: &mut State, call: &Call) -> Done {
     call.obey(state, &format!("set camera.keys={}", rounded(keys)))?;
     state.say(format!("the camera has a key at {}{alone}", short(time)));
     Ok(())
+}
+
+/// The camera that one looks through: the window's own, or the scene's.
+///
+/// # Errors
+/// There is none.
+pub fn eye(state: &State) -> Result<Camera, String> {
+    let scene = state.document().scene().camera.clone();
+    state.outside.camera.clone().or(scene).ok_or_else(|| "the scene has no camera: :camera fit makes one".into())
 }
 
 fn see_all(state: &mut State, call: &Call) -> Done {
@@ -147,6 +157,8 @@ fn write(state: &mut State, call: &Call, camera: &Camera, said: &str) -> Done {
         "position": camera.position, "target": camera.target, "up": camera.up, "fov": camera.fov,
     });
     call.obey(state, &format!("set camera={}", rounded(value)))?;
+    // Windows that look from elsewhere would not show it.
+    state.ask(Effect::Look(None));
     let keys = (!before.keys.is_empty()).then(|| counted(before.keys.len(), "key"));
     let turn = (before.turn != 0.0).then(|| "turn".to_owned());
     let lost = keys.into_iter().chain(turn).collect::<Vec<_>>().join(" and ");

@@ -37,6 +37,7 @@ mod typing;
 mod undoing;
 pub mod update;
 mod values;
+mod views;
 pub mod waiting;
 mod yanking;
 
@@ -61,6 +62,7 @@ pub static TABLE: Table = Table(&[
     placing::COMMANDS,
     playing::COMMANDS,
     camera::COMMANDS,
+    views::COMMANDS,
     picking::COMMANDS,
     picture::COMMANDS,
     typing::COMMANDS,

@@ -75,6 +75,7 @@ impl Editor {
                 self.preview.open_window();
             }
             Effect::View(Some(command)) => self.preview.view(&command),
+            Effect::Look(camera) => self.preview.look(camera.map(|camera| *camera)),
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,

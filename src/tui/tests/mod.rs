@@ -29,6 +29,7 @@ mod table;
 mod told;
 mod tutor;
 mod undoing;
+mod views;
 pub mod windows;
 
 /// Rows of keys from the opened editor (in the tree, on the first zone), a place of the scene, and its value after them. Also

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
@@ -23,6 +24,7 @@ use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::Bind;
 use crate::layers::parts::readout::Entry;
+use crate::layers::parts::shots::{Laid, Laying, Lying};
 use crate::layers::ready::Making;
 use crate::layers::space::raster::Hit;
 
@@ -63,6 +65,12 @@ impl Surface {
     }
 }
 
+/// How more pictures with cameras come to lie on a surface: it becomes one of a kind that can have them, if it is not.
+pub fn lay(surface: &Surface, pictures: &[Laid]) -> Laying {
+    let first = (!matches!(surface, Surface::ViewMap(_))).then(|| ("/surface", view_map::lay::empty()));
+    view_map::lay::laying(pictures, first, "/surface/views")
+}
+
 /// The interface of a kind of surface in the document. Paths are relative to it.
 pub trait Slot {
     /// The checks beyond shape.
@@ -90,6 +98,16 @@ pub trait Slot {
         Vec::new()
     }
 
+    /// The pictures with cameras that lie on it; `None` if it is of a kind without.
+    fn lying(&self) -> Option<Vec<Lying<'_>>> {
+        None
+    }
+
+    /// The name of the item at `path`, if it is in a list whose items have names.
+    fn item_name(&self, _path: &str) -> Option<&str> {
+        None
+    }
+
     /// Prepares it for a mesh and any time. What it has in common with what was made before is reused.
     ///
     /// # Errors
@@ -111,6 +129,16 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     /// Whether the CPU alone can draw it.
     fn by_cpu(&self) -> bool {
         false
+    }
+
+    /// See `Ready::lying`.
+    fn lying(&self, _compare: bool) -> Option<Vec<Value>> {
+        None
+    }
+
+    /// See `Ready::balanced`; paths are relative to the surface.
+    fn balanced(&self) -> Option<Vec<(String, Value)>> {
+        None
     }
 
     /// The same with nothing that moves.

@@ -14,6 +14,7 @@ pub mod entries;
 pub mod frames;
 pub mod gauge;
 pub mod id;
+pub mod lay;
 pub mod lists;
 pub mod looked;
 pub mod map;
@@ -29,13 +30,7 @@ pub mod sample;
 pub mod slot;
 #[cfg(test)]
 mod tests;
+pub mod told;
 pub mod view;
 pub mod wanted;
 pub mod warnings;
-
-use crate::layers::mesh::synth::Synth;
-
-/// The view map of a mesh layer that was made ready, if it has one.
-pub fn of(ready: &dyn crate::layers::ready::Ready) -> Option<&ready::Ready> {
-    ready.downcast::<Synth>()?.surface.downcast()
-}

@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
+use serde_json::Value;
+
 use super::super::{Place, Reader, ReadySurface, StillSurface};
 use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked};
 use super::map::Map;
-use super::{passes, probe};
+use super::{passes, probe, told};
 use crate::base::budget::Share;
+use crate::base::number;
 use crate::base::pixels::Rgba;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
@@ -45,6 +48,19 @@ impl ReadySurface for Ready {
     fn plan(&self, _moment: &Moment) -> (Rgba, Option<Bind>) {
         // The CPU draws it.
         ([0.0; 4], None)
+    }
+
+    fn lying(&self, compare: bool) -> Option<Vec<Value>> {
+        Some(told::told(&self.map, compare))
+    }
+
+    fn balanced(&self) -> Option<Vec<(String, Value)>> {
+        let gains = told::balanced(&self.map).into_iter();
+        Some(
+            gains
+                .map(|(view, gain)| (format!("/views/{view}/gain"), gain.map(number::json).into_iter().collect()))
+                .collect(),
+        )
     }
 
     fn by_cpu(&self) -> bool {

@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use super::super::{Before, ReadySurface, Slot};
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
-use super::check;
 use super::map::{Map, Wanted, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
@@ -13,10 +12,12 @@ use super::report;
 use super::view::View;
 use super::wanted::wanted;
 use super::warnings::warnings;
+use super::{check, lay};
 use crate::base::budget::Short;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::{List, Of, Use, What};
+use crate::layers::parts::shots::Lying;
 use crate::layers::ready::Making;
 
 /// The maps that are in use: several samples of a frame, and what looks at one pixel, share them.
@@ -40,6 +41,15 @@ impl Slot for ViewMap {
             all.into_iter().filter_map(move |(field, name)| Some((format!("/views/{i}/{field}"), name?)))
         });
         named.map(|(at, name)| Use { at, of: Of::Name(List::Images, name), what: What::Picture }).collect()
+    }
+
+    fn lying(&self) -> Option<Vec<Lying<'_>>> {
+        Some(lay::lying(self))
+    }
+
+    fn item_name(&self, path: &str) -> Option<&str> {
+        let index: usize = path.strip_prefix("/views/")?.parse().ok()?;
+        self.views.get(index).map(|view| view.name.as_str())
     }
 
     fn needs_uv(&self) -> bool {

@@ -1,0 +1,116 @@
+//! `transforms.json`, as Blender's exporters, NeRF and instant-ngp have it: camera-to-world matrices, x right, y up, z
+//! back.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DMat3, DVec3};
+use serde_json::Value;
+
+use super::{Found, Item, Reading, folder, is_there, size};
+use crate::base::error::{Error, Result};
+use crate::base::geometry::Xy;
+use crate::base::maths;
+use crate::files::picture;
+use crate::layers::parts::shots::Shot;
+
+/// Numbers of distortion.
+const DISTORTION: [&str; 6] = ["k1", "k2", "k3", "k4", "p1", "p2"];
+/// What is tried behind a path without an ending.
+const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
+/// How much the columns of a matrix may differ in length, or from a right angle.
+const SKEW: f64 = 1e-3;
+
+pub(super) fn read(path: &Path, list: &Value, reading: &Reading) -> Result<Found> {
+    let mut found = Found::default();
+    let Some(whole) = list.as_object() else { return Ok(found) };
+    let common = Item { file: path, called: "the list".into(), fields: whole };
+    let mut scales: Vec<f64> = Vec::new();
+    for (i, frame) in list["frames"].as_array().into_iter().flatten().enumerate() {
+        let fields = frame.as_object().ok_or_else(|| Error::at(path.display(), format!("frames {i} is no object")))?;
+        let own = Item { file: path, called: format!("frames {i}"), fields };
+        let file = own.text("file_path")?;
+        let own = Item { called: format!("frames {i} ({file})"), ..own };
+        let picture = picture_of(folder(path, reading), file);
+        let (shot, scale) = shot(&own, &common, &picture, reading)?;
+        scales.push(scale);
+        found.shots.push((picture, shot));
+    }
+    if let Some(scale) = scales.into_iter().find(|scale| (scale - 1.0).abs() > SKEW) {
+        found.notes.push(format!("the matrices have a scale of {scale:.4}, which is divided out"));
+    }
+    Ok(found)
+}
+
+fn picture_of(folder: &Path, file: &str) -> PathBuf {
+    let path = folder.join(file);
+    let ends = ENDS.iter().map(|end| PathBuf::from(format!("{}.{end}", path.display())));
+    let tried =
+        if path.extension().is_some() && is_there(&path) { None } else { ends.into_iter().find(|one| is_there(one)) };
+    tried.unwrap_or(path)
+}
+
+/// The camera of a frame, and the scale of its matrix.
+fn shot(own: &Item, common: &Item, picture: &Path, reading: &Reading) -> Result<(Shot, f64)> {
+    refuse_bent(own)?;
+    refuse_bent(common)?;
+    let number = |name: &str| Ok::<_, Error>(own.number(name)?.or(common.number(name)?));
+    let size_px = match (number("w")?, number("h")?) {
+        (Some(width), Some(height)) => {
+            size(width, height).ok_or_else(|| own.error(format!("w and h are no size ({width} and {height})")))?
+        }
+        _ => {
+            let (width, height) = picture::size(picture, reading.limits)?;
+            [width as u32, height as u32]
+        }
+    };
+    let focal_px = own.focal(focal(own, common, size_px)?)?;
+    let center = (number("cx")?, number("cy")?);
+    let center_px = center.0.zip(center.1).map(|(x, y)| [x, y]);
+    let rows = own.rows::<4, 3>("transform_matrix")?;
+    let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+    let axes = [column(0), column(1), column(2)];
+    let scale = axes.iter().map(|axis| axis.length()).sum::<f64>() / 3.0;
+    let units = axes.map(|axis| axis / scale);
+    let even = scale > 0.0 && units.iter().all(|axis| (axis.length() - 1.0).abs() <= SKEW);
+    let square = [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| units[i].dot(units[j]).abs() <= SKEW);
+    let to_world = DMat3::from_cols(units[0], units[1], units[2]);
+    if !(even && square && to_world.determinant() > 0.0) {
+        return Err(own.error("transform_matrix is no rotation (its axes are stretched, skewed or mirrored)"));
+    }
+    let turn = DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)) * to_world.transpose();
+    let shot = Shot { turn, shift: -(turn * column(3)), focal_px, center_px, size_px: Some(size_px) };
+    Ok((shot, scale))
+}
+
+/// Focal lengths, of the frame where it has any.
+fn focal(own: &Item, common: &Item, [width, height]: [u32; 2]) -> Result<Xy> {
+    for item in [own, common] {
+        let of_angle = |side: u32, angle: f64| 0.5 * f64::from(side) / maths::tan(0.5 * angle);
+        let across = item.number("fl_x")?.or(item.number("camera_angle_x")?.map(|angle| of_angle(width, angle)));
+        let down = item.number("fl_y")?.or(item.number("camera_angle_y")?.map(|angle| of_angle(height, angle)));
+        if let Some(across) = across.or(down) {
+            return Ok([across, down.unwrap_or(across)]);
+        }
+    }
+    Err(own.error("camera_angle_x is missing, and fl_x too"))
+}
+
+/// Refuses cameras that are no pinholes.
+fn refuse_bent(item: &Item) -> Result<()> {
+    for name in DISTORTION {
+        if item.number(name)?.is_some_and(|amount| amount != 0.0) {
+            let error =
+                Error::at(item.file.display(), format!("{}: {name} is not 0: the camera has distortion", item.called));
+            return Err(error.cure("undistort the pictures first: colmap image_undistorter"));
+        }
+    }
+    let model = item.fields.get("camera_model").and_then(Value::as_str).unwrap_or_default().to_ascii_uppercase();
+    let fisheye = item.fields.get("is_fisheye").and_then(Value::as_bool) == Some(true) || model.contains("FISHEYE");
+    let level = model.contains("ORTHO");
+    if fisheye || level {
+        let what = if fisheye { "a fisheye" } else { "an orthographic camera" };
+        let error = Error::at(item.file.display(), format!("{}: {what} is no pinhole", item.called));
+        return Err(error.cure("render or undistort the pictures with a perspective camera"));
+    }
+    Ok(())
+}

@@ -1,0 +1,58 @@
+//! What a view map tells of its views and of itself, as JSON for tools and tables.
+
+use serde_json::{Value, json};
+
+use super::map::Map;
+use super::view::View;
+use super::{balance, compare, report};
+use crate::base::number;
+
+/// An object for each active view, in order, then one for the map; with `compare` also how well each view comes back.
+pub fn told(map: &Map, compare: bool) -> Vec<Value> {
+    let again = if compare { compare::compare(map) } else { Vec::new() };
+    let views = report::views(map).into_iter().enumerate().map(|(i, of)| {
+        let cells = of.cells.iter().map(
+            |[own, finer, coarser, beside]| json!({ "own": own, "finer": finer, "coarser": coarser, "beside": beside }),
+        );
+        let mut told = json!({
+            "view": of.view.name,
+            "kind": kind(of.view),
+            "depth": of.depth,
+            "pixels": number::json(of.pixels),
+            "beyond": number::json(of.beyond),
+            "cells": cells.collect::<Vec<_>>(),
+        });
+        if compare {
+            told["psnr"] =
+                again.get(i).copied().flatten().filter(|psnr| psnr.is_finite()).map_or(Value::Null, number::json);
+        }
+        told
+    });
+    let of = report::map(map);
+    let whole = json!({ "map": {
+        "charts": of.charts,
+        "levels": of.levels,
+        "cells": of.cells,
+        "known": of.known,
+        "filled": of.filled,
+        "entries": of.entries,
+        "bytes": of.bytes,
+    } });
+    views.chain([whole]).collect()
+}
+
+fn kind(view: &View) -> &'static str {
+    match (view.base, view.dependent) {
+        (true, true) => "both",
+        (true, false) => "independent",
+        _ => "dependent",
+    }
+}
+
+/// The gains with which photographs agree: the number of each view in the document, and the gain.
+pub fn balanced(map: &Map) -> Vec<(usize, [f64; 3])> {
+    let factors = balance::factors(map);
+    let changed = map.wanted.views.iter().zip(factors).filter(|(_, factor)| *factor != [1.0; 3]);
+    let short = |gain: f64| (gain * 1e4).round() / 1e4;
+    changed.map(|(view, by)| (view.number, [0, 1, 2].map(|k: usize| short(view.paint.gain[k] * by[k])))).collect()
+}

@@ -1,0 +1,141 @@
+//! Pictures with the cameras that took them, to be laid on a layer.
+
+use glam::{DMat3, DVec3};
+use serde_json::Value;
+
+use crate::base::geometry::Xy;
+use crate::base::maths;
+
+/// A pinhole camera: x right, y down, z forward, pixel centers at .5.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shot {
+    /// Turns directions in the world into the camera's.
+    pub turn: DMat3,
+    /// Where the world's origin is for the camera, in meters.
+    pub shift: DVec3,
+    /// Focal lengths across and down, in pixels.
+    pub focal_px: Xy,
+    /// Where its axis meets the picture, in pixels; `None` is the middle.
+    pub center_px: Option<Xy>,
+    /// The width and height that this is for; `None` is the picture's.
+    pub size_px: Option<[u32; 2]>,
+}
+
+/// Where a picture is seen from, in the coordinates of the model that it shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SeenFrom {
+    /// By a camera that is known as a whole.
+    Shot(Shot),
+    /// From a place to another, in meters.
+    Standing {
+        /// The camera.
+        position: DVec3,
+        /// What it looks at.
+        target: DVec3,
+        /// The direction that is up in the picture; `None` is y.
+        up: Option<DVec3>,
+        /// Its vertical field of view in degrees; `None` is the usual one.
+        fov: Option<f64>,
+    },
+}
+
+/// A picture to be laid on a layer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laid {
+    /// What it is called there; unique.
+    pub name: String,
+    /// The name of the picture in the scene's images.
+    pub image: String,
+    /// Its camera.
+    pub from: SeenFrom,
+    /// What it is for, in the document's word; `None` is the usual.
+    pub kind: Option<String>,
+    /// How far it fades towards its border, in pixels.
+    pub feather_px: f64,
+    /// The name of the image that it is painted over, if it is: only what differs from that counts.
+    pub guide: Option<String>,
+}
+
+/// A picture that lies on a layer, by its names there and among the scene's images.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lying<'a> {
+    /// What it is called there.
+    pub name: &'a str,
+    /// The name in the scene's images.
+    pub image: &'a str,
+    /// Its camera; `None` if there is none that makes sense.
+    pub from: Option<SeenFrom>,
+}
+
+/// How more pictures come to lie on a layer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laying {
+    /// What is set first, if something is: its path in the layer, and the value.
+    pub first: Option<(&'static str, Value)>,
+    /// The list that they are in, by its path in the layer.
+    pub list: &'static str,
+    /// What each is there.
+    pub items: Vec<Value>,
+}
+
+impl Shot {
+    /// The rows of the matrix from the world to the camera.
+    pub fn rows(&self) -> [[f64; 4]; 3] {
+        let turn = self.turn.transpose();
+        let row = |axis: DVec3, shift: f64| [axis.x, axis.y, axis.z, shift];
+        [row(turn.x_axis, self.shift.x), row(turn.y_axis, self.shift.y), row(turn.z_axis, self.shift.z)]
+    }
+
+    /// Where the camera is in the world.
+    pub fn position(&self) -> DVec3 {
+        -(self.turn.transpose() * self.shift)
+    }
+
+    /// The way it looks.
+    pub fn forward(&self) -> DVec3 {
+        self.turn.transpose().z_axis
+    }
+
+    /// The direction that is up in the picture.
+    pub fn up(&self) -> DVec3 {
+        -self.turn.transpose().y_axis
+    }
+
+    /// Its vertical field of view in degrees, for a picture of this height.
+    pub fn fov(&self, height_px: f64) -> f64 {
+        2.0 * maths::atan(0.5 * height_px / self.focal_px[1]).to_degrees()
+    }
+
+    /// The same camera over a world whose z pointed up, turned so that y does.
+    pub fn from_z_up(self) -> Shot {
+        let turned = DMat3::from_cols(DVec3::X, -DVec3::Z, DVec3::Y);
+        Shot { turn: self.turn * turned.transpose(), ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_over_a_world_with_z_up_stands_where_it_did_when_that_is_turned() {
+        let shot = Shot {
+            turn: DMat3::from_rotation_y(0.3) * DMat3::from_rotation_x(-0.9),
+            shift: DVec3::new(0.5, -0.25, 4.0),
+            focal_px: [500.0, 510.0],
+            center_px: None,
+            size_px: None,
+        };
+        let turned = shot.from_z_up();
+        for [x, y, z] in [[1.0, 2.0, 3.0], [-1.0, 0.5, 0.25]] {
+            let seen = shot.turn * DVec3::new(x, y, z) + shot.shift;
+            let again = turned.turn * DVec3::new(x, z, -y) + turned.shift;
+            assert!((seen - again).length() < 1e-12);
+        }
+        let DVec3 { x, y, z } = shot.position();
+        assert!((turned.position() - DVec3::new(x, z, -y)).length() < 1e-12);
+        let [first, ..] = shot.rows();
+        let seen = shot.turn * DVec3::Y + shot.shift;
+        assert!((first[1] + first[3] - seen.x).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,88 @@
+//! `plica views add`: a picture on a mesh, seen from a place.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::beside::Beside;
+use crate::base::error::Result;
+use crate::base::problem::{nearest, quoted};
+use crate::files::{disk, picture};
+use crate::layers::parts::shots::SeenFrom;
+use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
+use crate::ops::{Context, set};
+use crate::scene::Document;
+use crate::scene::shots::{self, Image, Picture};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// What the view is called
+    name: String,
+    /// The scene
+    scene: PathBuf,
+    /// Name of the layer [default: the first mesh with views, otherwise the first mesh]
+    #[arg(long, value_name = "LAYER")]
+    layer: Option<String>,
+    /// The picture: the name of an image of the scene, or a file
+    #[arg(long, value_name = "IMAGE")]
+    image: String,
+    /// Where it is seen from, in the model's coordinates
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = place)]
+    position: DVec3,
+    /// What it looks at, in the model's coordinates
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = place, default_value = "0,0,0")]
+    target: DVec3,
+    /// Its vertical field of view, in degrees [default: 40]
+    #[arg(long, value_name = "DEGREES")]
+    fov: Option<f64>,
+    /// What the view feeds
+    #[arg(long, value_name = "KIND", value_parser = super::KINDS)]
+    kind: Option<String>,
+    #[command(flatten)]
+    recovery: RecoveryOptions,
+    #[command(flatten)]
+    reading: SceneOptions,
+}
+
+fn place(text: &str) -> std::result::Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|v| v.is_finite()) => Ok(DVec3::new(x, y, z)),
+        _ => Err("expected three numbers, as 0,1.2,4".into()),
+    }
+}
+
+/// Lays the picture on the layer, as one edit.
+pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    set::refuse_input(&args.scene)?;
+    let options = args.reading.options()?;
+    let path = Path::new(&args.image);
+    let file = match picture::size(path, &options.limits) {
+        Ok(_) => Some(Beside::new(path, disk::folder_of(path), &args.scene)?),
+        Err(_) => None,
+    };
+    let make = |document: &Document| {
+        let layer = shots::layer(document, args.layer.as_deref())?;
+        let images = &document.scene().images;
+        let image = match &file {
+            _ if images.contains_key(&args.image) => Image::Named(args.image.clone()),
+            Some(file) => Image::File(file.path.clone()),
+            None => {
+                let hint = nearest(&args.image, images.keys().map(String::as_str));
+                let hint = hint.map(|hint| format!(" ({hint})")).unwrap_or_default();
+                return Err(format!(
+                    "there is no image {}{hint}, and no picture in a file of that name",
+                    quoted(&args.image)
+                ));
+            }
+        };
+        let from = SeenFrom::Standing { position: args.position, target: args.target, up: None, fov: args.fov };
+        let (name, kind) = (args.name.clone(), args.kind.clone());
+        let picture = Picture { name, image, from, kind, feather_px: 0.0, guide: None };
+        shots::add(document, layer, picture)
+    };
+    if let Some(file) = &file {
+        file.copy(&args.scene)?;
+    }
+    set::apply(&args.scene, (&args.recovery, &args.reading), make, context)
+}

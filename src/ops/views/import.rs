@@ -1,0 +1,208 @@
+//! `plica views import`: pictures with the cameras that another program found or rendered them with.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use glam::{DAffine3, DVec3};
+use glob::Pattern;
+
+use super::beside::Beside;
+use crate::base::error::{Error, Result};
+use crate::base::problem::quoted;
+use crate::files::cameras::{self, Found, Reading};
+use crate::files::{self, disk, models, paths, picture};
+use crate::layers::parts::shots::{SeenFrom, Shot};
+use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
+use crate::ops::{Context, set};
+use crate::scene::shots::{self, Image, Picture};
+use crate::scene::{Document, Edit};
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// cameras.json, transforms.json (Blender, NeRF, instant-ngp), or the folder of a COLMAP text model
+    file: PathBuf,
+    /// The scene
+    scene: PathBuf,
+    /// Name of the layer [default: the first mesh with views, otherwise the first mesh]
+    #[arg(long, value_name = "LAYER")]
+    layer: Option<String>,
+    /// The folder of the pictures [default: as the file says; for COLMAP images beside its folder]
+    #[arg(long, value_name = "DIR")]
+    images: Option<PathBuf>,
+    /// What the views feed
+    #[arg(long, value_name = "KIND", value_parser = super::KINDS)]
+    kind: Option<String>,
+    /// Take every Nth picture only
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    every: u32,
+    /// Take pictures only whose file names are like this: 'IMG_*.jpg'
+    #[arg(long, value_name = "GLOB")]
+    names: Option<String>,
+    /// Take pictures that are for testing too
+    #[arg(long)]
+    all: bool,
+    /// The axis that points up where the cameras were made; z-up turns them
+    #[arg(long, value_name = "AXES", default_value = "y-up", value_parser = ["y-up", "z-up"])]
+    axes: String,
+    #[command(flatten)]
+    recovery: RecoveryOptions,
+    #[command(flatten)]
+    reading: SceneOptions,
+}
+
+/// How much of the shorter side a picture without alpha fades towards its border.
+const FEATHER: f64 = 0.05;
+
+/// Lays the pictures on the layer, as one edit.
+pub fn run(args: Args, context: &mut Context) -> Result<()> {
+    set::refuse_input(&args.scene)?;
+    let options = args.reading.options()?;
+    let reading = Reading { images: args.images.as_deref(), all: args.all, limits: &options.limits };
+    let mut found = cameras::read(&args.file, &reading)?;
+    choose(&mut found, &args)?;
+    if args.axes == "z-up" {
+        found.shots.iter_mut().for_each(|(_, shot)| *shot = shot.from_z_up());
+    }
+    let root = args.images.as_deref().unwrap_or_else(|| disk::folder_of(&args.file));
+    let mut pictures = Vec::new();
+    for (path, shot) in &found.shots {
+        context.check_cancelled()?;
+        pictures.push(taken(path, shot, root, &args, &options)?);
+    }
+    let told = RefCell::<Vec<String>>::default();
+    let elsewhere = set::change(&args.scene, (&args.recovery, &args.reading), |document| {
+        let (edit, lines) = edit(document, &found, &pictures, &args, &options)?;
+        pictures.iter().try_for_each(|(_, file)| file.copy(&args.scene))?;
+        told.replace(lines);
+        Ok(edit)
+    })?;
+    found.notes.iter().chain(&told.take()).for_each(|line| context.messages.say(line));
+    if elsewhere {
+        context.messages.say("that was in the editor that has the scene open; save it there");
+    }
+    Ok(())
+}
+
+/// Leaves out what `--names` and `--every` do not mean.
+fn choose(found: &mut Found, args: &Args) -> Result<()> {
+    if let Some(names) = &args.names {
+        let pattern = Pattern::new(names).map_err(|error| Error::at(format!("--names {names}"), error))?;
+        let file = |path: &Path| path.file_name().is_some_and(|name| pattern.matches(&name.to_string_lossy()));
+        found.shots.retain(|(path, _)| file(path));
+    }
+    let mut index = 0;
+    found.shots.retain(|_| {
+        index += 1;
+        (index - 1) % args.every == 0
+    });
+    if found.shots.is_empty() {
+        let error = Error::at(args.file.display(), "has no pictures, or none that are meant");
+        return Err(error.cure("see --names and --all"));
+    }
+    Ok(())
+}
+
+/// A picture as it is to lie on the layer, and its file.
+fn taken(path: &Path, shot: &Shot, root: &Path, args: &Args, options: &files::Options) -> Result<(Picture, Beside)> {
+    let read = picture::read(path, &options.limits)?.picture;
+    let size_px = [read.width() as u32, read.height() as u32];
+    let shorter = f64::from(size_px[0].min(size_px[1]));
+    let feather_px = if read.channels().have_alpha() { 0.0 } else { (FEATHER * shorter * 100.0).round() / 100.0 };
+    let file = Beside::new(path, root, &args.scene)?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let shot = Shot { size_px: Some(shot.size_px.unwrap_or(size_px)), ..*shot };
+    let image = Image::File(file.path.clone());
+    let picture = Picture { name, image, from: SeenFrom::Shot(shot), kind: args.kind.clone(), feather_px, guide: None };
+    Ok((picture, file))
+}
+
+/// The whole edit, and what is told of it.
+fn edit(
+    document: &Document,
+    found: &Found,
+    pictures: &[(Picture, Beside)],
+    args: &Args,
+    options: &files::Options,
+) -> Result<(Edit, Vec<String>)> {
+    let wrong = |why: String| Error::at(args.scene.display(), why);
+    let refused = |problems| Error::Scene { file: args.scene.display().to_string(), problems };
+    let mut edits = Vec::new();
+    let mut now = document.clone();
+    let layer = match (shots::layer(document, args.layer.as_deref()), &found.mesh) {
+        (Ok(layer), _) => layer,
+        (Err(_), Some(mesh)) if args.layer.is_none() => {
+            let file = Beside::new(mesh, disk::folder_of(&args.file), &args.scene)?;
+            file.copy(&args.scene)?;
+            let name = mesh.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let added = shots::add_mesh(document, &name, &file.path);
+            let (edit, layer) = added.ok_or_else(|| wrong("no mesh can be added".into()))?;
+            now = now.apply(&edit).map_err(refused)?;
+            edits.push(edit);
+            layer
+        }
+        (Err(why), _) => {
+            return Err(wrong(why).cure("plica new MODEL makes a scene with one"));
+        }
+    };
+    let all: Vec<Picture> = pictures.iter().map(|(picture, _)| picture.clone()).collect();
+    let applied = shots::lay(&now, layer, all).map_err(wrong)?;
+    let mut told = vec![applied.told];
+    edits.push(applied.edit);
+    let technique = now.scene().layers[layer].technique();
+    let place = technique.model_to_world(0.0).unwrap_or_default();
+    let mesh = shots::mesh_of(&now, layer).map(|path| models::read(&paths::beside(&args.scene, path), options));
+    let corners = match mesh.transpose()? {
+        Some(model) => model.mesh.vertices.iter().map(|vertex| vertex.position).collect(),
+        None => Vec::new(),
+    };
+    let shots: Vec<Shot> = found.shots.iter().zip(pictures).filter_map(|(_, (picture, _))| shot_of(picture)).collect();
+    told.extend(meaning(&shots, &corners, &place, technique.name()));
+    let no_camera = document.json().get("camera").is_none_or(|camera| camera == &serde_json::json!({}));
+    if let (true, Some(first)) = (no_camera, shots.first()) {
+        edits.push(frame_camera(document, first, &corners, &place));
+    }
+    Ok((Edit::all(edits), told))
+}
+
+fn shot_of(picture: &Picture) -> Option<Shot> {
+    match picture.from {
+        SeenFrom::Shot(shot) => Some(shot),
+        SeenFrom::Standing { .. } => None,
+    }
+}
+
+/// The first picture's camera as that of the scene, looking at the place of its axis that is nearest to the middle of the
+/// mesh.
+fn frame_camera(document: &Document, shot: &Shot, corners: &[DVec3], place: &DAffine3) -> Edit {
+    let least = corners.iter().copied().reduce(DVec3::min).unwrap_or_default();
+    let most = corners.iter().copied().reduce(DVec3::max).unwrap_or_default();
+    let distance = ((least + most) / 2.0 - shot.position()).dot(shot.forward()).max(1e-3);
+    let height_px = shot.size_px.map_or(1.0, |[_, height]| f64::from(height));
+    shots::camera(document, shot, place, distance, height_px)
+}
+
+/// What the cameras mean: how many see the mesh, and whether they stand on their heads.
+fn meaning(shots: &[Shot], corners: &[DVec3], place: &DAffine3, layer: &str) -> Vec<String> {
+    let seeing = shots.iter().filter(|shot| corners.iter().any(|corner| sees(shot, *corner))).count();
+    let mut told = vec![format!("{seeing} of {} cameras see the mesh", shots.len())];
+    let up: DVec3 = shots.iter().map(|shot| place.transform_vector3(shot.up()).normalize_or_zero()).sum();
+    let up = up.normalize_or_zero();
+    if seeing == 0 {
+        told.push("none sees it: --axes z-up turns cameras of a world whose z points up".into());
+    } else if up.y < -0.2 {
+        told.push(format!(
+            "their pictures stand on their heads: pose.rotate [180, 0, 0] of {} would turn it",
+            quoted(layer)
+        ));
+    }
+    told
+}
+
+/// Whether a point is in the picture.
+fn sees(shot: &Shot, point: DVec3) -> bool {
+    let seen = shot.turn * point + shot.shift;
+    let [width, height] = shot.size_px.unwrap_or([1, 1]).map(f64::from);
+    let [x, y] = shot.center_px.unwrap_or([width / 2.0, height / 2.0]);
+    let (x, y) = (x + shot.focal_px[0] * seen.x / seen.z, y + shot.focal_px[1] * seen.y / seen.z);
+    seen.z > 0.0 && (0.0..width).contains(&x) && (0.0..height).contains(&y)
+}

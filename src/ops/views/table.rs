@@ -1,0 +1,90 @@
+//! `plica views SCENE`: what the views of a scene tell its view maps.
+
+use serde_json::{Value, json};
+
+use super::Args;
+use crate::base::error::{Error, Result};
+use crate::base::text::short;
+use crate::ops::Context;
+use crate::ops::opened::Opened;
+use crate::ops::sprites::none;
+
+/// A view that comes back so many dB worse than the median is probably not seen from where its camera says.
+const OFF_DB: f64 = 6.0;
+
+/// Prints the table or the lines.
+pub fn run(args: &Args, context: &mut Context) -> Result<()> {
+    let scene = args.scene.as_ref().ok_or_else(|| Error::Usage("name a scene".into()))?;
+    let opened = Opened::new(scene, &args.options, context)?;
+    let scene = opened.document.scene();
+    let synth = opened.synth()?;
+    let layers = scene.layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers);
+    let named = layers.filter(|(name, _)| args.layer.as_deref().is_none_or(|layer| layer == *name));
+    let mut any = false;
+    for (name, ready) in named {
+        context.check_cancelled()?;
+        let Some(rows) = ready.lying(args.compare) else { continue };
+        if !args.json {
+            context.print(format!("{}{name}", if any { "\n" } else { "" }))?;
+            context.print(HEAD)?;
+        }
+        any = true;
+        for row in &rows {
+            context.print(if args.json { line(name, row) } else { words(row) })?;
+        }
+        off(&rows).for_each(|told| context.messages.say(&told));
+    }
+    if any { Ok(()) } else { Err(none(scene, args.layer.as_deref(), "views")) }
+}
+
+fn line(layer: &str, row: &Value) -> String {
+    let mut line = json!({ "layer": layer });
+    if let (Some(line), Some(row)) = (line.as_object_mut(), row.as_object()) {
+        line.extend(row.clone());
+    }
+    line.to_string()
+}
+
+const HEAD: &str = "view             kind         depth  pixels  beyond  cells by layer           psnr";
+
+/// A row of the table: a view, or the whole map.
+fn words(row: &Value) -> String {
+    let text = |key: &str| row[key].as_str().unwrap_or_default();
+    let number = |value: &Value, decimals: usize| value.as_f64().map_or("-".into(), |v| short(v, decimals));
+    let list =
+        |value: &Value| -> Vec<String> { value.as_array().into_iter().flatten().map(Value::to_string).collect() };
+    if let Some(map) = row.get("map") {
+        let cells = [("cells", "cells"), ("known", "known"), ("filled", "filled"), ("entries", "dependent entries")];
+        let cells = cells.map(|(key, word)| format!("\n  {word} by layer: {}", list(&map[key]).join(" ")));
+        let bytes = map["bytes"].as_f64().unwrap_or_default() / f64::from(1 << 20);
+        return format!("charts {}, levels {}, {bytes:.1} MiB{}", map["charts"], map["levels"], cells.concat());
+    }
+    let told = row["cells"].as_array().into_iter().flatten().map(|layer| {
+        let all = layer.as_object().into_iter().flatten().filter_map(|(_, count)| count.as_u64());
+        all.sum::<u64>().to_string()
+    });
+    let told: Vec<String> = told.collect();
+    let beyond = row["beyond"].as_f64().unwrap_or_default() * 100.0;
+    let psnr = row.get("psnr").map(|psnr| number(psnr, 1)).unwrap_or_default();
+    let line = format!(
+        "{:<16} {:<11} {:>6} {:>7} {beyond:>6.0}%  {:<24} {psnr}",
+        text("view"),
+        text("kind"),
+        number(&row["depth"], 2),
+        number(&row["pixels"], 0),
+        told.join(" "),
+    );
+    line.trim_end().to_owned()
+}
+
+/// What is told of views that come back much worse than the others.
+fn off(rows: &[Value]) -> impl Iterator<Item = String> {
+    let mut all: Vec<f64> = rows.iter().filter_map(|row| row["psnr"].as_f64()).collect();
+    all.sort_by(f64::total_cmp);
+    let median = all.get(all.len() / 2).copied().unwrap_or_default();
+    rows.iter().filter_map(move |row| {
+        let psnr = row["psnr"].as_f64().filter(|psnr| *psnr < median - OFF_DB)?;
+        let view = row["view"].as_str().unwrap_or_default();
+        Some(format!("{view}: comes back with {psnr:.1} dB, the median is {median:.1}: its camera is probably off"))
+    })
+}

@@ -1,0 +1,162 @@
+//! Pictures with cameras on a mesh: painting over what is seen, looking from a picture's camera, and giving it the eye's
+//! place. What the command line does with them, `:views` does with the open scene.
+
+use glam::DVec3;
+use serde_json::json;
+
+use super::camera::eye;
+use super::command::{Call, Command, Done, command};
+use super::profiles::shown;
+use crate::base::problem::{nearest, quoted};
+use crate::layers::parts::shots::{SeenFrom, Shot};
+use crate::layers::space::camera::Camera;
+use crate::ops::views::paint::{self, Sight};
+use crate::scene::shots;
+use crate::tui::events::Effect;
+use crate::tui::state::State;
+use crate::tui::text::numbers::rounded;
+use crate::tui::text::plain;
+use crate::tui::text::said::words;
+
+pub const COMMANDS: &[Command] = &[command(
+    "views",
+    "[add|go|take|guide|import|balance ...]",
+    "Paint over what is seen of a mesh (add NAME), look from a view (go NAME), move it here (take NAME); as on the shell",
+    views,
+)];
+
+fn views(state: &mut State, call: &Call) -> Done {
+    let words = words(call.text)?;
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let is_size =
+        |word: &&str| word.split_once('x').is_some_and(|(w, h)| w.parse::<u32>().is_ok() && h.parse::<u32>().is_ok());
+    match words.as_slice() {
+        ["add", name, rest @ ..] if rest.len() <= 2 && !rest.iter().any(|word| word.starts_with('-')) => {
+            let size = rest.iter().find(|word| is_size(word));
+            let kind = rest.iter().find(|word| !is_size(word));
+            add(state, name, kind.copied(), size.copied())
+        }
+        ["go", name @ ..] if name.len() <= 1 => go(state, name.first().copied()),
+        ["take", name @ ..] if name.len() <= 1 => take(state, call, name.first().copied()),
+        _ => {
+            outside(state, &words);
+            Ok(())
+        }
+    }
+}
+
+/// Runs what the command line does with the open scene, whose place there is behind what is added, imported or drawn.
+fn outside(state: &mut State, words: &[&str]) {
+    let scene = state.scene.path().to_string_lossy().into_owned();
+    let at = match words.first() {
+        Some(&("add" | "import" | "guide")) => 2.min(words.len()),
+        Some(&"balance") => 1,
+        _ => 0,
+    };
+    let mut all: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+    all.insert(at, scene);
+    all.insert(0, "views".to_owned());
+    state.ask(Effect::Run(all));
+}
+
+/// The layer that is shown if pictures can lie on it, otherwise the first on which they do.
+fn layer(state: &State) -> Result<usize, String> {
+    let document = state.document();
+    let own = shown(state).and_then(|(_, name)| shots::layer(document, Some(&name)).ok());
+    own.map_or_else(|| shots::layer(document, None), Ok)
+}
+
+fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) -> Done {
+    state.scene.writable()?;
+    let layer = layer(state)?;
+    let synth = state.picture.synth.clone().ok_or("nothing is shown yet")?;
+    let size_px = match size.and_then(|size| size.split_once('x')) {
+        Some((width, height)) => (side(width)?, side(height)?),
+        None => synth.size,
+    };
+    let sight = Sight { layer, camera: eye(state)?, time: state.play.time, size_px };
+    let scene = (state.scene.path(), state.document());
+    let (applied, picture) = paint::begin(scene, &synth, &sight, (name, kind)).map_err(|error| error.to_string())?;
+    state.edit(applied.edit, false)?;
+    state.say(plain(&applied.told));
+    let picture = std::path::absolute(picture).map_err(|error| error.to_string())?;
+    state.ask(Effect::EditImage(picture));
+    Ok(())
+}
+
+/// The most pixels that a side of a picture to paint on has.
+const MOST_SIDE: usize = 16_384;
+
+fn side(text: &str) -> Result<usize, String> {
+    let side = text.parse().ok().filter(|side| (1..=MOST_SIDE).contains(side));
+    side.ok_or_else(|| format!("a picture has 1 to {MOST_SIDE} pixels a side, not {text}"))
+}
+
+/// The view called so, or that of the selected row, or the only one: its index, and its name.
+fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, String), String> {
+    let technique = state.document().scene().layers[layer].technique();
+    let lying = technique.lying().unwrap_or_default();
+    let list = technique.lay(&[]).map_or("", |laying| laying.list);
+    let focused = state.focused();
+    let own = focused.strip_prefix(&format!("/layers/{layer}{list}/")).and_then(|rest| rest.split('/').next());
+    let index = match (name, own.and_then(|index| index.parse().ok())) {
+        (Some(name), _) => lying.iter().position(|lying| lying.name == name).ok_or_else(|| {
+            let hint = nearest(name, lying.iter().map(|lying| lying.name)).unwrap_or_default();
+            format!("there is no view {} ({hint})", quoted(name))
+        })?,
+        (None, Some(index)) => index,
+        (None, None) if lying.len() == 1 => 0,
+        (None, None) => return Err("which view: name it, or go to its row".into()),
+    };
+    let name = lying.get(index).ok_or("there is no such view")?.name.to_owned();
+    Ok((index, name))
+}
+
+fn go(state: &mut State, name: Option<&str>) -> Done {
+    if state.outside.window.is_empty() {
+        return Err("there is no window to look through: :view opens one".into());
+    }
+    let layer = layer(state)?;
+    let (index, name) = view(state, layer, name)?;
+    let technique = state.document().scene().layers[layer].technique();
+    let from = technique.lying().and_then(|lying| lying.get(index)?.from).ok_or("its camera sees nothing")?;
+    let place = technique.model_to_world(state.play.time).ok_or("the layer has no model")?;
+    let middle = state.picture.synth.as_ref().and_then(|synth| synth.layers.get(layer)?.bounds(state.play.time));
+    let ([position, target, up], fov) = match from {
+        SeenFrom::Standing { position, target, up, fov } => {
+            let up = up.unwrap_or(DVec3::Y);
+            ([position, target, up], fov.unwrap_or(Camera::default().fov))
+        }
+        SeenFrom::Shot(shot) => {
+            let middle = middle.map_or(DVec3::ZERO, |bounds| place.inverse().transform_point3(bounds.middle()));
+            let distance = (middle - shot.position()).dot(shot.forward()).max(1e-3);
+            ([shot.position(), shot.position() + shot.forward() * distance, shot.up()], fov(&shot))
+        }
+    };
+    let [position, target] = [position, target].map(|at| place.transform_point3(at).into());
+    let up = place.transform_vector3(up).normalize_or(DVec3::Y).into();
+    let camera = Camera { position, target, up, fov, ..Camera::default() };
+    state.ask(Effect::Look(Some(Box::new(camera))));
+    state.say(format!("the window looks from {}", plain(&name)));
+    Ok(())
+}
+
+fn fov(shot: &Shot) -> f64 {
+    let height = shot.size_px.map(|[_, height]| f64::from(height)).or(shot.center_px.map(|[_, y]| 2.0 * y));
+    shot.fov(height.unwrap_or(2.0 * shot.focal_px[1]))
+}
+
+fn take(state: &mut State, call: &Call, name: Option<&str>) -> Done {
+    let layer = layer(state)?;
+    let (index, name) = view(state, layer, name)?;
+    let technique = state.document().scene().layers[layer].technique();
+    let list = technique.lay(&[]).ok_or("the layer has no views")?.list.replace('/', ".");
+    let place = technique.model_to_world(state.play.time).ok_or("the layer has no model")?.inverse();
+    let ([position, target, up], fov) = eye(state)?.view(state.play.time);
+    let [position, target] = [position, target].map(|at| place.transform_point3(at).to_array());
+    let up = place.transform_vector3(up).normalize_or(DVec3::Y).to_array();
+    let camera = rounded(json!({ "position": position, "target": target, "up": up, "fov": fov }));
+    call.obey(state, &format!("set layers.{layer}{list}.{index}.camera={camera}"))?;
+    state.say(format!("{} is seen from here now", plain(&name)));
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! Pictures with cameras: painting over what is seen, looking from a view, and giving it the eye's place.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::json;
+
+use super::support::{at, press, said};
+use crate::files::materials::{self, Cache};
+use crate::layers::space::camera::Camera;
+use crate::preview::wire::message::ToEditor;
+use crate::render;
+use crate::tui::commands::update::update;
+use crate::tui::document::open_scene::OpenScene;
+use crate::tui::events::Effect;
+use crate::tui::state::State;
+use crate::tui::text::color::Depth;
+
+const SCENE: &str = r##"{
+  "plica": 1, "size": [24, 16], "camera": { "position": [0, 0, 4], "target": [0, 0, 0] },
+  "meshes": { "wall": { "path": "wall.obj" } },
+  "layers": [{ "kind": "mesh", "name": "wall", "mesh": "wall", "pose": { "position": [0, 1, 0], "scale": 2 },
+    "surface": { "kind": "plain", "color": "#a01020" }, "light": { "ambient": 1 } }]
+}"##;
+
+fn opened(folder: &Path) -> State {
+    std::fs::write(folder.join("wall.obj"), "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n").unwrap();
+    let path = folder.join("a.plica.json");
+    std::fs::write(&path, SCENE).unwrap();
+    let mut state = State::new(OpenScene::in_memory(&path), (80, 24), Depth::None);
+    show(&mut state);
+    state
+}
+
+fn show(state: &mut State) {
+    let scene = state.document().scene().clone();
+    let (materials, problems) =
+        materials::gather(state.scene.path(), &scene, state.scene.options(), &mut Cache::default());
+    assert_eq!(problems, []);
+    state.picture.synth = Some(Arc::new(render::synth(&scene, &materials, None).unwrap()));
+}
+
+fn run(state: &mut State, line: &str) -> (String, Vec<Effect>) {
+    let effects = press(state, &format!(": \"{line}\" Enter"));
+    (state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default(), effects)
+}
+
+#[test]
+fn what_is_seen_is_painted_over_from_where_it_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    let (told, effects) = run(&mut state, "views add flowers");
+    assert_eq!(told, "1 picture laid on wall");
+    let picture = folder.path().join("views/flowers.png");
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::EditImage(path) if *path == picture)), "{effects:?}");
+    let [own, guide] = ["flowers", "flowers-guide"].map(|name| folder.path().join(format!("views/{name}.png")));
+    let [own, guide] = [own, guide].map(|path| std::fs::read(path).unwrap());
+    assert_eq!(own, guide);
+    // In the model: the pose puts it two times larger and one meter higher.
+    let view = at(&state, "/layers/0/surface/views/0");
+    assert_eq!(view["camera"], json!({ "position": [0, -0.5, 2], "target": [0, -0.5, 0], "fov": 40 }));
+    assert_eq!((&view["kind"], &view["changed"]), (&json!("dependent"), &json!("flowers-guide")));
+    assert_eq!(at(&state, "/images/flowers/path"), json!("views/flowers.png"));
+    // Nothing is painted yet: the surface looks as it did, but for what has no base coat.
+    show(&mut state);
+    assert!(run(&mut state, "views add flowers").0.contains("is taken"), "the name");
+    press(&mut state, "u");
+    assert_eq!(at(&state, "/layers/0/surface/kind"), json!("plain"), "one step of undo");
+    assert!(run(&mut state, "views add flowers").0.contains("is there already"), "the file");
+    assert!(run(&mut state, "views add ../x").0.contains("is no name for a file"));
+    assert!(run(&mut state, "views add big both 99999x1").0.contains("1 to 16384 pixels"));
+}
+
+#[test]
+fn the_eye_goes_to_a_view_and_a_view_comes_to_the_eye() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    run(&mut state, "views add a both 8x8");
+    show(&mut state);
+    assert!(run(&mut state, "views go").0.starts_with("there is no window"), "{:?}", state.message);
+    state.outside.window = "window".into();
+    let looked = |effects: Vec<Effect>| {
+        let camera = effects.into_iter().find_map(|effect| match effect {
+            Effect::Look(camera) => camera,
+            _ => None,
+        });
+        *camera.unwrap()
+    };
+    let camera = looked(run(&mut state, "views go a").1);
+    assert_eq!((camera.position, camera.target, camera.fov), ([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0));
+    assert!(run(&mut state, "views go b").0.contains("there is no view \"b\""));
+    let own = Camera { position: [2.0, 1.0, 0.0], target: [0.0, 1.0, 0.0], fov: 50.0, ..Camera::default() };
+    update(&mut state, said(ToEditor::Camera(Some(own))));
+    assert_eq!(run(&mut state, "views take a").0, "a is seen from here now");
+    let camera = at(&state, "/layers/0/surface/views/0/camera");
+    assert_eq!(camera, json!({ "position": [1, 0, 0], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 50 }));
+}
+
+#[test]
+fn what_the_shell_does_is_done_with_the_open_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    let scene = state.scene.path().display().to_string();
+    for (line, words) in [
+        ("views", vec!["views", &scene]),
+        ("views --compare", vec!["views", &scene, "--compare"]),
+        ("views import x.json --every 2", vec!["views", "import", "x.json", &scene, "--every", "2"]),
+        ("views balance", vec!["views", "balance", &scene]),
+        ("views add a --image b", vec!["views", "add", "a", &scene, "--image", "b"]),
+    ] {
+        let effects = run(&mut state, line).1;
+        let ran = effects.iter().find_map(|effect| match effect {
+            Effect::Run(words) => Some(words.clone()),
+            _ => None,
+        });
+        assert_eq!(ran.unwrap(), words, "{line}");
+    }
+}
