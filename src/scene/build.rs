@@ -215,7 +215,9 @@ fn write_at(document: &Document, path: &str, value: Value) -> Edit {
         _ => {
             let Some(place) = Place::of(json, parent) else { return Edit::add(path, value) };
             let fresh = Fresh::at(document, parent);
-            let standing = field::in_force(document, parent);
+            // A number of a vector that stands there; other things begin with nothing written in them.
+            let is_vector = |all: &Value| all.as_array().is_some_and(|all| all.iter().all(Value::is_number));
+            let standing = field::in_force(document, parent).filter(is_vector);
             let default = place.value.filter(|value| !value.is_null()).or(standing.as_ref());
             // Half of a size alone would make a frame that is one pixel wide or high.
             let frame = (parent == "/size").then(|| json!([FRAME.0, FRAME.1]));
