@@ -51,16 +51,15 @@ impl ReadySurface for Ready {
     }
 
     fn lying(&self, compare: bool) -> Option<Vec<Value>> {
-        Some(told::told(&self.map, compare))
+        Some(told::told(self.filled(), compare))
     }
 
     fn balanced(&self) -> Option<Vec<(String, Value)>> {
         let gains = told::balanced(&self.map).into_iter();
-        Some(
-            gains
-                .map(|(view, gain)| (format!("/views/{view}/gain"), gain.map(number::json).into_iter().collect()))
-                .collect(),
-        )
+        let set = |(view, gain): (usize, [f64; 3])| {
+            (format!("/views/{view}/gain"), gain.map(number::json).into_iter().collect())
+        };
+        Some(gains.map(set).collect())
     }
 
     fn by_cpu(&self) -> bool {

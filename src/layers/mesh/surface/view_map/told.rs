@@ -2,15 +2,16 @@
 
 use serde_json::{Value, json};
 
+use super::looked::Filled;
 use super::map::Map;
 use super::view::View;
 use super::{balance, compare, report};
 use crate::base::number;
 
 /// An object for each active view, in order, then one for the map; with `compare` also how well each view comes back.
-pub fn told(map: &Map, compare: bool) -> Vec<Value> {
-    let again = if compare { compare::compare(map) } else { Vec::new() };
-    let views = report::views(map).into_iter().enumerate().map(|(i, of)| {
+pub fn told(filled: Filled, compare: bool) -> Vec<Value> {
+    let again = if compare { compare::compare(filled) } else { Vec::new() };
+    let views = report::views(filled.0).into_iter().enumerate().map(|(i, of)| {
         let cells = of.cells.iter().map(
             |[own, finer, coarser, beside]| json!({ "own": own, "finer": finer, "coarser": coarser, "beside": beside }),
         );
@@ -28,7 +29,7 @@ pub fn told(map: &Map, compare: bool) -> Vec<Value> {
         }
         told
     });
-    let of = report::map(map);
+    let of = report::map(filled);
     let whole = json!({ "map": {
         "charts": of.charts,
         "levels": of.levels,
