@@ -117,7 +117,7 @@ fn numbers<const N: usize>(items: &[Value]) -> Option<[f64; N]> {
 
 /// Width and height as whole numbers of pixels.
 fn size(width: f64, height: f64) -> Option<[u32; 2]> {
-    let whole = |side: f64| (side >= 1.0 && side <= 1e6 && side.fract() == 0.0).then_some(side as u32);
+    let whole = |side: f64| ((1.0..=1e6).contains(&side) && side.fract() == 0.0).then_some(side as u32);
     Some([whole(width)?, whole(height)?])
 }
 
