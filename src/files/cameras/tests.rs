@@ -1,3 +1,5 @@
+//! The same camera from every kind of list, and what is refused.
+
 use std::fs;
 
 use glam::{DMat3, DQuat, DVec3};
