@@ -216,8 +216,8 @@ fn cameras_of_other_programs_become_views_once() {
     let folder = folder();
     let at = folder.path();
     shots(at);
-    plica(at, &["new", "cat.png", "-o", "a.plica.json"], true);
-    let import = ["views", "import", "shots/cameras.json", "a.plica.json"];
+    plica(at, &["new", "cat.png", "-o", "to/a.plica.json"], true);
+    let import = ["views", "import", "shots/cameras.json", "to/a.plica.json"];
     let (_, told) = plica(at, &import, true);
     for line in [
         "1 pictures for testing are left out; --all takes them",
@@ -227,33 +227,34 @@ fn cameras_of_other_programs_become_views_once() {
         assert!(told.contains(line), "{line}: {told}");
     }
     // Files that are elsewhere are copied; the camera of the first picture is that of the scene.
-    assert!(at.join("images/front.png").is_file() && at.join("wall.obj").is_file());
-    let camera = get(at, "a.plica.json", "camera");
+    assert!(at.join("to/images/front.png").is_file() && at.join("to/wall.obj").is_file());
+    let camera = get(at, "to/a.plica.json", "camera");
     assert_eq!((&camera["position"], &camera["target"]), (&json!([0, 7, 9]), &json!([0, 7, 0])));
-    let view = get(at, "a.plica.json", "layers.wall.surface.views.front");
+    let view = get(at, "to/a.plica.json", "layers.wall.surface.views.front");
     assert_eq!(view["camera"]["matrix"], json!([[1, 0, 0, 0], [0, -1, 0, 7], [0, 0, -1, 9]]));
     assert_eq!((&view["image"], view.get("feather")), (&json!("front"), None));
-    let before = std::fs::read_to_string(at.join("a.plica.json")).unwrap();
+    let before = std::fs::read_to_string(at.join("to/a.plica.json")).unwrap();
     let (_, told) = plica(at, &import, true);
     assert!(told.contains("1 lie there already"), "{told}");
-    assert_eq!(std::fs::read_to_string(at.join("a.plica.json")).unwrap(), before);
+    assert_eq!(std::fs::read_to_string(at.join("to/a.plica.json")).unwrap(), before);
     // What the wall shows is the picture.
-    assert_eq!(rendered(at, "a.plica.json").get_pixel(40, 30).0, [90, 0, 0, 255]);
-    let lines = plica(at, &["views", "a.plica.json", "--json"], true).0;
+    assert_eq!(rendered(at, "to/a.plica.json").get_pixel(40, 30).0, [90, 0, 0, 255]);
+    let lines = plica(at, &["views", "to/a.plica.json", "--json"], true).0;
     let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(
         (&lines[0]["view"], &lines[0]["layer"], &lines[1]["map"]["charts"]),
         (&json!("front"), &json!("wall"), &json!(1))
     );
 
-    let (_, told) = plica(at, &["views", "import", "shots/cameras.json", "a.plica.json", "--names", "x*"], false);
+    let (_, told) = plica(at, &["views", "import", "shots/cameras.json", "to/a.plica.json", "--names", "x*"], false);
     assert!(told.contains("has no pictures, or none that are meant"), "{told}");
     plica(
         at,
-        &["views", "add", "cat", "a.plica.json", "--image", "cat", "--position", "0,7,-5", "--target", "0,7,0"],
+        &["views", "add", "cat", "to/a.plica.json", "--image", "cat", "--position", "0,7,-5", "--target", "0,7,0"],
         true,
     );
-    assert_eq!(get(at, "a.plica.json", "layers.wall.surface.views.cat.camera.position"), json!([0, 7, -5]));
-    let (_, told) = plica(at, &["views", "add", "cat", "a.plica.json", "--image", "cat", "--position", "0,7,5"], false);
+    assert_eq!(get(at, "to/a.plica.json", "layers.wall.surface.views.cat.camera.position"), json!([0, 7, -5]));
+    let (_, told) =
+        plica(at, &["views", "add", "cat", "to/a.plica.json", "--image", "cat", "--position", "0,7,5"], false);
     assert!(told.contains("the name \"cat\" is taken by another view"), "{told}");
 }
