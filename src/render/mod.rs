@@ -10,7 +10,6 @@ use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::{CENTRE, Moment};
 use crate::layers::ready::{Making, Ready, Texture, Textures};
-#[cfg(feature = "window")]
 use crate::layers::space::camera::Camera;
 use crate::layers::timeline::Timeline;
 use crate::scene::{FRAME, Scene};
