@@ -1,5 +1,5 @@
-//! Plica animates still pictures from the keyboard: folding textures, meshes, strokes and waterfalls,
-//! edited as numbers in a terminal.
+//! Plica animates still pictures from the keyboard: folding textures, meshes, strokes, view maps and
+//! waterfalls, edited as numbers in a terminal.
 //!
 //! # Code map
 //!

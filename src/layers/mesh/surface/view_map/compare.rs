@@ -15,7 +15,7 @@ use crate::layers::space::raster::{NONE, Raster};
 /// The least cosine between the normal and the way to the camera.
 const LEAST_NORMAL: f64 = 0.2;
 
-/// The peak signal-to-noise ratio of each active view, in dB; `None` where nothing of it is seen, infinite where there is no
+/// The peak signal-to-noise ratio of each active view, in dB; `None` if nothing of it is seen, infinite if there is no
 /// difference at all.
 pub fn compare(filled: Filled) -> Vec<Option<f64>> {
     (0..filled.0.wanted.views.len()).map(|view| one(filled, view)).collect()

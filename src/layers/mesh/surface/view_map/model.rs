@@ -174,7 +174,7 @@ pub struct ViewCamera {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Extremes {
-    /// As far as its neighbors, or where there are none, so many degrees.
+    /// As far as its neighbors; if there are none, so many degrees.
     Auto {
         /// The angle at which it is gone.
         #[serde(default = "thirty")]

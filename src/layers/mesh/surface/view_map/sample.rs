@@ -85,7 +85,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// What is where there are no cells at all.
+    /// What a place shows that has no cells at all.
     fn missing(&self) -> Sample {
         let missing = self.map.wanted.missing.map(f64::from);
         Sample { independent: missing, over: missing, ..Sample::default() }
