@@ -109,7 +109,8 @@ pub fn mesh(bytes: &[u8]) {
 /// A value is finite, and the same each time.
 pub fn expression(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let value = || evaluate(text, &Variables(&[("v", 2.5), ("w", 640.0), ("i", 3.0)]));
+    let value =
+        || evaluate(text, &Variables { numbers: &[("v", 2.5), ("w", 640.0), ("i", 3.0)], words: &[("tool", "point")] });
     if let Ok(found) = value() {
         assert!(found.is_finite(), "{text} is {found}");
     }

@@ -1,27 +1,43 @@
 //! The arithmetic of number entries: `5` and `-18` are values, `+=3` and `*1.1` change the old value, everything else is
 //! computed over named variables. A parser of our own: it is small, its limits are ours, and it evaluates as it reads.
 //!
-//! Angles are degrees, as they are everywhere in a scene. A comma between digits is a decimal point (`4,5`), except in the
+//! Comparisons are 1 where they hold and 0 where they do not; `and`, `or` and `not` join them, and a word is compared with
+//! `==` and `!=`. Angles are degrees, as they are everywhere in a scene. A comma between digits is a decimal point (`4,5`), except in the
 //! list of a function's arguments, where it separates them; a true minus sign (U+2212) is a minus.
 
 use super::maths;
+use functions::{FUNCTIONS, Function};
+
+mod conditions;
+mod functions;
 
 /// The longest expression, in bytes.
 pub const LIMIT_BYTES: usize = 4096;
 /// The deepest nesting of parentheses, functions and signs.
 pub const LIMIT_DEPTH: usize = 64;
 
-/// What an expression may name; `v` is the old value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Variables<'a>(pub &'a [(&'a str, f64)]);
+/// What an expression may name.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Variables<'a> {
+    /// Numbers; `v` is the old value.
+    pub numbers: &'a [(&'a str, f64)],
+    /// Words, which are only compared.
+    pub words: &'a [(&'a str, &'a str)],
+}
 
-impl Variables<'_> {
+impl<'a> Variables<'a> {
+    /// Numbers alone.
+    pub fn numbers(numbers: &'a [(&'a str, f64)]) -> Self {
+        Variables { numbers, words: &[] }
+    }
+
     fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
+        self.numbers.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
     }
 
     fn names(&self) -> String {
-        self.0.iter().map(|&(name, _)| name).collect::<Vec<_>>().join(" ")
+        let words = self.words.iter().map(|&(name, _)| name);
+        self.numbers.iter().map(|&(name, _)| name).chain(words).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -34,36 +50,6 @@ pub struct Mistake {
     /// What was found there.
     pub what: String,
 }
-
-/// A function of an expression: name, number of arguments (`None`: one or more), what it does.
-struct Function {
-    name: &'static str,
-    arguments: Option<usize>,
-    apply: fn(&[f64]) -> f64,
-}
-
-const FUNCTIONS: &[Function] = &[
-    Function { name: "sqrt", arguments: Some(1), apply: |x| x[0].sqrt() },
-    Function { name: "abs", arguments: Some(1), apply: |x| x[0].abs() },
-    Function { name: "sin", arguments: Some(1), apply: |x| maths::sin(x[0].to_radians()) },
-    Function { name: "cos", arguments: Some(1), apply: |x| maths::cos(x[0].to_radians()) },
-    Function {
-        name: "tan",
-        arguments: Some(1),
-        apply: |x| maths::sin(x[0].to_radians()) / maths::cos(x[0].to_radians()),
-    },
-    Function { name: "asin", arguments: Some(1), apply: |x| 90.0 - maths::acos(x[0]).to_degrees() },
-    Function { name: "acos", arguments: Some(1), apply: |x| maths::acos(x[0]).to_degrees() },
-    Function { name: "atan", arguments: Some(1), apply: |x| maths::atan2(x[0], 1.0).to_degrees() },
-    Function { name: "atan2", arguments: Some(2), apply: |x| maths::atan2(x[0], x[1]).to_degrees() },
-    Function { name: "exp", arguments: Some(1), apply: |x| maths::exp(x[0]) },
-    Function { name: "ln", arguments: Some(1), apply: |x| maths::ln(x[0]) },
-    Function { name: "floor", arguments: Some(1), apply: |x| x[0].floor() },
-    Function { name: "ceil", arguments: Some(1), apply: |x| x[0].ceil() },
-    Function { name: "round", arguments: Some(1), apply: |x| x[0].round() },
-    Function { name: "min", arguments: None, apply: |x| x.iter().copied().fold(f64::INFINITY, f64::min) },
-    Function { name: "max", arguments: None, apply: |x| x.iter().copied().fold(f64::NEG_INFINITY, f64::max) },
-];
 
 /// The names of all functions, for help.
 pub fn functions() -> impl Iterator<Item = &'static str> {
@@ -82,10 +68,11 @@ pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
         None => (None, usize::from(trimmed.starts_with('='))),
     };
     let mut parser = Parser { text, at: start + skip, depth: 0, lists: 0, variables };
-    let right = parser.sum()?;
+    let right = parser.any()?;
     parser.space();
     if let Some(found) = parser.peek() {
-        return Err(parser.mistake(format!("expected an operator, found `{found}`")));
+        let hint = if found == '=' { ": equal is ==" } else { "" };
+        return Err(parser.mistake(format!("expected an operator, found `{found}`{hint}")));
     }
     let old = variables.get("v").ok_or(Mistake { column: 1, what: "there is no value to change".into() });
     let value = match operator {
@@ -111,6 +98,10 @@ fn relative(text: &str) -> Option<(char, usize)> {
         ('*' | '/', false) => Some((operator, after)),
         _ => None,
     }
+}
+
+fn is_of_name(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
 }
 
 struct Parser<'a> {
@@ -202,7 +193,7 @@ impl Parser<'_> {
 
     fn atom(&mut self) -> Result<f64, Mistake> {
         if self.take('(') {
-            let value = self.sum()?;
+            let value = self.any()?;
             return if self.take(')') { Ok(value) } else { Err(self.mistake("expected `)`")) };
         }
         match self.peek() {
@@ -238,7 +229,7 @@ impl Parser<'_> {
 
     fn name(&mut self) -> Result<f64, Mistake> {
         let before = Mistake { what: String::new(), ..self.mistake("") };
-        let name = self.run(|c| c.is_alphanumeric() || c == '_');
+        let name = self.run(is_of_name);
         if let Some(value) = self.variables.get(&name) {
             return Ok(value);
         }
@@ -259,9 +250,9 @@ impl Parser<'_> {
             return Err(self.mistake(format!("expected `(` after {}", function.name)));
         }
         self.lists += 1;
-        let mut arguments = vec![self.sum()?];
+        let mut arguments = vec![self.any()?];
         while self.take(',') {
-            arguments.push(self.sum()?);
+            arguments.push(self.any()?);
         }
         self.lists -= 1;
         if !self.take(')') {
@@ -283,7 +274,10 @@ impl Parser<'_> {
 mod tests {
     use super::*;
 
-    const VARIABLES: Variables = Variables(&[("v", 10.0), ("x", 3.0), ("w", 1280.0), ("r", 2.0), ("i", 0.0)]);
+    const VARIABLES: Variables = Variables {
+        numbers: &[("v", 10.0), ("x", 3.0), ("w", 1280.0), ("r", 2.0), ("i", 0.0)],
+        words: &[("tool", "still-border"), ("name", "left eye")],
+    };
 
     #[test]
     fn entries_and_their_values() {
@@ -327,6 +321,30 @@ mod tests {
             ("−=3", 7.0),
             ("2^−1", 0.5),
             ("1e−3", 0.001),
+            ("x > 2", 1.0),
+            ("x<2", 0.0),
+            ("x>=3", 1.0),
+            ("x<=2.9", 0.0),
+            ("0.1+0.2==0.3", 1.0),
+            ("0.1+0.2>0.3", 0.0),
+            ("x!=3", 0.0),
+            ("x>1 and v<5", 0.0),
+            ("x>1 or v<5", 1.0),
+            ("not x>1 or v==10", 1.0),
+            ("not (x>1 or v==10)", 0.0),
+            ("not not 5", 5.0),
+            ("v*(x>2)", 10.0),
+            ("if(x>2, 7, 8)", 7.0),
+            ("if(i, 1/i, 8)", 8.0),
+            ("*if(x==3, 2, 1)", 20.0),
+            ("clamp(v, 0, 4)+clamp(-1, 0, 4)", 4.0),
+            ("sign(-3)+sign(0)", -1.0),
+            ("hypot(x, 4)", 5.0),
+            ("lerp(2, 6, 0.25)", 3.0),
+            ("tool==still-border and x==3", 1.0),
+            ("tool != point", 1.0),
+            ("name == \"left eye\"", 1.0),
+            ("not name==left", 1.0),
         ] {
             assert_eq!(evaluate(text, &VARIABLES), Ok(value), "{text}");
         }
@@ -352,6 +370,14 @@ mod tests {
             ("sqrt(-1)", 1, "finite"),
             ("5é", 2, "operator"),
             ("é+", 1, "not known"),
+            ("x=3", 2, "found `=`: equal is =="),
+            ("1<x<5", 5, "two are compared at a time: join with and"),
+            ("if(x)", 6, "if takes 3 numbers, found 1"),
+            ("x and", 6, "found the end"),
+            ("tool>3", 5, "expected == or !=: tool is a word"),
+            ("tool+1", 5, "tool is a word"),
+            ("name==\"a", 9, "`\"`"),
+            ("android", 1, "not known"),
         ] {
             let mistake = evaluate(text, &VARIABLES).unwrap_err();
             assert!(mistake.column == column && mistake.what.contains(part), "{text}: {mistake}");
@@ -360,7 +386,14 @@ mod tests {
 
     #[test]
     fn absurd_input_is_refused() {
-        for text in ["(".repeat(4000), "-".repeat(4000), "2^".repeat(2000), "1".repeat(5000), "sqrt(".repeat(800)] {
+        for text in [
+            "(".repeat(4000),
+            "-".repeat(4000),
+            "2^".repeat(2000),
+            "1".repeat(5000),
+            "sqrt(".repeat(800),
+            "not ".repeat(900),
+        ] {
             assert!(evaluate(&text, &VARIABLES).is_err());
         }
         assert!(evaluate(&format!("{}1{}", "(".repeat(60), ")".repeat(60)), &VARIABLES).is_ok());

@@ -9,7 +9,9 @@ use serde_json::Value;
 use super::Context;
 use super::scene_options::{RecoveryOptions, SceneOptions};
 use crate::base::error::{Error, Result};
+use crate::base::expression::{Variables, evaluate};
 use crate::base::number;
+use crate::base::pointer::Pointer;
 use crate::base::problem::{self, Problem};
 use crate::files::session::{Mode, Overwrite, Session, Taken};
 use crate::preview::editor::script;
@@ -23,7 +25,8 @@ pub struct Args {
     /// The scene
     scene: PathBuf,
     /// What to set, for example layers.face.zones."left eye".feather=4; a value that is not JSON is text; null removes
-    /// something optional; PATH*=2, +=, -= and /= change a number
+    /// something optional; PATH*=2, +=, -= and /= change a number, which may be computed (PATH=v*2, v the old one); * stands
+    /// for all, as in layers.*.zones.*.speed=i/n
     #[arg(required = true, value_name = "PATH=VALUE")]
     settings: Vec<String>,
     #[command(flatten)]
@@ -43,9 +46,9 @@ const BRIEF_MS: u64 = 5_000;
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let lost = RefCell::default();
     let make = |document: &Document| {
-        let (edit, told) = edit(document, &args.settings, &args.scene)?;
-        lost.replace(told);
-        Ok(edit)
+        let set = edit(document, &args.settings, &args.scene)?;
+        lost.replace(set.lost);
+        Ok(set.edit)
     };
     let elsewhere = change(&args.scene, (&args.recovery, &args.reading), make)?;
     lost.take().iter().for_each(|line| context.messages.say(line));
@@ -151,55 +154,106 @@ fn settle(session: &mut Session, scene: &Path, recovery: &RecoveryOptions) -> Re
     }
 }
 
-/// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it; and what a change of
-/// kind could not keep, one line each.
-pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<(Edit, Vec<String>)> {
+/// What settings do to a scene.
+pub struct Set {
+    /// The edit.
+    pub edit: Edit,
+    /// What a change of kind could not keep, one line each.
+    pub lost: Vec<String>,
+    /// How many places it sets.
+    pub places: usize,
+}
+
+/// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it.
+pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Set> {
     let mut document = document.clone();
-    let (mut edits, mut told) = (Vec::new(), Vec::new());
+    let mut all = Set { edit: Edit::default(), lost: Vec::new(), places: 0 };
     for setting in settings {
+        let setting = Setting::read(&document, setting)?;
+        let pointers = address::resolve_all(&document, setting.path)?;
+        // Places that are written do not touch one another; others may begin what they share.
+        let written =
+            |pointer: &String| Pointer(pointer).parent().is_some_and(|at| document.json().pointer(at).is_some());
+        let at_once = if pointers.iter().all(written) { pointers.len().max(1) } else { 1 };
+        let n = pointers.len();
+        for (k, some) in pointers.chunks(at_once).enumerate() {
+            let mut edits = Vec::new();
+            for (i, pointer) in some.iter().enumerate() {
+                let value = setting.value(&document, pointer, (k * at_once + i, n))?;
+                let (edit, lost) = Edit::set_told(&document, pointer, value);
+                all.lost.extend(lost.map(|lost| format!("{}: {lost}", setting.path)));
+                edits.push(edit);
+            }
+            let edit = Edit::all(edits);
+            document = document.apply(&edit).map_err(|problems| {
+                let asked = |problem| as_asked(&document, problem, setting.path, some);
+                refused(scene, problems.into_iter().map(asked).collect())
+            })?;
+            all.edit = Edit::all([std::mem::take(&mut all.edit), edit]);
+        }
+        all.places += n;
+    }
+    Ok(all)
+}
+
+/// A setting, taken apart.
+struct Setting<'a> {
+    path: &'a str,
+    value: Value,
+    /// The value as it is written.
+    text: &'a str,
+    /// The number that it means: it is computed, over the old value.
+    computed: Option<String>,
+    /// Whether it changes the old value, so that there has to be a number.
+    relative: bool,
+}
+
+impl<'a> Setting<'a> {
+    fn read(document: &Document, setting: &'a str) -> Result<Setting<'a>> {
         let (path, value) = parse(setting)?;
-        let (path, value) = relative(&document, path, value)?;
-        let pointer = address::resolve(&document, path)?;
-        let (edit, lost) = Edit::set_told(&document, &pointer, meant(&document, &pointer, value, setting, path));
-        told.extend(lost.map(|lost| format!("{path}: {lost}")));
-        document = document.apply(&edit).map_err(|problems| {
-            refused(scene, problems.into_iter().map(|problem| as_asked(&document, problem, path, &pointer)).collect())
-        })?;
-        edits.push(edit);
+        let text = &setting[path.len() + 1..];
+        // A name may end with such a sign.
+        let own = |path| address::resolve_all(document, path).is_ok();
+        let sign = path.chars().last().filter(|sign| "+-*/".contains(*sign));
+        let field = sign.map(|sign| (&path[..path.len() - sign.len_utf8()], sign));
+        Ok(match field.filter(|(field, _)| own(field) && !own(path)) {
+            Some((path, sign)) => {
+                Setting { path, value, text, computed: Some(format!("{sign}={text}")), relative: true }
+            }
+            None => {
+                // Text that is not JSON, where a number is wanted: `v*2`, `1/3`, `4,5`.
+                let plain = value == text;
+                Setting { path, value, text, computed: plain.then(|| text.to_owned()), relative: false }
+            }
+        })
     }
-    Ok((Edit::all(edits), told))
+
+    /// The value for one of its places, the `i`th of `n`.
+    fn value(&self, document: &Document, pointer: &str, (i, n): (usize, usize)) -> Result<Value> {
+        let kind = field::field(document, pointer).map(|field| field.kind);
+        match (&self.computed, kind) {
+            (Some(expression), Some(Kind::Number { .. })) => {
+                let old = field::counting(document, pointer).and_then(|value| value.as_f64());
+                let known = [("i", i as f64), ("n", n as f64)];
+                let known: Vec<(&str, f64)> = old.map(|old| ("v", old)).into_iter().chain(known).collect();
+                let value = evaluate(expression, &Variables::numbers(&known));
+                let value = value.map_err(|mistake| Error::at(self.path, format!("{expression}: {mistake}")))?;
+                Ok(number::json(number::tidy(value)))
+            }
+            _ if self.relative => Err(Error::at(self.path, "is not a number, so that it cannot be changed by one")),
+            // A value that looks like other JSON is text if only text fits (`title=2024`).
+            (_, Some(Kind::Text)) if !self.value.is_string() && !self.value.is_null() => Ok(self.text.into()),
+            _ => Ok(self.value.clone()),
+        }
+    }
 }
 
-/// A setting as `PATH*=2` changes the number that counts there; any other is as it is.
-fn relative<'a>(document: &Document, path: &'a str, by: Value) -> Result<(&'a str, Value)> {
-    let Some((sign, Some(change))) = path.chars().last().filter(|sign| "+-*/".contains(*sign)).zip(Some(by.as_f64()))
-    else {
-        return Ok((path, by));
-    };
-    let field = &path[..path.len() - sign.len_utf8()];
-    // A name may end with such a sign.
-    let pointer = address::resolve(document, field).ok().filter(|_| address::resolve(document, path).is_err());
-    let Some(old) = pointer.and_then(|pointer| field::counting(document, &pointer)?.as_f64()) else {
-        return Ok((path, by));
-    };
-    let new = match sign {
-        '+' => old + change,
-        '-' => old - change,
-        '*' => old * change,
-        _ => old / change,
-    };
-    match new.is_finite() {
-        true => Ok((field, number::json(number::tidy(new)))),
-        false => Err(Error::at(path, format!("{old} {sign} {change} is not a finite number"))),
-    }
-}
-
-/// The problem with its place written as in `path`, the form in which the person gave `pointer`.
-fn as_asked(document: &Document, problem: Problem, path: &str, pointer: &str) -> Problem {
+/// The problem with its place written as in `path`, the form in which the person gave `pointers`.
+fn as_asked(document: &Document, problem: Problem, path: &str, pointers: &[String]) -> Problem {
     if path.starts_with('/') {
         return problem;
     }
-    let own = problem.path == pointer;
+    let own = matches!(pointers, [only] if problem.path == *only) && !path.contains('*');
     Problem { path: if own { path.to_owned() } else { address::told(document, &problem.path) }, ..problem }
 }
 
@@ -251,12 +305,6 @@ fn begins(document: &Document, text: &str) -> bool {
     });
     let path = end.filter(|&end| text[end..].starts_with('=')).map_or("", |end| &text[..end]);
     path.contains(['.', '/']) || !path.is_empty() && address::resolve(document, path).is_ok()
-}
-
-/// A value that looks like other JSON is text if only text fits (`title=2024`).
-fn meant(document: &Document, pointer: &str, value: Value, setting: &str, path: &str) -> Value {
-    let text = field::field(document, pointer).is_some_and(|field| field.kind == Kind::Text);
-    if text && !value.is_string() && !value.is_null() { Value::from(&setting[path.len() + 1..]) } else { value }
 }
 
 fn refused(scene: &Path, problems: Vec<Problem>) -> Error {

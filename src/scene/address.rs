@@ -23,6 +23,54 @@ pub fn resolve(document: &Document, address: &str) -> Result<String> {
     follow(document, address, split(address)?)
 }
 
+/// The JSON pointers of all places that an address means in which `*` stands for every item, entry or field; those that
+/// have nothing of the rest of its name are left out.
+///
+/// # Errors
+/// If there is none; the message is that of the first.
+pub fn resolve_all(document: &Document, address: &str) -> Result<Vec<String>> {
+    if address.is_empty() || address.starts_with('/') {
+        return resolve(document, address).map(|pointer| vec![pointer]);
+    }
+    let mut found = Vec::new();
+    spread(document, address, (String::new(), Place::root(document.json())), &split(address)?, &mut found)?;
+    Ok(found)
+}
+
+/// Collects the places that the rest of an address means below one.
+fn spread(
+    document: &Document,
+    address: &str,
+    (path, place): (String, Place),
+    rest: &[Token],
+    found: &mut Vec<String>,
+) -> Result<()> {
+    let Some((first, rest)) = rest.split_first() else {
+        found.push(path);
+        return Ok(());
+    };
+    if first.quoted || first.text != "*" {
+        return spread(document, address, step(document, address, &path, place, first)?, rest, found);
+    }
+    let before = found.len();
+    let tokens = field::laid(document, &path).unwrap_or_else(|| match place.shape.body() {
+        Body::Numbers(count) => (0..count).map(|i| i.to_string()).collect(),
+        _ => field::steps(place).into_iter().map(|(token, _)| token).collect(),
+    });
+    let mut why = None;
+    for token in tokens {
+        let Some(below) = place.step(&token) else { continue };
+        let below = (Pointer(&path).join(&token), below);
+        if let Err(error) = spread(document, address, below, rest, found) {
+            why.get_or_insert(error);
+        }
+    }
+    if found.len() > before {
+        return Ok(());
+    }
+    Err(why.unwrap_or_else(|| Error::at(address, format!("{} has nothing in it", self::address(document, &path)))))
+}
+
 /// The address of a JSON pointer, with names where there are any. A pointer that leads nowhere is returned as it is.
 pub fn address(document: &Document, pointer: &str) -> String {
     let mut place = Place::root(document.json());
@@ -102,15 +150,23 @@ fn follow(document: &Document, address: &str, tokens: Vec<Token>) -> Result<Stri
     let mut place = Place::root(document.json());
     let mut path = String::new();
     for token in tokens {
-        let laid = || field::laid(document, &path).is_some_and(|names| names.contains(&token.text));
-        let key = key(place, &token).or_else(|| (!token.text.is_empty() && laid()).then(|| token.text.clone()));
-        let Some(below) = key.as_deref().and_then(|key| place.step(key)) else {
-            return Err(unknown(document, address, &path, place, &token.text));
-        };
-        pointer::push(&mut path, key.as_deref().unwrap_or_default());
-        place = below;
+        (path, place) = step(document, address, &path, place, &token)?;
     }
     Ok(path)
+}
+
+/// The place one step further.
+fn step<'a>(
+    document: &'a Document,
+    address: &str,
+    path: &str,
+    place: Place<'a>,
+    token: &Token,
+) -> Result<(String, Place<'a>)> {
+    let laid = || field::laid(document, path).is_some_and(|names| names.contains(&token.text));
+    let key = key(place, token).or_else(|| (!token.text.is_empty() && laid()).then(|| token.text.clone()));
+    let below = key.and_then(|key| Some((Pointer(path).join(&key), place.step(&key)?)));
+    below.ok_or_else(|| unknown(document, address, path, place, &token.text))
 }
 
 /// The pointer token for a step of an address.

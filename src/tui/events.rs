@@ -43,6 +43,8 @@ pub enum Event {
     Progress(String),
     /// Long work has ended, with its last message.
     Done(Result<String, String>),
+    /// A program that rows were sent through has ended: what it gave back, or why there is nothing.
+    Piped(Result<String, String>),
     /// A save has ended.
     Saved(Result<String, String>),
     /// A window or a script says something, or windows come and go.
@@ -120,6 +122,8 @@ pub enum Effect {
     Probe(Vec<String>),
     /// Run a subcommand of the command line with these arguments.
     Run(Vec<String>),
+    /// Send a table through a program of the person's.
+    Pipe(String, String),
     /// Look for the files that a path could become.
     Complete {
         /// The command that takes the path.

@@ -100,6 +100,13 @@ pub fn process_lives(pid: u32) -> bool {
     !matches!(rustix::process::test_kill_process(pid), Err(rustix::io::Errno::SRCH))
 }
 
+/// Ends all processes of a group at once, whatever they do.
+pub fn end_group(leader: u32) {
+    let leader = i32::try_from(leader).ok().and_then(rustix::process::Pid::from_raw);
+    // It may have ended by itself.
+    let _ = leader.map(|leader| rustix::process::kill_process_group(leader, rustix::process::Signal::KILL));
+}
+
 /// The user at the other end of a connected Unix socket.
 #[cfg(target_os = "linux")]
 pub fn peer_user(socket: impl AsFd) -> io::Result<u32> {

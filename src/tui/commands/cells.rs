@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::add_here;
-use super::{conflicts, messages, profiles, styles};
+use super::{conflicts, messages, profiles, replacing, styles};
 use crate::base::maths::ten_to;
 use crate::base::problem;
 use crate::scene::Edit;
@@ -138,6 +138,10 @@ fn choice(state: &mut State, call: &Call) -> Done {
                 state.typing.mode = Mode::Normal;
                 return messages::go_to(state, call, &word);
             }
+            (Some(word), Then::Replace(asked)) => {
+                let asked = asked.clone();
+                return replacing::taken(state, call, &asked, &word);
+            }
             (Some(word), _) => return call.obey(state, &format!("choose {}", quoted(&word))),
             (None, _) => state.typing.mode = Mode::Normal,
         },
@@ -202,6 +206,7 @@ fn take(state: &mut State, call: &Call, choice: Choice, word: &str) -> Done {
         Then::Preset => return profiles::apply(state, word),
         Then::Style => return styles::apply(state, word),
         Then::Go => return messages::go_to(state, call, word),
+        Then::Replace(asked) => return replacing::taken(state, call, asked, word),
         Then::Answer(question) => return conflicts::answer(state, question.about, word, choice),
     };
     state.edit(edit, false)?;

@@ -63,7 +63,8 @@ fn paths(state: &State, typed: &str) -> Vec<String> {
     let document = state.document();
     let pointer = match parent.trim_end_matches('.') {
         "" => Some(String::new()),
-        parent => address::resolve(document, parent).ok(),
+        // With a `*`, the first place that it means stands for all.
+        parent => address::resolve_all(document, parent).ok().and_then(|all| all.into_iter().next()),
     };
     let holder = pointer.as_deref().map(|pointer| address::address(document, pointer)).unwrap_or_default();
     let children = pointer.map(|pointer| below(document, &pointer)).unwrap_or_default();

@@ -33,7 +33,7 @@ fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
 fn fill(state: &mut State, call: &Call) -> Done {
     let table: Vec<Vec<String>> = serde_json::from_str(call.text)
         .map_err(|_| "fill takes a JSON list of rows, each a list of texts: [[\"dx\", \"dy\"], [\"1\", \"2\"]]")?;
-    let selected: Vec<usize> = state.cursor.rows().collect();
+    let selected: Vec<usize> = state.cursor.rows().into_iter().collect();
     let header = header(&table);
     let values = &table[usize::from(header.is_some())..];
     if values.len() != 1 && values.len() != selected.len() {
@@ -41,21 +41,21 @@ fn fill(state: &mut State, call: &Call) -> Done {
     }
     let (document, sheet) = (state.document(), state.sheet());
     let mut filled = Filled { document, values: BTreeMap::new() };
+    let mut refused = Vec::new();
     for (i, &at) in selected.iter().enumerate() {
         let Some(row) = sheet.row(at) else { continue };
         let texts = if values.len() == 1 { &values[0] } else { &values[i] };
-        let mut cells = Vec::new();
-        for (k, text) in texts.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
-            let cell = cell(&row, header, state.cursor.column, k).map_err(|why| format!("row {i}: {why}"))?;
-            cells.push((k, cell, text));
-        }
-        // A direction turns the given length, so it comes last. What follows from numbers that are given too is ignored.
-        cells.sort_by_key(|(_, cell, _)| cell.part == Part::Degrees);
-        let given = |cell: &Cell| {
-            cells.iter().any(|(_, other, _)| other.pointer == cell.pointer && matches!(other.part, Part::Number(_)))
-        };
-        for (k, cell, text) in cells.iter().filter(|(_, cell, _)| !(follows(cell.part) && given(cell))) {
-            filled.put(cell, text).map_err(|why| format!("row {i}, column {}: {why}", k + 1))?;
+        let filled = filled.row(&row, (header, state.cursor.column), texts);
+        refused.extend(filled.err().map(|why| format!("row {}{why}", row.label)));
+    }
+    match refused.as_slice() {
+        [] => {}
+        [one] => return Err(one.clone()),
+        several => {
+            let more = several.len().saturating_sub(MOST_NAMED);
+            let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+            let named = several[..several.len().min(MOST_NAMED)].join("; ");
+            return Err(format!("{} refused, and nothing changed: {named}{more}", counted(several.len(), "row")));
         }
     }
     let count = selected.len();
@@ -65,6 +65,9 @@ fn fill(state: &mut State, call: &Call) -> Done {
     state.say(format!("pasted over {}", counted(count, "row")));
     Ok(())
 }
+
+/// At most so many refused rows are named.
+const MOST_NAMED: usize = 3;
 
 /// The cell of a row for the `k`th column of the table.
 fn cell<'a>(row: &'a Row, header: Option<&Vec<String>>, column: usize, k: usize) -> Result<&'a Cell, String> {
@@ -85,6 +88,31 @@ struct Filled<'a> {
 }
 
 impl Filled<'_> {
+    /// Sets the cells of a row to texts, by the header or from a column on.
+    fn row(
+        &mut self,
+        row: &Row,
+        (header, column): (Option<&Vec<String>>, usize),
+        texts: &[String],
+    ) -> Result<(), String> {
+        let mut cells = Vec::new();
+        for (k, text) in texts.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
+            cells.push((k, cell(row, header, column, k).map_err(|why| format!(": {why}"))?, text));
+        }
+        // A direction turns the given length, so it comes last. What follows from numbers that change too is ignored.
+        cells.sort_by_key(|(_, cell, _)| cell.part == Part::Degrees);
+        let document = self.document;
+        let given = |cell: &Cell| {
+            let numbers = cells.iter().filter(|(_, other, _)| matches!(other.part, Part::Number(_)));
+            let mut own = numbers.filter(|(_, other, _)| other.pointer == cell.pointer);
+            own.any(|(_, other, text)| csv::number(text).is_none_or(|number| other.number(document) != Some(number)))
+        };
+        for (k, cell, text) in cells.iter().filter(|(_, cell, _)| !(follows(cell.part) && given(cell))) {
+            self.put(cell, text).map_err(|why| format!(", column {}: {why}", k + 1))?;
+        }
+        Ok(())
+    }
+
     /// Sets a cell to a text, unless it shows that already.
     fn put(&mut self, cell: &Cell, text: &str) -> Result<(), String> {
         let document = self.document;

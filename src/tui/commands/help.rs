@@ -189,6 +189,11 @@ pub fn entries() -> Vec<String> {
         ("5  -18  4,5", "The value; a comma is a decimal point, except between a function's arguments"),
         ("+=3  -=3  *=2  /=2", "Change the old value; so do *2 and /2"),
         ("w/2  sqrt(2)*r", "Computed, with + - * / % ^ ( ); an = may come first"),
+        (
+            "x>20  tool==point",
+            "1 where it holds, else 0: < <= > >= == !=, joined by and, or, not; words as they are shown",
+        ),
+        ("if(x>20, v*2, v)", "The second where the first is not 0, else the third"),
         ("v", "The old value, for each selected row its own"),
         ("x y dx dy ...", "The other columns of the row, by their names (land x is land_x)"),
         ("r  a", "Length and direction of the row's jump vector, degrees counter-clockwise"),

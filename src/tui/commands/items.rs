@@ -1,10 +1,12 @@
-//! Adds, deletes, duplicates and moves rows and nodes as a whole.
+//! Adds and deletes rows and nodes as a whole.
 
 use crate::base::pointer::Pointer;
 use crate::scene::{Document, address};
 use crate::tui::document::pointers::item_of;
 use crate::tui::text::plain;
 use serde_json::{Map, Value, json as value};
+
+use std::collections::BTreeSet;
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
@@ -26,8 +28,6 @@ pub const COMMANDS: &[Command] = &[
         .change()
         .counted_with(&[""]),
     command("delete", "", "Delete the row, the selection or the node", delete).change().counted(),
-    command("duplicate", "", "Duplicate the row or the node", duplicate).change().counted(),
-    command("reorder", "down|up", "Move the row or the node among its siblings", reorder).change().counted(),
 ];
 
 /// The pointer of the node or the row under the cursor.
@@ -43,7 +43,7 @@ pub fn target(state: &State) -> Result<String, String> {
 pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
     let sheet = state.sheet();
     if state.cursor.focus != Pane::Tree {
-        return Ok(rows(state, call)?.filter_map(|i| sheet.pointer(i)).collect());
+        return Ok(rows(state, call)?.into_iter().filter_map(|i| sheet.pointer(i)).collect());
     }
     let node = target(state)?;
     match (call.count, item_of(state.document(), &node).map(owned)) {
@@ -58,14 +58,14 @@ pub fn targets(state: &State, call: &Call) -> Result<Vec<String>, String> {
 
 /// The rows that a command applies to: the selection, else as many as the count says from the cursor on, as far as there are
 /// rows like the one under it.
-pub fn rows(state: &State, call: &Call) -> Result<std::ops::RangeInclusive<usize>, String> {
+pub fn rows(state: &State, call: &Call) -> Result<BTreeSet<usize>, String> {
     match call.count {
         None => Ok(state.cursor.rows()),
-        Some(_) if state.cursor.selected_from.is_some() => Err("the selection says which rows, not a count".into()),
+        Some(_) if state.cursor.selects() => Err("the selection says which rows, not a count".into()),
         Some(count) => {
             let row = state.cursor.row;
             let last = alike(state).map_or(row, |(_, last)| last);
-            Ok(row..=(row + count.max(1) - 1).min(last))
+            Ok((row..=(row + count.max(1) - 1).min(last)).collect())
         }
     }
 }
@@ -232,9 +232,10 @@ fn delete(state: &mut State, call: &Call) -> Done {
         return Err(targets.first().and_then(|target| kept(state.document(), target)).unwrap_or(NOTHING.into()));
     }
     pointers.iter().try_for_each(|pointer| unused(state.document(), pointer, &pointers))?;
-    let top = *state.cursor.rows().start();
+    let top = state.cursor.rows().first().copied().unwrap_or(0);
     state.edit(Edit::all(edits), false)?;
-    if state.cursor.selected_from.take().is_some() {
+    if state.cursor.selects() {
+        state.cursor.pick(BTreeSet::new());
         state.cursor.row = top;
         state.settle();
     }
@@ -253,36 +254,6 @@ fn kept(document: &Document, pointer: &str) -> Option<String> {
         "{} is the style's, and nothing of it is written here (:set {setting} leaves it out)",
         quoted(&name)
     )))
-}
-
-/// The block of items that an edit of whole rows applies to: their list, the first and the last index.
-fn block(state: &State) -> Result<(String, usize, usize), String> {
-    let one = || -> Option<(String, usize, usize)> {
-        let (list, index) = item_of(state.document(), &target(state).ok()?).map(owned)?;
-        Some((list, index, index))
-    };
-    if state.cursor.focus == Pane::Tree || state.cursor.selected_from.is_none() {
-        return one().ok_or("only items of lists are duplicated and moved".into());
-    }
-    let (sheet, rows) = (state.sheet(), state.cursor.rows());
-    let end = |row: usize| item_of(state.document(), &sheet.pointer(row)?).map(owned);
-    match (end(*rows.start()), end(*rows.end())) {
-        (Some((list, from)), Some((other, to))) if list == other => Ok((list, from, to)),
-        _ => Err("only items of one list are duplicated and moved together".into()),
-    }
-}
-
-/// Moves the cursor and the selection with a block that moved by `by` rows.
-fn follow(state: &mut State, list: &str, at: usize, by: i64) {
-    let moved = |row: usize| usize::try_from(row as i64 + by).unwrap_or(0);
-    match state.cursor.selected_from.filter(|_| state.cursor.focus != Pane::Tree) {
-        Some(from) => {
-            (state.cursor.selected_from, state.cursor.row) = (Some(moved(from)), moved(state.cursor.row));
-            state.cursor.selected_to = state.cursor.selected_to.map(moved);
-        }
-        None => go_to(state, &Pointer(list).join(at)),
-    }
-    state.settle();
 }
 
 /// Refuses to make something that takes this much memory, if that is too much.
@@ -315,69 +286,6 @@ pub fn insert_entries(
         first_path.get_or_insert(path);
     }
     Ok(first_path.map(|path| (Edit::all(edits), path)))
-}
-
-/// Inserts copies after the originals, and moves the selection to them.
-fn duplicate(state: &mut State, call: &Call) -> Done {
-    let times = call.times_of("duplicate")?;
-    let path = target(state)?;
-    if let Some((map, name)) = Pointer(&path).split().filter(|_| List::entry(&path).is_some()) {
-        let value = field::value(state.document(), &path).unwrap_or(Value::Null);
-        let entry = [(name, value)].into_iter().collect();
-        let (edit, path) = insert_entries(state, map, &entry, times)?.ok_or("there is nothing to duplicate here")?;
-        state.edit(edit, false)?;
-        go_to(state, &path);
-        return Ok(());
-    }
-    let (list, from, to) = block(state)?;
-    let items = field::value(state.document(), &list).unwrap_or(Value::Null);
-    let items = items.as_array().and_then(|items| items.get(from..=to)).unwrap_or_default();
-    bearable(state, items.iter().map(json::bytes).sum::<u64>().saturating_mul(times as u64))?;
-    let copies = items.iter().cloned().cycle().take(items.len() * times).collect();
-    let added = Edit::insert_all(state.document(), &list, to + 1, copies);
-    let (edit, path) = added.ok_or("only items of lists are duplicated")?;
-    let revision = state.scene.revision();
-    state.edit(edit, false)?;
-    if state.scene.revision() == revision {
-        return Err("copies of several of these would overlap them: duplicate them one by one".into());
-    }
-    match state.cursor.selected_from {
-        Some(_) => follow(state, &list, to + 1, (to + 1 - from) as i64),
-        None => go_to(state, &path),
-    }
-    Ok(())
-}
-
-/// Moves a block as far as possible, by moving the items that it passes to its other side.
-fn reorder(state: &mut State, call: &Call) -> Done {
-    let (list, from, to) = block(state)?;
-    let mut items =
-        field::value(state.document(), &list).and_then(|items| items.as_array().cloned()).unwrap_or_default();
-    let (up, times) = (call.text == "up", call.times() as usize);
-    let by = times.min(if up { from } else { items.len().saturating_sub(to + 1) });
-    if by == 0 {
-        return Err("it cannot move any further".into());
-    }
-    let passed = (0..by).filter_map(|k| {
-        let (at, onto) = if up { (from - 1 - k, to - k) } else { (to + 1 + k, from + k) };
-        Edit::move_item(state.document(), &Pointer(&list).join(at), onto).map(|(edit, _)| edit)
-    });
-    let edit = match state.document().json().pointer(&list) {
-        Some(_) => Edit::all(passed),
-        // It is not written: its default is, in the new order.
-        None => {
-            if up {
-                items[from - by..=to].rotate_left(by)
-            } else {
-                items[from..=to + by].rotate_right(by)
-            }
-            Edit::set(state.document(), &list, items.into())
-        }
-    };
-    let by = if up { -(by as i64) } else { by as i64 };
-    state.edit(edit, false)?;
-    follow(state, &list, (from as i64 + by) as usize, by);
-    Ok(())
 }
 
 /// Refuses to delete a picture, a mesh, a clip or a layer that is used.
@@ -430,6 +338,7 @@ pub fn stem(path: &str) -> &str {
     file.split_once('.').map_or(file, |(stem, _)| stem)
 }
 
-fn owned((list, index): (&str, usize)) -> (String, usize) {
+/// The list and the index of an item, by themselves.
+pub fn owned((list, index): (&str, usize)) -> (String, usize) {
     (list.to_owned(), index)
 }

@@ -21,14 +21,17 @@ pub mod manual;
 pub mod messages;
 mod moving;
 mod naming;
+mod ordering;
 pub mod own_keys;
 mod palette;
 pub mod pasting;
 mod picking;
 mod picture;
+mod piping;
 mod placing;
 mod playing;
 mod profiles;
+mod replacing;
 mod scripts;
 mod selecting;
 mod styles;
@@ -46,12 +49,15 @@ pub static TABLE: Table = Table(&[
     files::COMMANDS,
     cells::COMMANDS,
     items::COMMANDS,
+    ordering::COMMANDS,
     naming::COMMANDS,
     selecting::COMMANDS,
     values::COMMANDS,
+    replacing::COMMANDS,
     undoing::COMMANDS,
     yanking::COMMANDS,
     filling::COMMANDS,
+    piping::COMMANDS,
     moving::COMMANDS,
     finding::COMMANDS,
     palette::COMMANDS,

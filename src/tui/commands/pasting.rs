@@ -36,7 +36,7 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
     if let (true, Some(number)) = (on_number, csv::number(trimmed)) {
         return obey(state, &format!("put {}", numbers::exact(number)), None);
     }
-    if state.cursor.selected_from.is_some() && in_table {
+    if state.cursor.selects() && in_table {
         let lines: Vec<&str> = trimmed.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
         let column = on_number && lines.iter().all(|line| csv::number(line).is_some());
         let rows: Vec<Vec<String>> = match column {

@@ -1,30 +1,40 @@
 //! Selects rows, which an edit then applies to together.
 
-use super::command::{Call, Command, Done, command};
-use super::items::rows;
-use crate::base::pointer::Pointer;
-use crate::tui::state::State;
-use crate::tui::state::cursor::Selection;
+use std::collections::BTreeSet;
 
-pub const COMMANDS: &[Command] = &[command(
-    "select",
-    "[all|again]",
-    "Begin or end a selection of rows; select all, or the last selection again",
-    select,
-)
-.counted_with(&[""])];
+use super::command::{Call, Command, Done, command};
+use super::items::{alike, rows};
+use super::yanking::counted;
+use crate::base::pointer::Pointer;
+use crate::tui::events::Effect;
+use crate::tui::state::cursor::Selection;
+use crate::tui::state::{Pane, State, entry};
+use crate::tui::text::said::unquoted;
+
+pub const COMMANDS: &[Command] = &[
+    command(
+        "select",
+        "[all|again|EXPRESSION]",
+        "Begin or end a selection of rows; select all, the last selection again, or the rows for which something holds",
+        select,
+    )
+    .counted_with(&[""]),
+    command("toggle", "", "Take the row into the selection or out of it, and go to the next", toggle).counted(),
+    command("invert", "", "Select the rows that are not selected", invert),
+];
 
 fn select(state: &mut State, call: &Call) -> Done {
     match call.text {
         "" if call.count.is_some() => {
             let rows = rows(state, call)?;
-            (state.cursor.selected_from, state.cursor.selected_to, state.cursor.row) =
-                (Some(*rows.start()), None, *rows.end());
+            state.cursor.selected_from = rows.first().copied();
+            state.cursor.row = rows.last().copied().unwrap_or(state.cursor.row);
         }
         "" if state.cursor.unselect() => {}
-        "" => (state.cursor.selected_from, state.cursor.selected_to) = (Some(state.cursor.row), None),
+        "" => state.cursor.selected_from = Some(state.cursor.row),
         "all" => all(state)?,
-        _ => again(state)?,
+        "again" => again(state)?,
+        condition => matching(state, &unquoted(condition))?,
     }
     Ok(())
 }
@@ -41,15 +51,74 @@ fn all(state: &mut State) -> Done {
     let first = (0..=state.cursor.row).rev().take_while(|&row| within(row)).last();
     let last = (state.cursor.row..sheet.len()).take_while(|&row| within(row)).last();
     // The cursor stays, because it says which column is edited.
+    state.cursor.pick(BTreeSet::new());
     (state.cursor.selected_from, state.cursor.selected_to) = (first, last);
     Ok(())
 }
 
 fn again(state: &mut State) -> Done {
-    let Selection { node, from, to } =
+    let Selection { node, rows, row } =
         state.cursor.last_selection.clone().ok_or("nothing has been selected yet: v begins a selection")?;
     state.show(node);
-    (state.cursor.selected_from, state.cursor.selected_to, state.cursor.row) = (Some(from), None, to);
+    state.cursor.row = row;
+    let ends = rows.first().copied().zip(rows.last().copied());
+    match ends.filter(|(first, last)| last + 1 - first == rows.len() && (row == *first || row == *last)) {
+        // The cursor moves its end, as before.
+        Some((first, last)) => {
+            state.cursor.pick(BTreeSet::new());
+            state.cursor.selected_from = Some(if row == first { last } else { first });
+        }
+        None => state.cursor.pick(rows),
+    }
     state.settle();
+    Ok(())
+}
+
+/// The rows that can be selected together: those like the one under the cursor.
+fn choosable(state: &State) -> Result<BTreeSet<usize>, String> {
+    let (first, last) = alike(state).ok_or("there are no rows here")?;
+    Ok((first..=last).collect())
+}
+
+/// Selects the rows for which a condition over their columns holds.
+fn matching(state: &mut State, condition: &str) -> Done {
+    let rows = choosable(state)?;
+    let values = entry::of_rows(state, &rows, condition)?;
+    let holds = |value: &Option<f64>| value.is_some_and(|value| value != 0.0);
+    let found: BTreeSet<usize> = rows.iter().zip(&values).filter(|(_, value)| holds(value)).map(|(&i, _)| i).collect();
+    if found.is_empty() {
+        return Err(format!("that holds for none of {}", counted(rows.len(), "row")));
+    }
+    state.say(format!("{} of {} selected", found.len(), counted(rows.len(), "row")));
+    state.cursor.pick(found);
+    // What follows is about the rows, not about the node of the tree.
+    state.cursor.focus = Pane::Table;
+    Ok(())
+}
+
+fn toggle(state: &mut State, call: &Call) -> Done {
+    let all = choosable(state)?;
+    let from = state.cursor.row;
+    let mut rows = if state.cursor.selects() { state.cursor.rows() } else { BTreeSet::new() };
+    let mut last = from;
+    for &row in all.range(from..).take(call.steps().len()) {
+        if !rows.remove(&row) {
+            rows.insert(row);
+        }
+        last = row;
+    }
+    state.cursor.pick(rows);
+    state.cursor.row = if all.contains(&(last + 1)) { last + 1 } else { last };
+    state.ask(Effect::Show);
+    state.settle();
+    Ok(())
+}
+
+fn invert(state: &mut State, _: &Call) -> Done {
+    let all = choosable(state)?;
+    let selected = if state.cursor.selects() { state.cursor.rows() } else { BTreeSet::new() };
+    let rest: BTreeSet<usize> = all.difference(&selected).copied().collect();
+    state.say(format!("{} of {} selected", rest.len(), counted(all.len(), "row")));
+    state.cursor.pick(rest);
     Ok(())
 }

@@ -10,7 +10,7 @@ use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
-use super::{conflicts, picture, tutor};
+use super::{conflicts, picture, piping, tutor};
 use crate::preview::editor::{self, Asked};
 use crate::preview::wire::message::ToEditor;
 use crate::tui::commands;
@@ -48,6 +48,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             }
             report(state, result);
         }
+        Event::Piped(result) => piping::piped(state, result),
         Event::Saved(result) => {
             if state.scene.is_saved() {
                 state.outside.file = None;

@@ -9,7 +9,13 @@ use crate::scene::{address, field};
 use crate::tui::state::{State, first};
 
 pub const COMMANDS: &[Command] = &[
-    command("set", "PATH=VALUE ...", "Set values by their paths", set).change(),
+    command(
+        "set",
+        "PATH=VALUE ...",
+        "Set values by their paths; PATH*=2 and PATH=v*2 compute, * in a path is all",
+        set,
+    )
+    .change(),
     command("get", "PATH", "Show the value at a path", get).inside(),
 ];
 
@@ -20,14 +26,16 @@ fn set(state: &mut State, call: &Call) -> Done {
         return Err("set takes PATH=VALUE".into());
     }
     let scene = state.scene.path().to_owned();
-    let (edit, lost) = set::edit(state.document(), &settings, &scene).map_err(|error| match error {
-        // The name of the open scene would add nothing.
-        Error::Scene { problems, .. } => first(&problems),
-        other => other.to_string(),
-    })?;
+    let set::Set { edit, lost, places } =
+        set::edit(state.document(), &settings, &scene).map_err(|error| match error {
+            // The name of the open scene would add nothing.
+            Error::Scene { problems, .. } => first(&problems),
+            other => other.to_string(),
+        })?;
     state.edit(edit, false)?;
     let paths: Vec<&str> = settings.iter().filter_map(|one| set::parse(one).ok()).map(|(path, _)| path).collect();
     state.say(match lost.as_slice() {
+        [] if places > paths.len() => format!("{places} places are set: {}", paths.join(", ")),
         [] => format!("{} {} set", paths.join(", "), if paths.len() == 1 { "is" } else { "are" }),
         lost => lost.join("; "),
     });

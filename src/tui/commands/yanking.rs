@@ -5,6 +5,7 @@ use crate::tui::commands::items::stem;
 use crate::tui::document::pointers::{is_item, item_of};
 use crate::tui::text::plain;
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 
 use super::command::{Call, Command, Done, command};
 use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, targets};
@@ -31,11 +32,11 @@ fn yank(state: &mut State, call: &Call) -> Done {
     let (text, said) = match call.text {
         "csv" => {
             let (sheet, rows) = table(state, call)?;
-            let pointers: Vec<String> = rows.clone().filter_map(|i| sheet.pointer(i)).collect();
-            let text = rows::write(state.document(), &sheet, rows.clone());
+            let pointers: Vec<String> = rows.iter().filter_map(|&i| sheet.pointer(i)).collect();
+            let text = rows::write(state.document(), &sheet, &rows);
             // `p` pastes the whole items, including fields without a column.
             state.memory.yanked = Some(values(state, &pointers));
-            (text, format!("{} as CSV", counted(rows.count(), "row")))
+            (text, format!("{} as CSV", counted(rows.len(), "row")))
         }
         "" | "json" => {
             let (yanked, said) = yanked(state, call)?;
@@ -68,14 +69,14 @@ pub fn counted(count: usize, name: &str) -> String {
     if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
 }
 
-/// The rows that are yanked as CSV: the selected ones, or in the tree all rows of the list.
-fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<usize>), String> {
+/// The rows that become CSV: the selected ones, or in the tree all rows of the list.
+pub fn table(state: &State, call: &Call) -> Result<(Sheet, BTreeSet<usize>), String> {
     let sheet = state.sheet();
     let rows = match state.cursor.focus {
         Pane::Table => rows_of(state, call)?,
-        _ => 0..=call.count.unwrap_or(usize::MAX).clamp(1, sheet.len().max(1)) - 1,
+        _ => (0..call.count.unwrap_or(usize::MAX).clamp(1, sheet.len().max(1))).collect(),
     };
-    if sheet.is_empty() || !sheet.table && !rows.clone().all(|i| sheet.row(i).is_some_and(|row| row.item)) {
+    if sheet.is_empty() || !sheet.table && !rows.iter().all(|&i| sheet.row(i).is_some_and(|row| row.item)) {
         return Err("only rows of a list are yanked as CSV; y yanks this as JSON".into());
     }
     Ok((sheet, rows))
@@ -83,7 +84,7 @@ fn table(state: &State, call: &Call) -> Result<(Sheet, std::ops::RangeInclusive<
 
 /// What `y` yanks, and its name for the message.
 fn yanked(state: &State, call: &Call) -> Result<(Yanked, String), String> {
-    let several = call.count.is_some() || state.cursor.focus == Pane::Table && state.cursor.selected_from.is_some();
+    let several = call.count.is_some() || state.cursor.focus == Pane::Table && state.cursor.selects();
     let pointers = if several { targets(state, call)? } else { Vec::new() };
     let one = match pointers.as_slice() {
         [] => target(state)?,
@@ -130,7 +131,7 @@ fn paste(state: &mut State, call: &Call) -> Done {
     };
     let times = call.times_of("paste")?;
     bearable(state, json::bytes(&yanked.value).saturating_mul(times as u64))?;
-    match state.cursor.focus == Pane::Table && state.cursor.selected_from.is_some() {
+    match state.cursor.focus == Pane::Table && state.cursor.selects() {
         true => over_selection(state, &yanked.value, call),
         false => paste_value(state, &yanked, times),
     }
@@ -138,10 +139,10 @@ fn paste(state: &mut State, call: &Call) -> Done {
 
 /// Pastes over the selection: into the cell of each row, or over the rows, one value for all or one for each.
 fn over_selection(state: &mut State, value: &Value, call: &Call) -> Done {
-    let count = rows_of(state, call)?.count();
+    let count = rows_of(state, call)?.len();
     let (document, sheet) = (state.document(), state.sheet());
     let takes = |path: &String, value: &Value| misfit(document, path, value).is_none();
-    let rows: Vec<String> = state.cursor.rows().filter_map(|i| sheet.pointer(i)).collect();
+    let rows: Vec<String> = state.cursor.rows().into_iter().filter_map(|i| sheet.pointer(i)).collect();
     let cells: Vec<String> = entry::cells(state, &sheet).into_iter().map(|(_, cell)| cell.pointer).collect();
     let set = |paths: &[String], values: &[Value]| {
         let edits =

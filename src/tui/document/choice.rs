@@ -32,6 +32,8 @@ pub enum Then {
     Style,
     /// The cursor goes to the chosen address.
     Go,
+    /// What a line of `replace` asks for is replaced: in the chosen place, or in all.
+    Replace(String),
     /// It answers a question.
     Answer(Question),
 }

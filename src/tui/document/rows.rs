@@ -2,15 +2,14 @@
 //! rows become CSV. The columns are those that the table shows, read from a new item of the list, so that a new field needs
 //! nothing here.
 
-use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
+use std::collections::{BTreeMap, BTreeSet};
 
 use csv::Writer;
 use kurbo::Vec2;
 use serde_json::{Value, json};
 
 use super::csv::{Record, number, records, values};
-use super::sheet::{Cell, Part, Sheet, in_range};
+use super::sheet::{Cell, Part, Row, Sheet, in_range};
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
@@ -31,8 +30,8 @@ const ALIASES: &[(&str, &[&str])] = &[
 const COUNTERS: &[&str] = &["#", "", "i", "index", "no"];
 
 /// Rows of a sheet as CSV: a header of the columns' names, numbers with all their decimals.
-pub fn write(document: &Document, sheet: &Sheet, rows: RangeInclusive<usize>) -> String {
-    let rows = sheet.rows(*rows.start()..rows.end().saturating_add(1));
+pub fn write(document: &Document, sheet: &Sheet, rows: &BTreeSet<usize>) -> String {
+    let rows: Vec<Row> = rows.iter().filter_map(|&row| sheet.row(row)).collect();
     let mut heads: Vec<&str> = Vec::new();
     for cell in rows.iter().flat_map(|row| &row.cells) {
         if !heads.contains(&cell.head.as_str()) {

@@ -305,7 +305,7 @@ impl Editor {
     pub fn said(&mut self) -> Vec<String> {
         let pages = match std::mem::replace(&mut self.state.typing.mode, Mode::Normal) {
             Mode::Pages(pages) => pages.lines,
-            Mode::Choice(Choice { options, then: Then::Go, .. }) => {
+            Mode::Choice(Choice { options, then: Then::Go | Then::Replace(_), .. }) => {
                 options.into_iter().map(|(place, text)| format!("{place}: {text}")).collect()
             }
             mode => {

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::editor::{Editor, listen};
 use super::job::Job;
 use super::options::Options;
-use super::{image_editor, terminal};
+use super::{image_editor, pipe, terminal};
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
@@ -55,6 +55,10 @@ impl Editor {
             Effect::Run(words) => self.start(&words),
             Effect::Probe(words) if self.screen.is_none() => self.start(&words),
             Effect::Probe(_) => {}
+            Effect::Pipe(program, table) => {
+                let most = self.options.files.limits.paste;
+                self.job = Some(pipe::start(program, table, most, self.sender.clone()));
+            }
             Effect::Complete { name, path, beside } => {
                 let folder = beside.as_deref().unwrap_or(Path::new("."));
                 // One line for a clip, before its many files.

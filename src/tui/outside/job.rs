@@ -1,4 +1,4 @@
-//! A subcommand that runs beside the editor: its progress and its result arrive as events.
+//! A subcommand, or other work, that runs beside the editor: its progress and its result arrive as events.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
@@ -13,7 +13,7 @@ use crate::tui::events::Event;
 /// How long a subcommand has to end when the editor ends.
 const LAST: Duration = Duration::from_millis(400);
 
-/// A running subcommand.
+/// Work that is running.
 pub struct Job {
     cancel: Arc<AtomicBool>,
     thread: std::thread::JoinHandle<()>,
@@ -44,6 +44,13 @@ impl Job {
             let _ = events.send(Event::Done(result));
         });
         Job { cancel, thread }
+    }
+
+    /// Other work that looks at the flag with which it is asked to end.
+    pub fn beside(run: impl FnOnce(&AtomicBool) + Send + 'static) -> Job {
+        let cancel = Arc::new(AtomicBool::new(false));
+        let shared = cancel.clone();
+        Job { cancel, thread: std::thread::spawn(move || run(&shared)) }
     }
 
     /// Asks it to end.

@@ -42,7 +42,7 @@ fn mode(state: &State) -> &'static str {
         (Mode::Palette(_), _) => "FND",
         (Mode::Pages(_), _) => "HLP",
         (Mode::Aim, _) => "AIM",
-        (Mode::Normal, _) if state.cursor.selected_from.is_some() => "SEL",
+        (Mode::Normal, _) if state.cursor.selects() => "SEL",
         (Mode::Normal, Pane::Picture) => "PIC",
         (Mode::Normal, _) => "NOR",
     }

@@ -2,6 +2,7 @@
 //! number is beside its name.
 
 use crate::tui::text::plain;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use ratatui::buffer::Buffer;
@@ -49,10 +50,10 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let body = Rect { y: area.y + below, height: area.height - below, ..area };
     let cells = Rect { y: body.y, height: body.height, ..cells };
     let mut cursor = None;
-    let selection = state.cursor.rows();
+    let selection = if state.cursor.selects() { state.cursor.rows() } else { BTreeSet::new() };
     for (y, (row, placed)) in shown.iter().zip(&laid).enumerate() {
         let i = first + y;
-        let selected = state.cursor.selected_from.is_some() && selection.contains(&i);
+        let selected = selection.contains(&i);
         draw_label(row, selected, body, y as u16, buffer);
         let end = draw_marks(placed, sights[y], cells, y as u16, buffer);
         let limit = room - if sights[y].goes_on(placed) { GAP } else { 0 };

@@ -1,7 +1,6 @@
 //! Where the cursor is, and which rows are selected.
 
 use std::collections::BTreeSet;
-use std::ops::RangeInclusive;
 
 use crate::tui::document::sheet::{Cell, Row, Sheet};
 
@@ -21,10 +20,10 @@ pub enum Pane {
 pub struct Selection {
     /// Pointer of the node whose rows were selected.
     pub node: String,
-    /// The row where it began.
-    pub from: usize,
-    /// The row where it ended.
-    pub to: usize,
+    /// The rows.
+    pub rows: BTreeSet<usize>,
+    /// The row where the cursor was.
+    pub row: usize,
 }
 
 /// The cursor in the tree and in the sheet of the node that it is on.
@@ -44,6 +43,8 @@ pub struct Cursor {
     pub selected_from: Option<usize>,
     /// The row where the selection ends; `None` if it ends at the cursor.
     pub selected_to: Option<usize>,
+    /// Rows that are selected one by one, or because something holds for them; besides those from `selected_from` on.
+    pub picked: BTreeSet<usize>,
     /// The last selection that has ended, for `gv`.
     pub last_selection: Option<Selection>,
 }
@@ -59,24 +60,41 @@ impl Cursor {
             column: 0,
             selected_from: None,
             selected_to: None,
+            picked: BTreeSet::new(),
             last_selection: None,
         }
     }
 
-    /// The rows that an edit applies to: the selection, else the row under the cursor.
-    pub fn rows(&self) -> RangeInclusive<usize> {
-        let from = self.selected_from.unwrap_or(self.row);
-        let to = self.selected_to.filter(|_| self.selected_from.is_some()).unwrap_or(self.row);
-        from.min(to)..=from.max(to)
+    /// The rows that an edit applies to, in order: the selection, else the row under the cursor.
+    pub fn rows(&self) -> BTreeSet<usize> {
+        let mut rows = self.picked.clone();
+        if let Some(from) = self.selected_from {
+            let to = self.selected_to.unwrap_or(self.row);
+            rows.extend(from.min(to)..=from.max(to));
+        } else if rows.is_empty() {
+            rows.insert(self.row);
+        }
+        rows
+    }
+
+    /// Whether rows are selected.
+    pub fn selects(&self) -> bool {
+        self.selected_from.is_some() || !self.picked.is_empty()
+    }
+
+    /// Selects these rows and no others.
+    pub fn pick(&mut self, rows: BTreeSet<usize>) {
+        (self.selected_from, self.selected_to, self.picked) = (None, None, rows);
     }
 
     /// Ends the selection, which `gv` takes up again; false if there is none.
     pub fn unselect(&mut self) -> bool {
-        let (from, to) = (self.selected_from.take(), self.selected_to.take().unwrap_or(self.row));
-        if let Some(from) = from {
-            self.last_selection = Some(Selection { node: self.node.clone(), from, to });
+        let selects = self.selects();
+        if selects {
+            self.last_selection = Some(Selection { node: self.node.clone(), rows: self.rows(), row: self.row });
         }
-        from.is_some()
+        self.pick(BTreeSet::new());
+        selects
     }
 
     /// The cell of this row that the cursor is on.
@@ -91,6 +109,11 @@ impl Cursor {
         self.column = self.column.min(sheet.row(self.row).map_or(0, |row| row.cells.len().saturating_sub(1)));
         self.selected_from = self.selected_from.map(|row| row.min(last));
         self.selected_to = self.selected_to.map(|row| row.min(last)).filter(|_| self.selected_from.is_some());
+        let selected = !self.picked.is_empty();
+        self.picked.retain(|row| *row <= last);
+        if selected && self.picked.is_empty() {
+            self.picked.insert(self.row);
+        }
     }
 
     /// Expands the ancestors of the node at `pointer` in the tree.

@@ -1,6 +1,8 @@
 //! What a text typed into a cell means: an expression over the columns of the row, evaluated for each selected row. All
 //! values are set in one edit.
 
+use std::collections::BTreeSet;
+
 use crate::base::expression;
 use crate::base::pointer::Pointer;
 use crate::tui::document::entry::Entry;
@@ -40,7 +42,7 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
         };
         Some((i, cell))
     };
-    state.cursor.rows().filter_map(of_row).collect()
+    state.cursor.rows().into_iter().filter_map(of_row).collect()
 }
 
 fn sheet_head(state: &State) -> String {
@@ -51,7 +53,7 @@ fn sheet_head(state: &State) -> String {
 
 /// A message that says how many of the selected rows have the column under the cursor; `None` if all have it.
 pub fn skipped(state: &State) -> Option<String> {
-    let all = state.cursor.rows().count();
+    let all = state.cursor.rows().len();
     let some = cells(state, &state.sheet()).len();
     let head = sheet_head(state);
     (some < all).then(|| format!("{some} of {all} rows have {head}"))
@@ -106,7 +108,7 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
     });
     let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
         let more = if n > SHOWN { " …" } else { "" };
-        let all = state.cursor.rows().count();
+        let all = state.cursor.rows().len();
         let counted = match n {
             n if n < all => format!(" ({n} of {all} rows)"),
             n if n > SHOWN => format!(" ({n} rows)"),
@@ -128,27 +130,67 @@ fn evaluate(
 ) -> Result<f64, String> {
     // Without letters no variable can occur, so the row is not needed.
     let row = text.contains(char::is_alphabetic).then(|| sheet.row(row)).flatten();
-    let known = variables(state, sheet, row.as_ref(), cell, (i, n));
-    let known: Vec<(&str, f64)> = known.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-    expression::evaluate(text, &Variables(&known)).map_err(|mistake| mistake.to_string())
+    variables(state, sheet, row.as_ref(), Some(cell), (i, n)).value(text)
 }
 
-fn variables(
-    state: &State,
-    sheet: &Sheet,
-    row: Option<&Row>,
-    cell: &Cell,
-    (i, n): (usize, usize),
-) -> Vec<(String, f64)> {
+/// The value of `text` for each of these rows, whose column is that under the cursor; `None` for a row that lacks what it
+/// names.
+///
+/// # Errors
+/// It has no value in any of them.
+pub fn of_rows(state: &State, rows: &BTreeSet<usize>, text: &str) -> Result<Vec<Option<f64>>, String> {
+    let sheet = state.sheet();
+    let here = state.row();
+    let model = here.as_ref().and_then(|row| state.cursor.cell(row));
+    let like = |cell: &&Cell| model.is_some_and(|model| model.head == cell.head && model.part == cell.part);
+    let (mut values, mut why) = (Vec::with_capacity(rows.len()), None);
+    for (i, &row) in rows.iter().enumerate() {
+        let row = sheet.row(row);
+        let cell = row.as_ref().and_then(|row| row.cells.iter().find(like));
+        let value = variables(state, &sheet, row.as_ref(), cell, (i, rows.len())).value(text);
+        values.push(match value {
+            Ok(value) => Some(value),
+            Err(own) => {
+                why.get_or_insert(own);
+                None
+            }
+        });
+    }
+    match why {
+        Some(why) if values.iter().all(Option::is_none) => Err(why),
+        _ => Ok(values),
+    }
+}
+
+/// What an expression over a row may name.
+#[derive(Default)]
+struct Known {
+    numbers: Vec<(String, f64)>,
+    words: Vec<(String, String)>,
+}
+
+impl Known {
+    fn value(&self, text: &str) -> Result<f64, String> {
+        let numbers: Vec<(&str, f64)> = self.numbers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let words: Vec<(&str, &str)> = self.words.iter().map(|(name, word)| (name.as_str(), word.as_str())).collect();
+        let known = Variables { numbers: &numbers, words: &words };
+        expression::evaluate(text, &known).map_err(|mistake| mistake.to_string())
+    }
+}
+
+fn variables(state: &State, sheet: &Sheet, row: Option<&Row>, cell: Option<&Cell>, (i, n): (usize, usize)) -> Known {
     let document = state.document();
-    // What follows from other fields may have no value; everything else begins at 0.
-    let old = cell.number(document).or((!matches!(cell.part, Part::Derived(_))).then_some(0.0));
+    // What follows from other fields may have no value; every other number begins at 0.
+    let begins = |cell: &Cell| (cell.is_number() && !matches!(cell.part, Part::Derived(_))).then_some(0.0);
+    let old = cell.and_then(|cell| cell.number(document).or(begins(cell)));
     let mut known: Vec<(String, f64)> = old.map(|old| ("v".to_string(), old)).into_iter().collect();
+    let mut words = Vec::new();
     let others = if row.is_none_or(|row| row.item) { Vec::new() } else { sheet.fields() };
     for row in row.into_iter().chain(&others) {
         // If a row has several vectors, dx, dy, r and a are those of the one that is edited.
-        let (own, others): (Vec<&Cell>, Vec<&Cell>) = row.cells.iter().partition(|one| one.pointer == cell.pointer);
-        for cell in own.into_iter().chain(others).filter(|cell| cell.is_number()) {
+        let (own, others): (Vec<&Cell>, Vec<&Cell>) =
+            row.cells.iter().partition(|one| cell.is_some_and(|cell| one.pointer == cell.pointer));
+        for cell in own.into_iter().chain(others) {
             let name = match cell.part {
                 Part::Length => "r",
                 Part::Degrees => "a",
@@ -158,6 +200,9 @@ fn variables(
             };
             // A name of several words is written as one.
             let name = &name.replace(' ', "_");
+            if !cell.is_number() && !cell.is_node() {
+                words.push((name.clone(), cell.text.clone()));
+            }
             if let (Some(value), false) = (cell.number(document), known.iter().any(|(known, _)| known == name)) {
                 known.push((name.to_string(), value));
             }
@@ -167,7 +212,7 @@ fn variables(
         known.extend([("w".to_string(), width as f64), ("h".to_string(), height as f64)]);
     }
     known.extend([("i".to_string(), i as f64), ("n".to_string(), n as f64)]);
-    known
+    Known { numbers: known, words }
 }
 
 /// The edit that sets a cell to this number; refused if that is out of the field's range.

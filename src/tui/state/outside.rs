@@ -1,6 +1,8 @@
 //! What the editor knows of the file, the window and long work, and its questions about unsaved edits that were left behind
 //! and about somebody else who is editing the scene.
 
+use std::collections::BTreeSet;
+
 use crate::base::problem::Problem;
 use crate::layers::space::camera::Camera;
 use crate::tui::document::choice::{About, Choice, Question, Then};
@@ -21,12 +23,27 @@ pub struct Outside {
     pub problem: Option<Problem>,
     /// The long work that is running, and its progress.
     pub work: Option<String>,
+    /// The rows that a program has been given.
+    pub piping: Option<Piping>,
     /// The state of the window, for the status line.
     pub window: String,
     /// Where the pointer is in the window, in pixels of the picture.
     pub pointer: Option<(f64, f64)>,
     /// The camera that a window shows, where it is not the scene's: what was said last, if there are several windows.
     pub camera: Option<Camera>,
+}
+
+/// Rows that have been sent through a program.
+#[derive(Clone, Debug)]
+pub struct Piping {
+    /// The program.
+    pub program: String,
+    /// The revision of the scene when it began.
+    pub revision: u64,
+    /// The node whose rows they are.
+    pub node: String,
+    /// The rows.
+    pub rows: BTreeSet<usize>,
 }
 
 impl Outside {

@@ -63,6 +63,7 @@ const COUNTED: &[(&str, &str)] = &[
     ("/ \"motion\" Enter Enter v", "leave"),
     ("/ \"function\" Enter Enter", "cancel"),
     (MOTION, "select"),
+    (MOTION, "toggle"),
     ("/ \"radius\" Enter + k j + k j +", "undo"),
     ("/ \"radius\" Enter + k j + k j + u u u", "redo"),
     ("/ \"radius\" Enter + k j + k j + ", "earlier"),

@@ -22,6 +22,7 @@ mod pasting;
 pub mod picking;
 mod picture;
 mod profiles;
+mod rows;
 mod screens;
 mod space;
 pub mod support;
