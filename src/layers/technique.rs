@@ -5,7 +5,7 @@ use std::any::Any;
 use std::sync::Arc;
 
 use glam::DAffine3;
-use kurbo::{Point, Rect};
+use kurbo::{Affine, Point, Rect};
 use serde_json::{Map, Value};
 
 use super::parts::bundle::{Names, Sink};
@@ -76,6 +76,15 @@ pub trait Technique: Any + Send + Sync {
     /// The `old` thing at `path`, turned into the variant `to`; `None` if there is nothing to do but keep fields with
     /// the same name.
     fn turned(&self, _path: &str, _old: &Value, _to: &str) -> Option<Turned> {
+        None
+    }
+
+    /// The `value` at `path`, as it is written, moved, turned or stretched in the layer's picture with all that is in it; and
+    /// the box around its places before. `None` if it has no place there.
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    fn transformed(&self, _path: &str, _value: &Value, _by: Affine) -> Option<Result<(Value, Rect), String>> {
         None
     }
 

@@ -32,6 +32,7 @@ pub mod starts;
 pub mod synth;
 pub mod texels;
 pub mod tools;
+pub mod transform;
 
 #[cfg(test)]
 mod tests;
@@ -39,7 +40,7 @@ mod tests;
 use std::any::Any;
 use std::sync::Arc;
 
-use kurbo::{Point, Rect};
+use kurbo::{Affine, Point, Rect};
 use serde_json::Value;
 
 use self::model::PictureLayer;
@@ -113,6 +114,10 @@ impl Technique for PictureLayer {
 
     fn turned(&self, path: &str, old: &Value, to: &str) -> Option<Turned> {
         kinds::turned(self, path, old, to)
+    }
+
+    fn transformed(&self, path: &str, value: &Value, by: Affine) -> Option<Result<(Value, Rect), String>> {
+        transform::transformed(path, value, by)
     }
 
     fn bounds(&self, path: &str) -> Rect {

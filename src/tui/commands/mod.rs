@@ -35,6 +35,7 @@ mod replacing;
 mod scripts;
 mod selecting;
 mod styles;
+mod transforming;
 pub mod tutor;
 mod typing;
 mod undoing;
@@ -66,6 +67,7 @@ pub static TABLE: Table = Table(&[
     profiles::COMMANDS,
     styles::COMMANDS,
     placing::COMMANDS,
+    transforming::COMMANDS,
     playing::COMMANDS,
     camera::COMMANDS,
     views::COMMANDS,

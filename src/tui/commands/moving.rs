@@ -3,13 +3,19 @@
 use super::command::{Call, Command, Done, command};
 use super::finding::leave as leave_place;
 use crate::base::pointer::Pointer;
+use crate::base::problem::quoted;
 use crate::tui::document::tree;
 use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
 
 pub const COMMANDS: &[Command] = &[
-    command("move", "down|up|left|right|first|last|start|end|page-down|page-up|next", "Move the cursor", go)
-        .counted_with(&["down", "up", "left", "right", "first", "last", "page-down", "page-up", "next"]),
+    command(
+        "move",
+        "down|up|left|right|first|last|start|end|page-down|page-up|next|DX DY",
+        "Move the cursor; by DX DY, as translate",
+        go,
+    )
+    .counted_with(&["down", "up", "left", "right", "first", "last", "page-down", "page-up", "next"]),
     command("pane", "next|previous|tree|table|picture", "Go to another pane", pane).counted_with(&["next", "previous"]),
     command("collapse", "", "Collapse the node of the tree, else go to its parent", collapse).counted(),
     command("expand", "", "Expand the node of the tree, else edit it", expand).counted(),
@@ -24,6 +30,9 @@ fn page(state: &State) -> i64 {
 }
 
 fn go(state: &mut State, call: &Call) -> Done {
+    if call.text.starts_with(|c: char| !c.is_ascii_lowercase()) {
+        return call.obey(state, &format!("translate {}", call.text));
+    }
     let rows = (state.cursor.focus == Pane::Tree).then(|| tree::rows(state.document(), &state.cursor.collapsed));
     let count = rows.as_ref().map_or_else(|| state.sheet().len(), Vec::len);
     let at = rows.as_ref().map_or(state.cursor.row, |rows| tree::row_of(rows, &state.cursor.node));
@@ -69,7 +78,7 @@ fn move_sideways(state: &mut State, way: &str, times: i64) -> Done {
         "right" => by(times),
         "start" => 0,
         "end" => by(i64::from(u16::MAX)),
-        _ => return Err(format!("cannot move {way}")),
+        _ => return Err(format!("move takes a way, as down or page-up, or DX DY, not {}", quoted(way))),
     };
     Ok(())
 }

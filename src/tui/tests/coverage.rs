@@ -31,6 +31,7 @@ const TABLES: &[fn()] = &[
     super::rows::rows_are_sorted,
     super::rows::names_texts_and_numbers_are_replaced,
     super::rows::rows_go_through_a_program_or_nothing_changes,
+    super::transforming::what_is_selected_is_transformed_in_one_step,
     super::tutor::lessons_are_gone_through_by_command,
     super::lines::lines_say_what_keys_do,
     super::lines::nodes_are_reached_by_collapsing_and_going_up,

@@ -28,6 +28,7 @@ mod space;
 pub mod support;
 mod table;
 mod told;
+mod transforming;
 mod tutor;
 mod undoing;
 mod views;

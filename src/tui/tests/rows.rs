@@ -162,7 +162,7 @@ pub fn rows_go_through_a_program_or_nothing_changes() {
     }
     let mut state = state();
     sent(&mut state, pipe).unwrap();
-    press(&mut state, "j +");
+    press(&mut state, "l +");
     update(&mut state, Event::Piped(Ok("x\n1\n2\n".into())));
     assert!(said_last(&state).1.contains("changed meanwhile: nothing was taken"), "{:?}", said_last(&state));
     assert!(sent(&mut self::state(), "g t : \"pipe cat\" Enter").unwrap().contains("point,30,25,3,4"), "all rows");

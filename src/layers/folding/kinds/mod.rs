@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
+use super::outline::Outline;
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::text::short;
@@ -29,6 +30,11 @@ pub fn turned(layer: &PictureLayer, path: &str, old: &Value, to: &str) -> Option
         ["position"] | ["position", .., "ease"] => positions::turned(&read(old)?, to),
         _ => None,
     }
+}
+
+/// An outline as one of the kind `to`.
+pub fn outline_as(old: &Outline, to: &str) -> Option<Value> {
+    outlines::turned(old, to)?.items.into_iter().next()
 }
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
