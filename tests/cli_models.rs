@@ -232,7 +232,7 @@ fn cameras_of_other_programs_become_views_once() {
     assert_eq!((&camera["position"], &camera["target"]), (&json!([0, 7, 9]), &json!([0, 7, 0])));
     let view = get(at, "to/a.plica.json", "layers.wall.surface.views.front");
     assert_eq!(view["camera"]["matrix"], json!([[1, 0, 0, 0], [0, -1, 0, 7], [0, 0, -1, 9]]));
-    assert_eq!((&view["image"], view.get("feather")), (&json!("front"), None));
+    assert_eq!((&view["image"], &view["feather"]), (&json!("front"), &json!(1)), "its alpha ends nowhere");
     let before = std::fs::read_to_string(at.join("to/a.plica.json")).unwrap();
     let (_, told) = plica(at, &import, true);
     assert!(told.contains("1 lie there already"), "{told}");
@@ -257,4 +257,36 @@ fn cameras_of_other_programs_become_views_once() {
     let (_, told) =
         plica(at, &["views", "add", "cat", "to/a.plica.json", "--image", "cat", "--position", "0,7,5"], false);
     assert!(told.contains("the name \"cat\" is taken by another view"), "{told}");
+
+    // A picture of another shape, from the list and in a scene: all are told.
+    RgbaImage::new(40, 30).save(at.join("shots/images/front.png")).unwrap();
+    let (_, told) = plica(at, &["views", "import", "shots/cameras.json", "b.plica.json"], false);
+    assert!(told.contains("images/front.png: the picture is 40x30, its camera is for 40x20"), "{told}");
+    plica(at, &["views", "import", "shots/cameras.json", "to/a.plica.json", "--all", "--names", "back*"], true);
+    let sizes = ["front", "back"].map(|view| format!("layers.wall.surface.views.{view}.camera.size=[41,30]"));
+    plica(at, &["set", "to/a.plica.json", &sizes[0], &sizes[1]], true);
+    let (told, _) = plica(at, &["check", "to/a.plica.json"], false);
+    assert_eq!(told.matches("the picture is 40x20, its camera is for").count(), 2, "{told}");
+}
+
+/// What was not painted stays as it was, and what is painted over can be drawn anew.
+#[test]
+fn the_first_view_keeps_the_look_of_a_mesh() {
+    let folder = folder();
+    let at = folder.path();
+    plica(at, &["new", "flat.obj", "-o", "b.plica.json"], true);
+    let before = rendered(at, "b.plica.json");
+    let add = ["views", "add", "spot", "b.plica.json", "--image", "cat.png", "--position", "0,7,-9", "--target", "0,7,0"];
+    let (_, told) = plica(at, &add, true);
+    assert!(told.contains("of it as it was are its base coat") && at.join("views/spot-base-front.png").is_file(), "{told}");
+    let after = rendered(at, "b.plica.json");
+    let far = before.pixels().zip(after.pixels()).filter(|(a, b)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > 3)).count();
+    assert!(far * 50 < before.pixels().filter(|pixel| pixel.0[3] > 0).count(), "{far}");
+    plica(at, &["views", "guide", "base-front", "b.plica.json", "-o", "over.png"], true);
+    let (own, guide) = (image::open(at.join("views/spot-base-front.png")).unwrap(), image::open(at.join("over.png")).unwrap());
+    assert_eq!(own.width(), guide.width());
+    let (_, told) = plica(at, &["views", "guide", "spot", "b.plica.json"], true);
+    assert!(told.contains("views/spot-guide.png is what is seen without \"spot\"") && at.join("views/spot-guide.png").is_file());
+    let (_, told) = plica(at, &["views", "guide", "sport", "b.plica.json"], false);
+    assert!(told.contains("there is no view \"sport\" (did you mean \"spot\"?)"), "{told}");
 }

@@ -40,7 +40,12 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
 pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     let mut bytes = Vec::new();
     paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
-    if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, &bytes) }
+    put_new(to, &bytes)
+}
+
+/// As [`write_new`]; an existing file with the same content is accepted.
+fn put_new(to: &Path, bytes: &[u8]) -> Result<()> {
+    if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, bytes) }
 }
 
 /// Copies a file into the folder `to` under this name, as [`copy_new`]; folders in its name are made there.
@@ -55,15 +60,21 @@ pub fn copy_into(source: &Path, to: &Path, name: &str) -> Result<()> {
     copy_new(source, &made_within(to, name)?)
 }
 
-/// Writes a new file of this name into the folder `to`, as [`write_new`]; folders in its name are made there.
+/// Writes a new file of this name into the folder `to`, as [`write_new`]; folders in its name are made there. An existing file
+/// with the same content is accepted.
 ///
 /// # Errors
 /// If the name leads out of the folder, or as [`write_new`].
 pub fn put_into(to: &Path, name: &str, bytes: &[u8]) -> Result<()> {
-    if !is_below(name) {
-        return Err(Error::at(name, format!("is not below {}", to.display())).cure("name a file below it"));
-    }
-    write_new(&made_within(to, name)?, bytes)
+    put_new(&made_within(to, name)?, bytes)
+}
+
+/// Writes a file of this name into the folder `to`, as [`write_atomic`]; folders in its name are made there.
+///
+/// # Errors
+/// If the name leads out of the folder, or as [`write_atomic`].
+pub fn replace_into(to: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    write_atomic(&made_within(to, name)?, bytes)
 }
 
 fn is_below(name: &str) -> bool {
@@ -72,6 +83,9 @@ fn is_below(name: &str) -> bool {
 
 /// The path of a file in the folder `to`; folders in its name are made.
 fn made_within(to: &Path, name: &str) -> Result<PathBuf> {
+    if !is_below(name) {
+        return Err(Error::at(name, format!("is not below {}", to.display())).cure("name a file below it"));
+    }
     let target = to.join(name);
     if let Some(folder) = target.parent().filter(|folder| *folder != to) {
         std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, error))?;

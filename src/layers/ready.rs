@@ -18,9 +18,10 @@ use super::parts::pass::{Pass, Which};
 use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
+use super::parts::shots::Taken;
 use super::space::fit::Bounds;
 use super::timeline::{Timeline, Wrap};
-use crate::base::pixels::Rgba;
+use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 
@@ -85,6 +86,18 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// What is known of the pictures with cameras that lie on it, one after the other, and of them all, as objects; with
     /// `compare` also how well each comes back when it is drawn again from its own camera. `None` if it can have none.
     fn lying(&self, _compare: bool) -> Option<Vec<Value>> {
+        None
+    }
+
+    /// What is seen of its model at a scene time from around, as it is without anything drawn on it, in pictures of so many
+    /// pixels a side: pictures with cameras that show what its surface does. None if it can have none.
+    fn around(&self, _t: f64, _side_px: usize) -> Vec<Taken> {
+        Vec::new()
+    }
+
+    /// What the camera of a picture that lies on it, by its index, sees of it without that picture; `None` if the picture does not
+    /// count, or there is none.
+    fn guide(&self, _picture: usize) -> Option<Linear> {
         None
     }
 

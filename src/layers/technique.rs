@@ -169,6 +169,11 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
+    /// What is odd about how pictures with cameras lie on it, as far as the files that it names tell.
+    fn check_lying(&self, _materials: &Materials) -> Vec<Problem> {
+        Vec::new()
+    }
+
     /// How more pictures with cameras come to lie on the layer; `None` if it can have none.
     fn lay(&self, _pictures: &[Laid]) -> Option<Laying> {
         None

@@ -59,11 +59,11 @@ pub fn layer(document: &Document, name: Option<&str>) -> Result<usize, String> {
     first.or_else(|| all.clone().find(|i| lying(*i).is_some())).ok_or_else(|| "the scene has no mesh".into())
 }
 
-/// The path of the file in which the mesh of a layer is.
-pub fn mesh_of(document: &Document, layer: usize) -> Option<&str> {
+/// The mesh of a layer: its name, and the path of the file in which it is.
+pub fn mesh_of(document: &Document, layer: usize) -> Option<(&str, &str)> {
     let scene = document.scene();
     scene.layers[layer].technique().uses().into_iter().find_map(|used| match (used.of, used.what) {
-        (Of::Name(List::Meshes, name), What::Mesh) => scene.meshes.get(name).map(|mesh| &*mesh.path),
+        (Of::Name(List::Meshes, name), What::Mesh) => scene.meshes.get(name).map(|mesh| (name, &*mesh.path)),
         _ => None,
     })
 }
@@ -143,17 +143,31 @@ fn counted(pictures: usize) -> String {
     if pictures == 1 { "1 picture".into() } else { format!("{pictures} pictures") }
 }
 
-/// Lays one picture on a layer under its own name, also where its image lies there already.
+/// Whether the surface of a layer gives way to the first picture that lies there.
+pub fn replaces(document: &Document, layer: usize) -> bool {
+    let laying = document.scene().layers.get(layer).and_then(|layer| layer.technique().lay(&[]));
+    laying.is_some_and(|laying| laying.first.is_some())
+}
+
+/// Lays one picture on a layer under its own name, also where its image lies there already. If the surface gives way to it,
+/// `base` are the pictures that keep what it showed.
 ///
 /// # Errors
 /// The name is taken, or the layer can have none.
-pub fn add(document: &Document, layer: usize, picture: Picture) -> Result<Applied, String> {
+pub fn add(document: &Document, layer: usize, picture: Picture, base: Vec<Picture>) -> Result<Applied, String> {
     let technique = document.scene().layers.get(layer).map(Layer::technique).ok_or("there is no such layer")?;
     let lying = technique.lying().ok_or_else(|| format!("{} has no pictures", quoted(technique.name())))?;
     if lying.iter().any(|lying| lying.name == picture.name) {
         return Err(format!("the name {} is taken by another view", quoted(&picture.name)));
     }
-    laid(document, layer, vec![picture], false)
+    if base.is_empty() || !replaces(document, layer) {
+        return laid(document, layer, vec![picture], false);
+    }
+    let (count, pictures) = (base.len(), base.into_iter().chain([picture]).collect());
+    let Applied { edit, .. } = laid(document, layer, pictures, false)?;
+    let name = technique.name();
+    let told = format!("1 picture laid on {name}; {} of it as it was are its base coat", counted(count));
+    Ok(Applied { edit, told })
 }
 
 /// The camera that sees what `shot` sees, through the pose of the model, looking at a place on its axis so far away; for a

@@ -167,7 +167,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The frame of the layer alone, without strokes, and how far away it is.
-    fn bare(&self) -> (Vec<Rgba>, Vec<f64>) {
+    pub fn bare(&self) -> (Vec<Rgba>, Vec<f64>) {
         let (width, height) = self.moment.size_px;
         let mut depth = vec![f64::INFINITY; width * height];
         let mut out = vec![[0.0; 4]; depth.len()];

@@ -1,5 +1,6 @@
 //! A mesh in space, seen by the scene's camera. What its surface shows is a slot of its own (`surface/`).
 
+pub mod around;
 #[cfg(test)]
 mod checks;
 pub mod frame;
@@ -88,7 +89,8 @@ impl Technique for MeshLayer {
         let surface = without.filter(|_| self.surface.slot().needs_uv()).map(problem);
         let strokes = self.strokes.as_ref().zip(without);
         let strokes = strokes.and_then(|(own, triangle)| strokes::check::without_uv(own, &self.mesh, triangle));
-        surface.into_iter().chain(strokes.map(|problem| problem.under("/strokes"))).collect()
+        let fits = self.surface.slot().check_materials(materials).into_iter().map(|problem| problem.under("/surface"));
+        surface.into_iter().chain(fits).chain(strokes.map(|problem| problem.under("/strokes"))).collect()
     }
 
     fn check_made(&self, making: &Making) -> Vec<Problem> {
@@ -137,6 +139,12 @@ impl Technique for MeshLayer {
 
     fn lying(&self) -> Option<Vec<Lying<'_>>> {
         Some(self.surface.slot().lying().unwrap_or_default())
+    }
+
+    fn check_lying(&self, materials: &Materials) -> Vec<Problem> {
+        let mesh = materials.meshes.get(&self.mesh);
+        let odd = mesh.map(|mesh| self.surface.slot().check_lying(mesh)).unwrap_or_default();
+        odd.into_iter().map(|problem| problem.under("/surface")).collect()
     }
 
     fn lay(&self, pictures: &[Laid]) -> Option<Laying> {

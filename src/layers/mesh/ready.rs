@@ -8,12 +8,14 @@ use serde_json::Value;
 
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{marks, plan, probe, strokes};
+use super::{around, marks, plan, probe, strokes};
+use crate::base::pixels::Linear;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Under;
+use crate::layers::parts::shots::Taken;
 use crate::layers::ready::{Ready, Still};
 use crate::layers::space::fit::Bounds;
 
@@ -37,6 +39,14 @@ impl Ready for Synth {
 
     fn lying(&self, compare: bool) -> Option<Vec<Value>> {
         self.surface.lying(compare)
+    }
+
+    fn around(&self, t: f64, side_px: usize) -> Vec<Taken> {
+        around::around(self, t, side_px)
+    }
+
+    fn guide(&self, picture: usize) -> Option<Linear> {
+        self.surface.guide(picture)
     }
 
     fn balanced(&self) -> Option<Vec<(String, Value)>> {

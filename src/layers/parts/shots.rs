@@ -5,6 +5,18 @@ use serde_json::Value;
 
 use crate::base::geometry::Xy;
 use crate::base::maths;
+use crate::base::pixels::Linear;
+
+/// How much the shape of a picture may differ from that of its camera, as a share.
+const SHAPE_OFF: f64 = 0.01;
+
+/// What is wrong with a picture of this size, in pixels, for a camera that is for another; `None` where both have the same
+/// shape.
+pub fn misshapen([width, height]: [u32; 2], [own_width, own_height]: [u32; 2]) -> Option<String> {
+    let shape = |width: u32, height: u32| f64::from(width) / f64::from(height);
+    let off = (shape(width, height) / shape(own_width, own_height) - 1.0).abs();
+    (off > SHAPE_OFF).then(|| format!("the picture is {width}x{height}, its camera is for {own_width}x{own_height}"))
+}
 
 /// A pinhole camera: x right, y down, z forward, pixel centers at .5.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +75,21 @@ pub struct Lying<'a> {
     pub name: &'a str,
     /// The name in the scene's images.
     pub image: &'a str,
+    /// The image that it is painted over, by its name there, if it is.
+    pub guide: Option<&'a str>,
     /// Its camera; `None` if there is none that makes sense.
     pub from: Option<SeenFrom>,
+}
+
+/// What is seen of a layer's model from a place.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// What the place is called.
+    pub name: &'static str,
+    /// The camera, in the coordinates of the model.
+    pub from: SeenFrom,
+    /// The picture.
+    pub picture: Linear,
 }
 
 /// How more pictures come to lie on a layer.

@@ -4,11 +4,14 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+use super::base::Base;
 use super::beside::Beside;
+use super::feather;
 use crate::base::error::Result;
 use crate::base::problem::{nearest, quoted};
-use crate::files::{disk, picture};
+use crate::files::{disk, paths, picture};
 use crate::layers::parts::shots::SeenFrom;
+use crate::ops::opened::Unloaded;
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
 use crate::ops::{Context, set};
 use crate::scene::Document;
@@ -61,6 +64,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         Ok(_) => Some(Beside::new(path, disk::folder_of(path), &args.scene)?),
         Err(_) => None,
     };
+    let base = base(&args, context)?;
     let make = |document: &Document| {
         let layer = shots::layer(document, args.layer.as_deref())?;
         let images = &document.scene().images;
@@ -78,11 +82,30 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         };
         let from = SeenFrom::Standing { position: args.position, target: args.target, up: None, fov: args.fov };
         let (name, kind) = (args.name.clone(), args.kind.clone());
-        let picture = Picture { name, image, from, kind, feather_px: 0.0, guide: None };
-        shots::add(document, layer, picture)
+        let feather_px = match &image {
+            Image::Named(image) => images.get(image).map(|image| paths::beside(&args.scene, &image.path)),
+            Image::File(_) => Some(path.to_owned()),
+        };
+        let feather_px = feather_px.and_then(|path| picture::read(&path, &options.limits).ok());
+        let feather_px = feather_px.map_or(0.0, |read| feather::px(&read.picture));
+        let picture = Picture { name, image, from, kind, feather_px, guide: None };
+        shots::add(document, layer, picture, base.pictures.clone())
     };
+    base.write(&args.scene)?;
     if let Some(file) = &file {
         file.copy(&args.scene)?;
     }
     set::apply(&args.scene, (&args.recovery, &args.reading), make, context)
+}
+
+/// What keeps the look of the surface, if it gives way to the picture: only then it is drawn.
+fn base(args: &Args, context: &mut Context) -> Result<Base> {
+    let unloaded = Unloaded::read(&args.scene, &args.reading, context)?;
+    match shots::layer(&unloaded.document, args.layer.as_deref()) {
+        Ok(layer) if shots::replaces(&unloaded.document, layer) => {
+            let opened = unloaded.load(context)?;
+            Base::new(&opened.document, &opened.synth()?, (layer, 0.0), &args.name)
+        }
+        _ => Ok(Base::default()),
+    }
 }

@@ -2,16 +2,20 @@
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use glob::Pattern;
 
 use super::beside::Beside;
+use super::feather;
 use crate::base::error::{Error, Result};
-use crate::base::problem::quoted;
+use crate::base::mesh::Mesh;
+use crate::base::problem::{Problem, quoted};
 use crate::files::cameras::{self, Found, Reading};
 use crate::files::{self, disk, models, paths, picture};
-use crate::layers::parts::shots::{SeenFrom, Shot};
+use crate::layers::parts::materials::Materials;
+use crate::layers::parts::shots::{SeenFrom, Shot, misshapen};
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
 use crate::ops::{Context, set};
 use crate::scene::shots::{self, Image, Picture};
@@ -49,9 +53,6 @@ pub struct Args {
     #[command(flatten)]
     reading: SceneOptions,
 }
-
-/// How much of the shorter side a picture without alpha fades towards its border.
-const FEATHER: f64 = 0.05;
 
 /// Lays the pictures on the layer, as one edit.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
@@ -106,13 +107,14 @@ fn choose(found: &mut Found, args: &Args) -> Result<()> {
 fn taken(path: &Path, shot: &Shot, root: &Path, args: &Args, options: &files::Options) -> Result<(Picture, Beside)> {
     let read = picture::read(path, &options.limits)?.picture;
     let size_px = [read.width() as u32, read.height() as u32];
-    let shorter = f64::from(size_px[0].min(size_px[1]));
-    let feather_px = if read.channels().have_alpha() { 0.0 } else { (FEATHER * shorter * 100.0).round() / 100.0 };
+    if let Some(wrong) = shot.size_px.and_then(|camera| misshapen(size_px, camera)) {
+        return Err(Error::at(path.display(), wrong).cure("give it the picture that its camera took, not cut or stretched"));
+    }
     let file = Beside::new(path, root, &args.scene)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let shot = Shot { size_px: Some(shot.size_px.unwrap_or(size_px)), ..*shot };
     let image = Image::File(file.path.clone());
-    let picture = Picture { name, image, from: SeenFrom::Shot(shot), kind: args.kind.clone(), feather_px, guide: None };
+    let picture = Picture { name, image, from: SeenFrom::Shot(shot), kind: args.kind.clone(), feather_px: feather::px(&read), guide: None };
     Ok((picture, file))
 }
 
@@ -150,18 +152,27 @@ fn edit(
     edits.push(applied.edit);
     let technique = now.scene().layers[layer].technique();
     let place = technique.model_to_world(0.0).unwrap_or_default();
-    let mesh = shots::mesh_of(&now, layer).map(|path| models::read(&paths::beside(&args.scene, path), options));
-    let corners = match mesh.transpose()? {
-        Some(model) => model.mesh.vertices.iter().map(|vertex| vertex.position).collect(),
-        None => Vec::new(),
+    let mesh = match shots::mesh_of(&now, layer) {
+        Some((_, path)) => models::read(&paths::beside(&args.scene, path), options)?.mesh,
+        None => Mesh::default(),
     };
+    let corners: Vec<DVec3> = mesh.vertices.iter().map(|vertex| vertex.position).collect();
     let shots: Vec<Shot> = found.shots.iter().zip(pictures).filter_map(|(_, (picture, _))| shot_of(picture)).collect();
     told.extend(meaning(&shots, &corners, &place, technique.name()));
     let no_camera = document.json().get("camera").is_none_or(|camera| camera == &serde_json::json!({}));
     if let (true, Some(first)) = (no_camera, shots.first()) {
         edits.push(frame_camera(document, first, &corners, &place));
     }
-    Ok((Edit::all(edits), told))
+    let edit = Edit::all(edits);
+    told.extend(odd(&document.apply(&edit).map_err(refused)?, layer, mesh).iter().map(Problem::to_string));
+    Ok((edit, told))
+}
+
+/// What is odd about how the pictures lie on the mesh.
+fn odd(document: &Document, layer: usize, mesh: Mesh) -> Vec<Problem> {
+    let Some((name, _)) = shots::mesh_of(document, layer) else { return Vec::new() };
+    let meshes = [(name.to_owned(), Arc::new(mesh))].into();
+    super::odd(document.scene(), layer, &Materials { meshes, ..Materials::default() })
 }
 
 fn shot_of(picture: &Picture) -> Option<Shot> {

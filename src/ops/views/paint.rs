@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+use super::base::Base;
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::export::still;
@@ -18,7 +19,7 @@ use crate::scene::presets::Applied;
 use crate::scene::shots::{self, Image, Picture};
 
 /// The folder beside the scene for pictures that are painted.
-const FOLDER: &str = "views";
+pub const FOLDER: &str = "views";
 /// What a picture that is painted feeds, if nothing is said.
 const KIND: &str = "dependent";
 
@@ -67,7 +68,8 @@ fn short(at: DVec3) -> DVec3 {
     DVec3::from(at.to_array().map(|v| (v * 1e6).round() / 1e6))
 }
 
-fn file(name: &str, guide: bool) -> String {
+/// The path of the picture of a view, or of its guide, in the scene.
+pub fn file(name: &str, guide: bool) -> String {
     format!("{FOLDER}/{name}{}.png", if guide { "-guide" } else { "" })
 }
 
@@ -96,8 +98,9 @@ pub fn begin(
         feather_px: 0.0,
         guide: Some(file(name, true)),
     };
+    let base = Base::new(document, synth, (sight.layer, sight.time), name)?;
     // Checked before anything is written.
-    let applied = shots::add(document, sight.layer, picture).map_err(|why| Error::at(name, why))?;
+    let applied = shots::add(document, sight.layer, picture, base.pictures.clone()).map_err(|why| Error::at(name, why))?;
     document.apply(&applied.edit).map_err(|problems| refused(name, &problems))?;
     let folder = disk::folder_of(scene);
     let (own, guide) = (file(name, false), file(name, true));
@@ -105,6 +108,7 @@ pub fn begin(
         return Err(wrong(&format!("{there} is there already")));
     }
     let png = sight.png(synth)?;
+    base.write(scene)?;
     write::put_into(folder, &guide, &png)?;
     write::put_into(folder, &own, &png)?;
     Ok((applied, folder.join(own)))

@@ -18,10 +18,10 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let opened = Opened::new(scene, &args.options, context)?;
     let scene = opened.document.scene();
     let synth = opened.synth()?;
-    let layers = scene.layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers);
-    let named = layers.filter(|(name, _)| args.layer.as_deref().is_none_or(|layer| layer == *name));
+    let layers = scene.layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers).enumerate();
+    let named = layers.filter(|(_, (name, _))| args.layer.as_deref().is_none_or(|layer| layer == *name));
     let mut any = false;
-    for (name, ready) in named {
+    for (layer, (name, ready)) in named {
         context.check_cancelled()?;
         let Some(rows) = ready.lying(args.compare) else { continue };
         if !args.json {
@@ -33,6 +33,8 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
             context.print(if args.json { line(name, row) } else { words(row) })?;
         }
         off(&rows).for_each(|told| context.messages.say(&told));
+        let odd = super::odd(scene, layer, &opened.materials);
+        odd.iter().for_each(|problem| context.messages.say(&problem.to_string()));
     }
     if any { Ok(()) } else { Err(none(scene, args.layer.as_deref(), "views")) }
 }

@@ -37,6 +37,11 @@ fn views(state: &mut State, call: &Call) -> Done {
             add(state, name, kind.copied(), size.copied())
         }
         ["go", name @ ..] if name.len() <= 1 => go(state, name.first().copied()),
+        ["guide"] => {
+            let (_, name) = view(state, layer(state)?, None)?;
+            outside(state, &["guide", &name]);
+            Ok(())
+        }
         ["take", name @ ..] if name.len() <= 1 => take(state, call, name.first().copied()),
         _ => {
             outside(state, &words);
@@ -69,7 +74,7 @@ fn layer(state: &State) -> Result<usize, String> {
 fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) -> Done {
     state.scene.writable()?;
     let layer = layer(state)?;
-    let synth = state.picture.synth.clone().ok_or("nothing is shown yet")?;
+    let synth = state.picture.synth.clone().ok_or_else(|| unseen(state))?;
     let size_px = match size.and_then(|size| size.split_once('x')) {
         Some((width, height)) => (side(width)?, side(height)?),
         None => synth.size,
@@ -82,6 +87,16 @@ fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) ->
     let picture = std::path::absolute(picture).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(picture));
     Ok(())
+}
+
+/// Why nothing is seen of the scene yet.
+fn unseen(state: &State) -> String {
+    let picture = &state.picture;
+    match picture.read {
+        _ if !picture.synthesising => "nothing is shown yet".into(),
+        Some(percent) => format!("the picture is still being made ({percent} %): add the view once it is there"),
+        None => "the picture is still being made: add the view once it is there".into(),
+    }
 }
 
 /// The most pixels that a side of a picture to paint on has.
@@ -157,6 +172,11 @@ fn take(state: &mut State, call: &Call, name: Option<&str>) -> Done {
     let up = place.transform_vector3(up).normalize_or(DVec3::Y).to_array();
     let camera = rounded(json!({ "position": position, "target": target, "up": up, "fov": fov }));
     call.obey(state, &format!("set layers.{layer}{list}.{index}.camera={camera}"))?;
-    state.say(format!("{} is seen from here now", plain(&name)));
+    let (name, outside) = (plain(&name), &state.outside);
+    state.say(match (&outside.camera, outside.window.is_empty()) {
+        (Some(_), _) => format!("{name} is seen from here now"),
+        (None, false) => format!("{name} is seen from the scene's camera now: the window looks from there too"),
+        (None, true) => format!("{name} is seen from the scene's camera now; open the window (:view) to aim"),
+    });
     Ok(())
 }

@@ -13,6 +13,8 @@ pub fn awaits_pictures(state: &State, line: &str) -> bool {
         "clip" => picture.looking.is_none(),
         "pick" => true,
         "sprites" => text == "take",
+        // What is painted over is what is seen.
+        "views" => text.starts_with("add "),
         // In space a place is only known in a frame of a known size.
         "place" => picture.size.is_none(),
         _ => false,
@@ -32,14 +34,14 @@ mod tests {
     #[test]
     fn a_line_waits_until_the_scene_as_it_is_was_made() {
         let mut state = support::state();
-        let awaits = |state: &State| ["sprites take", "pick add", "clip show"].map(|line| awaits_pictures(state, line));
-        assert_eq!(awaits(&state), [true; 3]);
+        let awaits = |state: &State| ["sprites take", "pick add", ":clip show", "views add a"].map(|line| awaits_pictures(state, line));
+        assert_eq!(awaits(&state), [true; 4]);
         assert!(!awaits_pictures(&state, "sprites -o out") && !awaits_pictures(&state, "undo"));
         assert!(!awaits_pictures(&state, "place next"), "the size of the picture is known");
         let scene = state.document().scene().clone();
         update(&mut state, Event::Made(scene));
-        assert_eq!(awaits(&state), [false; 3]);
+        assert_eq!(awaits(&state), [false; 4]);
         obey(&mut state, "set title=x", None).unwrap();
-        assert_eq!(awaits(&state), [true; 3]);
+        assert_eq!(awaits(&state), [true; 4]);
     }
 }

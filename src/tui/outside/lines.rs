@@ -91,7 +91,7 @@ impl Editor {
     /// Handles a line of the input; `None` at its end.
     fn typed(&mut self, line: Option<String>, session: &mut Session) {
         let Some(line) = line else { return self.input_ended(session) };
-        if self.awaits(line.trim().trim_start_matches(':')) {
+        if self.awaits(&line) {
             session.held = Some(line);
             return;
         }

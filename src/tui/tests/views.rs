@@ -9,7 +9,7 @@ use super::support::{at, press, said};
 use crate::files::materials::{self, Cache};
 use crate::layers::space::camera::Camera;
 use crate::preview::wire::message::ToEditor;
-use crate::render;
+use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Effect;
@@ -50,25 +50,31 @@ fn what_is_seen_is_painted_over_from_where_it_is_seen() {
     let folder = tempfile::tempdir().unwrap();
     let mut state = opened(folder.path());
     let (told, effects) = run(&mut state, "views add flowers");
-    assert_eq!(told, "1 picture laid on wall");
+    assert_eq!(told, "1 picture laid on wall; 5 pictures of it as it was are its base coat");
     let picture = folder.path().join("views/flowers.png");
     assert!(effects.iter().any(|effect| matches!(effect, Effect::EditImage(path) if *path == picture)), "{effects:?}");
     let [own, guide] = ["flowers", "flowers-guide"].map(|name| folder.path().join(format!("views/{name}.png")));
     let [own, guide] = [own, guide].map(|path| std::fs::read(path).unwrap());
     assert_eq!(own, guide);
     // In the model: the pose puts it two times larger and one meter higher.
-    let view = at(&state, "/layers/0/surface/views/0");
+    let view = at(&state, "/layers/0/surface/views/5");
     assert_eq!(view["camera"], json!({ "position": [0, -0.5, 2], "target": [0, -0.5, 0], "fov": 40 }));
     assert_eq!((&view["kind"], &view["changed"]), (&json!("dependent"), &json!("flowers-guide")));
     assert_eq!(at(&state, "/images/flowers/path"), json!("views/flowers.png"));
-    // Nothing is painted yet: the surface looks as it did, but for what has no base coat.
+    // Nothing is painted yet: the surface looks as it did.
+    let before = cpu::frame(state.picture.synth.as_ref().unwrap(), 0.0);
     show(&mut state);
+    let after = cpu::frame(state.picture.synth.as_ref().unwrap(), 0.0);
+    let far = before.cells().iter().zip(after.cells()).flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| a.abs_diff(*b));
+    assert!(far.max().unwrap() <= 1 && before.get(12, 8)[0] == 0xa0);
     assert!(run(&mut state, "views add flowers").0.contains("is taken"), "the name");
     press(&mut state, "u");
     assert_eq!(at(&state, "/layers/0/surface/kind"), json!("plain"), "one step of undo");
     assert!(run(&mut state, "views add flowers").0.contains("is there already"), "the file");
     assert!(run(&mut state, "views add ../x").0.contains("is no name for a file"));
     assert!(run(&mut state, "views add big both 99999x1").0.contains("1 to 16384 pixels"));
+    (state.picture.synth, state.picture.synthesising, state.picture.read) = (None, true, Some(34));
+    assert!(run(&mut state, "views add soon").0.contains("still being made (34 %)"));
 }
 
 #[test]
@@ -92,7 +98,12 @@ fn the_eye_goes_to_a_view_and_a_view_comes_to_the_eye() {
     let own = Camera { position: [2.0, 1.0, 0.0], target: [0.0, 1.0, 0.0], fov: 50.0, ..Camera::default() };
     update(&mut state, said(ToEditor::Camera(Some(own))));
     assert_eq!(run(&mut state, "views take a").0, "a is seen from here now");
-    let camera = at(&state, "/layers/0/surface/views/0/camera");
+    state.outside.camera = None;
+    assert!(run(&mut state, "views take a").0.contains("the scene's camera now: the window looks from there too"));
+    state.outside.window.clear();
+    assert!(run(&mut state, "views take a").0.contains("open the window (:view) to aim"));
+    press(&mut state, "u u");
+    let camera = at(&state, "/layers/0/surface/views/5/camera");
     assert_eq!(camera, json!({ "position": [1, 0, 0], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 50 }));
 }
 
@@ -107,6 +118,7 @@ fn what_the_shell_does_is_done_with_the_open_scene() {
         ("views import x.json --every 2", vec!["views", "import", "x.json", &scene, "--every", "2"]),
         ("views balance", vec!["views", "balance", &scene]),
         ("views add a --image b", vec!["views", "add", "a", &scene, "--image", "b"]),
+        ("views guide a -o b.png", vec!["views", "guide", "a", &scene, "-o", "b.png"]),
     ] {
         let effects = run(&mut state, line).1;
         let ran = effects.iter().find_map(|effect| match effect {

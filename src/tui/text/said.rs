@@ -13,9 +13,10 @@ pub struct Said<'a> {
 }
 
 impl<'a> Said<'a> {
-    /// Parses a line. A count typed before its key multiplies the line's own. A number alone goes to that row, as in vim.
+    /// Parses a line, with or without the colon that one types before it. A count typed before its key multiplies the line's
+    /// own. A number alone goes to that row, as in vim.
     pub fn parse(line: &'a str, typed: Option<usize>) -> Said<'a> {
-        let (first, rest) = split(line);
+        let (first, rest) = split(line.trim_start().trim_start_matches(':'));
         let count = first.parse::<usize>().ok();
         let (name, text) = if count.is_some() { split(rest) } else { (first, rest) };
         let both = typed.zip(count).map(|(typed, count)| typed.saturating_mul(count));
@@ -103,6 +104,8 @@ mod tests {
             ("2 move down", Some(3), "6 move down"),
             ("12", None, "12 move last"),
             ("put 5", None, "put 5"),
+            (" :put :5", None, "put :5"),
+            (":3 move down", None, "3 move down"),
             ("", None, ""),
         ] {
             assert_eq!(Said::parse(line, typed).to_string(), said, "{line:?}");

@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::base::mesh::Mesh;
-use crate::base::pixels::Rgba;
+use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::parts::materials::Use;
+use crate::layers::parts::materials::{Materials, Use};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::Bind;
@@ -78,6 +78,16 @@ pub trait Slot {
         Vec::new()
     }
 
+    /// What only shows with the files that it names.
+    fn check_materials(&self, _materials: &Materials) -> Vec<Problem> {
+        Vec::new()
+    }
+
+    /// What is odd about how pictures lie on this mesh.
+    fn check_lying(&self, _mesh: &Mesh) -> Vec<Problem> {
+        Vec::new()
+    }
+
     /// What it names.
     fn uses(&self) -> Vec<Use<'_>> {
         Vec::new()
@@ -133,6 +143,11 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
 
     /// See `Ready::lying`.
     fn lying(&self, _compare: bool) -> Option<Vec<Value>> {
+        None
+    }
+
+    /// See `Ready::guide`.
+    fn guide(&self, _picture: usize) -> Option<Linear> {
         None
     }
 

@@ -1,16 +1,12 @@
 //! The views of a map drawn again, each from its own camera: how near that comes to their pictures.
 
-use glam::DVec3;
-use kurbo::Vec2;
 use rayon::prelude::*;
 
-use super::id::{depth_of, share_of};
+use super::again::Again;
 use super::looked::Filled;
-use super::sample::{Reader, Spot};
+use super::sample::Reader;
 use crate::base::maths::ln;
 use crate::base::pixels::{Rgba, encode};
-use crate::layers::parts::moment::Columns;
-use crate::layers::space::raster::{NONE, Raster};
 
 /// The least cosine between the normal and the way to the camera.
 const LEAST_NORMAL: f64 = 0.2;
@@ -23,35 +19,15 @@ pub fn compare(filled: Filled) -> Vec<Option<f64>> {
 
 fn one((map, arrays): Filled, view: usize) -> Option<f64> {
     let own = &map.wanted.views[view];
-    let (camera, mesh) = (&own.camera, &map.wanted.mesh);
-    let seen: Vec<DVec3> = mesh.vertices.iter().map(|vertex| camera.seen(vertex.position)).collect();
-    let (eye, (width, height)) = (camera.eye(1.0), camera.size_px);
-    let raster = Raster::new(&eye, (width, height), Vec2::new(0.5, 0.5), &mesh.triangles, seen.clone(), false);
-    let cells = f64::from(map.wanted.first) * f64::from(map.wanted.first);
-    let pixels = own.paint.pixels();
+    let (again, (width, height), pixels) = (Again::new(map, own), own.camera.size_px, own.paint.pixels());
     let rows = (0..height).into_par_iter().map(|y| {
         let (mut sum, mut count, mut reader) = (0_u64, 0_u64, Reader::new(map, arrays));
-        let (mut depth, mut triangles) = (vec![f64::INFINITY; width], vec![NONE; width]);
-        raster.row(y, Columns::All, &mut depth, &mut triangles);
-        let known = |triangle: usize| {
-            let corners = mesh.triangles[triangle];
-            let share = share_of(corners.map(|corner| seen[corner as usize]), eye.focal_px);
-            (corners.map(|corner| &mesh.vertices[corner as usize]), share * map.atlas.areas[triangle] * cells)
-        };
-        raster.hits(y, Columns::All, (&depth, &triangles), known, |x, hit, (corners, cells)| {
-            let (mut point, mut normal) = (DVec3::ZERO, DVec3::ZERO);
-            for (corner, weight) in corners.iter().zip(hit.weights) {
-                point += corner.position * weight;
-                normal += corner.normal * weight;
-            }
-            let (toward, depth) = ((camera.position - point).normalize_or_zero(), hit.depth);
+        again.row(y, |x, normal, spot| {
             let picture = pixels[y * width + x];
-            if picture[3] < 1.0 || normal.normalize_or_zero().dot(toward) < LEAST_NORMAL {
+            if picture[3] < 1.0 || normal < LEAST_NORMAL {
                 return;
             }
-            let depth = depth_of(cells * depth * depth * depth);
-            let spot = Spot { triangle: hit.triangle, weights: hit.weights, point, eye: toward, depth };
-            let [r, g, b] = reader.at(&spot, None).over.map(|light| light as f32);
+            let [r, g, b] = reader.at(spot, None).over.map(|light| light as f32);
             sum += squares([r, g, b, 1.0], picture);
             count += 3;
         });

@@ -3,7 +3,6 @@
 
 use glam::DVec3;
 
-use super::cells::NONE;
 use super::view::{Extremes, View};
 
 /// The cosine beyond which two views look the same way.
@@ -22,20 +21,19 @@ pub struct Gauges {
     ways: Vec<[f64; 4]>,
     /// The views that may count.
     near: Vec<Near>,
-    /// The place of each view in that list.
-    slots: Vec<u32>,
-    /// By how much each view limits each of them where it tells the cell everything.
-    limits: Vec<f64>,
+    /// The views that limit them, each with how far the way to that limit the eye is where it tells the cell everything.
+    limits: Vec<(u32, f64)>,
 }
 
 /// A view that may count at a place.
 #[derive(Clone, Copy, Debug)]
-struct Near {
-    view: u32,
+pub struct Near {
+    /// The view.
+    pub view: usize,
     /// How far the way to its limit the eye is, as far as that does not depend on the cell.
     gauge: f64,
-    /// Whether other views limit it.
-    limited: bool,
+    /// The first of those that limit it further, and the one after the last.
+    limits: [u32; 2],
 }
 
 impl Gauges {
@@ -47,10 +45,8 @@ impl Gauges {
             let way = way * (1.0 / way.length());
             [way.x, way.y, way.z, way.dot(eye)]
         }));
-        self.near.iter().for_each(|near| self.slots[near.view as usize] = NONE);
         self.near.clear();
         self.limits.clear();
-        self.slots.resize(views.len(), NONE);
         for (number, view) in views.iter().enumerate().filter(|(_, view)| view.dependent) {
             let [x, y, z, along] = self.ways[number];
             if along <= BEHIND {
@@ -62,48 +58,51 @@ impl Gauges {
                 Extremes::Points(places) => (polygon(DVec3::new(x, y, z), place, eye, places), false),
             };
             if gauge < 1.0 {
-                self.slots[number] = self.near.len() as u32;
-                self.near.push(Near { view: number as u32, gauge, limited });
-                self.limit(views, number, limited);
+                let first = self.limits.len();
+                if limited {
+                    self.limit(views, number, gauge);
+                }
+                let limits = [first, self.limits.len()].map(|at| at as u32);
+                self.near.push(Near { view: number, gauge, limits });
             }
         }
     }
 
-    /// Adds by how much each view limits one.
-    fn limit(&mut self, views: &[View], number: usize, limited: bool) {
-        if !limited {
-            return self.limits.resize(self.limits.len() + views.len(), 0.0);
-        }
-        let [x, y, z, along] = self.ways[number];
-        self.limits.extend(self.ways.iter().zip(views).map(|(other, view)| {
+    /// Adds the views that limit one to less than it is; the nearest is the first.
+    fn limit(&mut self, views: &[View], number: usize, gauge: f64) {
+        let (first, [x, y, z, along]) = (self.limits.len(), self.ways[number]);
+        for (view, (other, own)) in self.ways.iter().zip(views).enumerate() {
             let between = other[0] * x + other[1] * y + other[2] * z;
             let across = other[3] - along * between;
-            let limits = view.dependent && between <= SAME_WAY && across > 0.0;
-            if limits { across / ((1.0 + along) * (1.0 - between)) } else { 0.0 }
-        }));
-    }
-
-    /// Whether no view counts.
-    pub fn none(&self) -> bool {
-        self.near.is_empty()
-    }
-
-    /// The place of a view in the list of those that may count; [`NONE`] if it is not there.
-    #[inline]
-    pub fn slot(&self, view: u8) -> u32 {
-        self.slots[usize::from(view)]
-    }
-
-    /// How far the way to its limit the eye is for the view in a slot, at a cell where views tell so much: 0 to 1, above 1
-    /// beyond the limit.
-    #[inline]
-    pub fn gauge(&self, slot: u32, told: impl Iterator<Item = (u8, f64)>) -> f64 {
-        let near = &self.near[slot as usize];
-        if !near.limited {
-            return near.gauge;
+            let whole = (1.0 + along) * (1.0 - between);
+            if own.dependent && between <= SAME_WAY && across > gauge * whole {
+                self.limits.push((view as u32, across / whole));
+            }
         }
-        let limits = &self.limits[slot as usize * self.ways.len()..][..self.ways.len()];
-        told.fold(near.gauge, |gauge, (view, strength)| gauge.max(strength * limits[usize::from(view)]))
+        let limits = &mut self.limits[first..];
+        let nearest = (0..limits.len()).max_by(|a, b| limits[*a].1.total_cmp(&limits[*b].1));
+        nearest.iter().for_each(|nearest| limits.swap(0, *nearest));
+    }
+
+    /// The views that may count, ascending.
+    #[inline]
+    pub fn near(&self) -> &[Near] {
+        &self.near
+    }
+
+    /// How far the way to its limit the eye is for one of these views, at a cell to which each view tells so much, from 0 to 1:
+    /// at least 1 beyond the limit.
+    #[inline]
+    pub fn gauge(&self, near: &Near, told: impl Fn(usize) -> f64) -> f64 {
+        let [from, to] = near.limits.map(|at| at as usize);
+        let mut gauge = near.gauge;
+        for (view, limit) in &self.limits[from..to] {
+            gauge = gauge.max(limit * told(*view as usize));
+            if gauge >= 1.0 {
+                break;
+            }
+        }
+        gauge
     }
 }
 

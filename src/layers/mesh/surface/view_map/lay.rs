@@ -10,7 +10,8 @@ use crate::layers::parts::shots::{Laid, Laying, Lying, SeenFrom, Shot};
 /// The pictures that lie there.
 pub fn lying(map: &ViewMap) -> Vec<Lying<'_>> {
     fn lying(view: &View) -> Lying<'_> {
-        Lying { name: &view.name, image: &view.image, from: seen_from(&view.camera) }
+        let guide = view.changed.as_deref();
+        Lying { name: &view.name, image: &view.image, guide, from: seen_from(&view.camera) }
     }
     map.views.iter().map(lying).collect()
 }

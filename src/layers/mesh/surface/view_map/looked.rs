@@ -7,7 +7,7 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::id::{depth_of, share_of};
 use super::map::Map;
-use super::sample::{Reader, Sample, Spot};
+use super::sample::{Reader, Spot};
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
@@ -89,10 +89,5 @@ impl<'a> Looked<'a> {
             eye.seen(self.placed.point(at, DVec3::ZERO).0)
         });
         share_of(seen, eye.focal_px) * self.samples * self.map.atlas.areas[triangle] * first * first
-    }
-
-    /// What is shown of a sample.
-    pub fn shown(&self, sample: &Sample) -> [f64; 3] {
-        std::array::from_fn(|k| self.base * sample.independent[k] + (1.0 - self.base) * sample.over[k])
     }
 }

@@ -14,7 +14,7 @@ use super::view::View;
 use crate::base::mesh::Mesh;
 
 /// How many levels there are where no view sees anything.
-const UNSEEN: usize = 5;
+pub const UNSEEN: usize = 5;
 /// The numbers that the finest layer may have if it is not said.
 const FINEST: (f64, f64) = (2.0, 5.0);
 /// How far a view may be deeper than the finest layer before another is made.

@@ -11,13 +11,15 @@ use super::mix::{Part, mix};
 pub struct Mixer<'a> {
     map: &'a Map,
     gauges: Gauges,
+    /// Where in the list of a cell each view is.
+    places: Vec<u32>,
     parts: Vec<Part>,
 }
 
 impl<'a> Mixer<'a> {
     /// Mixes the views of a map.
     pub fn new(map: &'a Map) -> Mixer<'a> {
-        Mixer { map, gauges: Gauges::default(), parts: Vec::new() }
+        Mixer { map, gauges: Gauges::default(), places: vec![NONE; map.wanted.views.len()], parts: Vec::new() }
     }
 
     /// From now on cells are looked at from `eye`, a unit vector away from `place`.
@@ -29,7 +31,7 @@ impl<'a> Mixer<'a> {
     /// Mixes what views tell a cell: the color times its opacity, and that. `each` is told the share of each view.
     #[inline]
     pub fn at(&mut self, layer: usize, cell: u32, mut each: impl FnMut(usize, f64)) -> [f64; 4] {
-        if self.gauges.none() {
+        if self.gauges.near().is_empty() {
             return [0.0; 4];
         }
         let opacity = self.mixed(layer, cell);
@@ -48,18 +50,22 @@ impl<'a> Mixer<'a> {
         let range = lists.of(cell);
         self.parts.clear();
         let (views, entries) = (&lists.views[range.clone()], &lists.entries[range.clone()]);
-        for (at, (view, entry)) in views.iter().zip(entries).enumerate() {
-            let slot = self.gauges.slot(*view);
-            if slot == NONE {
-                continue;
-            }
-            let strength = views.iter().zip(entries);
-            let strength = strength.map(|(view, entry)| (*view, f64::from(entry.mask) * f64::from(entry.facing)));
-            let gauge = self.gauges.gauge(slot, strength);
-            let view = usize::from(*view);
-            let factor = self.map.wanted.views[view].fade.factor(gauge);
+        for (at, view) in views.iter().enumerate() {
+            self.places[usize::from(*view)] = at as u32;
+        }
+        let places = &self.places;
+        let entry = |view: usize| {
+            // The place may be of another cell.
+            let at = places[view] as usize;
+            (views.get(at).is_some_and(|found| usize::from(*found) == view)).then(|| (at, &entries[at]))
+        };
+        let strength =
+            |view: usize| entry(view).map_or(0.0, |(_, told)| f64::from(told.mask) * f64::from(told.facing));
+        for near in self.gauges.near() {
+            let Some((at, told)) = entry(near.view) else { continue };
+            let factor = self.map.wanted.views[near.view].fade.factor(self.gauges.gauge(near, strength));
             if factor > 0.0 {
-                self.parts.push(Part::new(range.start + at, view, entry, factor, layer));
+                self.parts.push(Part::new(range.start + at, near.view, told, factor, layer));
             }
         }
         mix(&mut self.parts)

@@ -9,10 +9,10 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked};
 use super::map::Map;
-use super::{passes, probe, told};
+use super::{again, passes, probe, told};
 use crate::base::budget::Share;
 use crate::base::number;
-use crate::base::pixels::Rgba;
+use crate::base::pixels::{Linear, Rgba};
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::moment::Moment;
@@ -54,6 +54,10 @@ impl ReadySurface for Ready {
         Some(told::told(self.filled(), compare))
     }
 
+    fn guide(&self, view: usize) -> Option<Linear> {
+        again::without(self.filled(), &self.points, view)
+    }
+
     fn balanced(&self) -> Option<Vec<(String, Value)>> {
         let gains = told::balanced(&self.map).into_iter();
         let set = |(view, gain): (usize, [f64; 3])| {
@@ -80,7 +84,7 @@ impl StillSurface for Looked<'_> {
         let (mut spots, mut reader) = (self.spots(), self.sampler());
         Box::new(move |place| {
             let Some(spot) = spots(place) else { return [0.0; 4] };
-            let [r, g, b] = self.shown(&reader.at(&spot, None)).map(|light| light as f32);
+            let [r, g, b] = reader.at(&spot, None).shown(self.base()).map(|light| light as f32);
             [r, g, b, 1.0]
         })
     }

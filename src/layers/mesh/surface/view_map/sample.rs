@@ -39,6 +39,13 @@ pub struct Sample {
     pub known: f64,
 }
 
+impl Sample {
+    /// What is shown where so much of the base coat alone is seen.
+    pub fn shown(&self, base: f64) -> [f64; 3] {
+        std::array::from_fn(|k| base * self.independent[k] + (1.0 - base) * self.over[k])
+    }
+}
+
 /// A map that is read.
 pub struct Reader<'a> {
     map: &'a Map,

@@ -5,18 +5,18 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use super::super::{Before, ReadySurface, Slot};
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
-use super::map::{Map, Wanted, Watch};
+use super::cells::Cells;
+use super::map::{Map, UNSEEN, Wanted, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
 use super::report;
 use super::view::View;
-use super::wanted::wanted;
-use super::warnings::warnings;
-use super::{check, lay};
+use super::wanted::{laid_flat, misfits, wanted};
+use super::{atlas, check, lay, warnings};
 use crate::base::budget::Short;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
-use crate::layers::parts::materials::{List, Of, Use, What};
+use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::parts::shots::Lying;
 use crate::layers::ready::Making;
 
@@ -33,6 +33,18 @@ impl Slot for ViewMap {
         let mut problems = check::problems(self);
         problems.extend(self.levels.and_then(|levels| too_many(self.cells, levels)));
         problems
+    }
+
+    fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
+        misfits(self, materials)
+    }
+
+    fn check_lying(&self, mesh: &Mesh) -> Vec<Problem> {
+        let atlas = atlas::Atlas::new(mesh, laid_flat(self, mesh));
+        let levels = self.levels.map_or(UNSEEN, |levels| levels as usize);
+        let cells = Cells::new(&atlas, self.cells, levels);
+        let finest = cells.layers.last();
+        finest.and_then(|finest| warnings::of_atlas(mesh, &atlas, finest)).into_iter().collect()
     }
 
     fn uses(&self) -> Vec<Use<'_>> {
@@ -89,7 +101,7 @@ impl Slot for ViewMap {
     }
 
     fn check_made(&self, made: &dyn ReadySurface) -> Vec<Problem> {
-        made.downcast::<Ready>().map_or_else(Vec::new, |made| warnings(self, &made.map))
+        made.downcast::<Ready>().map_or_else(Vec::new, |made| warnings::warnings(self, &made.map))
     }
 }
 

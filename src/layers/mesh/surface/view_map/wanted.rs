@@ -18,10 +18,9 @@ use crate::base::picture::Picture;
 use crate::base::pixels::decode;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
+use crate::layers::parts::shots::misshapen;
 use crate::layers::space::eye::Eye;
 
-/// How much the shape of a picture may differ from that of its camera.
-const SHAPE_OFF: f64 = 0.01;
 /// The field of view of a camera that has none, in degrees.
 const FOV: f64 = 40.0;
 
@@ -45,6 +44,32 @@ pub fn wanted(map: &ViewMap, mesh: &Arc<Mesh>, materials: &Materials) -> Result<
     })
 }
 
+/// What does not fit: pictures to their cameras, masks and guides to their pictures. Paths are relative to the surface.
+pub fn misfits(map: &ViewMap, materials: &Materials) -> Vec<Problem> {
+    let views = map.views.iter().enumerate().filter(|(_, view)| view.active);
+    let of = |(number, own)| misfits_of(own, materials).into_iter().map(move |problem| (number, problem));
+    views.flat_map(of).map(|(number, problem)| problem.under(&format!("/views/{number}"))).collect()
+}
+
+/// The same of one view; what is not there is no misfit.
+fn misfits_of(own: &model::View, materials: &Materials) -> Vec<Problem> {
+    let size = |name: &String| {
+        let picture = materials.pictures.get(name)?;
+        Some([picture.width(), picture.height()].map(|side| side as u32))
+    };
+    let Some(picture) = size(&own.image) else { return Vec::new() };
+    let shape = own.camera.size.and_then(|camera| misshapen(picture, camera)).map(|message| {
+        Problem::error("", message).hint("give camera.size the size that focal and center are for")
+    });
+    let beside = [("/mask", &own.mask), ("/changed", &own.changed)].into_iter().filter_map(|(path, name)| {
+        let ([width, height], [own_width, own_height]) = (picture, name.as_ref().and_then(size)?);
+        let message = || format!("{own_width}x{own_height}, the picture is {width}x{height}");
+        let problem = || Problem::error(path, message()).hint("make it as large as the picture");
+        ([width, height] != [own_width, own_height]).then(problem)
+    });
+    shape.into_iter().chain(beside).collect()
+}
+
 /// How the mesh is laid flat.
 pub fn laid_flat(map: &ViewMap, mesh: &Mesh) -> By {
     match map.atlas {
@@ -63,16 +88,13 @@ fn view(own: &model::View, number: usize, mesh: &Mesh, materials: &Materials) ->
     let size = (picture.width(), picture.height());
     let beside = |name: &Option<String>, path: &str| -> Result<Option<Arc<Picture>>, Problem> {
         let Some(name) = name else { return Ok(None) };
-        let other = materials.picture(name, path)?;
-        let own = (other.width(), other.height());
-        if own == size {
-            return Ok(Some(other));
-        }
-        let problem = Problem::error(path, format!("{}x{}, the picture is {}x{}", own.0, own.1, size.0, size.1));
-        Err(problem.hint("make it as large as the picture"))
+        materials.picture(name, path).map(Some)
     };
     let (mask, guide) = (beside(&own.mask, "/mask")?, beside(&own.changed, "/changed")?);
-    let (camera, target) = camera(&own.camera, size, mesh)?;
+    if let Some(misfit) = misfits_of(own, materials).into_iter().next() {
+        return Err(misfit);
+    }
+    let (camera, target) = camera(&own.camera, size, mesh);
     let half = |degrees: f64| tan(degrees.to_radians() / 2.0);
     Ok(View {
         name: own.name.clone(),
@@ -96,28 +118,19 @@ fn view(own: &model::View, number: usize, mesh: &Mesh, materials: &Materials) ->
 }
 
 /// The camera of a view whose picture has this size, and what it looks at.
-///
-/// # Errors
-/// If the picture has another shape.
-fn camera(own: &ViewCamera, size: (usize, usize), mesh: &Mesh) -> Result<(Camera, DVec3), Problem> {
+fn camera(own: &ViewCamera, size: (usize, usize), mesh: &Mesh) -> (Camera, DVec3) {
     let (Some(matrix), Some(focal)) = (own.matrix, own.focal) else {
         let [position, target] = [own.position, own.target].map(|place| DVec3::from(place.unwrap_or_default()));
         let up = DVec3::from(own.up.unwrap_or([0.0, 1.0, 0.0]));
         let eye = Eye::new([position, target, up], own.fov.unwrap_or(FOV), size);
-        return Ok((Camera::of_eye(&eye, size), target));
+        return (Camera::of_eye(&eye, size), target);
     };
     let whole = own.size.map_or(size, |[width, height]| (width as usize, height as usize));
-    let shape = |(width, height): (usize, usize)| width as f64 / height as f64;
-    if (shape(size) / shape(whole) - 1.0).abs() > SHAPE_OFF {
-        let [(width, height), (own_width, own_height)] = [size, whole];
-        let message = format!("the picture is {width}x{height}, its camera is for {own_width}x{own_height}");
-        return Err(Problem::error("", message).hint("give camera.size the size that focal and center are for"));
-    }
     let middle = own.center.map_or(DVec2::new(whole.0 as f64, whole.1 as f64) / 2.0, DVec2::from);
     let row = |k: usize| DVec3::new(matrix[k][0], matrix[k][1], matrix[k][2]);
     let turn = nearest_turn(DMat3::from_cols(row(0), row(1), row(2)).transpose());
     let shift = DVec3::new(matrix[0][3], matrix[1][3], matrix[2][3]);
     let camera = Camera::of_turn(turn, shift, DVec2::from(focal), middle, whole).resized(size);
     let centre = mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
-    Ok((camera, nearest_on_axis(&camera, centre)))
+    (camera, nearest_on_axis(&camera, centre))
 }

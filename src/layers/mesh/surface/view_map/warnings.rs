@@ -2,11 +2,13 @@
 
 use glam::DVec3;
 
-use super::atlas;
+use super::atlas::{self, Atlas};
+use super::cells::Layer;
 use super::map::Map;
 use super::model::{Extremes, Feeds, View, ViewMap};
 use super::report::{self, OfView};
 use crate::base::maths::acos;
+use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 
 /// The share of a view that may be finer than the finest layer.
@@ -27,20 +29,21 @@ pub fn warnings(own: &ViewMap, map: &Map) -> Vec<Problem> {
         let problem = of_view(&found, map).or_else(|| of_lone(view).filter(|_| alone))?;
         Some(problem.under(&format!("/views/{number}")))
     });
-    all.chain(of_atlas(map)).collect()
+    let finest = map.cells.layers.last();
+    all.chain(finest.and_then(|finest| of_atlas(&map.wanted.mesh, &map.atlas, finest))).collect()
 }
 
-/// What is odd about how the mesh is laid flat.
-fn of_atlas(map: &Map) -> Option<Problem> {
-    let middles = map.cells.layers.last()?.middles(&map.atlas);
+/// What is odd about how the mesh is laid flat, where this is the finest layer of cells.
+pub fn of_atlas(mesh: &Mesh, atlas: &Atlas, finest: &Layer) -> Option<Problem> {
+    let middles = finest.middles(atlas);
     let twice = middles.iter().filter(|(count, _)| *count > 1).count() as f64 / middles.len().max(1) as f64;
     if twice > MOST_COVERED {
         let message = format!("on {:.0} % of its cells two places of the surface share their colors", 100.0 * twice);
-        return Some(Problem::warning("", message).hint("set atlas to box"));
+        return Some(Problem::warning("", message).hint("set atlas to \"box\""));
     }
     let area = |(_, triangle): &(u32, u32)| {
         let triangle = *triangle as usize;
-        atlas::normal(&map.wanted.mesh, triangle).length() / 2.0 / map.atlas.areas[triangle]
+        atlas::normal(mesh, triangle).length() / 2.0 / atlas.areas[triangle]
     };
     let mut areas: Vec<f64> = middles.iter().filter(|(count, _)| *count > 0).map(area).collect();
     areas.sort_by(f64::total_cmp);
@@ -48,7 +51,7 @@ fn of_atlas(map: &Map) -> Option<Problem> {
     let stretched = at(0.95)? / at(0.05)?;
     (stretched > MOST_STRETCHED).then(|| {
         let message = format!("its cells are of very different sizes on the surface ({stretched:.0} to 1)");
-        Problem::warning("", message).hint("set atlas to box")
+        Problem::warning("", message).hint("set atlas to \"box\"")
     })
 }
 

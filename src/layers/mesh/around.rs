@@ -1,0 +1,66 @@
+//! A mesh seen from around as it is at one time: pictures with cameras that together show its surface.
+
+use glam::DVec3;
+
+use super::frame::Seen;
+use super::pose::{Bend, Pose};
+use super::synth::Synth;
+use crate::base::pixels::Linear;
+use crate::layers::parts::moment::Moment;
+use crate::layers::parts::shots::{SeenFrom, Taken};
+use crate::layers::space::eye::Eye;
+use crate::layers::space::fit::{Bounds, fit};
+
+/// Where one stands: before the sides of a cube, then before its corners.
+const WAYS: [(&str, [f64; 3]); 14] = [
+    ("front", [0.0, 0.0, 1.0]),
+    ("right", [1.0, 0.0, 0.0]),
+    ("back", [0.0, 0.0, -1.0]),
+    ("left", [-1.0, 0.0, 0.0]),
+    ("above", [0.0, 1.0, 0.0]),
+    ("below", [0.0, -1.0, 0.0]),
+    ("above-front-right", [1.0, 1.0, 1.0]),
+    ("above-back-right", [1.0, 1.0, -1.0]),
+    ("above-back-left", [-1.0, 1.0, -1.0]),
+    ("above-front-left", [-1.0, 1.0, 1.0]),
+    ("below-front-right", [1.0, -1.0, 1.0]),
+    ("below-back-right", [1.0, -1.0, -1.0]),
+    ("below-back-left", [-1.0, -1.0, -1.0]),
+    ("below-front-left", [-1.0, -1.0, 1.0]),
+];
+/// The vertical field of view, in degrees.
+const FOV: f64 = 30.0;
+
+/// What is seen of a mesh at scene time `t`, unbent and without strokes, but in the light that falls on it in its pose: pictures
+/// of so many pixels a side, in the model's coordinates. One that shows nothing is left out.
+pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
+    let pose = Pose { bend: Bend::default(), ..synth.pose.clone() };
+    let own = Synth { pose, strokes: None, ..synth.clone() };
+    let Some((low, high)) = own.mesh.bounds() else { return Vec::new() };
+    let (bounds, size_px) = (Bounds { low, high }, (side_px, side_px));
+    let unseen = Moment { t, size_px, eye: None, left_out: 0, magnified: 1 };
+    let placed = own.pose.at(own.time(&unseen));
+    let taken = WAYS.into_iter().map(|(name, back)| {
+        let back = DVec3::from(back).normalize_or_zero();
+        let up = if back.y.abs() < 1.0 { DVec3::Y } else { DVec3::Z };
+        let [position, target] = fit(&bounds, [back, up], FOV, size_px);
+        let [position, target] = [position, target].map(|at| short(at, position.distance(target)));
+        let world = |at| placed.point(at, DVec3::ZERO).0;
+        let eye = Eye::new([world(position), world(target), placed.turn * up], FOV, size_px);
+        let moment = Moment { eye: Some(eye), ..unseen };
+        let picture = Linear::from_cells(side_px, side_px, Seen::new(&own, &moment).bare().0);
+        let up = Some(up).filter(|up| *up != DVec3::Y);
+        Taken { name, from: SeenFrom::Standing { position, target, up, fov: Some(FOV) }, picture }
+    });
+    taken.filter(|taken| taken.picture.cells().iter().any(|cell| cell[3] > 0.0)).collect()
+}
+
+/// A place without decimals that do not matter at this distance.
+fn short(at: DVec3, distance: f64) -> DVec3 {
+    const DIGITS: f64 = 1e5;
+    let mut by = 1.0;
+    while distance > 0.0 && distance * by < DIGITS {
+        by *= 10.0;
+    }
+    (at * by).round() / by
+}

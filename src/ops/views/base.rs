@@ -1,0 +1,61 @@
+//! What a surface showed before pictures lie on it, as their base coat: pictures of it from around, in files of their own.
+
+use std::path::Path;
+
+use super::paint::FOLDER;
+use crate::base::error::{Error, Result};
+use crate::export::still;
+use crate::files::{disk, write};
+use crate::render::{self, Synth};
+use crate::scene::Document;
+use crate::scene::shots::{self, Image, Picture};
+
+/// What the pictures feed.
+const KIND: &str = "independent";
+/// How many pixels the side of one may have.
+const SIDES: (usize, usize) = (64, 1024);
+
+/// The pictures, and their files.
+#[derive(Default)]
+pub struct Base {
+    /// The pictures, as they are to lie on the layer.
+    pub pictures: Vec<Picture>,
+    /// Each by its path in the scene.
+    files: Vec<(String, Vec<u8>)>,
+}
+
+impl Base {
+    /// Those of a layer at a scene time, for a view of this name; none if pictures can lie on it as it is.
+    ///
+    /// # Errors
+    /// One cannot be packed.
+    pub fn new(document: &Document, synth: &Synth, (layer, time): (usize, f64), name: &str) -> Result<Base> {
+        let mut base = Base::default();
+        if !shots::replaces(document, layer) {
+            return Ok(base);
+        }
+        let side_px = synth.size.0.max(synth.size.1).clamp(SIDES.0, SIDES.1);
+        for taken in synth.layers.get(layer).map(|ready| ready.around(time, side_px)).unwrap_or_default() {
+            let path = format!("{FOLDER}/{name}-base-{}.png", taken.name);
+            let png = still::frame(&render::cpu::finish(&taken.picture)).map_err(|error| Error::at(&path, error))?;
+            base.pictures.push(Picture {
+                name: format!("base-{}", taken.name),
+                image: Image::File(path.clone()),
+                from: taken.from,
+                kind: Some(KIND.into()),
+                feather_px: 0.0,
+                guide: None,
+            });
+            base.files.push((path, png));
+        }
+        Ok(base)
+    }
+
+    /// Writes the files beside the scene.
+    ///
+    /// # Errors
+    /// One cannot be written, or another file has its name.
+    pub fn write(&self, scene: &Path) -> Result<()> {
+        self.files.iter().try_for_each(|(path, png)| write::put_into(disk::folder_of(scene), path, png))
+    }
+}
