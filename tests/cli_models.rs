@@ -276,17 +276,25 @@ fn the_first_view_keeps_the_look_of_a_mesh() {
     let at = folder.path();
     plica(at, &["new", "flat.obj", "-o", "b.plica.json"], true);
     let before = rendered(at, "b.plica.json");
-    let add = ["views", "add", "spot", "b.plica.json", "--image", "cat.png", "--position", "0,7,-9", "--target", "0,7,0"];
+    let add =
+        ["views", "add", "spot", "b.plica.json", "--image", "cat.png", "--position", "0,7,-9", "--target", "0,7,0"];
     let (_, told) = plica(at, &add, true);
-    assert!(told.contains("of it as it was are its base coat") && at.join("views/spot-base-front.png").is_file(), "{told}");
+    assert!(
+        told.contains("of it as it was are its base coat") && at.join("views/spot-base-front.png").is_file(),
+        "{told}"
+    );
     let after = rendered(at, "b.plica.json");
     let far = before.pixels().zip(after.pixels()).filter(|(a, b)| (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > 3)).count();
     assert!(far * 50 < before.pixels().filter(|pixel| pixel.0[3] > 0).count(), "{far}");
     plica(at, &["views", "guide", "base-front", "b.plica.json", "-o", "over.png"], true);
-    let (own, guide) = (image::open(at.join("views/spot-base-front.png")).unwrap(), image::open(at.join("over.png")).unwrap());
+    let (own, guide) =
+        (image::open(at.join("views/spot-base-front.png")).unwrap(), image::open(at.join("over.png")).unwrap());
     assert_eq!(own.width(), guide.width());
     let (_, told) = plica(at, &["views", "guide", "spot", "b.plica.json"], true);
-    assert!(told.contains("views/spot-guide.png is what is seen without \"spot\"") && at.join("views/spot-guide.png").is_file());
+    assert!(
+        told.contains("views/spot-guide.png is what is seen without \"spot\"")
+            && at.join("views/spot-guide.png").is_file()
+    );
     let (_, told) = plica(at, &["views", "guide", "sport", "b.plica.json"], false);
     assert!(told.contains("there is no view \"sport\" (did you mean \"spot\"?)"), "{told}");
 }

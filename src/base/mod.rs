@@ -3,6 +3,7 @@
 pub mod budget;
 pub mod chains;
 pub mod change;
+pub mod cholesky;
 pub mod clip;
 pub mod color;
 pub mod crossings;

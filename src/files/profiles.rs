@@ -102,6 +102,26 @@ pub const TABLE: &[Profile] = &[
         "mug" / "print.obj",
         "cat" / "cat.png"
     ),
+    profile!(
+        "vase",
+        "a painted vase: flowers from near, dots from afar, none from the side",
+        "vase" / "vase.plica.json",
+        "vase" / "vase.obj",
+        "vase" / "clay.png",
+        "vase" / "mouth.png",
+        "vase" / "flowers.png",
+        "vase" / "dots.png"
+    ),
+    profile!(
+        "fish",
+        "a fish whose scales come and go",
+        "fish" / "fish.plica.json",
+        "fish" / "fish.obj",
+        "fish" / "left.png",
+        "fish" / "right.png",
+        "fish" / "scales.png",
+        "fish" / "shine.png"
+    ),
     profile!("sketch", "a mug that turns, drawn with a pen", "sketch" / "sketch.plica.json", "mug" / "mug.obj"),
 ];
 

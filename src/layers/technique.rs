@@ -247,12 +247,13 @@ pub trait Technique: Any + Send + Sync {
     /// If something that the layer names is not among the materials, or the synthesis is cancelled.
     fn synth(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem>;
 
-    /// Makes what all parts of the layer share; without a shortcut, all of it.
+    /// Makes what all parts of the layer share; without a shortcut, all of it, and then what it has in common with `previous` is
+    /// reused.
     ///
     /// # Errors
     /// As [`Technique::synth`].
-    fn prepare(&self, making: &Making) -> Result<Box<dyn Prepared>, Problem> {
-        Ok(Box::new(Whole(self.synth(making, None)?)))
+    fn prepare(&self, making: &Making, previous: Option<&dyn Ready>) -> Result<Box<dyn Prepared>, Problem> {
+        Ok(Box::new(Whole(self.synth(making, previous)?)))
     }
 }
 

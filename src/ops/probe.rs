@@ -10,7 +10,7 @@ use crate::base::maths;
 use crate::base::text::{self, hex};
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
-use crate::render::{self, passes, stage::Stage};
+use crate::render::{self, bands::Bands, passes, stage::Stage};
 use crate::scene::Scene;
 
 /// Show what a pixel does at a time, and why
@@ -41,10 +41,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let scene = opened.document.scene();
     let asked = find_layer(scene, args.layer.as_deref())?;
     // In space, what hides the others is meant first.
-    let synth = (args.layer.is_none() && scene.camera.is_some()).then(|| opened.synth()).transpose()?;
+    let synth = scene.camera.is_some().then(|| opened.synth()).transpose()?;
+    let all = synth.as_ref().filter(|_| args.layer.is_none());
     // Only what the pixel needs is computed, not the whole frame.
-    let shown = opened.bands(1)?;
-    let own = own_size(scene, asked, &opened.materials).filter(|_| synth.is_none());
+    let shown = Bands::after(scene, &opened.materials, 1, synth.as_ref()).map_err(|problem| opened.failed(problem))?;
+    let own = own_size(scene, asked, &opened.materials).filter(|_| all.is_none());
     let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
     let moment = Stage::of(scene).moment(args.time, size);
     let making = render::making(scene, &opened.materials);
@@ -55,7 +56,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
     for pixel in pixels {
-        let seen = synth.as_ref().and_then(|synth| passes::topmost(synth, args.time, pixel));
+        let seen = all.and_then(|synth| passes::topmost(synth, args.time, pixel));
         let layer = seen.unwrap_or(asked);
         let mut read = vec![look(layer, pixel)?.unwrap_or_default()];
         if args.layer.is_none() {

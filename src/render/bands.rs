@@ -36,19 +36,32 @@ impl<'a> Bands<'a> {
     /// # Errors
     /// As [`super::synth`].
     pub fn new(scene: &Scene, materials: &'a Materials, n: u32) -> Result<Self, Problem> {
+        Bands::after(scene, materials, n, None)
+    }
+
+    /// The same; what it has in common with `previous` is reused.
+    ///
+    /// # Errors
+    /// As [`super::synth`].
+    pub fn after(scene: &Scene, materials: &'a Materials, n: u32, previous: Option<&Synth>) -> Result<Self, Problem> {
         let places = if n == 1 { vec![CENTRE] } else { super::places(n).collect() };
         let textures = super::textures(scene, materials, None)?;
-        let layers = |place: Vec2| {
+        let layers = |place: Vec2, first: Option<&Vec<Box<dyn Prepared>>>| {
             let prepare = |(i, layer): (usize, &Layer)| {
                 if let Some(texture) = textures.get(layer.technique().name()) {
                     return Ok(Box::new(Whole(texture.layer.clone())) as Box<dyn Prepared>);
                 }
                 let making = Making { place, textures: &textures, ..super::making(scene, materials) };
-                layer.technique().prepare(&making).map_err(|problem| problem.under(&format!("/layers/{i}")))
+                let first = first.and_then(|layers| layers[i].part(0..0, 0..0, materials).ok());
+                let before = first.as_ref().or_else(|| previous?.layers.get(i)).map(|before| &**before);
+                layer.technique().prepare(&making, before).map_err(|problem| problem.under(&format!("/layers/{i}")))
             };
             scene.layers.iter().enumerate().map(prepare).collect::<Result<Vec<_>, _>>()
         };
-        let samples = places.into_iter().map(layers).collect::<Result<Vec<_>, _>>()?;
+        let mut samples: Vec<Vec<Box<dyn Prepared>>> = Vec::new();
+        for place in places {
+            samples.push(layers(place, samples.first())?);
+        }
         let stage = Arc::new(Stage::of(scene));
         Ok(Bands { materials, size: super::frame_size(scene, materials), stage, samples })
     }

@@ -117,7 +117,11 @@ pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> 
 /// As [`synth`].
 pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth>, Problem> {
     let textures = textures(scene, materials, None)?;
-    places(n).map(|place| synth_at(scene, (materials, &textures, place), None)).collect()
+    let mut made: Vec<Synth> = Vec::new();
+    for place in places(n) {
+        made.push(synth_at(scene, (materials, &textures, place), made.first())?);
+    }
+    Ok(made)
 }
 
 /// The places of the n x n samples in a pixel.

@@ -27,6 +27,8 @@ pub struct Picture {
     pub kind: Option<String>,
     /// How far it fades towards its border, in pixels.
     pub feather_px: f64,
+    /// How much of it is left out beside steps in depth, in pixels.
+    pub edge_px: f64,
     /// The file of the image that it is painted over, by its path in the scene, if it is.
     pub guide: Option<String>,
 }
@@ -117,7 +119,8 @@ fn laid(document: &Document, layer: usize, pictures: Vec<Picture>, once: bool) -
         let name = unique_name(&picture.name, |name| names.iter().any(|taken| taken == name));
         names.push(name.clone());
         let guide = picture.guide.map(|path| named(path, &format!("{name}-guide")));
-        laid.push(Laid { name, image, from: picture.from, kind: picture.kind, feather_px: picture.feather_px, guide });
+        let Picture { from, kind, feather_px, edge_px, .. } = picture;
+        laid.push(Laid { name, image, from, kind, feather_px, edge_px, guide });
     }
     let there = wanted - laid.len();
     let there = if there > 0 { format!("; {there} lie there already") } else { String::new() };

@@ -4,6 +4,7 @@
 use std::fmt::Write;
 
 mod terrain;
+mod turned;
 
 use plica::base::maths::{TAU, cos, sin};
 
@@ -12,6 +13,8 @@ pub const MESHES: &[(&str, fn() -> String)] = &[
     ("profiles/ball/ball.obj", ball),
     ("profiles/mug/mug.obj", mug),
     ("profiles/mug/print.obj", print),
+    ("profiles/vase/vase.obj", turned::vase),
+    ("profiles/fish/fish.obj", turned::fish),
     ("profiles/falls/cliff.obj", terrain::cliff),
     ("profiles/falls/pool.obj", terrain::pool),
     ("profiles/falls/stones.obj", terrain::stones),

@@ -7,10 +7,12 @@ mod cat;
 mod chest;
 mod eye;
 mod fire;
+mod fish;
 mod kit;
 pub mod noise;
 mod road;
 mod skin;
+mod vase;
 mod water;
 mod wound;
 
@@ -35,5 +37,13 @@ pub const PICTURES: &[(&str, fn() -> Canvas)] = &[
     ("profiles/car/car.png", road::car),
     ("profiles/car/light.png", road::light),
     ("profiles/cat/cat.png", cat::cat),
+    ("profiles/vase/clay.png", vase::clay),
+    ("profiles/vase/mouth.png", vase::mouth),
+    ("profiles/vase/flowers.png", vase::flowers),
+    ("profiles/vase/dots.png", vase::dots),
+    ("profiles/fish/left.png", fish::left),
+    ("profiles/fish/right.png", fish::right),
+    ("profiles/fish/scales.png", fish::scales),
+    ("profiles/fish/shine.png", fish::shine),
     ("tests/photos/flesh.png", wound::flesh_for_hand),
 ];

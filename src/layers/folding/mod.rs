@@ -165,7 +165,7 @@ impl Technique for PictureLayer {
         Ok(Arc::new(synth::synth(self, making, previous)?))
     }
 
-    fn prepare(&self, making: &Making) -> Result<Box<dyn Prepared>, Problem> {
+    fn prepare(&self, making: &Making, _previous: Option<&dyn Ready>) -> Result<Box<dyn Prepared>, Problem> {
         Ok(Box::new(synth::PreparedLayer::new(self, making)?))
     }
 }

@@ -188,7 +188,7 @@ fn a_clip_is_read_frame_by_frame() {
     let materials = materials();
     let making = Making { duration: 3.0, ..Making::plain(Wrap::Repeat, &materials) };
     let synth = synth::synth(&layer, &making, None).unwrap();
-    let bands = layer.prepare(&making).unwrap();
+    let bands = layer.prepare(&making, None).unwrap();
     let band = bands.part(0..40, 8..9, &materials).unwrap();
     let small = synth.reduced(&mut Reduced::new(2));
     let still = Arc::new(synth.clone()).unmoved();

@@ -64,6 +64,8 @@ pub struct Laid {
     pub kind: Option<String>,
     /// How far it fades towards its border, in pixels.
     pub feather_px: f64,
+    /// How much of it is left out beside steps in depth, in pixels.
+    pub edge_px: f64,
     /// The name of the image that it is painted over, if it is: only what differs from that counts.
     pub guide: Option<String>,
 }

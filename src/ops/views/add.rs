@@ -88,7 +88,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         };
         let feather_px = feather_px.and_then(|path| picture::read(&path, &options.limits).ok());
         let feather_px = feather_px.map_or(0.0, |read| feather::px(&read.picture));
-        let picture = Picture { name, image, from, kind, feather_px, guide: None };
+        let picture = Picture { name, image, from, kind, feather_px, edge_px: 0.0, guide: None };
         shots::add(document, layer, picture, base.pictures.clone())
     };
     base.write(&args.scene)?;

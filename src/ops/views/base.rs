@@ -12,6 +12,8 @@ use crate::scene::shots::{self, Image, Picture};
 
 /// What the pictures feed.
 const KIND: &str = "independent";
+/// A pixel beside what hides something is left out, or it would show on that.
+const EDGE_PX: f64 = 1.0;
 /// How many pixels the side of one may have.
 const SIDES: (usize, usize) = (64, 1024);
 
@@ -34,7 +36,7 @@ impl Base {
         if !shots::replaces(document, layer) {
             return Ok(base);
         }
-        let side_px = synth.size.0.max(synth.size.1).clamp(SIDES.0, SIDES.1);
+        let side_px = synth.size.0.min(synth.size.1).clamp(SIDES.0, SIDES.1);
         for taken in synth.layers.get(layer).map(|ready| ready.around(time, side_px)).unwrap_or_default() {
             let path = format!("{FOLDER}/{name}-base-{}.png", taken.name);
             let png = still::frame(&render::cpu::finish(&taken.picture)).map_err(|error| Error::at(&path, error))?;
@@ -44,6 +46,7 @@ impl Base {
                 from: taken.from,
                 kind: Some(KIND.into()),
                 feather_px: 0.0,
+                edge_px: EDGE_PX,
                 guide: None,
             });
             base.files.push((path, png));

@@ -29,7 +29,9 @@ mod tests {
             let cell = |i| [0.0, 0.0, 0.0, if Some(i) == clear { 0.5 } else { 1.0 }];
             Picture::from_cells(60, 40, (0..2400).map(cell).collect())
         };
-        for (clear, feather_px) in [(None, 2.0), (Some(20 * 60 + 30), 2.0), (Some(0), 0.0), (Some(2399), 0.0), (Some(60), 0.0)] {
+        for (clear, feather_px) in
+            [(None, 2.0), (Some(20 * 60 + 30), 2.0), (Some(0), 0.0), (Some(2399), 0.0), (Some(60), 0.0)]
+        {
             assert_eq!(px(&picture(clear)), feather_px, "{clear:?}");
         }
     }

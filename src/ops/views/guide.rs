@@ -58,7 +58,8 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         wrong(format!("there is no view {} ({hint})", quoted(&args.name)))
     })?;
     let drawn = opened.synth()?.layers[layer].guide(index);
-    let drawn = drawn.ok_or_else(|| wrong(format!("{} does not count", quoted(&args.name))).cure("set active to true"))?;
+    let drawn =
+        drawn.ok_or_else(|| wrong(format!("{} does not count", quoted(&args.name))).cure("set active to true"))?;
     let frame = render::cpu::finish(&drawn);
     context.check_cancelled()?;
     if let Some(place) = place {

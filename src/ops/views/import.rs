@@ -108,13 +108,16 @@ fn taken(path: &Path, shot: &Shot, root: &Path, args: &Args, options: &files::Op
     let read = picture::read(path, &options.limits)?.picture;
     let size_px = [read.width() as u32, read.height() as u32];
     if let Some(wrong) = shot.size_px.and_then(|camera| misshapen(size_px, camera)) {
-        return Err(Error::at(path.display(), wrong).cure("give it the picture that its camera took, not cut or stretched"));
+        return Err(
+            Error::at(path.display(), wrong).cure("give it the picture that its camera took, not cut or stretched")
+        );
     }
     let file = Beside::new(path, root, &args.scene)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let shot = Shot { size_px: Some(shot.size_px.unwrap_or(size_px)), ..*shot };
     let image = Image::File(file.path.clone());
-    let picture = Picture { name, image, from: SeenFrom::Shot(shot), kind: args.kind.clone(), feather_px: feather::px(&read), guide: None };
+    let (from, kind, feather_px) = (SeenFrom::Shot(shot), args.kind.clone(), feather::px(&read));
+    let picture = Picture { name, image, from, kind, feather_px, edge_px: 0.0, guide: None };
     Ok((picture, file))
 }
 

@@ -96,11 +96,13 @@ pub fn begin(
         from,
         kind: Some(kind.unwrap_or(KIND).to_owned()),
         feather_px: 0.0,
+        edge_px: 0.0,
         guide: Some(file(name, true)),
     };
     let base = Base::new(document, synth, (sight.layer, sight.time), name)?;
     // Checked before anything is written.
-    let applied = shots::add(document, sight.layer, picture, base.pictures.clone()).map_err(|why| Error::at(name, why))?;
+    let applied =
+        shots::add(document, sight.layer, picture, base.pictures.clone()).map_err(|why| Error::at(name, why))?;
     document.apply(&applied.edit).map_err(|problems| refused(name, &problems))?;
     let folder = disk::folder_of(scene);
     let (own, guide) = (file(name, false), file(name, true));

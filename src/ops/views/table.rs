@@ -24,13 +24,15 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     for (layer, (name, ready)) in named {
         context.check_cancelled()?;
         let Some(rows) = ready.lying(args.compare) else { continue };
+        let names = rows.iter().filter_map(|row| row["view"].as_str());
+        let width = names.map(|name| name.chars().count()).fold(LEAST_WIDTH, usize::max);
         if !args.json {
             context.print(format!("{}{name}", if any { "\n" } else { "" }))?;
-            context.print(HEAD)?;
+            context.print(format!("{:<width$} {HEAD}", "view"))?;
         }
         any = true;
         for row in &rows {
-            context.print(if args.json { line(name, row) } else { words(row) })?;
+            context.print(if args.json { line(name, row) } else { words(row, width) })?;
         }
         off(&rows).for_each(|told| context.messages.say(&told));
         let odd = super::odd(scene, layer, &opened.materials);
@@ -47,10 +49,12 @@ fn line(layer: &str, row: &Value) -> String {
     line.to_string()
 }
 
-const HEAD: &str = "view             kind         depth  pixels  beyond  cells by layer           psnr";
+/// How wide the names of views are at least.
+const LEAST_WIDTH: usize = 16;
+const HEAD: &str = "kind         depth  pixels  beyond  cells by layer           psnr";
 
 /// A row of the table: a view, or the whole map.
-fn words(row: &Value) -> String {
+fn words(row: &Value, width: usize) -> String {
     let text = |key: &str| row[key].as_str().unwrap_or_default();
     let number = |value: &Value, decimals: usize| value.as_f64().map_or("-".into(), |v| short(v, decimals));
     let list =
@@ -69,7 +73,7 @@ fn words(row: &Value) -> String {
     let beyond = row["beyond"].as_f64().unwrap_or_default() * 100.0;
     let psnr = row.get("psnr").map(|psnr| number(psnr, 1)).unwrap_or_default();
     let line = format!(
-        "{:<16} {:<11} {:>6} {:>7} {beyond:>6.0}%  {:<24} {psnr}",
+        "{:<width$} {:<11} {:>6} {:>7} {beyond:>6.0}%  {:<24} {psnr}",
         text("view"),
         text("kind"),
         number(&row["depth"], 2),

@@ -34,7 +34,9 @@ mod tests {
     #[test]
     fn a_line_waits_until_the_scene_as_it_is_was_made() {
         let mut state = support::state();
-        let awaits = |state: &State| ["sprites take", "pick add", ":clip show", "views add a"].map(|line| awaits_pictures(state, line));
+        let awaits = |state: &State| {
+            ["sprites take", "pick add", ":clip show", "views add a"].map(|line| awaits_pictures(state, line))
+        };
         assert_eq!(awaits(&state), [true; 4]);
         assert!(!awaits_pictures(&state, "sprites -o out") && !awaits_pictures(&state, "undo"));
         assert!(!awaits_pictures(&state, "place next"), "the size of the picture is known");

@@ -15,7 +15,6 @@ use inverse_distance::{Modified, Shepard};
 use rigid::Rigid;
 use thin_plate::{NoPlate, Plate};
 
-mod cholesky;
 mod inverse_distance;
 mod rigid;
 mod thin_plate;

@@ -5,8 +5,8 @@
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 
-use super::cholesky::{Matrix, stride};
 use super::{Jumps, Method, Run};
+use crate::base::cholesky::{Matrix, stride};
 use crate::base::maths;
 use crate::layers::folding::anchor::Anchor;
 

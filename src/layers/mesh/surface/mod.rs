@@ -67,7 +67,7 @@ impl Surface {
 
 /// How more pictures with cameras come to lie on a surface: it becomes one of a kind that can have them, if it is not.
 pub fn lay(surface: &Surface, pictures: &[Laid]) -> Laying {
-    let first = (!matches!(surface, Surface::ViewMap(_))).then(|| ("/surface", view_map::lay::empty()));
+    let first = (!matches!(surface, Surface::ViewMap(_))).then(|| ("/surface", view_map::lay::empty(pictures)));
     view_map::lay::laying(pictures, first, "/surface/views")
 }
 

@@ -1,6 +1,7 @@
 //! What brings the exposures of photographs together: where two of them see the same cells, their colors should agree.
 
 use super::map::Map;
+use crate::base::cholesky::Matrix;
 use crate::base::maths::{exp, ln};
 
 /// The least number of cells that two views must have in common.
@@ -66,18 +67,25 @@ pub fn factors(map: &Map) -> Vec<[f64; 3]> {
         return factors;
     }
     let place = |view: usize| base.iter().position(|own| *own == view).unwrap_or(0);
-    let gains = [0, 1, 2].map(|channel| {
-        let mut rows = vec![vec![0.0; base.len() + 1]; base.len()];
-        rows.iter_mut().enumerate().for_each(|(i, row)| row[i] = KEPT * all / base.len() as f64);
-        for pair in &common {
-            let ([u, v], n) = (pair.views.map(place), pair.cells as f64);
-            for (own, other, sign) in [(u, v, 1.0), (v, u, -1.0)] {
-                rows[own][own] += n;
-                rows[own][other] -= n;
-                rows[own][base.len()] -= sign * n * pair.brighter[channel];
-            }
+    // The normal equations, and a right side for each channel.
+    let n = base.len();
+    let mut matrix = Matrix::new(n, n + 3);
+    let stride = matrix.stride;
+    (0..n).for_each(|i| matrix.cells[i * stride + i] = KEPT * all / n as f64);
+    for pair in &common {
+        let ([u, v], cells) = (pair.views.map(place), pair.cells as f64);
+        matrix.cells[u.min(v) * stride + u.max(v)] -= cells;
+        for (own, sign) in [(u, 1.0), (v, -1.0)] {
+            matrix.cells[own * stride + own] += cells;
+            let right = &mut matrix.cells[own * stride + n..];
+            right.iter_mut().zip(pair.brighter).for_each(|(right, brighter)| *right -= sign * cells * brighter);
         }
-        let gains = solved(rows);
+    }
+    if matrix.factor(n, &|| false).is_none() {
+        return factors;
+    }
+    let gains = [0, 1, 2].map(|channel| {
+        let gains = matrix.solve(n, n + channel);
         let mean = gains.iter().sum::<f64>() / gains.len() as f64;
         gains.into_iter().map(|gain| exp(gain - mean)).collect::<Vec<f64>>()
     });
@@ -99,22 +107,4 @@ fn layer(map: &Map) -> Option<usize> {
 fn median(mut of: Vec<f64>) -> f64 {
     of.sort_by(f64::total_cmp);
     (of[(of.len() - 1) / 2] + of[of.len() / 2]) / 2.0
-}
-
-/// The solution of linear equations whose matrix is positive definite; the last column is the right side.
-fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
-    let count = rows.len();
-    for k in 0..count {
-        let pivot = rows[k].clone();
-        for row in &mut rows[k + 1..] {
-            let by = row[k] / pivot[k];
-            row.iter_mut().zip(&pivot).skip(k).for_each(|(own, other)| *own -= by * other);
-        }
-    }
-    let mut found = vec![0.0; count];
-    for k in (0..count).rev() {
-        let known: f64 = (k + 1..count).map(|j| rows[k][j] * found[j]).sum();
-        found[k] = (rows[k][count] - known) / rows[k][k];
-    }
-    found
 }

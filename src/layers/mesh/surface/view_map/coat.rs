@@ -42,11 +42,15 @@ pub fn parts(lists: &Lists, cell: u32, layer: usize, views: &[View], parts: &mut
     mix(parts)
 }
 
-/// The base coat of all layers.
-pub fn coats(cells: &Cells, lists: &[Lists], views: &[View], missing: [f32; 3]) -> Vec<Coat> {
+/// What views told before, and the base coat of that.
+pub type Before<'a> = (&'a [Lists], &'a [Coat]);
+
+/// The base coat of all layers; what was known `before` of cells that are told the same is kept.
+pub fn coats(cells: &Cells, lists: &[Lists], views: &[View], missing: [f32; 3], before: Option<Before>) -> Vec<Coat> {
     let mut coats: Vec<Coat> = Vec::with_capacity(lists.len());
     for (number, (layer, lists)) in cells.layers.iter().zip(lists).enumerate() {
-        let mut coat = known(layer, lists, number, views, missing);
+        let before = before.map(|(lists, coats)| (&lists[number], &coats[number]));
+        let mut coat = known(layer, lists, (number, before), views, missing);
         match coats.last() {
             None => fill_from_beside(layer, &mut coat),
             Some(above) => fill_from_above(layer, &mut coat, &cells.layers[number - 1], above),
@@ -56,8 +60,21 @@ pub fn coats(cells: &Cells, lists: &[Lists], views: &[View], missing: [f32; 3]) 
     coats
 }
 
-fn known(layer: &Layer, lists: &Lists, number: usize, views: &[View], missing: [f32; 3]) -> Coat {
+fn known(
+    layer: &Layer,
+    lists: &Lists,
+    (number, before): (usize, Option<(&Lists, &Coat)>),
+    views: &[View],
+    missing: [f32; 3],
+) -> Coat {
+    let is_base = |view: u8| views[usize::from(view)].base;
     let cells = (0..layer.len() as u32).into_par_iter().map_init(Vec::new, |found: &mut Vec<Part>, cell| {
+        if let Some((told, coat)) = before
+            && coat.states[cell as usize] == State::Known
+            && lists.tell_the_same(told, cell, is_base)
+        {
+            return (coat.colors[cell as usize], State::Known);
+        }
         let opacity = parts(lists, cell, number, views, found);
         if opacity <= 0.0 {
             return (missing, State::Missing);

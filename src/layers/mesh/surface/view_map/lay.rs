@@ -33,9 +33,14 @@ pub fn laying(pictures: &[Laid], first: Option<(&'static str, Value)>, list: &'s
     Laying { first, list, items: pictures.iter().map(view).collect() }
 }
 
-/// A view map without views.
-pub fn empty() -> Value {
-    json!({ "kind": "view-map" })
+/// A view map without views, for these pictures. Texture coordinates are made for textures, and may be uneven or cover
+/// themselves; whoever adds a view to a mesh that has one should not have to think of that.
+pub fn empty(pictures: &[Laid]) -> Value {
+    let is_added = |laid: &Laid| matches!(laid.from, SeenFrom::Standing { .. });
+    match pictures.iter().any(is_added) {
+        true => json!({ "kind": "view-map", "atlas": "box" }),
+        false => json!({ "kind": "view-map" }),
+    }
 }
 
 /// A picture as a view in the document.
@@ -60,8 +65,8 @@ fn view(laid: &Laid) -> Value {
         view.insert("hold".into(), json!(0.5));
         view.insert("changed".into(), guide.clone().into());
     }
-    if laid.feather_px > 0.0 {
-        view.insert("feather".into(), number::json(laid.feather_px));
+    for (key, px) in [("feather", laid.feather_px), ("edge", laid.edge_px)].into_iter().filter(|(_, px)| *px > 0.0) {
+        view.insert(key.into(), number::json(px));
     }
     view.into()
 }

@@ -16,26 +16,51 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// Joins what views tell so many cells.
-    pub fn new(cells: usize, told: &[&Told]) -> Lists {
-        let mut starts = vec![0_u32; cells + 1];
-        for cell in told.iter().flat_map(|told| &told.cells) {
-            starts[*cell as usize + 1] += 1;
-        }
-        for cell in 0..cells {
-            starts[cell + 1] += starts[cell];
-        }
-        let count = starts[cells] as usize;
-        let mut next = starts.clone();
-        let (mut views, mut entries) = (vec![0; count], vec![Entry::default(); count]);
-        for (view, told) in told.iter().enumerate() {
-            for (cell, entry) in told.cells.iter().zip(&told.entries) {
-                let at = &mut next[*cell as usize];
-                (views[*at as usize], entries[*at as usize]) = (view as u8, *entry);
-                *at += 1;
+    /// Joins what views, ascending, tell so many cells; of lists before, those views go on that are the same.
+    pub fn new(cells: usize, before: Option<(&Lists, &[bool])>, fresh: &[(usize, &Told)]) -> Lists {
+        let most = fresh.iter().map(|(_, told)| told.cells.len()).sum::<usize>()
+            + before.map_or(0, |(before, _)| before.views.len());
+        let mut lists = Lists {
+            starts: Vec::with_capacity(cells + 1),
+            views: Vec::with_capacity(most),
+            entries: Vec::with_capacity(most),
+        };
+        lists.starts.push(0);
+        let mut next = vec![0; fresh.len()];
+        for cell in 0..cells as u32 {
+            let old = before.iter().flat_map(|(before, same)| {
+                before.told_to(cell).filter(|(view, _)| same.get(usize::from(*view)).is_some_and(|same| *same))
+            });
+            let mut old = old.peekable();
+            for ((view, told), next) in fresh.iter().zip(&mut next) {
+                if told.cells.get(*next) == Some(&cell) {
+                    while let Some((view, entry)) = old.next_if(|(own, _)| usize::from(*own) < *view) {
+                        lists.push(view, entry);
+                    }
+                    lists.push(*view as u8, &told.entries[*next]);
+                    *next += 1;
+                }
             }
+            old.for_each(|(view, entry)| lists.push(view, entry));
+            lists.starts.push(lists.views.len() as u32);
         }
-        Lists { starts, views, entries }
+        lists.views.shrink_to_fit();
+        lists.entries.shrink_to_fit();
+        lists
+    }
+
+    fn push(&mut self, view: u8, entry: &Entry) {
+        self.views.push(view);
+        self.entries.push(*entry);
+    }
+
+    /// Whether a cell is told the same in both, by views that are wanted.
+    pub fn tell_the_same(&self, other: &Lists, cell: u32, wanted: impl Fn(u8) -> bool) -> bool {
+        self.told_to(cell).filter(|(view, _)| wanted(*view)).eq(other.told_to(cell).filter(|(view, _)| wanted(*view)))
+    }
+
+    fn told_to(&self, cell: u32) -> impl Iterator<Item = (u8, &Entry)> {
+        self.of(cell).map(|at| (self.views[at], &self.entries[at]))
     }
 
     /// Where the list of a cell is.

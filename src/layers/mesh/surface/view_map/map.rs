@@ -85,6 +85,8 @@ pub struct Map {
     pub lists: Arc<Vec<Lists>>,
     /// The base coat, by layer.
     pub coats: Arc<Vec<Coat>>,
+    /// What views see whose pictures are being edited.
+    seen: Vec<Option<Arc<Seen>>>,
 }
 
 /// What watches over a filling.
@@ -106,8 +108,8 @@ impl Map {
         let before = before.filter(|map| map.cells.layers.len() == levels);
         let cells = before.map_or_else(|| Arc::new(Cells::new(&atlas, wanted.first, levels)), |map| map.cells.clone());
         let alike = before.filter(|map| map.wanted.tells_the_same(&wanted));
-        if let Some(Map { reports, origins, lists, coats, .. }) = alike {
-            let (lists, coats) = (lists.clone(), coats.clone());
+        if let Some(Map { reports, origins, lists, coats, seen, .. }) = alike {
+            let (lists, coats, seen) = (lists.clone(), coats.clone(), seen.clone());
             return Some(Map {
                 wanted,
                 atlas,
@@ -116,40 +118,95 @@ impl Map {
                 origins: origins.clone(),
                 lists,
                 coats,
+                seen,
             });
         }
         let filled = wanted.views.par_iter().zip(&mut seen).enumerate().map(|(number, (view, seen))| {
             if (watch.stopped)() {
                 return None;
             }
-            let known = before.and_then(|map| map.told_by(view));
-            let of_view = known.unwrap_or_else(|| {
-                let seen = seen.take().unwrap_or_else(|| look(&wanted, &atlas, view));
-                (report(&seen, levels), told(&cells, &seen, &view.paint.pixels(), view.reach))
+            let of_view = before.and_then(|map| map.told_by(number, view)).unwrap_or_else(|| {
+                // Who paints does it again and again.
+                let is_edited = before.is_some_and(|map| map.looks_as(view).is_some());
+                let kept = before.and_then(|map| map.seen[map.looks_as(view)?].clone());
+                let seen = kept.or_else(|| seen.take().map(Arc::new));
+                let seen = seen.unwrap_or_else(|| Arc::new(look(&wanted, &atlas, view)));
+                let told = told(&cells, &seen, &view.paint.pixels(), view.reach);
+                OfView { report: report(&seen, levels), told: Some(told), seen: Some(seen).filter(|_| is_edited) }
             });
             (watch.done)(number);
             Some(of_view)
         });
-        let filled: Vec<(Report, Vec<Told>)> = filled.collect::<Option<_>>()?;
+        let filled: Vec<OfView> = filled.collect::<Option<_>>()?;
+        let same: Vec<bool> = filled.iter().map(|of| of.told.is_none()).collect();
         let lists = (0..levels).into_par_iter().map(|layer| {
-            let told: Vec<&Told> = filled.iter().map(|(_, told)| &told[layer]).collect();
-            Lists::new(cells.layers[layer].len(), &told)
+            let fresh = filled.iter().enumerate().filter_map(|(view, of)| Some((view, of.told.as_ref()?.get(layer)?)));
+            let before = before.map(|map| (&map.lists[layer], &same[..]));
+            Lists::new(cells.layers[layer].len(), before, &fresh.collect::<Vec<_>>())
         });
-        let lists: Vec<Lists> = lists.collect();
-        let (reports, origins) =
-            filled.into_iter().map(|(report, told)| (report, told.iter().map(|told| told.origins).collect())).unzip();
-        let coats = Arc::new(coats(&cells, &lists, &wanted.views, wanted.missing));
-        let lists = Arc::new(lists);
-        Some(Map { wanted, atlas, cells, reports, origins, lists, coats })
+        let lists = Arc::new(lists.collect::<Vec<Lists>>());
+        let origins = filled.iter().enumerate().map(|(view, of)| match (&of.told, before) {
+            (None, Some(map)) => map.origins[view].clone(),
+            (told, _) => told.iter().flatten().map(|told| told.origins).collect(),
+        });
+        let origins = origins.collect();
+        let coats = coated(&wanted, &cells, &lists, before.map(|map| (map, &same[..])));
+        let (reports, seen) = filled.into_iter().map(|of| (of.report, of.seen)).unzip();
+        Some(Map { wanted, atlas, cells, reports, origins, lists, coats, seen })
     }
 
-    /// What is known of a view, and what it tells, if this map has it.
-    fn told_by(&self, view: &View) -> Option<(Report, Vec<Told>)> {
-        let own = self.wanted.views.iter().position(|own| own.tells_the_same(view))?;
-        let origins = self.origins[own].iter();
-        let told = self.lists.iter().zip(origins).map(|(lists, origins)| lists.told(own as u8, *origins));
-        Some((self.reports[own], told.collect()))
+    /// What is known of the view of this number, if this map has it: what it tells only if it has another number here.
+    fn told_by(&self, number: usize, view: &View) -> Option<OfView> {
+        let same = |own: &usize| self.wanted.views.get(*own).is_some_and(|own| own.tells_the_same(view));
+        let own = Some(number).filter(same).or_else(|| (0..self.wanted.views.len()).find(same))?;
+        let told = |(lists, origins): (&Lists, &[usize; 4])| lists.told(own as u8, *origins);
+        let told = (own != number).then(|| self.lists.iter().zip(&self.origins[own]).map(told).collect());
+        Some(OfView { report: self.reports[own], told, seen: self.seen[own].clone() })
     }
+
+    /// The view of this map that sees what a view does.
+    fn looks_as(&self, view: &View) -> Option<usize> {
+        self.wanted.views.iter().position(|own| (own.camera, own.edge_px) == (view.camera, view.edge_px))
+    }
+
+    /// Whether the base coat of a map is made of the views with the same numbers.
+    fn has_bases_of(&self, wanted: &Wanted) -> bool {
+        let bases = |wanted: &Wanted| wanted.views.iter().map(|view| view.base).collect::<Vec<_>>();
+        bases(&self.wanted) == bases(wanted)
+    }
+
+    /// The memory of what views see, in bytes.
+    pub fn seen_bytes(&self) -> u64 {
+        self.seen.iter().flatten().map(|seen| seen.bytes() as u64).sum()
+    }
+
+    /// Forgets what views see; it is found again when it is needed.
+    pub fn forget_seen(&mut self) {
+        self.seen.iter_mut().for_each(|seen| *seen = None);
+    }
+}
+
+/// What is known of a view while a map is filled.
+struct OfView {
+    report: Report,
+    /// What it tells; `None` if that is as it was in the map before, where it has the same number.
+    told: Option<Vec<Told>>,
+    /// What it sees, if that is kept.
+    seen: Option<Arc<Seen>>,
+}
+
+/// The base coat; what is known of it before is kept where the same views tell the same.
+fn coated(wanted: &Wanted, cells: &Cells, lists: &[Lists], before: Option<(&Map, &[bool])>) -> Arc<Vec<Coat>> {
+    let before = before.filter(|(map, _)| map.has_bases_of(wanted));
+    let is_same = |(same, view): (&bool, &View)| *same || !view.base;
+    if let Some((map, same)) = before
+        && map.wanted.missing == wanted.missing
+        && same.iter().zip(&wanted.views).all(is_same)
+    {
+        return map.coats.clone();
+    }
+    let before = before.map(|(map, _)| (&map.lists[..], &map.coats[..]));
+    Arc::new(coats(cells, lists, &wanted.views, wanted.missing, before))
 }
 
 fn look(wanted: &Wanted, atlas: &Atlas, view: &View) -> Seen {
@@ -174,11 +231,7 @@ fn looked(
             if (watch.stopped)() {
                 return None;
             }
-            let same = |own: &&View| (own.camera, own.edge_px) == (view.camera, view.edge_px);
-            let known = before.and_then(|map| {
-                let own = map.wanted.views.iter().position(|own| same(&own))?;
-                Some(map.reports[own].depth)
-            });
+            let known = before.and_then(|map| Some(map.reports[map.looks_as(view)?].depth));
             Some(match known {
                 Some(depth) => (None, depth),
                 None => {

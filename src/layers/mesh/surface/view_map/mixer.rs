@@ -59,8 +59,7 @@ impl<'a> Mixer<'a> {
             let at = places[view] as usize;
             (views.get(at).is_some_and(|found| usize::from(*found) == view)).then(|| (at, &entries[at]))
         };
-        let strength =
-            |view: usize| entry(view).map_or(0.0, |(_, told)| f64::from(told.mask) * f64::from(told.facing));
+        let strength = |view: usize| entry(view).map_or(0.0, |(_, told)| f64::from(told.mask) * f64::from(told.facing));
         for near in self.gauges.near() {
             let Some((at, told)) = entry(near.view) else { continue };
             let factor = self.map.wanted.views[near.view].fade.factor(self.gauges.gauge(near, strength));

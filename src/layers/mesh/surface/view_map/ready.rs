@@ -8,7 +8,7 @@ use super::super::{Place, Reader, ReadySurface, StillSurface};
 use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked};
-use super::map::Map;
+use super::map::{Map, Wanted};
 use super::{again, passes, probe, told};
 use crate::base::budget::Share;
 use crate::base::number;
@@ -37,6 +37,11 @@ impl Ready {
     /// The map with its arrays.
     pub fn filled(&self) -> Filled<'_> {
         (&self.map, self.arrays.as_deref())
+    }
+
+    /// Whether it is the map that is wanted, with arrays of so many directions a side.
+    pub fn is_of(&self, wanted: &Wanted, side: Option<usize>) -> bool {
+        self.map.wanted.same(wanted) && self.arrays.as_ref().map(|arrays| arrays.side()) == side
     }
 }
 

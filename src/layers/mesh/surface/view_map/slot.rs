@@ -1,12 +1,12 @@
 //! A view map in the document, as a kind of surface.
 
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::Arc;
 
 use super::super::{Before, ReadySurface, Slot};
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
 use super::cells::Cells;
-use super::map::{Map, UNSEEN, Wanted, Watch};
+use super::map::{Map, UNSEEN, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
 use super::report;
@@ -19,9 +19,6 @@ use crate::base::problem::Problem;
 use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::parts::shots::Lying;
 use crate::layers::ready::Making;
-
-/// The maps that are in use: several samples of a frame, and what looks at one pixel, share them.
-static ALIVE: Mutex<Vec<Weak<Ready>>> = Mutex::new(Vec::new());
 
 /// The memory of a pixel of a picture while a view looks, in bytes: four pixels of the image of triangles.
 const LOOKED_BYTES: u64 = 4 * 24;
@@ -78,8 +75,8 @@ impl Slot for ViewMap {
         let points = Points::new(&self.blend, mesh);
         let before = before.and_then(|before| before.downcast::<Ready>());
         let side = self.directions.map(|side| side as usize);
-        if let Some(ready) = alive(&wanted, side) {
-            return Ok(Arc::new(Ready { points, ..(*ready).clone() }));
+        if let Some(ready) = before.filter(|before| before.is_of(&wanted, side)) {
+            return Ok(Arc::new(Ready { points, ..ready.clone() }));
         }
         let pixels: Vec<u64> = wanted.views.iter().map(pixels).collect();
         materials.expect(pixels.iter().sum());
@@ -89,15 +86,17 @@ impl Slot for ViewMap {
         let looking = materials.budget.try_take(looked).map_err(short)?;
         let (stopped, stop) = (|| materials.stopped(), || Problem::error("", "stopped"));
         let watch = Watch { stopped: &stopped, done: &|view| materials.made(pixels[view]) };
-        let map = Map::new(wanted, before.map(|before| &*before.map), &watch).ok_or_else(stop)?;
+        let mut map = Map::new(wanted, before.map(|before| &*before.map), &watch).ok_or_else(stop)?;
         drop(looking);
         let elements = side.map_or(0, |side| (map.cells.count() * side * side) as u64 * ELEMENT_BYTES);
-        let kept = materials.budget.try_take(report::bytes((&map, None)) + elements).map_err(short)?;
+        let bytes = report::bytes((&map, None)) + elements;
+        let kept = materials.budget.try_take(bytes + map.seen_bytes()).or_else(|_| {
+            map.forget_seen();
+            materials.budget.try_take(bytes)
+        });
+        let kept = kept.map_err(short)?;
         let arrays = side.map(|side| Arrays::new(&map, side, &stopped).ok_or_else(stop)).transpose()?;
-        let ready = Ready { map: Arc::new(map), arrays: arrays.map(Arc::new), points, kept: Arc::new(kept) };
-        let ready = Arc::new(ready);
-        ALIVE.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(&ready));
-        Ok(ready)
+        Ok(Arc::new(Ready { map: Arc::new(map), arrays: arrays.map(Arc::new), points, kept: Arc::new(kept) }))
     }
 
     fn check_made(&self, made: &dyn ReadySurface) -> Vec<Problem> {
@@ -107,15 +106,6 @@ impl Slot for ViewMap {
 
 fn pixels(view: &View) -> u64 {
     (view.camera.size_px.0 * view.camera.size_px.1) as u64
-}
-
-/// The same map with arrays of the same side, if it is in use.
-fn alive(wanted: &Wanted, side: Option<usize>) -> Option<Arc<Ready>> {
-    let mut alive = ALIVE.lock().unwrap_or_else(PoisonError::into_inner);
-    alive.retain(|ready| ready.strong_count() > 0);
-    let same =
-        |ready: &Arc<Ready>| ready.map.wanted.same(wanted) && ready.arrays.as_ref().map(|arrays| arrays.side()) == side;
-    alive.iter().filter_map(Weak::upgrade).find(same)
 }
 
 /// What is wrong with so many layers, if they have too many cells: the surface covers half of a unit of the atlas.

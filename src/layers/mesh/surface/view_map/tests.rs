@@ -238,6 +238,18 @@ fn the_bytes_do_not_depend_on_threads_nor_on_what_was_filled_before() {
     edited.views[2].base = false;
     let (after, anew) = (filled(edited.clone(), Some(&one)), filled(edited.clone(), None));
     assert!(same(&after, &anew) && !same(&after, &one));
+    let edits: [fn(&mut Vec<View>); 5] = [
+        |views| views.truncate(2),
+        |views| drop(views.remove(0)),
+        |views| views.push(View { base: false, ..view([1.0, -2.0, 3.0], 3) }),
+        |views| views.swap(0, 2),
+        |views| views[2].paint.feather_px = 9.0,
+    ];
+    for (number, edit) in edits.into_iter().enumerate() {
+        let mut edited = edited.clone();
+        edit(&mut edited.views);
+        assert!(same(&filled(edited.clone(), Some(&after)), &filled(edited, None)), "edit {number}");
+    }
     edited.views[0].fade.hold = 0.5;
     let faded = filled(edited, Some(&after));
     assert!(Arc::ptr_eq(&faded.lists, &after.lists) && Arc::ptr_eq(&faded.coats, &after.coats));
@@ -318,6 +330,10 @@ fn what_is_odd_is_told_once_it_is_filled() {
     let found = told(squares(&[0.0]), vec![view([0.0, 0.0, -4.0], 0), beyond], own(2));
     assert!(found[0].1.starts_with("sees nothing of the mesh (it looks 0 degrees past it)"), "{found:?}");
     assert!(found[1].0 == "/views/1" && found[1].1.contains("100 % of it is finer than layer 2"), "{found:?}");
+    let mut within = view([0.0, 0.0, 0.5], 0);
+    within.extremes = Extremes::Cone(0.5);
+    let found = told(ball(), vec![within, view([0.0, 0.0, 4.0], 1)], own(2));
+    assert!(found[0] == ("/views/0/camera".into(), "it is in the mesh".into()), "{found:?}");
     let mut folded = (*squares(&[0.0])).clone();
     folded.triangles.push([0, 1, 2]);
     let found = told(Arc::new(folded), vec![view([0.0, 0.0, 4.0], 0), view([1.0, 0.0, 4.0], 1)], own(2));

@@ -58,9 +58,11 @@ fn misfits_of(own: &model::View, materials: &Materials) -> Vec<Problem> {
         Some([picture.width(), picture.height()].map(|side| side as u32))
     };
     let Some(picture) = size(&own.image) else { return Vec::new() };
-    let shape = own.camera.size.and_then(|camera| misshapen(picture, camera)).map(|message| {
-        Problem::error("", message).hint("give camera.size the size that focal and center are for")
-    });
+    let shape = own
+        .camera
+        .size
+        .and_then(|camera| misshapen(picture, camera))
+        .map(|message| Problem::error("", message).hint("give camera.size the size that focal and center are for"));
     let beside = [("/mask", &own.mask), ("/changed", &own.changed)].into_iter().filter_map(|(path, name)| {
         let ([width, height], [own_width, own_height]) = (picture, name.as_ref().and_then(size)?);
         let message = || format!("{own_width}x{own_height}, the picture is {width}x{height}");

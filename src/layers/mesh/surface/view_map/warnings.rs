@@ -1,5 +1,7 @@
 //! What is odd about a map that only shows once it is filled. Paths are relative to the surface.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::atlas::{self, Atlas};
@@ -7,7 +9,7 @@ use super::cells::Layer;
 use super::map::Map;
 use super::model::{Extremes, Feeds, View, ViewMap};
 use super::report::{self, OfView};
-use crate::base::maths::acos;
+use crate::base::maths::{acos, atan2};
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 
@@ -20,6 +22,9 @@ const MOST_LEVELS: f64 = 9.0;
 const MOST_COVERED: f64 = 0.01;
 /// How many times larger the cells of the 95th percentile may be on the surface than those of the 5th.
 const MOST_STRETCHED: f64 = 8.0;
+
+/// The share of all directions in which there is the inside of a mesh for a point that is in it.
+const MOST_ROUND: f64 = 0.75;
 
 /// Everything odd.
 pub fn warnings(own: &ViewMap, map: &Map) -> Vec<Problem> {
@@ -55,7 +60,20 @@ pub fn of_atlas(mesh: &Mesh, atlas: &Atlas, finest: &Layer) -> Option<Problem> {
     })
 }
 
+/// Whether a point is in a closed mesh: the solid angle that it fills from there (Van Oosterom and Strackee 1983).
+fn is_inside(mesh: &Mesh, point: DVec3) -> bool {
+    let angle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| (mesh.vertices[corner as usize].position - point).normalize_or_zero());
+        2.0 * atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    };
+    mesh.triangles.iter().map(angle).sum::<f64>() > MOST_ROUND * 4.0 * PI
+}
+
 fn of_view(found: &OfView, map: &Map) -> Option<Problem> {
+    if is_inside(&map.wanted.mesh, found.view.camera.position) {
+        let problem = Problem::warning("/camera", "it is in the mesh");
+        return Some(problem.hint("move it out; it is in the model's coordinates, before the pose"));
+    }
     let Some(depth) = found.depth else {
         let middle = map.wanted.mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
         let camera = &found.view.camera;
