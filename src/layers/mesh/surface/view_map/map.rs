@@ -19,7 +19,7 @@ pub const UNSEEN: usize = 5;
 const FINEST: (f64, f64) = (2.0, 5.0);
 /// How far a view may be deeper than the finest layer before another is made.
 const DEEPER: f64 = 0.05;
-/// The memory for what views see while the levels are not yet known; what is beyond is found twice.
+/// The memory for what views see while the levels are not yet known, and for what is kept of it; what is beyond is found twice.
 const KEPT_BYTES: usize = 1 << 29;
 
 /// What a map is made from.
@@ -151,7 +151,8 @@ impl Map {
         });
         let origins = origins.collect();
         let coats = coated(&wanted, &cells, &lists, before.map(|map| (map, &same[..])));
-        let (reports, seen) = filled.into_iter().map(|of| (of.report, of.seen)).unzip();
+        let (reports, mut seen): (_, Vec<_>) = filled.into_iter().map(|of| (of.report, of.seen)).unzip();
+        keep(&mut seen, &same);
         Some(Map { wanted, atlas, cells, reports, origins, lists, coats, seen })
     }
 
@@ -183,6 +184,19 @@ impl Map {
     /// Forgets what views see; it is found again when it is needed.
     pub fn forget_seen(&mut self) {
         self.seen.iter_mut().for_each(|seen| *seen = None);
+    }
+}
+
+/// Keeps as much of what views see as there is room for; that of views which are the same as before is forgotten first.
+fn keep(seen: &mut [Option<Arc<Seen>>], same: &[bool]) {
+    let mut room = KEPT_BYTES;
+    for is_same in [false, true] {
+        for (seen, _) in seen.iter_mut().zip(same).filter(|(_, same)| **same == is_same) {
+            match seen.as_ref().map_or(0, |seen| seen.bytes()) {
+                bytes if bytes <= room => room -= bytes,
+                _ => *seen = None,
+            }
+        }
     }
 }
 
