@@ -275,6 +275,7 @@ fn the_first_view_keeps_the_look_of_a_mesh() {
     let folder = folder();
     let at = folder.path();
     plica(at, &["new", "flat.obj", "-o", "b.plica.json"], true);
+    plica(at, &["set", "b.plica.json", "size=[64,48]"], true);
     let before = rendered(at, "b.plica.json");
     let add =
         ["views", "add", "spot", "b.plica.json", "--image", "cat.png", "--position", "0,7,-9", "--target", "0,7,0"];

@@ -8,11 +8,11 @@ use super::noise::fbm;
 
 /// The clay as it is seen from a side: the same from all sides but for its grain.
 pub fn clay() -> Canvas {
-    let mut canvas = Canvas::new(160, 160, rgb(0xC9825A));
+    let mut canvas = Canvas::new(112, 112, rgb(0xC9825A));
     canvas.shade(|x, y, clay| {
-        let up = 1.0 - y / 160.0;
+        let up = 1.0 - y / 112.0;
         let shade = 0.72 + 0.4 * smoothstep(0.05, 0.75, up) - 0.12 * smoothstep(0.72, 0.82, up);
-        let groove = 0.02 * sin(TAU * y / 7.0) + 0.03 * fbm(x / 22.0, y / 5.0, 3, 8);
+        let groove = 0.02 * sin(TAU * y / 5.0) + 0.03 * fbm(x / 16.0, y / 3.5, 3, 8);
         times(mix(clay, rgb(0xE0A070), (0.5 * up) as f32), (shade + groove) as f32)
     });
     canvas

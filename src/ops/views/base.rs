@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::paint::FOLDER;
+use super::beside::FOLDER;
 use crate::base::error::{Error, Result};
 use crate::export::still;
 use crate::files::{disk, write};

@@ -5,6 +5,14 @@ use std::path::{Path, PathBuf};
 use crate::base::error::{Error, Result};
 use crate::files::{disk, write};
 
+/// The folder beside a scene for pictures that are painted.
+pub const FOLDER: &str = "views";
+
+/// The path of the picture of a view, or of its guide, in the scene.
+pub fn file(name: &str, guide: bool) -> String {
+    format!("{FOLDER}/{name}{}.png", if guide { "-guide" } else { "" })
+}
+
 /// A file of a scene.
 pub struct Beside {
     /// Its path in the scene.

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::paint;
+use super::beside;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, encode};
 use crate::base::problem::{nearest, quoted};
@@ -84,7 +84,7 @@ fn renew((scene, document): (&Path, &Document), view: &Lying, frame: &Frame, opt
     let images = &document.scene().images;
     let path = |name: &str| images.get(name).map(|image| image.path.clone()).filter(|path| path.ends_with(".png"));
     let guide = view.guide.and_then(path);
-    let name = guide.clone().unwrap_or_else(|| paint::file(view.name, true));
+    let name = guide.clone().unwrap_or_else(|| beside::file(view.name, true));
     let (folder, own) = (disk::folder_of(scene), path(view.image));
     let read = |name: &str| picture::read(&paths::beside(scene, name), &options.limits).ok();
     let mut told = format!("{name} is what is seen without {} from its camera", quoted(view.name));

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 use super::base::Base;
+use super::beside::{FOLDER, file};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
 use crate::export::still;
@@ -18,8 +19,6 @@ use crate::scene::Document;
 use crate::scene::presets::Applied;
 use crate::scene::shots::{self, Image, Picture};
 
-/// The folder beside the scene for pictures that are painted.
-pub const FOLDER: &str = "views";
 /// What a picture that is painted feeds, if nothing is said.
 const KIND: &str = "dependent";
 
@@ -66,11 +65,6 @@ impl Sight {
 /// A place without decimals that nobody can see.
 fn short(at: DVec3) -> DVec3 {
     DVec3::from(at.to_array().map(|v| (v * 1e6).round() / 1e6))
-}
-
-/// The path of the picture of a view, or of its guide, in the scene.
-pub fn file(name: &str, guide: bool) -> String {
-    format!("{FOLDER}/{name}{}.png", if guide { "-guide" } else { "" })
 }
 
 /// Writes what is seen twice beside the scene, to be painted over and to be told apart from, and lays the first on the layer.
