@@ -22,10 +22,10 @@ pub fn clay() -> Canvas {
 pub fn mouth() -> Canvas {
     let mut canvas = Canvas::clear(96, 96);
     let disc = |radius: f64| Mask::ellipse(&canvas, (48.0, 48.0), (radius, radius));
-    let (lip, dark, deep) = (disc(34.5), disc(29.5), disc(20.0));
+    let (lip, dark, deep) = (disc(26.0), disc(22.0), disc(15.0));
     canvas.paint(&lip, rgb(0xD9966A), 1.0);
     canvas.paint(&dark, rgb(0x4A2A1C), 1.0);
-    canvas.paint(&deep.blur(6.0), rgb(0x1E100A), 1.0);
+    canvas.paint(&deep.blur(5.0), rgb(0x1E100A), 1.0);
     canvas
 }
 
