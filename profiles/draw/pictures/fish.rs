@@ -1,5 +1,6 @@
 //! What is laid on the fish: its skin on both sides, scales that are seen from the side, and their shine.
 
+use kurbo::Vec2;
 use plica::base::maths::smoothstep;
 
 use super::kit::{Canvas, Mask, Rgb, mix, ramp, rgb, times};
@@ -32,7 +33,7 @@ fn skin(mirrored: bool) -> Canvas {
     let eye = |canvas: &Canvas, radius: f64| Mask::ellipse(canvas, (along(38.5), 44.5), (radius, radius));
     let gill = Mask::from_fn(&canvas, |x, y| {
         let (x, y) = (along(x) - 40.0, y - 52.0);
-        (1.6 - (x.hypot(y) - 22.0).abs()) * ramp(0.0, 12.0, x)
+        (1.6 - (Vec2::new(x, y).hypot2().sqrt() - 22.0).abs()) * ramp(0.0, 12.0, x)
     });
     canvas.paint(&gill, rgb(0x3A4A50), 0.6);
     for (radius, color) in [(5.0, 0xE8D9A0), (3.4, 0x15191C)] {
@@ -52,7 +53,8 @@ fn scale(x: f64, y: f64, size: f64) -> (f64, [i64; 2]) {
         let shift = if row as i64 % 2 == 0 { 0.0 } else { 0.5 };
         let column = (x / size + shift).floor();
         let middle = ((column - shift + 0.5) * size, (row + 0.2) * 0.62 * size);
-        ((x - middle.0).hypot(y - middle.1) / (0.62 * size), [column as i64, row as i64])
+        let far = Vec2::new(x - middle.0, y - middle.1).hypot2().sqrt();
+        (far / (0.62 * size), [column as i64, row as i64])
     };
     let (over, own) = (of(row - 1.0), of(row));
     if over.0 < 1.0 { over } else { own }

@@ -55,7 +55,9 @@ pub fn flowers() -> Canvas {
         }
     }
     for (number, (x, y, radius)) in FLOWERS.into_iter().enumerate() {
-        let polar = |px: f64, py: f64| ((px - x).hypot(py - y) / radius, atan2(py - y, px - x) + number as f64);
+        let polar = |px: f64, py: f64| {
+            (Vec2::new(px - x, py - y).hypot2().sqrt() / radius, atan2(py - y, px - x) + number as f64)
+        };
         let petals = Mask::from_fn(&canvas, |px, py| {
             let (far, angle) = polar(px, py);
             (0.68 + 0.3 * cos(5.0 * angle) - far) * radius + 0.5
