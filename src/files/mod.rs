@@ -11,6 +11,7 @@ pub mod fields;
 pub mod hash;
 pub mod holder;
 pub mod journal;
+pub mod kept;
 pub mod limits;
 pub mod lines;
 pub mod log;

@@ -23,24 +23,27 @@ pub const COMMANDS: &[Command] = &[
         .counted(),
 ];
 
-/// The letter of a mark.
-fn letter(call: &Call) -> Result<char, String> {
+/// The letter that a command takes.
+///
+/// # Errors
+/// It is none.
+pub fn letter(call: &Call, what: &str) -> Result<char, String> {
     let mut letters = call.text.chars();
     match (letters.next(), letters.next()) {
         (Some(letter), None) if letter.is_ascii_lowercase() => Ok(letter),
-        _ => Err("a mark is a letter from a to z".into()),
+        _ => Err(format!("{what} is a letter from a to z")),
     }
 }
 
 fn mark(state: &mut State, call: &Call) -> Done {
-    let (letter, spot) = (letter(call)?, state.spot());
+    let (letter, spot) = (letter(call, "a mark")?, state.spot());
     state.memory.finding.mark(letter, spot);
     state.say(format!("mark {letter} is set: '{letter} goes back to it"));
     Ok(())
 }
 
 fn jump_mark(state: &mut State, call: &Call) -> Done {
-    let letter = letter(call)?;
+    let letter = letter(call, "a mark")?;
     let spot = state
         .memory
         .finding

@@ -23,7 +23,14 @@ pub const COMMANDS: &[Command] = &[
         help,
     )
     .inside(),
-    command("scroll", "LINES", "Scroll the pages", scroll).inside().counted(),
+    command(
+        "scroll",
+        "LINES|next|previous",
+        "Scroll the pages, also to the next line with what was searched for",
+        scroll,
+    )
+    .inside()
+    .counted(),
 ];
 
 /// Width of the text, in columns.
@@ -96,9 +103,8 @@ fn help_of(state: &mut State, call: &Call) -> Done {
 
 /// Shows pages. What is being typed or aimed comes back when they are closed.
 fn open(state: &mut State, name: &str, lines: Vec<String>) {
-    if matches!(state.typing.mode, Mode::Entry(_) | Mode::Aim) {
-        state.memory.under = Some(state.typing.mode.clone());
-    }
+    let stays = matches!(state.typing.mode, Mode::Entry(_) | Mode::Aim);
+    state.memory.under = stays.then(|| state.typing.mode.clone()).into_iter().collect();
     state.typing.mode = Mode::Pages(Pages { title: format!("help: {name}"), lines, scroll: 0 });
 }
 
@@ -216,10 +222,27 @@ pub fn entries() -> Vec<String> {
 }
 
 fn scroll(state: &mut State, call: &Call) -> Done {
+    if matches!(call.text, "next" | "previous") {
+        return call.steps().try_for_each(|_| scroll_to_match(state, call.text == "next"));
+    }
     let by = number(call, "scroll")?.saturating_mul(call.times());
     if let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.typing.mode {
         *scroll = (*scroll as i64).saturating_add(by).clamp(0, lines.len().saturating_sub(1) as i64) as usize;
     }
+    Ok(())
+}
+
+/// Scrolls to the next or the previous line that has what was searched for, continuing at the other end.
+fn scroll_to_match(state: &mut State, next: bool) -> Done {
+    let sought = state.memory.sought_in_pages.clone();
+    let Mode::Pages(Pages { lines, scroll, .. }) = &mut state.typing.mode else { return Ok(()) };
+    if sought.is_empty() {
+        return Err("there was no search yet: / searches".into());
+    }
+    let count = lines.len();
+    let away = |k: usize| if next { (*scroll + k) % count } else { (*scroll + count - k) % count };
+    let found = (1..=count).map(away).find(|&line| lines[line].to_lowercase().contains(&sought));
+    *scroll = found.ok_or_else(|| format!("nothing here has {sought} in it"))?;
     Ok(())
 }
 

@@ -5,6 +5,7 @@ use command::{Command, Done, Table};
 
 mod camera;
 mod cells;
+mod columns;
 pub mod command;
 mod completing;
 pub mod conflicts;
@@ -53,6 +54,7 @@ pub static TABLE: Table = Table(&[
     ordering::COMMANDS,
     naming::COMMANDS,
     selecting::COMMANDS,
+    columns::COMMANDS,
     values::COMMANDS,
     replacing::COMMANDS,
     undoing::COMMANDS,

@@ -17,6 +17,10 @@ pub const COMMANDS: &[Command] = &[
     )
     .counted_with(&["down", "up", "left", "right", "first", "last", "page-down", "page-up", "next"]),
     command("pane", "next|previous|tree|table|picture", "Go to another pane", pane).counted_with(&["next", "previous"]),
+    command("enlarge", "", "Give the pane that has the focus the whole screen, or show all panes again", |state, _| {
+        state.cursor.enlarged = !state.cursor.enlarged;
+        Ok(())
+    }),
     command("collapse", "", "Collapse the node of the tree, else go to its parent", collapse).counted(),
     command("expand", "", "Expand the node of the tree, else edit it", expand).counted(),
     command("up", "", "Go to the parent node", up).counted(),

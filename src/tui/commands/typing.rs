@@ -15,11 +15,17 @@ pub const COMMANDS: &[Command] = &[
     command("line", "[/|:TEXT]", "Type a command, also with a given beginning; with /, a search", |state, call| {
         let mut begun = call.text.chars();
         let mut line = Line::new(begun.next().unwrap_or(':'));
-        state.memory.finding.origin = (line.kind == '/').then(|| state.origin());
+        let over_pages = matches!(state.typing.mode, Mode::Pages(_) | Mode::Choice(_));
+        state.memory.finding.origin = (line.kind == '/' && !over_pages).then(|| state.origin());
         if !begun.as_str().is_empty() {
             line.text = Text::new(format!("{} ", begun.as_str()), false);
         }
-        state.memory.under = matches!(state.typing.mode, Mode::Aim).then_some(Mode::Aim);
+        match state.typing.mode {
+            Mode::Aim => state.memory.under = vec![Mode::Aim],
+            // Pages may themselves be over something.
+            Mode::Pages(_) | Mode::Choice(_) => state.memory.under.push(state.typing.mode.clone()),
+            _ => state.memory.under.clear(),
+        }
         state.typing.mode = Mode::Line(line);
         Ok(())
     })
@@ -50,7 +56,10 @@ pub const COMMANDS: &[Command] = &[
 
 /// Closes what is typed, chosen or shown; what it was opened over comes back.
 fn close(state: &mut State) {
-    let under = state.memory.under.take().filter(|_| matches!(state.typing.mode, Mode::Pages(_) | Mode::Line(_)));
+    if !matches!(state.typing.mode, Mode::Pages(_) | Mode::Line(_)) {
+        state.memory.under.clear();
+    }
+    let under = state.memory.under.pop();
     state.typing.mode = under.unwrap_or(Mode::Normal);
 }
 
@@ -91,9 +100,19 @@ fn run_typed(state: &mut State, call: &Call) -> Done {
         search_left(state);
         return Ok(());
     }
-    let under = state.memory.under.take();
+    let under = state.memory.under.pop();
     state.typing.mode = Mode::Normal;
     search_left(state);
+    if let ('/', Some(Mode::Pages(pages))) = (kind, &under) {
+        state.typing.mode = Mode::Pages(pages.clone());
+        state.memory.sought_in_pages = typed.to_lowercase();
+        return call.obey(state, "scroll next");
+    }
+    if let ('/', Some(Mode::Choice(choice))) = (kind, &under) {
+        let narrowed = choice.narrowed(&typed);
+        state.typing.mode = Mode::Choice(narrowed.clone().unwrap_or_else(|| choice.clone()));
+        return narrowed.map(drop).ok_or_else(|| format!("nothing here has {typed} in it"));
+    }
     if kind == '/' && !state.is_small() {
         return call.obey(state, &format!("search {}", quoted(&typed)));
     }
@@ -108,7 +127,7 @@ fn run_typed(state: &mut State, call: &Call) -> Done {
     let under = under.filter(|_| before == (state.scene.revision(), state.focused()));
     match (under, &state.typing.mode) {
         (Some(under), Mode::Normal) => state.typing.mode = under,
-        (Some(under), Mode::Pages(_)) => state.memory.under = Some(under),
+        (Some(under), Mode::Pages(_)) => state.memory.under.push(under),
         _ => {}
     }
     done

@@ -196,7 +196,7 @@ fn click(state: &mut State, x: u16, y: u16) {
     }
     let Some(pane) = layout::pane_at(state, Position::new(x, y)) else { return };
     if pane == Pane::Tree {
-        let area = layout::areas(layout::screen(state), state.picture.probing).tree;
+        let area = layout::areas_of(state).tree;
         let rows = tree::rows(state.document(), &state.cursor.collapsed);
         let first = first_row(tree::row_of(&rows, &state.cursor.node), rows.len(), area.height.saturating_sub(2));
         let row = rows.get(first + usize::from(y.saturating_sub(area.y + 1)));

@@ -33,7 +33,11 @@ fn set(state: &mut State, call: &Call) -> Done {
             other => other.to_string(),
         })?;
     state.edit(edit, false)?;
-    let paths: Vec<&str> = settings.iter().filter_map(|one| set::parse(one).ok()).map(|(path, _)| path).collect();
+    let paths: Vec<&str> = settings
+        .iter()
+        .filter_map(|one| set::parse(one).ok())
+        .map(|(path, _)| path.trim_end_matches(['*', '/', '+']))
+        .collect();
     state.say(match lost.as_slice() {
         [] if places > paths.len() => format!("{places} places are set: {}", paths.join(", ")),
         [] => format!("{} {} set", paths.join(", "), if paths.len() == 1 { "is" } else { "are" }),

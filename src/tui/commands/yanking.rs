@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
 use super::command::{Call, Command, Done, command};
+use super::finding::letter;
 use super::items::{bearable, go_to, insert_entries, rows as rows_of, target, targets};
 use crate::base::problem::quoted;
 use crate::scene::field::{self, Field, Kind};
@@ -23,6 +24,10 @@ use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] = &[
     command("yank", "[json|csv]", "Yank the row, the selection or the node", yank).counted(),
+    command("register", "a..z", "Let the next yank or paste be about this register", |state, call| {
+        state.memory.register = Some(letter(call, "a register")?);
+        Ok(())
+    }),
     command("paste", "[JSON]", "Paste what was yanked, or a value, after the cursor or into the list", paste)
         .change()
         .counted(),
@@ -35,13 +40,14 @@ fn yank(state: &mut State, call: &Call) -> Done {
             let pointers: Vec<String> = rows.iter().filter_map(|&i| sheet.pointer(i)).collect();
             let text = rows::write(state.document(), &sheet, &rows);
             // `p` pastes the whole items, including fields without a column.
-            state.memory.yanked = Some(values(state, &pointers));
+            let yanked = values(state, &pointers);
+            state.memory.yank(yanked);
             (text, format!("{} as CSV", counted(rows.len(), "row")))
         }
         "" | "json" => {
             let (yanked, said) = yanked(state, call)?;
             let text = json::to_text(&yanked.value).trim_end().to_owned();
-            state.memory.yanked = Some(yanked);
+            state.memory.yank(yanked);
             (text, said)
         }
         other => return Err(format!("yank takes json or csv, not {}", quoted(other))),
@@ -123,7 +129,7 @@ fn in_map(document: &Document, path: &str) -> bool {
 
 fn paste(state: &mut State, call: &Call) -> Done {
     let yanked = match call.text {
-        "" => state.memory.yanked.clone().ok_or("nothing has been yanked yet: y yanks")?,
+        "" => state.memory.to_paste()?,
         text => {
             let value = json::parse(text).map_err(|problem| format!("what was pasted is not JSON: {problem}"))?;
             Yanked { value, name: None }

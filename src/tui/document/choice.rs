@@ -53,6 +53,15 @@ impl Choice {
         found.is_some()
     }
 
+    /// The same with only the words that have these letters in them, or in their help; `None` if there are none.
+    pub fn narrowed(&self, letters: &str) -> Option<Choice> {
+        let letters = letters.to_lowercase();
+        let has =
+            |(word, help): &&(String, String)| [word, help].iter().any(|text| text.to_lowercase().contains(&letters));
+        let options: Vec<(String, String)> = self.options.iter().filter(has).cloned().collect();
+        (!options.is_empty()).then(|| Choice { options, at: 0, ..self.clone() })
+    }
+
     /// The word under the cursor.
     pub fn taken(&self) -> Option<&str> {
         self.options.get(self.at).map(|(word, _)| word.as_str())

@@ -25,6 +25,8 @@ pub struct Sheet {
     pub table: bool,
     document: Document,
     blocks: Vec<Block>,
+    /// The columns of items that are shown, in order; all if there are none.
+    columns: Arc<[String]>,
 }
 
 /// Consecutive rows that are made in the same way.
@@ -176,7 +178,17 @@ impl Sheet {
             (Some(place), Some(_)) => blocks(place, node),
             _ => Vec::new(),
         };
-        Sheet { table, document: document.clone(), blocks }
+        Sheet { table, document: document.clone(), blocks, columns: Arc::default() }
+    }
+
+    /// The same with these columns only, and the kind of each item.
+    pub fn with(self, columns: Arc<[String]>) -> Sheet {
+        Sheet { columns, ..self }
+    }
+
+    /// The same with all columns.
+    pub fn whole(&self) -> Sheet {
+        self.clone().with(Arc::default())
     }
 
     /// How many rows there are.
@@ -222,7 +234,7 @@ impl Sheet {
             Some(_) => {
                 let Some(list) = Place::of(json, &block.pointer) else { return };
                 let items = range.filter_map(|i| field::child(list, &block.pointer, &i.to_string()));
-                rows.extend(items.map(|(child, place)| item(&self.document, child, place)));
+                rows.extend(items.map(|(child, place)| self.chosen(item(&self.document, child, place))));
             }
             None => {
                 let parent = Pointer(&block.pointer).split();
@@ -231,11 +243,27 @@ impl Sheet {
                 let Some((child, _)) = field::child(place, parent, &name) else { return };
                 let Some(place) = derived::place(&self.document, &block.pointer) else { return };
                 rows.push(match self.table {
-                    true => item(&self.document, child, place),
+                    true => self.chosen(item(&self.document, child, place)),
                     false => form_row(&self.document, child, place),
                 });
             }
         }
+    }
+
+    /// A row with the chosen columns only.
+    fn chosen(&self, mut row: Row) -> Row {
+        if !self.columns.is_empty() {
+            let kind = |cell: &Cell| matches!(cell.field.kind, Kind::Choice(_));
+            let cells = std::mem::take(&mut row.cells).into_iter().enumerate();
+            let place = |(i, cell): (usize, Cell)| match self.columns.iter().position(|head| *head == cell.head) {
+                _ if i == 0 && kind(&cell) => Some((0, cell)),
+                place => place.map(|place| (place + 1, cell)),
+            };
+            let mut placed: Vec<(usize, Cell)> = cells.filter_map(place).collect();
+            placed.sort_by_key(|(place, _)| *place);
+            row.cells = placed.into_iter().map(|(_, cell)| cell).collect();
+        }
+        row
     }
 
     /// Where a row is in the document.

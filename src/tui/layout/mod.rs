@@ -53,6 +53,24 @@ pub fn areas(screen: Rect, probing: bool) -> Areas {
     Areas { tree, table, detail, right, status, line }
 }
 
+/// The areas of the screen as it is: without the lesson, and the pane that has the focus alone where it is enlarged. Panes
+/// that are not shown have an empty area.
+pub fn areas_of(state: &State) -> Areas {
+    let screen = screen(state);
+    let all = areas(screen, state.picture.probing);
+    if !state.cursor.enlarged {
+        return all;
+    }
+    let body = Rect { height: screen.height.saturating_sub(2), ..screen };
+    let none = Rect::ZERO;
+    if state.cursor.focus == Pane::Tree && !matches!(state.typing.mode, Mode::Aim) {
+        return Areas { tree: body, table: none, detail: none, right: None, ..all };
+    }
+    let detail = Constraint::Length(if state.picture.probing { PROBE } else { DETAIL });
+    let [table, detail] = Layout::vertical([Constraint::Fill(1), detail]).spacing(Spacing::Overlap(1)).areas(body);
+    Areas { tree: none, table, detail, right: None, ..all }
+}
+
 /// The screen without the lesson at its bottom.
 pub fn screen(state: &State) -> Rect {
     lesson::above(state, Rect::new(0, 0, state.size.0, state.size.1))
@@ -65,7 +83,7 @@ pub fn picture_in_middle(state: &State, areas: &Areas) -> bool {
 
 /// The pane at a place of the screen, of those that can have the focus.
 pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
-    let areas = areas(screen(state), state.picture.probing);
+    let areas = areas_of(state);
     let in_middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
     let picture = areas.right.map(|[.., picture]| picture).or(in_middle);
     let panes = [(Pane::Tree, Some(areas.tree)), (Pane::Picture, picture), (Pane::Table, Some(areas.table))];
@@ -82,7 +100,7 @@ pub fn picture_area(state: &State) -> Option<Rect> {
     if !fits(state.size) {
         return None;
     }
-    let areas = areas(screen(state), state.picture.probing);
+    let areas = areas_of(state);
     let middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
     areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
 }

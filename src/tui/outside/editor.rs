@@ -127,6 +127,9 @@ impl Editor {
         };
         editor.begin();
         editor.load_keys();
+        if editor.screen.is_some() {
+            editor.state.memory.recall(files::kept::read());
+        }
         editor.begin_tutor();
         typed.iter().filter_map(input::event).for_each(|event| editor.take(event));
         if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
@@ -184,6 +187,9 @@ impl Editor {
         self.state.scene.tend();
         self.state.scene.flush();
         self.job.take().into_iter().for_each(Job::end);
+        if self.screen.is_some() {
+            files::kept::write(&self.state.memory.keep(files::kept::read()));
+        }
         self.log = None;
     }
 

@@ -144,6 +144,7 @@ impl Editor {
                 let before = std::mem::replace(&mut self.state, State::new(scene, size, depth));
                 self.state.keymap = before.keymap;
                 self.state.memory.recorder = before.memory.recorder;
+                self.state.memory.lines = before.memory.lines;
                 self.state.picture.graphics = before.picture.graphics;
                 self.begin();
                 true

@@ -92,8 +92,8 @@ fn text(cell: &Cell, row: &Row, room: i32) -> String {
 /// Which cells of a row are visible, and how far they are moved to the left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VisibleCells {
-    /// Whether the first cell stays where it is.
-    frozen: bool,
+    /// How many of the first cells stay where they are.
+    frozen: usize,
     /// The first of the others.
     first: usize,
     /// The cell after the last one.
@@ -102,10 +102,12 @@ pub struct VisibleCells {
 }
 
 impl VisibleCells {
-    /// The visible cells of a row, with the cell `focus` among them.
-    pub fn of(row: &[Placed], item: bool, focus: usize, room: i32) -> VisibleCells {
-        let frozen = item && focus > 0 && row.len() > 1;
-        let least = usize::from(frozen);
+    /// The visible cells of a row, with the cell `focus` among them; of an item, so many of the first cells stay, if they
+    /// leave room for others.
+    pub fn of(row: &[Placed], stay: usize, focus: usize, room: i32) -> VisibleCells {
+        let fits = |count: &usize| row[count - 1].end <= room / 2 || *count == 1;
+        let frozen = (1..=stay.min(focus).min(row.len().saturating_sub(1))).take_while(fits).last().unwrap_or(0);
+        let least = frozen;
         let focus = focus.min(row.len().saturating_sub(1));
         let from = (least..=focus).map(|first| VisibleCells::from(row, frozen, first, room));
         from.into_iter().find(|visible| visible.end > focus).unwrap_or_else(|| {
@@ -115,16 +117,16 @@ impl VisibleCells {
     }
 
     /// The visible cells of a row that is shown below one with other columns.
-    pub fn beside(row: &[Placed], item: bool, other: VisibleCells, room: i32) -> VisibleCells {
-        let frozen = other.frozen && item && row.len() > 1;
-        let first = if other.first <= usize::from(other.frozen) { usize::from(frozen) } else { other.first };
+    pub fn beside(row: &[Placed], other: VisibleCells, room: i32) -> VisibleCells {
+        let frozen = other.frozen.min(row.len().saturating_sub(1));
+        let first = if other.first <= other.frozen { frozen } else { other.first };
         VisibleCells::from(row, frozen, first.min(row.len().saturating_sub(1)), room)
     }
 
-    fn from(row: &[Placed], frozen: bool, first: usize, room: i32) -> VisibleCells {
+    fn from(row: &[Placed], frozen: usize, first: usize, room: i32) -> VisibleCells {
         // One more column for the mark.
-        let begin = if frozen { row[0].end + GAP + 1 } else { GAP };
-        let scrolled = first > usize::from(frozen);
+        let begin = if frozen > 0 { row[frozen - 1].end + GAP + 1 } else { GAP };
+        let scrolled = first > frozen;
         let shift = if scrolled { row.get(first).map_or(0, |placed| placed.start - begin) } else { 0 };
         let fits = |i: &usize| row[*i].end - shift <= room - if i + 1 < row.len() { GAP } else { 0 };
         let end = (first..row.len()).take_while(fits).last().map_or(first, |last| last + 1);
@@ -133,15 +135,15 @@ impl VisibleCells {
 
     /// The visible cells: index, place, and how far it is moved.
     pub fn cells<'r, 'a>(self, row: &'r [Placed<'a>]) -> impl Iterator<Item = (usize, &'r Placed<'a>, i32)> {
-        let stays = row.iter().take(usize::from(self.frozen && self.first > 0)).map(|placed| (0, placed, 0));
+        let stays = row.iter().enumerate().take(self.frozen.min(self.first)).map(|(i, placed)| (i, placed, 0));
         let others = row.iter().enumerate().take(self.end).skip(self.first);
         stays.chain(others.map(move |(i, placed)| (i, placed, self.shift)))
     }
 
     /// Where the mark for cells that are left out on the left belongs; `None` if there are none.
     pub fn before(self, row: &[Placed]) -> Option<i32> {
-        let scrolled = self.first > usize::from(self.frozen);
-        scrolled.then(|| if self.frozen { row[0].end + 1 } else { 0 })
+        let scrolled = self.first > self.frozen;
+        scrolled.then(|| if self.frozen > 0 { row[self.frozen - 1].end + 1 } else { 0 })
     }
 
     /// Whether cells are left out on the right.

@@ -7,7 +7,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::widgets::{Clear, Widget};
 
-use super::{typed, write};
+use super::{hints, typed, write};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::color;
 use crate::tui::text::wrap::{width, wrapped_lines};
@@ -34,6 +34,8 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
             let more = if width(&problem) + 2 > area.width { " … (:problems) " } else { "" };
             write(buffer, area, 1, 0, &problem, color::faint());
             write(buffer, area, i32::from(area.width) - i32::from(width(more)), 0, more, color::faint());
+        } else {
+            hints::draw(state, area, buffer);
         }
         return None;
     };

@@ -15,6 +15,7 @@ mod braille;
 mod columns;
 pub mod detail;
 pub mod field;
+mod hints;
 pub mod lesson;
 pub mod line;
 pub mod palette;

@@ -19,7 +19,19 @@ use crate::tui::text::wrap::{hanging, width, wrapped_lines};
 pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position> {
     match &state.typing.mode {
         Mode::Choice(choice) => Some(draw_choice(choice, screen, buffer)),
-        Mode::Pages(pages) => Some(draw_pages(pages, screen, buffer)),
+        Mode::Pages(pages) => Some(draw_pages(pages, &state.memory.sought_in_pages, screen, buffer)),
+        Mode::Line(line) => {
+            // What is searched in stays in sight.
+            match state.memory.under.last() {
+                Some(Mode::Pages(pages)) => _ = draw_pages(pages, &state.memory.sought_in_pages, screen, buffer),
+                Some(Mode::Choice(choice)) => {
+                    let narrowed = choice.narrowed(line.text.value().trim());
+                    draw_choice(narrowed.as_ref().unwrap_or(choice), screen, buffer);
+                }
+                _ => {}
+            }
+            None
+        }
         Mode::Palette(palette) => Some(super::palette::draw(state, palette, screen, buffer)),
         _ if !state.typing.pressed.is_empty() => {
             draw_hints(state, screen, buffer);
@@ -89,8 +101,8 @@ fn below(area: Rect, rows: u16) -> Rect {
     Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
-fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
-    let title = format!("{} (j k scroll, q closes)", pages.title);
+fn draw_pages(pages: &Pages, sought: &str, screen: Rect, buffer: &mut Buffer) -> Position {
+    let title = format!("{} (j k scroll, / searches, q closes)", pages.title);
     let widest = pages.lines.iter().map(|line| width(line)).max().unwrap_or(0).max(width(&title));
     let wide = (widest + 6).clamp(40, screen.width - 6);
     let rows = |line: &String| hanging(line, wide - 3);
@@ -106,7 +118,11 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
     };
     let last = pages.lines.len().saturating_sub(pages.lines.iter().rev().take_while(fits).count().max(1));
     let shown = pages.lines.iter().skip(pages.scroll.min(last)).flat_map(|line| {
-        let style = if line.starts_with("--") { color::strong() } else { Style::new() };
+        let style = match line.starts_with("--") {
+            _ if !sought.is_empty() && line.to_lowercase().contains(sought) => color::focus(),
+            true => color::strong(),
+            false => Style::new(),
+        };
         rows(line).into_iter().map(move |row| (row, style))
     });
     for (y, (row, style)) in shown.take(usize::from(area.height)).enumerate() {
@@ -116,8 +132,14 @@ fn draw_pages(pages: &Pages, screen: Rect, buffer: &mut Buffer) -> Position {
 }
 
 /// The names of the menus behind first keys.
-const MENUS: &[(&str, &str)] =
-    &[("Space", "leader"), ("g", "go"), ("z", "view"), ("m", "set a mark"), ("'", "go to a mark")];
+const MENUS: &[(&str, &str)] = &[
+    ("Space", "leader"),
+    ("g", "go"),
+    ("z", "view"),
+    ("m", "set a mark"),
+    ("\"", "a register"),
+    ("'", "go to a mark"),
+];
 
 /// Draws the keys that may follow, above the status line, in as many columns as they need.
 fn draw_hints(state: &State, screen: Rect, buffer: &mut Buffer) {

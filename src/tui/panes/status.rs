@@ -11,7 +11,7 @@ use crate::layers::parts::readout::Fact;
 use crate::layers::technique::Technique;
 use crate::scene::words::item_of;
 use crate::tui::document::tree;
-use crate::tui::state::{Mode, Pane, State, spatial};
+use crate::tui::state::{Mode, Pane, State, entry, spatial};
 use crate::tui::text::numbers::short;
 use crate::tui::text::wrap::{clipped, width};
 
@@ -73,6 +73,9 @@ fn right(state: &State) -> String {
     if let Some(letter) = state.memory.recorder.recording() {
         parts.push(format!("recording {letter}"));
     }
+    if let Some(letter) = state.memory.register {
+        parts.push(format!("register {letter}"));
+    }
     if let Some(count) = state.typing.count {
         parts.push(count.to_string());
     }
@@ -91,6 +94,7 @@ fn right(state: &State) -> String {
         }
         return parts.join("  ");
     }
+    parts.extend(entry::summed(state).map(|summed| plain(&summed)));
     parts.push(format!("{}t {}", if state.play.playing { "> " } else { "" }, short(state.play.time)));
     if let Some((symbol, value)) = now(state) {
         parts.push(format!("{symbol} {}", short(value)));

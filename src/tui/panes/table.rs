@@ -84,7 +84,8 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
 /// Which cells of each row are visible: rows with the same cells show the same ones, and the cell under the cursor is visible.
 fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i32) -> Vec<VisibleCells> {
     let Some(own) = rows.get(at) else { return vec![VisibleCells::default(); rows.len()] };
-    let here = VisibleCells::of(&laid[at], own.item, state.cursor.column, room);
+    let stay = if own.item { state.memory.columns.frozen(&state.cursor.node) } else { 0 };
+    let here = VisibleCells::of(&laid[at], stay, state.cursor.column, room);
     let like = |row: &Row| {
         let heads = |row: &Row| row.cells.iter().map(|cell| cell.head.clone()).collect::<Vec<_>>();
         row.item == own.item && heads(row) == heads(own)
@@ -92,8 +93,8 @@ fn sights(state: &State, rows: &[Row], laid: &[Vec<Placed>], at: usize, room: i3
     let visible = |(i, row): (usize, &Row)| match row {
         _ if i == at => here,
         row if row.item && like(row) => here,
-        row if row.item => VisibleCells::beside(&laid[i], true, here, room),
-        _ => VisibleCells::of(&laid[i], false, 0, room),
+        row if row.item => VisibleCells::beside(&laid[i], here, room),
+        _ => VisibleCells::of(&laid[i], 0, 0, room),
     };
     rows.iter().enumerate().map(visible).collect()
 }

@@ -1,7 +1,7 @@
 //! Draws the screen, at every size from 60 x 20 on. Drawing changes nothing.
 
 use crate::tui::layout;
-use crate::tui::layout::{areas, middle, picture_in_middle};
+use crate::tui::layout::{areas_of, middle, picture_in_middle};
 use crate::tui::state::{LEAST, fits};
 use ratatui::Frame;
 use ratatui::layout::{Alignment, Position, Rect};
@@ -23,9 +23,14 @@ pub fn draw(frame: &mut Frame, state: &State) {
         panes::lesson::draw(tutor, &state.keymap, screen, frame.buffer_mut());
     }
     let screen = layout::lesson::above(state, screen);
-    let areas = areas(screen, state.picture.probing);
-    let mut cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
-    if picture_in_middle(state, &areas) {
+    let areas = areas_of(state);
+    let mut cursor = None;
+    if !areas.tree.is_empty() {
+        cursor = panes::tree::draw(state, pane(frame, state, areas.tree, Pane::Tree, "scene"), frame.buffer_mut());
+    }
+    if areas.table.is_empty() {
+        // The tree has the whole screen.
+    } else if picture_in_middle(state, &areas) {
         let inner = pane(frame, state, middle(state, &areas), Pane::Picture, &panes::picture::title(state));
         cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
     } else {
@@ -36,7 +41,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
             panes::detail::draw(state, inner, frame.buffer_mut());
         }
     }
-    if state.picture.probing {
+    if state.picture.probing && !areas.detail.is_empty() {
         let inner = block(frame, areas.detail, "probe");
         panes::probe::draw(state, inner, frame.buffer_mut());
     }

@@ -31,6 +31,8 @@ pub struct Selection {
 pub struct Cursor {
     /// The pane that takes the keys.
     pub focus: Pane,
+    /// Whether that pane has the whole screen.
+    pub enlarged: bool,
     /// Pointer of the node that is shown in the middle column.
     pub node: String,
     /// Nodes of the tree that are collapsed.
@@ -54,6 +56,7 @@ impl Cursor {
     pub fn new(node: String) -> Cursor {
         Cursor {
             focus: Pane::Tree,
+            enlarged: false,
             node,
             collapsed: BTreeSet::new(),
             row: 0,

@@ -1,7 +1,7 @@
 //! What a text typed into a cell means: an expression over the columns of the row, evaluated for each selected row. All
 //! values are set in one edit.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::expression;
 use crate::base::pointer::Pointer;
@@ -44,6 +44,41 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
     };
     state.cursor.rows().into_iter().filter_map(of_row).collect()
 }
+
+/// The most rows of which a column is summed up with every drawing.
+const MOST_SUMMED: usize = 2000;
+
+/// The column under the cursor in a few words, over the selected rows: sum and mean of numbers, else how often each word
+/// occurs. `None` if nothing is selected.
+pub fn summed(state: &State) -> Option<String> {
+    if !state.cursor.selects() {
+        return None;
+    }
+    let rows = state.cursor.rows().len();
+    let cells = if rows > MOST_SUMMED { Vec::new() } else { cells(state, &state.sheet()) };
+    let numbers: Vec<f64> = cells.iter().filter_map(|(_, cell)| cell.number(state.document())).collect();
+    let all = format!("{rows} row{}", if rows == 1 { "" } else { "s" });
+    if cells.first().is_some_and(|(_, cell)| cell.is_number()) && !numbers.is_empty() {
+        let sum: f64 = numbers.iter().sum();
+        let mean = sum / numbers.len() as f64;
+        return Some(format!("{all}  sum {}  mean {}", numbers::short(sum), numbers::short(mean)));
+    }
+    let sheet = state.sheet();
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for (i, _) in &cells {
+        // The text of a cell of another row is in that row.
+        let row = sheet.row(*i);
+        let word = row.as_ref().and_then(|row| state.cursor.cell(row)).map(|cell| cell.text.clone());
+        *counts.entry(word.unwrap_or_default()).or_default() += 1;
+    }
+    let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let words = counts.iter().take(MOST_WORDS).map(|(word, count)| format!("  {word} {count}"));
+    Some(words.fold(all, |all, word| all + &word))
+}
+
+/// The most words whose frequency is told.
+const MOST_WORDS: usize = 3;
 
 fn sheet_head(state: &State) -> String {
     let row = state.row();
@@ -129,7 +164,7 @@ fn evaluate(
     text: &str,
 ) -> Result<f64, String> {
     // Without letters no variable can occur, so the row is not needed.
-    let row = text.contains(char::is_alphabetic).then(|| sheet.row(row)).flatten();
+    let row = text.contains(char::is_alphabetic).then(|| sheet.whole().row(row)).flatten();
     variables(state, sheet, row.as_ref(), Some(cell), (i, n)).value(text)
 }
 
@@ -143,9 +178,10 @@ pub fn of_rows(state: &State, rows: &BTreeSet<usize>, text: &str) -> Result<Vec<
     let here = state.row();
     let model = here.as_ref().and_then(|row| state.cursor.cell(row));
     let like = |cell: &&Cell| model.is_some_and(|model| model.head == cell.head && model.part == cell.part);
+    let whole = sheet.whole();
     let (mut values, mut why) = (Vec::with_capacity(rows.len()), None);
     for (i, &row) in rows.iter().enumerate() {
-        let row = sheet.row(row);
+        let row = whole.row(row);
         let cell = row.as_ref().and_then(|row| row.cells.iter().find(like));
         let value = variables(state, &sheet, row.as_ref(), cell, (i, rows.len())).value(text);
         values.push(match value {

@@ -1,12 +1,14 @@
 //! What the editor remembers: messages, lines, yanked values, marks.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
 
 use serde_json::Value;
 
 use super::finding::Finding;
 use super::recorder::Recorder;
 use super::typing::Mode;
+use crate::base::pointer::{Pointer, index};
 
 /// The most messages that are remembered.
 const MOST_SAID: usize = 200;
@@ -22,13 +24,76 @@ pub struct Memory {
     pub recorder: Recorder,
     /// What was yanked last.
     pub yanked: Option<Yanked>,
-    /// What comes back when the help or the command line is closed that was opened over it: an entry, or aiming.
-    pub under: Option<Mode>,
+    /// What was yanked into registers, by their letters.
+    pub registers: BTreeMap<char, Yanked>,
+    /// The register that the next yank or paste is about.
+    pub register: Option<char>,
+    /// What comes back when the help or the command line is closed that was opened over it: an entry, aiming, or pages; the
+    /// innermost last.
+    pub under: Vec<Mode>,
     /// Marks, the jump list and the search.
     pub finding: Finding,
+    /// Which columns are shown.
+    pub columns: Columns,
+    /// What was searched for in pages of text.
+    pub sought_in_pages: String,
+}
+
+/// Which columns of which tables are shown.
+#[derive(Clone, Debug, Default)]
+pub struct Columns {
+    chosen: BTreeMap<String, Arc<[String]>>,
+    frozen: BTreeMap<String, usize>,
+}
+
+/// Lists at the same place of different layers and zones have the same columns.
+fn alike(node: &str) -> String {
+    let step = |token: String| if index(&token).is_some() { "*".to_owned() } else { token };
+    Pointer(node).tokens().map(step).collect::<Vec<_>>().join("/")
+}
+
+impl Columns {
+    /// The columns of the table at `node`, in order; all if there are none.
+    pub fn of(&self, node: &str) -> Arc<[String]> {
+        if self.chosen.is_empty() { Arc::default() } else { self.chosen.get(&alike(node)).cloned().unwrap_or_default() }
+    }
+
+    /// How many columns of the table at `node` stay where they are while the others move.
+    pub fn frozen(&self, node: &str) -> usize {
+        self.frozen.get(&alike(node)).copied().unwrap_or(1)
+    }
+
+    /// Shows these columns of the table at `node`; all if there are none.
+    pub fn choose(&mut self, node: &str, columns: Vec<String>) {
+        self.chosen.insert(alike(node), columns.into());
+    }
+
+    /// Lets so many columns of the table at `node` stay.
+    pub fn freeze(&mut self, node: &str, count: usize) {
+        self.frozen.insert(alike(node), count);
+    }
 }
 
 impl Memory {
+    /// Remembers what is yanked, in the register that was named, too.
+    pub fn yank(&mut self, yanked: Yanked) {
+        if let Some(letter) = self.register.take() {
+            self.registers.insert(letter, yanked.clone());
+        }
+        self.yanked = Some(yanked);
+    }
+
+    /// What is pasted: that of the register that was named, else what was yanked last.
+    ///
+    /// # Errors
+    /// There is nothing.
+    pub fn to_paste(&mut self) -> Result<Yanked, String> {
+        match self.register.take() {
+            Some(letter) => self.registers.get(&letter).cloned().ok_or_else(|| format!("register {letter} is empty")),
+            None => self.yanked.clone().ok_or_else(|| "nothing has been yanked yet: y yanks".into()),
+        }
+    }
+
     /// Remembers a message, for `:messages`.
     pub fn hear(&mut self, message: Message) {
         if self.said.len() >= MOST_SAID {

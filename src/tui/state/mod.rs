@@ -4,6 +4,7 @@
 pub mod cursor;
 pub mod entry;
 pub mod finding;
+mod kept;
 pub mod looking;
 pub mod memory;
 pub mod outside;
@@ -110,7 +111,7 @@ impl State {
 
     /// The node in the middle column, as rows.
     pub fn sheet(&self) -> Sheet {
-        Sheet::of(self.document(), &self.cursor.node)
+        Sheet::of(self.document(), &self.cursor.node).with(self.memory.columns.of(&self.cursor.node))
     }
 
     /// The row under the cursor.

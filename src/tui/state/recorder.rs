@@ -183,6 +183,16 @@ impl Recorder {
         Ok(lines.clone())
     }
 
+    /// Takes the macros of an earlier session.
+    pub fn recall(&mut self, macros: BTreeMap<char, Vec<String>>) {
+        self.macros = macros;
+    }
+
+    /// All macros.
+    pub fn macros(&self) -> &BTreeMap<char, Vec<String>> {
+        &self.macros
+    }
+
     /// Counts a line that is about to be played.
     ///
     /// # Errors

@@ -76,6 +76,7 @@ const COUNTED: &[(&str, &str)] = &[
     (": \"go layers.0.zones.0.motion.0\" Enter", "sibling next"),
     ("", "problem next"),
     ("?", "scroll 1"),
+    ("? / \"row\" Enter", "scroll next"),
     ("g i", "cursor 1 1"),
     ("/ \"motion\" Enter Enter g i", "place next"),
     ("/ \"motion\" Enter Enter g i", "place previous"),
