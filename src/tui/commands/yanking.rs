@@ -129,7 +129,7 @@ fn in_map(document: &Document, path: &str) -> bool {
 
 fn paste(state: &mut State, call: &Call) -> Done {
     let yanked = match call.text {
-        "" => state.memory.to_paste()?,
+        "" => state.memory.taken()?,
         text => {
             let value = json::parse(text).map_err(|problem| format!("what was pasted is not JSON: {problem}"))?;
             Yanked { value, name: None }

@@ -87,7 +87,7 @@ impl Memory {
     ///
     /// # Errors
     /// There is nothing.
-    pub fn to_paste(&mut self) -> Result<Yanked, String> {
+    pub fn taken(&mut self) -> Result<Yanked, String> {
         match self.register.take() {
             Some(letter) => self.registers.get(&letter).cloned().ok_or_else(|| format!("register {letter} is empty")),
             None => self.yanked.clone().ok_or_else(|| "nothing has been yanked yet: y yanks".into()),
