@@ -26,5 +26,6 @@ pub mod progress;
 pub mod quantise;
 pub mod random;
 pub mod reduce;
+pub mod simd;
 pub mod system;
 pub mod text;

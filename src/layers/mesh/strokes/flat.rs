@@ -4,8 +4,9 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::aim::Aim;
+use super::curves::EDGE;
 use super::impulse::{Dice, FADE, MOST, Recipe, factor};
-use super::sum::{EDGE, Noise, Shown, normalized};
+use super::sum::{Noise, Shown, normalized};
 use super::surface::{Facet, Surface, mixed};
 use super::synth::is_set;
 use crate::base::maths::{TAU, cos, exp, sin, smoothstep};

@@ -4,8 +4,10 @@
 //! a frame shows of it ([`Given`]) and gets it back drawn.
 
 pub mod aim;
+pub mod bins;
 pub mod check;
 pub mod curvature;
+pub mod curves;
 pub mod draw;
 pub mod even;
 pub mod explain;
@@ -14,6 +16,7 @@ pub mod force;
 pub mod grid;
 pub mod impulse;
 pub mod ink;
+pub mod level;
 pub mod marks;
 pub mod measure;
 pub mod model;

@@ -6,14 +6,16 @@ use std::sync::atomic::AtomicBool;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::bins::{Bins, TILE};
+use super::curves::{Curves, LANES, Line, turns, wave};
 use super::impulse::Impulse;
+use super::level::Level;
 use super::synth::is_set;
-use crate::base::maths::{TAU, cos, exp, sin, smoothstep};
+use crate::base::maths::{TAU, smoothstep};
+use crate::base::simd::vectorised;
 
-/// The side of a tile, in pixels.
-const TILE: usize = 64;
-/// e to the minus pi: what a kernel's curve has at its edge.
-pub const EDGE: f64 = 0.043_213_918_263_772_25;
+/// How long the rows of a tile are in memory: a lump of lanes may begin at its last pixel.
+const STRIDE: usize = TILE + LANES;
 /// The integral of a kernel's squared curve from -1 to 1.
 pub const INTEGRAL: f64 = 0.682_939;
 /// The least share of the variance that a sum is divided by.
@@ -57,46 +59,35 @@ pub struct Noise {
 pub fn sum(shown: &Shown, impulses: &[Impulse], overlap: f64, trim: Trim) -> Noise {
     let (width, height) = shown.size_px;
     let across = width.div_ceil(TILE).max(1);
-    let bins = bins(shown.size_px, impulses);
-    let tiles: Vec<Option<Tile>> = bins
-        .into_par_iter()
-        .enumerate()
-        .map(|(i, bin)| {
-            let (x, y) = (i % across * TILE, i / across * TILE);
-            let columns = x..(x + TILE).min(width);
-            Tile::new(shown, columns, y..(y + TILE).min(height), trim).map(|mut tile| {
-                let wanted = bin.iter().take_while(|_| !is_set(shown.stop));
-                wanted.for_each(|&k| tile.add(&impulses[k as usize]));
-                tile
-            })
-        })
-        .collect();
-    let mut sums = vec![[0.0; 2]; width * height];
-    for tile in tiles.into_iter().flatten() {
-        let across = tile.columns.len();
-        for (y, cells) in tile.rows.clone().zip((0..).step_by(across)) {
-            let row = &mut sums[y * width + tile.columns.start..y * width + tile.columns.end];
-            let own = tile.value[cells..].iter().zip(&tile.power[cells..]);
-            row.iter_mut().zip(own).for_each(|(sum, (value, power))| *sum = [*value, *power]);
-        }
-    }
-    normalized(shown, &sums, overlap)
-}
-
-/// The impulses that may reach each tile, in order.
-fn bins((width, height): (usize, usize), impulses: &[Impulse]) -> Vec<Vec<u32>> {
-    let (across, down) = (width.div_ceil(TILE).max(1), height.div_ceil(TILE).max(1));
-    let mut bins = vec![Vec::new(); across * down];
-    for (i, impulse) in impulses.iter().enumerate() {
-        let tiles = |middle: f64, most: usize| {
-            let tile = |at: f64| (at / TILE as f64).floor().clamp(0.0, most as f64) as usize;
-            tile(middle - impulse.radius_px)..tile(middle + impulse.radius_px + TILE as f64).min(most)
+    let bins = Bins::new(shown.size_px, impulses);
+    let scale = Scale::new(overlap);
+    let mut noise = Noise { value: vec![0.0; width * height], share: vec![0.0; width * height] };
+    let lines = (width * TILE).max(1);
+    let lines = noise.value.par_chunks_mut(lines).zip(noise.share.par_chunks_mut(lines)).enumerate();
+    lines.for_each(|(j, (values, shares))| {
+        let rows = j * TILE..((j + 1) * TILE).min(height);
+        let tile = |i: usize| {
+            let columns = i * TILE..((i + 1) * TILE).min(width);
+            vectorised(
+                #[inline(always)]
+                || {
+                    let mut tile = Tile::new(shown, columns, rows.clone(), trim)?;
+                    tile.add_all(impulses, bins.of(j * across + i));
+                    tile.finish(&scale);
+                    Some(tile)
+                },
+            )
         };
-        for y in tiles(impulse.at.y, down) {
-            tiles(impulse.at.x, across).for_each(|x| bins[y * across + x].push(i as u32));
+        let tiles: Vec<Option<Tile>> = (0..across).into_par_iter().map(tile).collect();
+        for tile in tiles.iter().flatten() {
+            for (k, own) in (0..rows.len()).map(|k| (k, k * STRIDE..k * STRIDE + tile.columns.len())) {
+                let out = k * width + tile.columns.start..k * width + tile.columns.end;
+                values[out.clone()].copy_from_slice(&tile.value[own.clone()]);
+                shares[out].copy_from_slice(&tile.power[own]);
+            }
         }
-    }
-    bins
+    });
+    noise
 }
 
 /// Some columns of some rows.
@@ -105,40 +96,52 @@ struct Tile<'a> {
     columns: Range<usize>,
     rows: Range<usize>,
     trim: Trim,
-    /// The least and the greatest 1 / depth of the layer's pixels.
-    inverse: [f64; 2],
+    level: Level,
+    /// 1 / the depth of what each pixel shows, in rows of `STRIDE`, as are the sums.
+    inverse: Vec<f64>,
     value: Vec<f32>,
     power: Vec<f32>,
-    /// A kernel's curve, with its wave's cosine and sine, and squared, in each column.
-    curves: [Vec<f32>; 3],
 }
 
 impl<'a> Tile<'a> {
     /// `None` if the layer is not seen in it.
+    #[inline(always)]
     fn new(shown: &'a Shown<'a>, columns: Range<usize>, rows: Range<usize>, trim: Trim) -> Option<Tile<'a>> {
-        let width = shown.size_px.0;
-        let mut inverse = [f64::INFINITY, f64::NEG_INFINITY];
-        for y in rows.clone() {
-            for i in y * width + columns.start..y * width + columns.end {
-                if shown.triangle[i] != u32::MAX {
-                    inverse = [inverse[0].min(shown.inverse[i]), inverse[1].max(shown.inverse[i])];
-                }
-            }
+        let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows)?;
+        let cells = STRIDE * rows.len();
+        let mut inverse = vec![0.0; cells];
+        for (own, y) in inverse.chunks_exact_mut(STRIDE).zip(rows.clone()) {
+            let from = y * shown.size_px.0;
+            own[..columns.len()].copy_from_slice(&shown.inverse[from + columns.start..from + columns.end]);
         }
-        let cells = columns.len() * rows.len();
-        (inverse[0] <= inverse[1]).then(|| Tile {
-            shown,
-            columns,
-            rows,
-            trim,
-            inverse,
-            value: vec![0.0; cells],
-            power: vec![0.0; cells],
-            curves: [Vec::new(), Vec::new(), Vec::new()],
-        })
+        Some(Tile { shown, columns, rows, trim, level, inverse, value: vec![0.0; cells], power: vec![0.0; cells] })
     }
 
-    fn add(&mut self, impulse: &Impulse) {
+    /// Adds these impulses.
+    #[inline(always)]
+    fn add_all(&mut self, impulses: &[Impulse], wanted: &[u32]) {
+        let mut scratch = Scratch::default();
+        for lump in wanted.chunks(LANES) {
+            if is_set(self.shown.stop) {
+                return;
+            }
+            let mut angles = [0.0; LANES];
+            for (angle, &i) in angles.iter_mut().zip(lump) {
+                *angle = turns(impulses[i as usize].angle);
+            }
+            let (mut cosines, mut sines) = ([0.0; LANES], [0.0; LANES]);
+            for k in 0..LANES {
+                (cosines[k], sines[k]) = wave(angles[k]);
+            }
+            for (k, &i) in lump.iter().enumerate() {
+                self.add(&impulses[i as usize], (cosines[k], sines[k]), &mut scratch);
+            }
+        }
+    }
+
+    /// Adds an impulse whose angle has this cosine and this sine.
+    #[inline(always)]
+    fn add(&mut self, impulse: &Impulse, (cosine, sine): (f32, f32), scratch: &mut Scratch) {
         let columns = reached(impulse.at.x, impulse.radius_px, &self.columns);
         let rows = reached(impulse.at.y, impulse.radius_px, &self.rows);
         if columns.is_empty() || rows.is_empty() {
@@ -152,80 +155,165 @@ impl<'a> Tile<'a> {
                 all => all.is_some(),
             },
         };
-        let wave = TAU / impulse.spacing_px;
-        let (along, down) = (-wave * sin(impulse.angle), wave * cos(impulse.angle));
-        self.curve(impulse, along, &columns);
-        let mut curve = Curve::new(rows.start as f64 + 0.5 - impulse.at.y, impulse.radius_px);
-        let mut turn = Turn::new(down * (rows.start as f64 + 0.5 - impulse.at.y) + impulse.phase, down);
-        let width = self.columns.len();
-        for y in rows {
-            let (curve, (cosine, sine)) = (curve.next(), turn.next());
-            let weight = impulse.factor * curve;
-            let first = (y - self.rows.start) * width + columns.start - self.columns.start;
-            let cells = first..first + columns.len();
-            let [cosines, sines, squares] = &self.curves;
-            let (a, b, c) = ((weight * cosine) as f32, (weight * sine) as f32, (weight * weight / 2.0) as f32);
-            let value = self.value[cells.clone()].iter_mut().zip(&mut self.power[cells]);
-            let curves = cosines.iter().zip(sines).zip(squares);
+        let often = (1.0 / impulse.spacing_px) as f32;
+        let radius_px = impulse.radius_px;
+        let Scratch { across, down, covers } = scratch;
+        let first = columns.start as f64 + 0.5 - impulse.at.x;
+        let wide = columns.len().next_multiple_of(LANES);
+        Line { first, radius_px, waves: -sine * often, phase: 0.0, weight: 1.0 }.fill(lines(across, wide));
+        let first = rows.start as f64 + 0.5 - impulse.at.y;
+        let (phase, weight) = (turns(impulse.phase), impulse.factor as f32);
+        let high = rows.len().next_multiple_of(LANES);
+        Line { first, radius_px, waves: cosine * often, phase, weight }.fill(lines(down, high));
+        let left = columns.start - self.columns.start;
+        let [cosines, sines, squares] = across;
+        let curves = (&cosines[..wide], &sines[..wide], &squares[..wide]);
+        for (k, y) in rows.enumerate() {
+            let from = (y - self.rows.start) * STRIDE + left;
+            let (value, power) = (&mut self.value[from..from + wide], &mut self.power[from..from + wide]);
+            let (a, b, c) = (down[0][k], down[1][k], down[2][k] * 0.5);
             if whole {
-                value.zip(curves).for_each(|((value, power), ((cosine, sine), square))| {
-                    *value += a * cosine - b * sine;
-                    *power += c * square;
-                });
-            } else {
-                let trimmed = trimmed(self.shown, self.trim, impulse, y, columns.clone());
-                value.zip(curves).zip(trimmed).for_each(|(((value, power), ((cosine, sine), square)), trimmed)| {
-                    *value += (a * cosine - b * sine) * trimmed;
-                    *power += c * square * trimmed * trimmed;
-                });
+                add_row(value, power, curves, (a, b, c), |_| 1.0);
+                continue;
+            }
+            match self.trim {
+                Trim::Depth(reach) => {
+                    let inverse = &self.inverse[from..from + wide];
+                    let scale = impulse.depth * self.shown.focal_px / radius_px;
+                    let level = impulse.plane.y * (y as f64 + 0.5) + impulse.plane.z;
+                    let level = level + impulse.plane.x * (columns.start as f64 + 0.5);
+                    near(&mut covers[..wide], inverse, (impulse.plane.x, level), (scale, reach));
+                }
+                _ => {
+                    let covered = trimmed(self.shown, self.trim, impulse, y, columns.clone());
+                    covers.iter_mut().zip(covered).for_each(|(cover, covered)| *cover = covered);
+                }
+            }
+            let covers = &covers[..wide];
+            add_row(value, power, curves, (a, b, c), |i| covers[i]);
+        }
+    }
+
+    /// Makes the noise and its variance of the sums.
+    #[inline(always)]
+    fn finish(&mut self, scale: &Scale) {
+        for (k, y) in self.rows.clone().enumerate() {
+            let own = k * STRIDE..k * STRIDE + self.columns.len();
+            let from = y * self.shown.size_px.0;
+            let triangle = &self.shown.triangle[from + self.columns.start..from + self.columns.end];
+            let sums = self.value[own.clone()].iter_mut().zip(&mut self.power[own]);
+            for ((value, power), triangle) in sums.zip(triangle) {
+                let (own, found) = (*triangle != u32::MAX, scale.of(*value, *power));
+                *value = if own { found.0 } else { 0.0 };
+                *power = if own { found.1 } else { 0.0 };
             }
         }
     }
 
-    /// The kernel's curve in these columns: with the cosine and the sine of its wave, and squared.
-    fn curve(&mut self, impulse: &Impulse, along: f64, columns: &Range<usize>) {
-        let first = columns.start as f64 + 0.5 - impulse.at.x;
-        let (mut curve, mut turn) = (Curve::new(first, impulse.radius_px), Turn::new(along * first, along));
-        self.curves.iter_mut().for_each(Vec::clear);
-        let [cosines, sines, squares] = &mut self.curves;
-        for _ in columns.clone() {
-            let (curve, (cosine, sine)) = (curve.next(), turn.next());
-            cosines.push((curve * cosine) as f32);
-            sines.push((curve * sine) as f32);
-            squares.push((curve * curve) as f32);
+    /// Whether all of the layer here is within the reach of a kernel, or none of it; `None` if that differs.
+    #[inline(always)]
+    fn all(&self, impulse: &Impulse, reach: f64, columns: &Range<usize>, rows: &Range<usize>) -> Option<bool> {
+        let away = self.level.plane - impulse.plane;
+        let [x, y] = [columns, rows].map(|range| [range.start as f64 + 0.5, range.end as f64 - 0.5]);
+        let (x, y) = ([away.x * x[0], away.x * x[1]], [away.y * y[0], away.y * y[1]]);
+        let low = x[0].min(x[1]) + y[0].min(y[1]) + away.z + self.level.least;
+        let high = x[0].max(x[1]) + y[0].max(y[1]) + away.z + self.level.most;
+        let scale = impulse.depth * self.shown.focal_px / impulse.radius_px;
+        if high.max(-low) * scale <= reach {
+            return Some(true);
         }
+        (low.max(-high) * scale >= 2.0 * reach).then_some(false)
+    }
+}
+
+/// What a kernel is made of before it is added, one after the other in the same place.
+struct Scratch {
+    /// Its curves along a row and down a column; see `Line::fill`.
+    across: [[f32; STRIDE]; 3],
+    down: [[f32; STRIDE]; 3],
+    /// How much of a row it covers.
+    covers: [f32; STRIDE],
+}
+
+impl Default for Scratch {
+    fn default() -> Scratch {
+        Scratch { across: [[0.0; STRIDE]; 3], down: [[0.0; STRIDE]; 3], covers: [0.0; STRIDE] }
+    }
+}
+
+/// The beginnings of three lines.
+#[inline(always)]
+fn lines([a, b, c]: &mut [[f32; STRIDE]; 3], count: usize) -> Curves<'_> {
+    [&mut a[..count], &mut b[..count], &mut c[..count]]
+}
+
+/// Adds a row of a kernel, so much of it as covers each pixel.
+#[inline(always)]
+fn add_row(
+    value: &mut [f32],
+    power: &mut [f32],
+    (cosines, sines, squares): (&[f32], &[f32], &[f32]),
+    (a, b, c): (f32, f32, f32),
+    covers: impl Fn(usize) -> f32,
+) {
+    let cells = value.as_chunks_mut::<LANES>().0.iter_mut().zip(power.as_chunks_mut::<LANES>().0);
+    let curves =
+        cosines.as_chunks::<LANES>().0.iter().zip(sines.as_chunks::<LANES>().0).zip(squares.as_chunks::<LANES>().0);
+    for (lump, ((value, power), ((cosines, sines), squares))) in cells.zip(curves).enumerate() {
+        // Copies, so that the compiler sees that none overlaps another.
+        let (mut values, mut powers, cosines, sines, squares) = (*value, *power, *cosines, *sines, *squares);
+        for k in 0..LANES {
+            let cover = covers(lump * LANES + k);
+            values[k] += (a * cosines[k] - b * sines[k]) * cover;
+            powers[k] += c * squares[k] * (cover * cover);
+        }
+        (*value, *power) = (values, powers);
+    }
+}
+
+/// How much of a kernel pixels of a row show, by their 1 / depth: what is within its reach of a plane that has the second
+/// of `level` at the first pixel and grows by the first.
+#[inline(always)]
+fn near(covers: &mut [f32], inverse: &[f64], level: (f64, f64), (scale, reach): (f64, f64)) {
+    let (from, often) = (reach as f32, (1.0 / reach) as f32);
+    let lumps = covers.as_chunks_mut::<LANES>().0.iter_mut().zip(inverse.as_chunks::<LANES>().0);
+    for (lump, (covers, inverse)) in lumps.enumerate() {
+        let first = level.0 * (lump * LANES) as f64 + level.1;
+        let (mut own, inverse) = ([0.0; LANES], *inverse);
+        for k in 0..LANES {
+            let away = ((inverse[k] - (level.0 * k as f64 + first)).abs() * scale) as f32;
+            let x = ((away - from) * often).clamp(0.0, 1.0);
+            own[k] = 1.0 - x * x * (3.0 - 2.0 * x);
+        }
+        *covers = own;
+    }
+}
+
+/// What sums are divided by.
+struct Scale {
+    variance: f32,
+    least: f32,
+}
+
+impl Scale {
+    fn new(overlap: f64) -> Scale {
+        let variance = (overlap * INTEGRAL * INTEGRAL / TAU) as f32;
+        Scale { variance, least: variance * LEAST }
     }
 
-    /// Whether all of the layer here is within the reach of a kernel, or none of it; `None` if that differs.
-    fn all(&self, impulse: &Impulse, reach: f64, columns: &Range<usize>, rows: &Range<usize>) -> Option<bool> {
-        let plane = impulse.plane;
-        let [x, y] = [columns, rows].map(|range| [range.start as f64 + 0.5, range.end as f64 - 0.5]);
-        let ends =
-            |factor: f64, [from, to]: [f64; 2]| [(factor * from).min(factor * to), (factor * from).max(factor * to)];
-        let (across, down) = (ends(plane.x, x), ends(plane.y, y));
-        let (low, high) = (across[0] + down[0] + plane.z, across[1] + down[1] + plane.z);
-        let scale = impulse.depth * self.shown.focal_px / impulse.radius_px;
-        let [least, most] = self.inverse;
-        let farthest = (most - low).max(high - least) * scale;
-        let nearest = (least - high).max(low - most) * scale;
-        match () {
-            () if farthest <= reach => Some(true),
-            () if nearest >= 2.0 * reach => Some(false),
-            () => None,
-        }
+    /// A noise and its variance by the sums of kernels and of their variances.
+    #[inline(always)]
+    fn of(&self, sum: f32, power: f32) -> (f32, f32) {
+        (sum / power.max(self.least).sqrt(), power / self.variance)
     }
 }
 
 /// A noise by its sums: of kernels, and of their variances.
 pub fn normalized(shown: &Shown, sums: &[[f32; 2]], overlap: f64) -> Noise {
-    let variance = (overlap * INTEGRAL * INTEGRAL / TAU) as f32;
-    let least = variance * LEAST;
+    let scale = Scale::new(overlap);
     let own = |i: usize| shown.triangle[i] != u32::MAX;
-    let (value, share) = sums
-        .par_iter()
-        .enumerate()
-        .map(|(i, [sum, power])| if own(i) { (sum / power.max(least).sqrt(), power / variance) } else { (0.0, 0.0) })
-        .unzip();
+    let of = |(i, [sum, power]): (usize, &[f32; 2])| if own(i) { scale.of(*sum, *power) } else { (0.0, 0.0) };
+    let (value, share) = sums.par_iter().enumerate().map(of).unzip();
     Noise { value, share }
 }
 
@@ -259,52 +347,13 @@ fn trimmed(shown: &Shown, trim: Trim, impulse: &Impulse, y: usize, columns: Rang
     })
 }
 
-/// A kernel's curve in steps of a pixel: each value follows from the one before by multiplication.
-struct Curve {
-    bell: f64,
-    ratio: f64,
-    change: f64,
-}
-
-impl Curve {
-    fn new(first: f64, radius: f64) -> Curve {
-        let steep = std::f64::consts::PI / (radius * radius);
-        Curve { bell: exp(-steep * first * first), ratio: exp(-steep * (2.0 * first + 1.0)), change: exp(-2.0 * steep) }
-    }
-
-    #[inline]
-    fn next(&mut self) -> f64 {
-        let value = (self.bell - EDGE) / (1.0 - EDGE);
-        self.bell *= self.ratio;
-        self.ratio *= self.change;
-        value
-    }
-}
-
-/// The cosine and the sine of an angle that grows in equal steps.
-struct Turn {
-    now: (f64, f64),
-    step: (f64, f64),
-}
-
-impl Turn {
-    fn new(first: f64, step: f64) -> Turn {
-        Turn { now: (cos(first), sin(first)), step: (cos(step), sin(step)) }
-    }
-
-    #[inline]
-    fn next(&mut self) -> (f64, f64) {
-        let (now, (c, s)) = (self.now, self.step);
-        self.now = (now.0 * c - now.1 * s, now.1 * c + now.0 * s);
-        now
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DVec2;
 
     use super::*;
+    use crate::base::maths::{cos, exp, sin};
+    use crate::layers::mesh::strokes::curves::EDGE;
 
     fn impulse(at: (f64, f64)) -> Impulse {
         Impulse {
