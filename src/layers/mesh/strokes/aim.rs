@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::surface::{Facet, Surface};
+use super::surface::{Facet, Surface, mixed};
 use crate::base::maths::{atan2, cos, sin};
 
 /// How little the angle of the drawing counts against a direction that is sure.
@@ -50,6 +50,15 @@ pub struct Aim<'a> {
     pub turn: f64,
     /// What makes strokes larger or finer, and how large they are at its least and most.
     pub vary: Option<(Grows<'a>, [f64; 2])>,
+    /// The angle of the drawing alone, clockwise from +x, as half an argument: one of the two ends of a stroke counts.
+    pub drawn: f64,
+}
+
+impl<'a> Aim<'a> {
+    /// Strokes along something, at an angle where that is not sure, all turned; both counter-clockwise, in radians.
+    pub fn new(along: Follows<'a>, angle: f64, turn: f64, vary: Option<(Grows<'a>, [f64; 2])>) -> Self {
+        Aim { along, angle, turn, vary, drawn: blended(DVec2::X, 0.0, -(angle + turn)).0 }
+    }
 }
 
 impl Aim<'_> {
@@ -63,20 +72,14 @@ impl Aim<'_> {
         self.vary.as_ref().map_or(1.0, |(_, [low, high])| low.max(*high))
     }
 
-    /// The angle of the drawing alone, clockwise from +x, as half an argument: one of the two ends of a stroke counts.
-    pub fn drawn(&self) -> f64 {
-        blended(DVec2::X, 0.0, -(self.angle + self.turn)).0
-    }
-
-    /// How much larger strokes are at a place of a triangle, and the normal there, turned to the camera.
-    pub fn larger(&self, surface: &Surface, facet: &Facet, weights: DVec3, place: DVec3) -> (f64, DVec3) {
-        let normals = &facet.normals;
-        let normal = normals[0] * weights.x + normals[1] * weights.y + normals[2] * weights.z;
-        let normal = normal.normalize_or_zero() * if facet.front { 1.0 } else { -1.0 };
-        let Some((by, [low, high])) = &self.vary else { return (1.0, normal) };
+    /// How much larger strokes are at a place of a triangle.
+    #[inline]
+    pub fn larger(&self, surface: &Surface, facet: &Facet, weights: DVec3, place: DVec3) -> f64 {
+        let Some((by, [low, high])) = &self.vary else { return 1.0 };
+        let normal = || facing(facet, weights);
         let share = match by {
-            Grows::Light(light) => (-normal.dot(*light)).max(0.0),
-            Grows::Facing => normal.dot(-place.normalize_or_zero()).abs(),
+            Grows::Light(light) => (-normal().dot(*light)).max(0.0),
+            Grows::Facing => normal().dot(-place.normalize_or_zero()).abs(),
             Grows::Curvature(tensors, half) => {
                 let tensor = surface.tensor(facet, tensors, weights);
                 let squares: f64 = tensor.to_cols_array().iter().map(|v| v * v).sum();
@@ -85,7 +88,7 @@ impl Aim<'_> {
             }
             Grows::Image(image) => image(surface.uv(facet, weights)),
         };
-        (low + (high - low) * share, normal)
+        low + (high - low) * share
     }
 
     /// The direction of a stroke in the plane of its triangle, of length 1, for strokes that lie on the surface: how sure it
@@ -102,15 +105,18 @@ impl Aim<'_> {
     }
 
     /// The direction of a stroke at a place of a triangle, clockwise from +x, and how sure it is.
-    pub fn angle(&self, surface: &Surface, facet: &Facet, weights: DVec3, place: DVec3, normal: DVec3) -> (f64, f64) {
-        let drawn = -(self.angle + self.turn);
+    pub fn angle(&self, surface: &Surface, facet: &Facet, weights: DVec3, place: DVec3) -> (f64, f64) {
+        if let Follows::Screen = self.along {
+            return (self.drawn, 1.0);
+        }
+        let (normal, drawn) = (facing(facet, weights), -(self.angle + self.turn));
         if let Follows::Outline = self.along {
             let across = DVec2::new(normal.x, -normal.y);
             let turned = DVec2::from_angle(-self.turn).rotate(DVec2::new(-across.y, across.x));
             return blended(turned, across.length(), drawn);
         }
-        let Some((way, sure)) = self.tangent(surface, facet, weights, normal) else { return (self.drawn(), 1.0) };
-        let Some(way) = way.try_normalize() else { return (self.drawn(), 0.0) };
+        let Some((way, sure)) = self.tangent(surface, facet, weights, normal) else { return (self.drawn, 1.0) };
+        let Some(way) = way.try_normalize() else { return (self.drawn, 0.0) };
         // Counter-clockwise about the normal.
         let way = way * cos(self.turn) + normal.cross(way) * sin(self.turn);
         let depth = -place.z;
@@ -153,6 +159,12 @@ impl Aim<'_> {
             }
         }
     }
+}
+
+/// The normal at a place of a triangle, turned to the camera.
+fn facing(facet: &Facet, weights: DVec3) -> DVec3 {
+    let normal = mixed(facet.normals, weights).normalize_or_zero();
+    if facet.front { normal } else { -normal }
 }
 
 /// A direction that is sure, mixed with the angle of the drawing: by twice their angles, so that a stroke has no front.

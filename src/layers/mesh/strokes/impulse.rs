@@ -18,7 +18,8 @@ pub const FADE: f64 = 2.0 - 2.0 * std::f64::consts::LN_2;
 pub const MOST: f64 = 16_384.0 * FADE;
 /// What tells the second random numbers of an impulse from the first.
 const SECOND: u32 = 0x8000_0000;
-/// Triangles are looked at in lumps of this size.
+/// Triangles are looked at in so many lumps, for all cores, but in no more than these at once.
+const LUMPS: u32 = 64;
 const LUMP: u32 = 1024;
 
 /// What the impulses of a noise are made by.
@@ -78,12 +79,13 @@ pub struct Impulse {
 /// All impulses of a noise that may be seen in the frame: by triangle, piece and number.
 pub fn impulses(surface: &Surface, recipe: &Recipe, aim: &Aim) -> Vec<Impulse> {
     let count = surface.mesh.triangles.len() as u32;
-    let lumps: Vec<Vec<Impulse>> = (0..count.div_ceil(LUMP))
+    let size = count.div_ceil(LUMPS).clamp(1, LUMP);
+    let lumps: Vec<Vec<Impulse>> = (0..count.div_ceil(size))
         .into_par_iter()
         .map(|lump| {
             let mut found = Vec::new();
             let mut facet: Option<(u32, Option<(Facet, DVec3)>)> = None;
-            surface.pieces.of(lump * LUMP..((lump + 1) * LUMP).min(count), |piece| {
+            surface.pieces.of(lump * size..((lump + 1) * size).min(count), |piece| {
                 if is_set(surface.stop) {
                     return;
                 }
@@ -185,14 +187,14 @@ fn impulse(
     if depth < NEAR_M {
         return None;
     }
-    let (larger, normal) = aim.larger(surface, facet, weights, place);
+    let larger = aim.larger(surface, facet, weights, place);
     let factor = factor(recipe.density(larger) * area / (depth * depth * depth), dice.rank);
     let at = surface.eye.project(place);
     let radius_px = recipe.radius_px * larger;
     if factor <= 0.0 || !meets(at, radius_px, surface.size_px) {
         return None;
     }
-    let (angle, sure) = aim.angle(surface, facet, weights, place, normal);
+    let (angle, sure) = aim.angle(surface, facet, weights, place);
     Some(Impulse {
         of: dice.of,
         at,

@@ -107,7 +107,7 @@ impl<'a> Scene<'a> {
             (by, [vary.low, vary.high])
         };
         let turn = (direction.turn + wanted.turn).to_radians();
-        let aim = Aim { along, angle: direction.angle.to_radians(), turn, vary: vary.map(by) };
+        let aim = Aim::new(along, direction.angle.to_radians(), turn, vary.map(by));
         make(anchor, &aim)
     }
 
@@ -138,7 +138,7 @@ impl<'a> Scene<'a> {
                 };
                 Some((points, trim))
             }
-            Anchor::Screen => Some((grid::impulses(shown.size_px, &recipe, aim.drawn()), Trim::Object)),
+            Anchor::Screen => Some((grid::impulses(shown.size_px, &recipe, aim.drawn), Trim::Object)),
             Anchor::Texture => None,
         }
     }
