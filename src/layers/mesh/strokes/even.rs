@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::sum::Noise;
 use crate::base::maths::exp;
+use crate::base::simd::vectorised;
 
 /// The standard deviation of the neighborhood, in spacings.
 const WIDE: f64 = 0.75;
@@ -19,32 +20,53 @@ pub fn even((width, height): (usize, usize), triangle: &[u32], spacing_px: f64, 
     let weights: Vec<f32> =
         (0..=reach).map(|d| exp(-0.5 * (d as f64 / deviation) * (d as f64 / deviation)) as f32).collect();
     let own = |i: usize| triangle[i] != u32::MAX;
-    let mut sums: Vec<[f32; 2]> =
-        (0..width * height).map(|i| if own(i) { [noise.value[i] * noise.value[i], 1.0] } else { [0.0; 2] }).collect();
-    let rows: Vec<[f32; 2]> = sums.par_chunks(width.max(1)).flat_map_iter(|row| spread(row, &weights)).collect();
-    let columns: Vec<Vec<[f32; 2]>> = (0..width)
-        .into_par_iter()
-        .map(|x| spread(&(0..height).map(|y| rows[y * width + x]).collect::<Vec<_>>(), &weights))
-        .collect();
-    sums.par_iter_mut().enumerate().for_each(|(i, sum)| *sum = columns[i % width][i / width]);
-    noise.value.par_iter_mut().zip(&sums).enumerate().filter(|(i, _)| own(*i)).for_each(|(_, (value, [q, u]))| {
+    let around = |values: Vec<f32>| {
+        let rows = along_rows(&values, width.max(1), &weights);
+        down_columns(&rows, width.max(1), &weights)
+    };
+    let squares =
+        around((0..width * height).map(|i| if own(i) { noise.value[i] * noise.value[i] } else { 0.0 }).collect());
+    let ones = around((0..width * height).map(|i| f32::from(u8::from(own(i)))).collect());
+    let sums = squares.par_iter().zip(&ones);
+    noise.value.par_iter_mut().zip(sums).enumerate().filter(|(i, _)| own(*i)).for_each(|(_, (value, (q, u)))| {
         *value /= (q / u).max(LEAST).sqrt();
     });
 }
 
-/// The weighted sums around each value; beyond the ends there is nothing.
-fn spread(values: &[[f32; 2]], weights: &[f32]) -> Vec<[f32; 2]> {
-    let at = |x: usize| {
-        let mut sum = values[x].map(|v| v * weights[0]);
-        for (d, weight) in weights.iter().enumerate().skip(1) {
-            let (before, after) = (x.checked_sub(d).map(|i| values[i]), values.get(x + d));
-            for other in before.iter().chain(after) {
-                sum = [sum[0] + weight * other[0], sum[1] + weight * other[1]];
+/// The weighted sums around each value in its row; beyond the ends there is nothing.
+fn along_rows(values: &[f32], width: usize, weights: &[f32]) -> Vec<f32> {
+    let reach = weights.len() - 1;
+    let mut out = vec![0.0; values.len()];
+    out.par_chunks_mut(width).zip(values.par_chunks(width)).for_each(|(out, row)| {
+        let mut padded = vec![0.0; row.len() + 2 * reach];
+        padded[reach..reach + row.len()].copy_from_slice(row);
+        sum(out, weights, |d| [Some(&padded[reach - d..]), Some(&padded[reach + d..])]);
+    });
+    out
+}
+
+/// The same in its column.
+fn down_columns(values: &[f32], width: usize, weights: &[f32]) -> Vec<f32> {
+    let rows: Vec<&[f32]> = values.chunks(width).collect();
+    let mut out = vec![0.0; values.len()];
+    out.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+        sum(out, weights, |d| [y.checked_sub(d).map(|y| rows[y]), rows.get(y + d).copied()]);
+    });
+    out
+}
+
+/// The weighted sum of a row and of those on both sides of it.
+fn sum<'a>(out: &mut [f32], weights: &[f32], sides: impl Fn(usize) -> [Option<&'a [f32]>; 2]) {
+    vectorised(
+        #[inline(always)]
+        || {
+            for (d, weight) in weights.iter().enumerate() {
+                for side in sides(d).into_iter().take(if d == 0 { 1 } else { 2 }).flatten() {
+                    out.iter_mut().zip(side).for_each(|(sum, value)| *sum += weight * value);
+                }
             }
-        }
-        sum
-    };
-    (0..values.len()).map(at).collect()
+        },
+    );
 }
 
 #[cfg(test)]
