@@ -10,7 +10,7 @@ use super::marks::{Ink, Outline, Relief, Set};
 use super::model::{Force, Ground, Side};
 use super::rim::{Pixels, Rules, distances};
 use super::sum::Noise;
-use super::tone::{share, threshold};
+use super::tone::{Thresholds, share, threshold};
 use crate::base::color;
 use crate::base::maths::{cos, sin, smoothstep};
 use crate::base::pixels::{Rgba, decode};
@@ -95,10 +95,13 @@ fn linear(text: &str) -> DVec3 {
 impl Sheet<'_> {
     /// Ink where a noise is below a threshold that follows the tone.
     fn ink<'a>(&'a self, strokes: &'a Force, ink: &'a Ink) -> Option<Brush<'a>> {
-        self.noises.get(&ink.noise).and(strokes.noises.get(&ink.noise))?;
+        let of = self.noises.get(&ink.noise).and(strokes.noises.get(&ink.noise))?;
+        let thresholds = Thresholds::new(of.even);
         let paint = Paint::new(&ink.color, ink.shade, strokes);
         Some(Box::new(move |cell| {
-            if let Some(inked) = self.inked(strokes, ink, cell.i).filter(|inked| inked.share > 0.0) {
+            let threshold = |share: f64, x: f64, soft: f64| thresholds.serving(share, x, soft);
+            let inked = self.inked_by(strokes, ink, cell.i, threshold);
+            if let Some(inked) = inked.filter(|inked| inked.share > 0.0) {
                 cell.cover(&paint, inked.covered);
             }
         }))
@@ -106,6 +109,18 @@ impl Sheet<'_> {
 
     /// How a pixel is inked; `None` if the noise is not there.
     pub fn inked(&self, strokes: &Force, ink: &Ink, i: usize) -> Option<Inked> {
+        let even = strokes.noises.get(&ink.noise)?.even;
+        self.inked_by(strokes, ink, i, |share, _, _| threshold(share, even))
+    }
+
+    /// The same, by thresholds of a share, the noise, and how far edges reach.
+    fn inked_by(
+        &self,
+        strokes: &Force,
+        ink: &Ink,
+        i: usize,
+        threshold: impl Fn(f64, f64, f64) -> f64,
+    ) -> Option<Inked> {
         let (noise, of) = (self.noises.get(&ink.noise)?, strokes.noises.get(&ink.noise)?);
         let tone = f64::from(self.tone[i]);
         let inked = (ink.amount * strokes.amount * share(tone, ink.from, ink.to)).clamp(0.0, 1.0);
@@ -118,8 +133,9 @@ impl Sheet<'_> {
             x = (1.0 - amount * amount).sqrt() * x + amount * f64::from(grain.value[i]);
         }
         let x = if ink.side == Side::High { -x } else { x };
-        let threshold = threshold(inked, of.even);
-        let (below, soft) = (x - threshold, ink.softness * PI / (of.spacing * strokes.size));
+        let soft = ink.softness * PI / (of.spacing * strokes.size);
+        let threshold = threshold(inked, x, soft);
+        let below = x - threshold;
         let covered = match soft > 0.0 {
             true => 1.0 - smoothstep(-soft, soft, below),
             false => f64::from(u8::from(below < 0.0)),
