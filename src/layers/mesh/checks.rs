@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 use super::frame::Seen;
 use super::model::MeshLayer;
 use super::strokes::Given;
-use super::strokes::measure::Frame;
+use super::strokes::measure::{Frame, flatness_of};
 use super::strokes::noise::Scene;
-use super::strokes::statistics::correlation;
+use super::strokes::statistics::{correlation, percentile};
 use super::strokes::tone::threshold;
 use super::synth::Synth;
 use crate::base::maths::{TAU, cos, pow, sin};
@@ -197,6 +197,10 @@ fn the_noise_goes_with_the_surface_and_fades_slowly() {
     let synth = synth(&plane(24), &one(json!({})));
     let at = |x: f64, distance: f64| moment(DVec3::new(x, 0.0, distance), 192);
     let first = frame(&synth, &at(0.0, 2.0));
+    let about = DMat3::from_rotation_y(1_f64.to_radians());
+    let (turned, straight) = (about * DVec3::Z * 2.0, at(0.0, 2.0));
+    let eye = Eye { position: turned, turn: about.transpose(), ..straight.eye.unwrap() };
+    let turned = Moment { eye: Some(eye), ..straight };
     let px = 2.0 / (192.0 * 420.0 / 512.0);
     for (name, other, least) in [
         ("pan of 5.3 px", at(5.3 * px, 2.0), 0.9999),
@@ -204,12 +208,14 @@ fn the_noise_goes_with_the_surface_and_fades_slowly() {
         ("zoom of 1 %", at(0.0, 2.0 / 1.01), 0.999),
         ("zoom of 3 %", at(0.0, 2.0 / 1.03), 0.992),
         ("zoom of 11 %", at(0.0, 2.0 / 1.11), 0.92),
+        ("turn of 1 degree", turned, 0.999),
     ] {
         let pairs = first.pairs(&frame(&synth, &other), 0);
         let found = correlation(pairs.iter().copied()).unwrap();
         assert!(found >= least && pairs.len() > 25_000, "{name}: {found}");
     }
     // In small steps nothing happens to many at once.
+    let mut steps: Vec<f64> = Vec::new();
     let residuals: Vec<f64> = (0..6)
         .map(|k| 2.0 / pow(1.003, f64::from(k)))
         .collect::<Vec<_>>()
@@ -217,11 +223,14 @@ fn the_noise_goes_with_the_surface_and_fades_slowly() {
         .map(|pair| {
             let [a, b] = [pair[0], pair[1]].map(|distance| frame(&synth, &at(0.0, distance)));
             let pairs = a.pairs(&b, 0);
+            steps.extend(pairs.iter().map(|(v, w)| f64::from((v - w).abs())));
             mean(pairs.iter().map(|(v, w)| square(f64::from(v - w)))).sqrt()
         })
         .collect();
     let (most, average) = (residuals.iter().copied().fold(0.0, f64::max), mean(residuals.iter().copied()));
     assert!(most <= 0.012 && most <= 1.1 * average, "{residuals:?}");
+    let rare = percentile(&mut steps, 0.999).unwrap();
+    assert!(rare <= 0.045, "one in a thousand differs by {rare}");
 }
 
 #[test]
@@ -278,6 +287,21 @@ fn what_is_in_front_changes_nothing_beside_it() {
     let behind = Scene::new(ready, &given).noise(&ready.strokes.noises["a"]).value;
     let shown: Vec<usize> = (0..alone.len()).filter(|i| given.triangle[*i] != NONE).collect();
     assert!(shown.len() > 2000 && shown.iter().all(|i| alone[*i].to_bits() == behind[*i].to_bits()));
+}
+
+#[test]
+fn strokes_are_of_one_size_on_a_round_form() {
+    let mesh = ball(48, 24);
+    let flatness = ["surface", "screen", "texture"].map(|anchor| {
+        let strokes = json!({ "style": "hatching", "anchor": anchor, "noises": { "a": { "spacing": 4 } } });
+        let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh.clone()))].into(), ..Materials::default() };
+        let making = Making { px_per_m: 60.0, ..Making::plain(Wrap::Repeat, &materials) };
+        let synth = Synth::new(&layer(&strokes), &making, None).unwrap();
+        let ready = synth.strokes.as_deref().unwrap();
+        seen(&synth, &moment(DVec3::Z * 2.6, 192), |given| flatness_of(ready, given).unwrap())
+    });
+    let [surface, screen, texture] = flatness;
+    assert!(surface >= screen - 0.04 && surface >= texture + 0.08, "{flatness:?}");
 }
 
 #[test]
