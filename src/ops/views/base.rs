@@ -36,7 +36,7 @@ impl Base {
         if !shots::replaces(document, layer) {
             return Ok(base);
         }
-        let side_px = synth.size.0.min(synth.size.1).clamp(SIDES.0, SIDES.1);
+        let side_px = synth.size.0.max(synth.size.1).clamp(SIDES.0, SIDES.1);
         for taken in synth.layers.get(layer).map(|ready| ready.around(time, side_px)).unwrap_or_default() {
             let path = format!("{FOLDER}/{name}-base-{}.png", taken.name);
             let png = still::frame(&render::cpu::finish(&taken.picture)).map_err(|error| Error::at(&path, error))?;

@@ -324,6 +324,13 @@ fn what_is_odd_is_told_once_it_is_filled() {
     assert_eq!(told(squares(&[0.0]), vec![view([0.0, 0.0, 4.0], 0), view([1.0, 0.0, 4.0], 1)], own(2)), []);
     let lone = told(squares(&[0.0]), vec![view([0.0, 0.0, 4.0], 0)], own(1));
     assert!(lone.len() == 1 && lone[0].0 == "/views/0/extremes" && lone[0].1.contains("30 degrees"), "{lone:?}");
+    let mut painted = own(2);
+    painted["views"][1]["kind"] = "independent".into();
+    let lone = told(squares(&[0.0]), vec![view([0.0, 0.0, 4.0], 0), view([1.0, 0.0, 4.0], 1)], painted);
+    assert!(
+        lone.len() == 1 && lone[0].0 == "/views/0/extremes",
+        "what is seen from everywhere has no extremes: {lone:?}"
+    );
     let mut beyond = view([0.0, 0.0, 4.0], 1);
     beyond.camera = beyond.camera.resized((400, 400));
     beyond.paint.picture = waves(400, 0.0);

@@ -28,10 +28,11 @@ const MOST_ROUND: f64 = 0.75;
 
 /// Everything odd.
 pub fn warnings(own: &ViewMap, map: &Map) -> Vec<Problem> {
-    let alone = own.views.iter().filter(|view| view.active && view.kind != Feeds::Independent).count() == 1;
+    let depends = |view: &&View| view.active && view.kind != Feeds::Independent;
+    let alone = own.views.iter().filter(depends).count() == 1;
     let all = report::views(map).into_iter().filter_map(|found| {
         let (number, view) = (found.view.number, own.views.get(found.view.number)?);
-        let problem = of_view(&found, map).or_else(|| of_lone(view).filter(|_| alone))?;
+        let problem = of_view(&found, map).or_else(|| of_lone(view).filter(|_| alone && depends(&view)))?;
         Some(problem.under(&format!("/views/{number}")))
     });
     let finest = map.cells.layers.last();
