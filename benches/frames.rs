@@ -5,7 +5,7 @@ mod scenes;
 use std::sync::Arc;
 
 use divan::Bencher;
-use plica::base::picture::Picture;
+use plica::base::picture::{Channels, Picture, SRGB_8, Samples};
 use plica::layers::Layer;
 use plica::layers::folding::model::PictureLayer;
 use plica::layers::parts::materials::Materials;
@@ -17,8 +17,8 @@ fn main() {
     divan::main();
 }
 
-/// Every pixel moves, and folds at an ellipse; from synthesis to sRGB codes.
-#[divan::bench(args = [(640, 480), (1920, 1080)], sample_count = 10)]
+/// Every pixel moves, and folds at an ellipse; from synthesis to sRGB codes, of a picture of 8 bits.
+#[divan::bench(args = [(640, 480), (1920, 1080), (3840, 2160)], sample_count = 10)]
 fn frame(bencher: Bencher, size: (usize, usize)) {
     let layer = PictureLayer {
         name: "all".into(),
@@ -37,6 +37,7 @@ fn frame(bencher: Bencher, size: (usize, usize)) {
 }
 
 fn picture((width, height): (usize, usize)) -> Picture {
-    let cell = |i: usize| [(i * 7 % 251) as f32 / 251.0, (i * 13 % 241) as f32 / 241.0, (i % 97) as f32 / 97.0, 1.0];
-    Picture::from_cells(width, height, (0..width * height).map(cell).collect())
+    let code = |i: usize| if i % 4 == 3 { 255 } else { (i * 7 % 251 ^ i / 997) as u8 };
+    let codes = (0..4 * width * height).map(code).collect();
+    Picture::new(width, height, Channels::Rgba, Samples::Bytes(codes, SRGB_8.clone()))
 }

@@ -11,6 +11,7 @@ pub mod error;
 pub mod expression;
 pub mod fault;
 pub mod geometry;
+pub mod half;
 pub mod keys;
 pub mod mask;
 pub mod maths;

@@ -3,6 +3,7 @@
 
 use std::sync::{Arc, LazyLock};
 
+use crate::base::half::value_of_half;
 use crate::base::pixels::{Beyond, Linear, Rgba, bilinear, bilinear_repeated, encode, linear_from_srgb};
 
 /// A picture that a scene names.
@@ -110,33 +111,12 @@ pub static SRGB_16: LazyLock<Arc<Light<65536>>> = LazyLock::new(|| Arc::new(Ligh
 /// The value of every half float.
 static HALVES: LazyLock<Box<[f32]>> = LazyLock::new(|| (0..=u16::MAX).map(value_of_half).collect());
 
-/// The value of a half float, from its bits.
-pub fn value_of_half(bits: u16) -> f32 {
-    let (sign, exponent, fraction) = (u32::from(bits >> 15) << 31, u32::from(bits >> 10 & 31), u32::from(bits & 1023));
-    match exponent {
-        // A subnormal is its fraction times 2^-24.
-        0 => f32::from_bits((fraction as f32 * f32::from_bits(103 << 23)).to_bits() | sign),
-        31 => f32::from_bits(sign | 255 << 23 | fraction << 13),
-        _ => f32::from_bits(sign | (exponent + 112) << 23 | fraction << 13),
-    }
-}
-
-/// The bits of the half float that is nearest to a value, of two the even one; what is too large becomes the largest.
-pub fn half_of_value(value: f32) -> u16 {
-    /// The largest half float, and the smallest that is not subnormal.
-    const LARGEST: f32 = 65504.0;
-    const NORMAL: f32 = 6.103_515_6e-5;
-    let (sign, size) = ((value.to_bits() >> 16) as u16 & 0x8000, value.abs());
-    if size < NORMAL {
-        return sign | (size * (1 << 24) as f32).round_ties_even() as u16;
-    }
-    let bits = size.min(LARGEST).to_bits();
-    sign | ((bits + 0xfff + (bits >> 13 & 1) - (112 << 23)) >> 13) as u16
-}
-
 /// The linear, premultiplied RGBA of pixel `i`.
 trait Texels {
     fn at(&self, i: usize) -> Rgba;
+
+    /// Those of all pixels from `first` on.
+    fn row(&self, first: usize, out: &mut [Rgba]);
 }
 
 struct Codes<'a, C, const N: usize, const CODES: usize> {
@@ -144,10 +124,9 @@ struct Codes<'a, C, const N: usize, const CODES: usize> {
     light: &'a Light<CODES>,
 }
 
-impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texels for Codes<'_, C, N, CODES> {
+impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Codes<'_, C, N, CODES> {
     #[inline]
-    fn at(&self, i: usize) -> Rgba {
-        let cell = self.cells[i];
+    fn of(&self, cell: &[C; N]) -> Rgba {
         let [r, g, b] = self.light.of(if N < 3 { [cell[0].into(); 3] } else { [0, 1, 2].map(|c| cell[c].into()) });
         if N % 2 == 1 {
             return [r, g, b, 1.0];
@@ -157,17 +136,41 @@ impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texe
     }
 }
 
+impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texels for Codes<'_, C, N, CODES> {
+    #[inline]
+    fn at(&self, i: usize) -> Rgba {
+        self.of(&self.cells[i])
+    }
+
+    #[inline]
+    fn row(&self, first: usize, out: &mut [Rgba]) {
+        out.iter_mut().zip(&self.cells[first..]).for_each(|(out, cell)| *out = self.of(cell));
+    }
+}
+
 struct Values<'a, T, const N: usize> {
     cells: &'a [[T; N]],
     value: &'a dyn Fn(T) -> f32,
 }
 
+impl<T: Copy, const N: usize> Values<'_, T, N> {
+    #[inline]
+    fn of(&self, cell: &[T; N]) -> Rgba {
+        let cell = cell.map(self.value);
+        let alpha = if N % 2 == 1 { 1.0 } else { cell[N - 1] };
+        if N < 3 { [cell[0], cell[0], cell[0], alpha] } else { [cell[0], cell[1], cell[2], alpha] }
+    }
+}
+
 impl<T: Copy, const N: usize> Texels for Values<'_, T, N> {
     #[inline]
     fn at(&self, i: usize) -> Rgba {
-        let cell = self.cells[i].map(self.value);
-        let alpha = if N % 2 == 1 { 1.0 } else { cell[N - 1] };
-        if N < 3 { [cell[0], cell[0], cell[0], alpha] } else { [cell[0], cell[1], cell[2], alpha] }
+        self.of(&self.cells[i])
+    }
+
+    #[inline]
+    fn row(&self, first: usize, out: &mut [Rgba]) {
+        out.iter_mut().zip(&self.cells[first..]).for_each(|(out, cell)| *out = self.of(cell));
     }
 }
 
@@ -288,7 +291,32 @@ impl Picture {
     pub fn row(&self, x: usize, y: usize, out: &mut [Rgba]) {
         assert!(x + out.len() <= self.width, "columns {x} to {} of {}", x + out.len(), self.width);
         let first = y * self.width + x;
-        with_texels!(self, texels => out.iter_mut().enumerate().for_each(|(i, cell)| *cell = texels.at(first + i)))
+        with_texels!(self, texels => texels.row(first, out))
+    }
+
+    /// Writes the codes of row `y` from column `x` on as a frame has them, if that is what was read: opaque sRGB of 8 bits.
+    pub fn copy_codes(&self, (x, y): (usize, usize), out: &mut [[u8; 4]]) -> bool {
+        let Samples::Bytes(all, light) = &self.samples else { return false };
+        if !Arc::ptr_eq(light, &SRGB_8) {
+            return false;
+        }
+        let first = y * self.width + x;
+        match self.channels {
+            Channels::Grey => out.iter_mut().zip(&all[first..]).for_each(|(out, &v)| *out = [v, v, v, 255]),
+            Channels::Rgb => {
+                let own = &all.as_chunks::<3>().0[first..];
+                out.iter_mut().zip(own).for_each(|(out, &[r, g, b])| *out = [r, g, b, 255]);
+            }
+            Channels::Rgba => {
+                let own = &all.as_chunks::<4>().0[first..][..out.len()];
+                if own.iter().filter(|code| code[3] == 255).count() < own.len() {
+                    return false;
+                }
+                out.copy_from_slice(own);
+            }
+            Channels::GreyAlpha => return false,
+        }
+        true
     }
 
     /// The bilinear read at image coordinates (x, y); the centre of pixel (i, j) is (i + 0.5, j + 0.5).
@@ -361,37 +389,26 @@ mod tests {
     }
 
     #[test]
+    fn codes_are_copied_only_if_they_are_those_of_a_frame() {
+        let of = |channels: Channels, all: &[u8], light: &Arc<Light<256>>| {
+            let mut out = [[0; 4]];
+            let picture = Picture::new(2, 1, channels, Samples::Bytes(all.to_vec(), light.clone()));
+            picture.copy_codes((1, 0), &mut out).then_some(out[0])
+        };
+        let other = Arc::new(Light::of_curve(|code| code));
+        assert_eq!(of(Channels::Grey, &[0, 7], &SRGB_8), Some([7, 7, 7, 255]));
+        assert_eq!(of(Channels::Rgb, &[0, 0, 0, 1, 2, 3], &SRGB_8), Some([1, 2, 3, 255]));
+        assert_eq!(of(Channels::Rgba, &[0, 0, 0, 0, 1, 2, 3, 255], &SRGB_8), Some([1, 2, 3, 255]));
+        assert_eq!(of(Channels::Rgba, &[0, 0, 0, 255, 1, 2, 3, 254], &SRGB_8), None);
+        assert_eq!(of(Channels::GreyAlpha, &[0, 0, 1, 255], &SRGB_8), None);
+        assert_eq!(of(Channels::Rgb, &[0, 0, 0, 1, 2, 3], &other), None);
+    }
+
+    #[test]
     fn other_primaries_are_turned_and_clipped() {
         let swap = [[0.0, 1.0, 0.0], [1.5, 0.0, 0.0], [0.0, 0.0, -1.0]];
         let light = Light::<256> { matrix: Some(swap), ..(**SRGB_8).clone() };
         let picture = Picture::new(1, 1, Channels::Rgb, Samples::Bytes(vec![255, 0, 255], Arc::new(light)));
         assert_eq!(picture.texel(0, 0), [0.0, 1.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn halves_are_what_ieee_says() {
-        for (bits, value) in [
-            (0, 0.0),
-            (0x3c00, 1.0),
-            (0x7bff, 65504.0),
-            (0x0400, 6.103_515_6e-5),
-            (0x03ff, 6.097_555e-5),
-            (0xc000, -2.0),
-        ] {
-            assert_eq!(value_of_half(bits), value, "{bits:x}");
-        }
-        assert!(value_of_half(0x7c00).is_infinite() && value_of_half(0x7e00).is_nan());
-        assert!(value_of_half(0x8000).is_sign_negative());
-    }
-
-    #[test]
-    fn halves_are_the_nearest_and_of_two_the_even() {
-        let finite = (0..=u16::MAX).filter(|bits| bits & 0x7c00 != 0x7c00);
-        assert!(finite.clone().all(|bits| half_of_value(value_of_half(bits)) == bits));
-        for bits in finite.filter(|bits| bits & 0x7fff < 0x7bff) {
-            let middle = (value_of_half(bits) + value_of_half(bits + 1)) / 2.0;
-            assert_eq!(half_of_value(middle), bits + (bits & 1), "{bits:x}");
-        }
-        assert_eq!([half_of_value(1e9), half_of_value(-f32::INFINITY)], [0x7bff, 0xfbff]);
     }
 }

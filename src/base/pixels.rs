@@ -165,37 +165,76 @@ pub fn encode([r, g, b, a]: Rgba) -> [u8; 4] {
         return [0; 4];
     }
     let [r, g, b] = if a == 1.0 { [r, g, b] } else { [r / a, g / a, b / a] };
-    [srgb_code(r), srgb_code(g), srgb_code(b), (a.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
+    let code = |light| srgb_code(&CODES, light) as u8;
+    [code(r), code(g), code(b), (a.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
+}
+
+/// What [`encode`] gives for each color.
+#[inline(always)]
+pub fn encode_all(colors: &[Rgba], out: &mut [[u8; 4]]) {
+    const RUN: usize = 32;
+    let table: &Codes = &CODES;
+    for (colors, out) in colors.chunks(RUN).zip(out.chunks_mut(RUN)) {
+        if colors.iter().filter(|color| color[3] == 1.0).count() < colors.len() {
+            out.iter_mut().zip(colors).for_each(|(out, color)| *out = encode(*color));
+            continue;
+        }
+        let (mut stretches, mut rests) = ([[0; 4]; RUN], [[0; 4]; RUN]);
+        let halves = stretches.as_flattened_mut().iter_mut().zip(rests.as_flattened_mut());
+        for ((stretch, rest), light) in halves.zip(colors.as_flattened()) {
+            (*stretch, *rest) = halves_of(*light);
+        }
+        let mut entries = [[OPAQUE; 4]; RUN];
+        for (entry, stretch) in entries.iter_mut().zip(&stretches) {
+            for i in 0..3 {
+                entry[i] = table[usize::from(stretch[i])];
+            }
+        }
+        let codes = entries.as_flattened().iter().zip(rests.as_flattened());
+        for (out, (entry, rest)) in out.as_flattened_mut().iter_mut().zip(codes) {
+            *out = ((entry + u32::from(*rest)) >> 16) as u8;
+        }
+    }
 }
 
 static LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|code| linear_from_srgb(code as f64 / 255.0) as f32));
 
-/// Where, in linear light, each code begins, and a first guess for each of `STARTS` equal steps of linear light: the
-/// exact rounding without a power function.
-static CODES: LazyLock<([f32; 257], Vec<u8>)> = LazyLock::new(|| {
-    let begins: [f32; 257] = std::array::from_fn(|code| match code {
-        0 => f32::NEG_INFINITY,
-        256 => f32::INFINITY,
-        _ => linear_from_srgb((code as f64 - 0.5) / 255.0) as f32,
-    });
-    let guess = |step: usize| {
-        let light = step as f32 / STARTS as f32;
-        (begins.partition_point(|&b| b <= light) - 1) as u8
+/// For all light whose upper half of bits is the same: the code at its beginning in the upper half, in the lower half what
+/// carries over into the next code from where that begins. None of these stretches is so long that two codes begin in it.
+type Codes = [u32; 1 + STRETCHES];
+
+/// The entry of all light of 1.
+const OPAQUE: u32 = 255 << 16;
+/// How many stretches there are up to 1, and where the first begins: darker light has code 0 as well.
+const STRETCHES: usize = 13 << 7;
+const DARKEST: f32 = 1.0 / 8192.0;
+
+static CODES: LazyLock<Box<Codes>> = LazyLock::new(|| {
+    let begins: Vec<u32> =
+        (1..256).map(|code| (linear_from_srgb((f64::from(code) - 0.5) / 255.0) as f32).to_bits()).collect();
+    let entry = |stretch: usize| {
+        let first = (DARKEST.to_bits() >> 16) + stretch as u32;
+        let code = begins.partition_point(|&begin| begin <= first << 16);
+        let next = begins.get(code).filter(|begin| *begin >> 16 == first);
+        (code as u32) << 16 | next.map_or(0, |begin| (1 << 16) - (begin & 0xffff))
     };
-    (begins, (0..=STARTS).map(guess).collect())
+    Box::new(std::array::from_fn(entry))
 });
 
-const STARTS: usize = 4096;
+/// The code of linear light, rounded to the nearest: without a power function, and without a branch.
+#[inline(always)]
+fn srgb_code(codes: &Codes, light: f32) -> u32 {
+    let (stretch, rest) = halves_of(light);
+    (codes[usize::from(stretch)] + u32::from(rest)) >> 16
+}
 
-fn srgb_code(light: f32) -> u8 {
-    let (begins, starts) = &*CODES;
-    let light = if light > 0.0 { light.min(1.0) } else { 0.0 }; // a NaN becomes 0
-    let mut code = starts[(light * STARTS as f32) as usize];
-    while begins[usize::from(code) + 1] <= light {
-        code += 1;
-    }
-    code
+/// The number of the stretch that light is in, and the lower half of its bits; a NaN is dark.
+#[inline(always)]
+fn halves_of(light: f32) -> (u16, u16) {
+    let light = if light > DARKEST { light } else { DARKEST };
+    let bits = (if light < 1.0 { light } else { 1.0 }).to_bits();
+    (((bits - DARKEST.to_bits()) >> 16) as u16, bits as u16)
 }
 
 #[cfg(test)]
@@ -220,15 +259,40 @@ mod tests {
             } else {
                 1.055 * crate::base::maths::pow(light, 1.0 / 2.4) - 0.055
             };
-            let error = (f64::from(srgb_code(light as f32)) - srgb * 255.0).abs();
+            let error = (f64::from(srgb_code(&CODES, light as f32)) - srgb * 255.0).abs();
             assert!(error <= 0.5005, "{light}: {error}");
+        }
+    }
+
+    #[test]
+    fn codes_begin_where_they_should_to_the_bit() {
+        let begins: Vec<f32> = (1..256).map(|code| linear_from_srgb((f64::from(code) - 0.5) / 255.0) as f32).collect();
+        let code = |light: f32| begins.partition_point(|begin| *begin <= light) as u32;
+        let stretches = (0..=STRETCHES as u32).map(|stretch| f32::from_bits(DARKEST.to_bits() + (stretch << 16)));
+        for place in begins.iter().copied().chain(stretches) {
+            for bits in place.to_bits() - 300..=place.to_bits() + 300 {
+                let light = f32::from_bits(bits);
+                assert_eq!(srgb_code(&CODES, light), code(light.min(1.0)), "{light}");
+            }
+        }
+    }
+
+    #[test]
+    fn many_colors_are_encoded_as_each() {
+        let light = [0.0, 1e-5, 0.2, 0.9999, 1.0, 1.5, -1.0, f32::NAN];
+        for alphas in [&[1.0][..], &[1.0, 0.5], &[0.0, 1.0, f32::NAN, 1e-9, 2.0]] {
+            let color = |i: usize| [light[i % 8], light[i / 3 % 8], light[i / 5 % 8], alphas[i / 40 % alphas.len()]];
+            let colors: Vec<Rgba> = (0..213).map(color).collect();
+            let mut codes = vec![[9; 4]; colors.len()];
+            encode_all(&colors, &mut codes);
+            assert_eq!(codes, colors.iter().map(|color| encode(*color)).collect::<Vec<_>>());
         }
     }
 
     #[test]
     fn odd_light_is_clamped() {
         for (light, code) in [(-1.0, 0), (2.0, 255), (f32::NAN, 0), (f32::INFINITY, 255)] {
-            assert_eq!(srgb_code(light), code, "{light}");
+            assert_eq!(srgb_code(&CODES, light), code, "{light}");
         }
     }
 

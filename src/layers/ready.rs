@@ -179,6 +179,17 @@ pub trait Still: Sync {
     /// by alpha. Rows are computed on all cores; a cell does not depend on which columns are wanted.
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]);
 
+    /// The same for all columns of these rows, one after the other.
+    fn rows(&self, rows: Range<usize>, width: usize, out: &mut [Rgba]) {
+        rows.zip(out.chunks_exact_mut(width.max(1))).for_each(|(y, out)| self.row(y, Columns::All, out));
+    }
+
+    /// Writes all columns of these rows as they are finished (sRGB, straight alpha) with the layer alone over a color; `false`
+    /// and nothing written if it has no faster way than [`Still::rows`].
+    fn codes(&self, _rows: Range<usize>, _background: Rgba, _out: &mut [[u8; 4]]) -> bool {
+        false
+    }
+
     /// The same for a layer in space, as one of a group: writes only what is nearer than `depth`, one cell per column,
     /// in meters, and its depth.
     fn surface(&self, _y: usize, _columns: Columns, _depth: &mut [f64], _out: &mut [Rgba]) {}

@@ -6,16 +6,22 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Synth;
-use super::stage::Group;
+use super::stage::{Group, Stage};
 use super::whole::{Kept, Wholes};
-use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, over};
-use crate::layers::parts::moment::Columns;
+use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode_all, over};
+use crate::base::simd::vectorised;
+use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::ready::Still;
 
 /// The frame at `scene_time` in linear, premultiplied RGBA.
 pub fn linear(synth: &Synth, scene_time: f64) -> Linear {
     mean(std::slice::from_ref(synth), scene_time)
 }
+
+/// Rows that are made one after the other.
+const STRIP: usize = 16;
+/// Colors that are encoded one after the other.
+const RUN: usize = 1 << 14;
 
 /// Only these columns of these rows of one sample of each pixel.
 fn lines((synth, sample): (&Synth, usize), (scene_time, wholes): At, columns: Columns, rows: &[usize]) -> Linear {
@@ -24,30 +30,31 @@ fn lines((synth, sample): (&Synth, usize), (scene_time, wholes): At, columns: Co
         Columns::Some(columns) => columns.len(),
     };
     let moment = synth.moment(scene_time);
-    let layers: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
+    let layers = layers(synth, &moment);
     let mut picture = Linear::filled(width, rows.len(), synth.stage.background);
     for (i, group) in synth.stage.groups.iter().enumerate() {
         let (shown, width) = (Shown { layers: &layers, group, columns }, width.max(1));
         let out = picture.cells_mut();
         let whole = wholes.of(i, sample, columns, rows);
-        if whole.is_some() || group.layers().iter().any(|&layer| synth.layers[layer].has_sprites()) {
+        if whole.is_some() || has_sprites(synth, group) {
             // Sprites reach over many rows: all of these at once.
             let (own, depth) = whole.unwrap_or_else(|| shown.surfaces(rows, width));
             let own = shown.sprites(rows, &depth, own);
             out.par_iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(color, *beneath));
             continue;
         }
-        let lines = out.par_chunks_mut(width).zip(rows.par_iter());
-        lines.for_each_init(
-            || (vec![[0.0; 4]; width], vec![f64::INFINITY; width]),
-            |(own, depth), (out, &y)| {
-                own.fill([0.0; 4]);
-                shown.row(y, depth, own);
-                out.iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(*color, *beneath));
-            },
-        );
+        let strips = out.par_chunks_mut(STRIP * width).zip(rows.par_chunks(STRIP));
+        strips.for_each_init(Vec::new, |own, (out, rows)| shown.lay(rows, own, out));
     }
     picture
+}
+
+fn layers<'a>(synth: &'a Synth, moment: &'a Moment) -> Vec<Box<dyn Still + 'a>> {
+    synth.layers.iter().map(|layer| layer.at(moment)).collect()
+}
+
+fn has_sprites(synth: &Synth, group: &Group) -> bool {
+    group.layers().iter().any(|&layer| synth.layers[layer].has_sprites())
 }
 
 /// A group of layers at one time.
@@ -58,6 +65,21 @@ struct Shown<'a> {
 }
 
 impl Shown<'_> {
+    /// Lays these rows of what is no sprite over `out`; `own` is memory.
+    fn lay(&self, rows: &[usize], own: &mut Vec<Rgba>, out: &mut [Rgba]) {
+        own.clear();
+        own.resize(out.len(), [0.0; 4]);
+        let width = out.len() / rows.len().max(1);
+        match (self.group, self.columns, run(rows)) {
+            (Group::Plane(layer), Columns::All, Some(rows)) => self.layers[*layer].rows(rows, width, own),
+            _ => {
+                let mut depth = vec![f64::INFINITY; width];
+                rows.iter().zip(own.chunks_mut(width.max(1))).for_each(|(&y, own)| self.row(y, &mut depth, own));
+            }
+        }
+        out.iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(*color, *beneath));
+    }
+
     /// Writes row `y` of what is no sprite to `own`, transparent before, and how far away it is to `depth`.
     fn row(&self, y: usize, depth: &mut [f64], own: &mut [Rgba]) {
         match self.group {
@@ -106,8 +128,71 @@ pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {
 
 /// Finishes these rows into `out`.
 pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8; 4]]) {
-    let linear = mean_lines(samples, at, Columns::All, &band.collect::<Vec<_>>());
-    out.par_iter_mut().zip(linear.cells().par_iter()).for_each(|(code, &light)| *code = encode(light));
+    let Some(width) = samples.first().map(|synth| synth.size.0.max(1)) else { return };
+    let in_strips = |(sample, synth): (usize, &Synth)| {
+        let mut groups = synth.stage.groups.iter().enumerate();
+        groups.all(|(i, group)| !has_sprites(synth, group) && at.1.of(i, sample, Columns::All, &[]).is_none())
+    };
+    let rows: Vec<usize> = band.collect();
+    if !samples.iter().enumerate().all(in_strips) {
+        let linear = mean_lines(samples, at, Columns::All, &rows);
+        return encode_in(linear.cells(), out);
+    }
+    let moments: Vec<Moment> = samples.iter().map(|synth| synth.moment(at.0)).collect();
+    let layers: Vec<_> = samples.iter().zip(&moments).map(|(synth, moment)| layers(synth, moment)).collect();
+    let samples: Vec<(&Stage, &[Box<dyn Still + '_>])> =
+        samples.iter().zip(&layers).map(|(synth, layers)| (&*synth.stage, &layers[..])).collect();
+    let strips = out.par_chunks_mut(STRIP * width).zip(rows.par_chunks(STRIP));
+    strips.for_each_init(<[Vec<Rgba>; 3]>::default, |memory, (out, rows)| finish_strip(&samples, rows, memory, out));
+}
+
+/// Finishes rows of which no layer needs more than these.
+fn finish_strip(
+    samples: &[(&Stage, &[Box<dyn Still + '_>])],
+    rows: &[usize],
+    [own, light, sum]: &mut [Vec<Rgba>; 3],
+    out: &mut [[u8; 4]],
+) {
+    if let ([(stage, layers)], Some(rows)) = (samples, run(rows))
+        && let [Group::Plane(layer)] = stage.groups[..]
+        && layers[layer].codes(rows, stage.background, out)
+    {
+        return;
+    }
+    for (i, (stage, layers)) in samples.iter().enumerate() {
+        light.clear();
+        light.resize(out.len(), stage.background);
+        for group in &stage.groups {
+            Shown { layers, group, columns: Columns::All }.lay(rows, own, light);
+        }
+        if i == 0 {
+            std::mem::swap(sum, light);
+        } else {
+            sum.iter_mut().zip(&*light).for_each(|(sum, more)| add(sum, more));
+        }
+    }
+    let share = share_of(samples.len());
+    if share < 1.0 {
+        sum.iter_mut().for_each(|color| *color = color.map(|c| c * share));
+    }
+    encode_in(sum, out);
+}
+
+/// Rows as a range, if they follow one another.
+fn run(rows: &[usize]) -> Option<Range<usize>> {
+    let range = *rows.first()?..rows.last()? + 1;
+    (range.len() == rows.len()).then_some(range)
+}
+
+/// Encodes light.
+fn encode_in(light: &[Rgba], out: &mut [[u8; 4]]) {
+    let runs = out.par_chunks_mut(RUN).zip(light.par_chunks(RUN));
+    runs.for_each(|(out, light)| {
+        vectorised(
+            #[inline(always)]
+            || encode_all(light, out),
+        );
+    });
 }
 
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are
@@ -133,12 +218,20 @@ fn mean_lines(samples: &[Synth], at: At, columns: Columns, rows: &[usize]) -> Li
     mean_of(samples.iter().enumerate().map(|(sample, synth)| lines((synth, sample), at, columns, rows)))
 }
 
+fn add(sum: &mut Rgba, more: &Rgba) {
+    *sum = std::array::from_fn(|i| sum[i] + more[i]);
+}
+
+/// What each of so many samples adds to a mean.
+fn share_of(samples: usize) -> f32 {
+    1.0 / samples as f32
+}
+
 /// The mean of linear frames of the same size.
 pub fn mean_of(mut frames: impl ExactSizeIterator<Item = Linear>) -> Linear {
-    let share = 1.0 / frames.len() as f32;
+    let share = share_of(frames.len());
     let Some(mut sum) = frames.next() else { return Linear::filled(0, 0, [0.0; 4]) };
     for frame in frames {
-        let add = |sum: &mut Rgba, more: &Rgba| *sum = std::array::from_fn(|i| sum[i] + more[i]);
         sum.cells_mut().par_iter_mut().zip(frame.cells().par_iter()).for_each(|(sum, more)| add(sum, more));
     }
     if share < 1.0 {
@@ -154,7 +247,8 @@ pub fn frame(synth: &Synth, scene_time: f64) -> Frame {
 
 /// Encodes a linear frame.
 pub fn finish(picture: &Linear) -> Frame {
-    let cells = picture.cells().par_iter().map(|&color| encode(color)).collect();
+    let mut cells = vec![[0; 4]; picture.cells().len()];
+    encode_in(picture.cells(), &mut cells);
     Grid::from_cells(picture.width(), picture.height(), cells)
 }
 

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 use super::conversion::{FROM_XYZ, Profile, Table, Transfer, from_lab, multiply};
 use super::{Color, Decoded, Found, Model, Raw, icc};
-use crate::base::picture::{Channels, Picture, SRGB_8, SRGB_16, Samples, value_of_half};
+use crate::base::half::value_of_half;
+use crate::base::picture::{Channels, Picture, SRGB_8, SRGB_16, Samples};
 use crate::base::pixels::srgb_from_linear;
 
 /// The picture, with its declared color applied as far as possible; `None` if its samples do not fit its size and

@@ -253,7 +253,7 @@ fn put(out: &mut Raw, kind: SampleType, bytes: &[u8], at: impl Fn(usize) -> Opti
             all.for_each(|(i, b)| at(i).into_iter().for_each(|at| out[at] = u16::from_ne_bytes(*b)));
         }
         (Raw::Floats(out), SampleType::F16) => {
-            let value = |b: &[u8; 2]| crate::base::picture::value_of_half(u16::from_ne_bytes(*b));
+            let value = |b: &[u8; 2]| crate::base::half::value_of_half(u16::from_ne_bytes(*b));
             let all = bytes.as_chunks::<2>().0.iter().enumerate();
             all.for_each(|(i, b)| at(i).into_iter().for_each(|at| out[at] = value(b)));
         }

@@ -374,7 +374,7 @@ fn alpha(raw: Raw, model: Model, associated: Option<bool>) -> Raw {
             Raw::Floats(all)
         }
         (Raw::Halves(all), Some(false)) => {
-            let floats = all.into_iter().map(crate::base::picture::value_of_half).collect();
+            let floats = all.into_iter().map(crate::base::half::value_of_half).collect();
             alpha(Raw::Floats(floats), model, associated)
         }
         (raw, _) => raw,

@@ -1,4 +1,5 @@
-//! A frame of a picture layer on the CPU: the reference. frame.wgsl has the same names and structure.
+//! A frame of a picture layer on the CPU, pixel by pixel: the reference. frame.wgsl has the same names and structure; `tiles.rs`
+//! draws the same faster.
 
 use kurbo::{Point, Vec2};
 
@@ -7,22 +8,21 @@ use super::synth::{Synth, ZoneSynth};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Rgba, over};
 use crate::layers::parts::moment::Columns;
-use crate::layers::ready::Still;
 
 /// A picture layer at one time.
 pub struct Frame<'a> {
-    synth: &'a Synth,
+    pub(super) synth: &'a Synth,
     /// The zones, as they are then.
-    zones: Vec<Shown<'a>>,
+    pub(super) zones: Vec<Shown<'a>>,
 }
 
 /// A zone at one time.
-struct Shown<'a> {
-    zone: &'a ZoneSynth,
+pub(super) struct Shown<'a> {
+    pub(super) zone: &'a ZoneSynth,
     /// The place along its jump paths.
-    s: f64,
+    pub(super) s: f64,
     /// What its samplers read.
-    picture: &'a Picture,
+    pub(super) picture: &'a Picture,
 }
 
 impl<'a> Frame<'a> {
@@ -58,10 +58,9 @@ impl<'a> Frame<'a> {
             covered.for_each(|(out, &x)| zone_pixel(shown, (x - field.x0, y), out));
         }
     }
-}
 
-impl Still for Frame<'_> {
-    fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
+    /// Row `y`: what [`crate::layers::ready::Still::row`] writes.
+    pub(super) fn pixels(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
         let (width, height) = (self.synth.picture.width(), self.synth.picture.height());
         match columns {
             _ if y >= height => {}
@@ -78,7 +77,7 @@ impl Still for Frame<'_> {
 }
 
 /// Draws the pixel in column `column` of the zone's box, row `y` of the picture, over `still`, the color beneath.
-fn zone_pixel(zone: &Shown, (column, y): (usize, usize), still: &mut Rgba) {
+pub(super) fn zone_pixel(zone: &Shown, (column, y): (usize, usize), still: &mut Rgba) {
     let field = &*zone.zone.field;
     let i = (y - field.y0) * field.inside.width() + column;
     if field.inside.cells()[i]

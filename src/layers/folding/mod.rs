@@ -31,6 +31,7 @@ pub mod seam;
 pub mod starts;
 pub mod synth;
 pub mod texels;
+mod tiles;
 pub mod tools;
 pub mod transform;
 

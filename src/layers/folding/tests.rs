@@ -7,8 +7,9 @@ use kurbo::Vec2;
 use super::model::PictureLayer;
 use super::{frame::Frame, probe, synth};
 use crate::base::clip::Clip;
-use crate::base::picture::Picture;
-use crate::base::pixels::{Grid, Rgba};
+use crate::base::half::half_of_value;
+use crate::base::picture::{Channels, Light, Picture, SRGB_8, SRGB_16, Samples};
+use crate::base::pixels::{Grid, Rgba, encode, over};
 use crate::base::progress::Progress;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::materials::Materials;
@@ -125,6 +126,96 @@ fn the_same_bytes_for_any_number_of_threads() {
         pool.install(synth).zones[0].field.clone()
     };
     assert_eq!(field(1), field(5));
+}
+
+/// A picture of some tiles in each direction, of every kind of samples.
+fn kinds_of_pictures((width, height): (usize, usize)) -> Vec<Picture> {
+    let code = |i: usize| (i * 37 + i / 7 * 11 + (i >> 9) * 101) as u8;
+    let words = |i: usize| u16::from(code(i)) * 257 ^ 77;
+    let mut all = Vec::new();
+    for channels in (1..=4).filter_map(Channels::of) {
+        let samples = 0..width * height * channels.count();
+        let bytes: Vec<u8> = samples.clone().map(code).collect();
+        let other = Arc::new(Light::of_curve(|code| code * code));
+        for samples in [
+            Samples::Bytes(bytes.clone(), SRGB_8.clone()),
+            Samples::Bytes(bytes, other),
+            Samples::Words(samples.clone().map(words).collect(), SRGB_16.clone()),
+            Samples::Halves(samples.clone().map(|i| half_of_value(f32::from(code(i)) / 200.0)).collect()),
+            Samples::Floats(samples.map(|i| f32::from(code(i)) / 255.0).collect()),
+        ] {
+            all.push(Picture::new(width, height, channels, samples));
+        }
+    }
+    let opaque = |i: usize| if i % 4 == 3 { 255 } else { code(i) };
+    let codes = Samples::Bytes((0..4 * width * height).map(opaque).collect(), SRGB_8.clone());
+    all.push(Picture::new(width, height, Channels::Rgba, codes));
+    all
+}
+
+#[test]
+fn tiles_show_what_each_pixel_shows_to_the_bit() {
+    let size = (301, 11);
+    let pictures = kinds_of_pictures(size);
+    let all = r#""outline":{"kind":"rectangle","x":0,"y":0,"width":301,"height":11}"#;
+    let some = r#""outline":{"kind":"ellipse","center":[200,5],"radii":[130,5]}"#;
+    let moved =
+        r#""motion":[{"tool":"point","at":[60,5],"jump":[30.3,-6.7]},{"tool":"point","at":[240,3],"jump":[-9.2,4]}]"#;
+    let region = r#""regions":[{"kind":"ellipse","center":[150,5],"radii":[60,4]}]"#;
+    let there_and_back = r#""position":{"function":"sine","cycles":1,"amplitude":1.3}"#;
+    let fold = |rule: &str| format!(r#"{all},{moved},{there_and_back},"fold":{{"rule":"{rule}",{region}}}"#);
+    let scenes = [
+        String::new(),
+        format!("{all},{moved}"),
+        format!(r#"{some},{moved},"feather":3"#),
+        fold("cover"),
+        fold("return"),
+        fold("fly-over"),
+        format!(r#"{some},{moved},"fold":{{"rule":"mask","image":"clear"}}"#),
+        format!(r#"{all},{moved},"sampler":{{"image":"dot","offset":[-90,-2]}}"#),
+        format!(r#"{some},{moved},"sampler":{{"clip":"clip","offset":[-150.5,1.25]}}"#),
+        // Still; far beyond all edges; torn so far apart that a tile reads from everywhere.
+        format!(r#"{some},"motion":[{{"tool":"still-border","spacing":9}}]"#),
+        format!(r#"{all},"motion":[{{"tool":"translate","by":[5e12,-400]}}]"#),
+        format!(r#"{all},"motion":[{{"tool":"scale","center":[99,9],"factor":[60,90]}}]"#),
+    ];
+    let last = format!(r#""outline":{{"kind":"rectangle","x":250,"y":4,"width":40,"height":5}},{moved}"#);
+    let mut materials = materials();
+    for (i, own) in scenes.iter().enumerate() {
+        for (k, picture) in
+            pictures.iter().enumerate().filter(|(k, _)| i == 3 || k % 8 == i % 8 || *k + 1 == pictures.len())
+        {
+            for name in ["ramp", "clear"] {
+                materials.pictures.insert(name.into(), Arc::new(picture.clone()));
+            }
+            let zones = [Some(own).filter(|own| !own.is_empty()), Some(&last).filter(|_| k % 2 == 0)];
+            let zones: Vec<_> = zones.into_iter().flatten().map(|zone| format!(r#"{{"name":"z",{zone}}}"#)).collect();
+            let layer = layer(&zones.join(","));
+            let synth = synth::synth(&layer, &Making::plain(Wrap::Once, &materials), None).unwrap();
+            let (t, width) = [(0.3, 301), (0.8, 270), (0.8, 310)][(i + k) % 3];
+            tiles_are_pixels(&Frame::new(&synth, t), width, &format!("{own}, picture {k}, at {t}"));
+        }
+    }
+}
+
+fn tiles_are_pixels(frame: &Frame, width: usize, what: &str) {
+    let rows = 1..13;
+    let mut pixels = vec![[0.0; 4]; rows.len() * width];
+    let mut tiles = pixels.clone();
+    rows.clone().zip(pixels.chunks_mut(width)).for_each(|(y, out)| frame.row(y, Columns::All, out));
+    frame.rows(rows, width, &mut tiles);
+    // Of zeros there are two.
+    let bits = |all: &[Rgba]| all.iter().map(|color| color.map(|v| (v + 0.0).to_bits())).collect::<Vec<_>>();
+    assert!(bits(&pixels) == bits(&tiles), "{what}");
+    let rows = 2..11;
+    let mut codes = vec![[0; 4]; rows.len() * width];
+    for background in [[0.0; 4], [0.2, 0.1, 0.0, 0.5]] {
+        let written = frame.codes(rows.clone(), background, &mut codes);
+        assert_eq!(written, width <= 301, "{what}");
+        let pixels = &pixels[width..];
+        let differ = |(code, light): (&[u8; 4], &Rgba)| *code != encode(over(*light, background));
+        assert!(!written || !codes.iter().zip(pixels).any(differ), "{what}, over {background:?}");
+    }
 }
 
 #[test]

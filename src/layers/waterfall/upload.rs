@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::sprites::Pictures;
 use super::sprites::pyramid::Pyramid;
 use super::sprites::residue::Residues;
-use crate::base::picture::half_of_value;
+use crate::base::half::half_of_value;
 use crate::layers::parts::plan::{Format, Packed, Upload};
 
 /// Texels in a row of the atlas.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::frames::{self, Frame};
 use super::map::Map;
 use super::mixer::Mixer;
-use crate::base::picture::{half_of_value, value_of_half};
+use crate::base::half::{half_of_value, value_of_half};
 
 /// The memory of an element, in bytes.
 pub const ELEMENT_BYTES: u64 = 8;
