@@ -37,7 +37,7 @@ fn frame(bencher: Bencher, size: (usize, usize)) {
 }
 
 fn picture((width, height): (usize, usize)) -> Picture {
-    let code = |i: usize| if i % 4 == 3 { 255 } else { (i * 7 % 251 ^ i / 997) as u8 };
+    let code = |i: usize| if i % 4 == 3 { 255 } else { ((i * 7 % 251) ^ (i / 997)) as u8 };
     let codes = (0..4 * width * height).map(code).collect();
     Picture::new(width, height, Channels::Rgba, Samples::Bytes(codes, SRGB_8.clone()))
 }

@@ -131,7 +131,7 @@ fn the_same_bytes_for_any_number_of_threads() {
 /// A picture of some tiles in each direction, of every kind of samples.
 fn kinds_of_pictures((width, height): (usize, usize)) -> Vec<Picture> {
     let code = |i: usize| (i * 37 + i / 7 * 11 + (i >> 9) * 101) as u8;
-    let words = |i: usize| u16::from(code(i)) * 257 ^ 77;
+    let words = |i: usize| (u16::from(code(i)) * 257) ^ 77;
     let mut all = Vec::new();
     for channels in (1..=4).filter_map(Channels::of) {
         let samples = 0..width * height * channels.count();
