@@ -1,9 +1,8 @@
-//! Vector instructions, chosen when the program runs.
+//! Plain loops for the widest vectors that the processor has.
 
-/// Does `work` with the widest vectors of the processor. It is plain Rust, compiled once for each kind of processor:
-/// products and sums are never fused, so that the bits are those of one number at a time. What it calls in its loops must
-/// be inlined, and so must it: write `#[inline(always)]` before the closure.
+/// Runs `work`, compiled for AVX2 where the processor has it. The bits are those that it gives elsewhere: the compiler
+/// never fuses a product and a sum. What `work` calls is compiled for the same vectors only if it is inlined.
 #[inline(always)]
-pub fn simd<R>(work: impl FnOnce() -> R) -> R {
+pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }

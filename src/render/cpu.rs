@@ -9,7 +9,7 @@ use super::Synth;
 use super::stage::{Group, Stage};
 use super::whole::{Kept, Wholes};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode_all, over};
-use crate::base::simd::simd;
+use crate::base::simd::vectorised;
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::ready::Still;
 
@@ -188,7 +188,7 @@ fn run(rows: &[usize]) -> Option<Range<usize>> {
 fn encode_in(light: &[Rgba], out: &mut [[u8; 4]]) {
     let runs = out.par_chunks_mut(RUN).zip(light.par_chunks(RUN));
     runs.for_each(|(out, light)| {
-        simd(
+        vectorised(
             #[inline(always)]
             || encode_all(light, out),
         );

@@ -8,7 +8,7 @@ use super::field::Field;
 use super::frame::{Frame, Shown, effective, zone_pixel};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Beyond, Rgba, encode_all, over};
-use crate::base::simd::simd;
+use crate::base::simd::vectorised;
 use crate::layers::parts::moment::Columns;
 use crate::layers::ready::Still;
 
@@ -25,7 +25,7 @@ impl Still for Frame<'_> {
     }
 
     fn rows(&self, rows: Range<usize>, width: usize, out: &mut [Rgba]) {
-        simd(
+        vectorised(
             #[inline(always)]
             || light(self, rows, width, out),
         );
@@ -35,7 +35,7 @@ impl Still for Frame<'_> {
         let (picture, width) = (&self.synth.picture, out.len() / rows.len().max(1));
         let covers = width <= picture.width() && rows.end <= picture.height();
         if covers {
-            simd(
+            vectorised(
                 #[inline(always)]
                 || codes(self, (rows, width), background, out),
             );
