@@ -185,7 +185,7 @@ fn a_check_finds_a_clip_in_which_nothing_moves() {
     clip(&folder.path().join("ice"), 0..12, 0);
     plica(folder.path(), &["new", "ice"], true);
     let (out, _) = plica(folder.path(), &["check", "ice.plica.json"], false);
-    let told = "/layers/0/clip: nothing moves in the clip \"ice\": pick sprites by hand (sprites.picks)";
+    let told = "layers.ice.clip: nothing moves in the clip \"ice\": pick sprites by hand (sprites.picks)";
     assert!(out.contains(told), "{out}");
 }
 

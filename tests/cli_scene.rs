@@ -288,7 +288,7 @@ fn check_lists_every_problem() {
     let ran = plica(folder.path(), &["check", "a.plica.json"]);
     let lines: Vec<_> = ran.out.lines().collect();
     assert_eq!((ran.status, lines.len()), (1, 3), "{ran:?}");
-    assert!(lines[0].starts_with("/images/dog"), "{lines:?}");
+    assert!(lines[0].starts_with("images.dog"), "{lines:?}");
     assert!(ran.messages.contains("1 error, 2 warnings"), "{ran:?}");
     let json = plica(folder.path(), &["check", "--json", "a.plica.json"]);
     let list: Vec<serde_json::Value> = serde_json::from_str(&json.out).unwrap();
@@ -296,7 +296,7 @@ fn check_lists_every_problem() {
     let broken = scene.replace("\"zones\"", "\"zonse\"");
     std::fs::write(folder.path().join("a.plica.json"), broken).unwrap();
     let ran = plica(folder.path(), &["check", "a.plica.json"]);
-    assert_eq!(ran.out, "/layers/0/zonse: unknown field \"zonse\" (did you mean \"zones\"?)\n");
+    assert_eq!(ran.out, "layers.0.zonse: unknown field \"zonse\" (did you mean \"zones\"?)\n");
     assert_eq!(plica(folder.path(), &["check", "none.plica.json"]).status, 1);
 }
 

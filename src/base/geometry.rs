@@ -5,7 +5,9 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
 use kurbo::{BezPath, Point, Rect, Vec2};
+use rayon::prelude::*;
 
 use super::chains::{Chains, Line, Part};
 
@@ -19,6 +21,22 @@ pub type Xy = [f64; 2];
 
 /// A position or vector in space, [x, y, z], y up, as documents hold it.
 pub type Xyz = [f64; 3];
+
+/// How far points in space reach along each of some ways: the greatest scalar product with it. `None` without points.
+pub fn reach(points: impl ParallelIterator<Item = DVec3>, ways: &[DVec3]) -> Option<Vec<f64>> {
+    let nothing = || vec![f64::NEG_INFINITY; ways.len()];
+    let farthest = |mut far: Vec<f64>, point: DVec3| {
+        far.iter_mut().zip(ways).for_each(|(far, way)| *far = far.max(point.dot(*way)));
+        far
+    };
+    let found = points.fold(nothing, farthest).reduce(nothing, farther);
+    found.iter().all(|far| far.is_finite()).then_some(found)
+}
+
+/// How far two things together reach.
+pub fn farther(a: Vec<f64>, b: Vec<f64>) -> Vec<f64> {
+    a.into_iter().zip(b).map(|(a, b)| a.max(b)).collect()
+}
 
 /// A closed polygon, even-odd; the closing side is implied. At least three vertices, all finite.
 #[derive(Clone, Debug, PartialEq)]

@@ -41,6 +41,11 @@ impl<'a> Pointer<'a> {
         self.0.strip_prefix(outer).filter(|rest| rest.is_empty() || rest.starts_with('/'))
     }
 
+    /// The way as people write it, with dots: `layers.0.zones`. Nothing for the whole document.
+    pub fn dotted(self) -> String {
+        self.tokens().map(|token| spelled(&token, false)).collect::<Vec<_>>().join(".")
+    }
+
     /// Whether this is `outer` or below it.
     pub fn is_within(self, outer: &str) -> bool {
         self.below(outer).is_some()
@@ -62,6 +67,17 @@ pub fn push(pointer: &mut String, token: &str) {
     } else {
         pointer.push_str(token);
     }
+}
+
+/// A name as people write it: in quotes if it needs them, as one does that begins with a digit where that would be an
+/// index.
+pub fn spelled(name: &str, in_list: bool) -> String {
+    let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_+".contains(c));
+    // In a list digits are an index, and - is the place after the last.
+    if plain && !(in_list && (name == "-" || name.starts_with(|c: char| c.is_ascii_digit()))) {
+        return name.to_owned();
+    }
+    format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
 /// A token as an index of a list: digits, no leading zero.
@@ -88,6 +104,18 @@ mod tests {
             assert_eq!(Pointer(&pointer).upward().count(), names.len() + 1);
         }
         assert_eq!(["0", "12", "01", "-", "", "+1"].map(index), [Some(0), Some(12), None, None, None, None]);
+    }
+
+    #[test]
+    fn people_write_dots() {
+        for (pointer, dotted) in [
+            ("", ""),
+            ("/layers", "layers"),
+            ("/layers/0/a b", "layers.0.\"a b\""),
+            ("/a~1b/c\"d", "\"a/b\".\"c\\\"d\""),
+        ] {
+            assert_eq!(Pointer(pointer).dotted(), dotted, "{pointer}");
+        }
     }
 
     #[test]

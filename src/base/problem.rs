@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use crate::base::pointer::Pointer;
 use crate::base::text::line;
 
 /// How bad a [`Problem`] is.
@@ -30,7 +31,7 @@ pub enum Kind {
 pub struct Problem {
     /// How bad it is.
     pub severity: Severity,
-    /// JSON pointer into the document (RFC 6901), empty for the whole of it.
+    /// JSON pointer into the document (RFC 6901), empty for the whole of it; for people alone, an address.
     pub path: String,
     /// What was found and what was expected, one sentence without a full stop.
     pub message: String,
@@ -73,8 +74,10 @@ impl fmt::Display for Problem {
             Severity::Error => "",
         };
         // Keys and names come from files: none of them may steer a terminal.
-        if !self.path.is_empty() {
-            write!(f, "{}: ", line(&self.path))?;
+        match self.path.as_str() {
+            "" => {}
+            pointer if pointer.starts_with('/') => write!(f, "{}: ", line(&Pointer(pointer).dotted()))?,
+            told => write!(f, "{}: ", line(told))?,
         }
         write!(f, "{kind}{}", line(&self.message))?;
         match &self.hint {

@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use glam::DVec3;
 use kurbo::Vec2;
 use serde_json::Value;
 
@@ -19,7 +20,6 @@ use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
 use super::parts::shots::Taken;
-use super::space::fit::Bounds;
 use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
@@ -133,8 +133,8 @@ pub trait Ready: Any + Debug + Send + Sync {
         None
     }
 
-    /// The box of the world that holds it at scene time `t`; `None` for layers in the frame.
-    fn bounds(&self, _t: f64) -> Option<Bounds> {
+    /// How far it reaches along each of these ways of the world at scene time `t`; `None` for layers in the frame.
+    fn reach(&self, _t: f64, _ways: &[DVec3]) -> Option<Vec<f64>> {
         None
     }
 

@@ -4,7 +4,7 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use kurbo::{Affine, Point, Rect};
 use serde_json::{Map, Value};
 
@@ -23,7 +23,6 @@ use super::parts::repeat::Repeat;
 use super::parts::shots::{Laid, Laying, Lying};
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::space::eye::Ray;
-use super::space::fit::Bounds;
 use super::timeline::{Timeline, Wrap};
 use crate::base::error::Error;
 use crate::base::problem::Problem;
@@ -91,8 +90,8 @@ pub trait Technique: Any + Send + Sync {
     /// The part of the layer's picture for something new at `path`.
     fn bounds(&self, path: &str) -> Rect;
 
-    /// The box of the world that holds the layer at all times, if the document alone tells.
-    fn extent(&self) -> Option<Bounds> {
+    /// How far the layer reaches along each of these ways of the world at any time, if the document alone tells.
+    fn reach(&self, _ways: &[DVec3]) -> Option<Vec<f64>> {
         None
     }
 

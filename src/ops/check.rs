@@ -8,6 +8,7 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
 use crate::render;
+use crate::scene::{Document, address};
 
 /// Find every problem in a scene
 #[derive(clap::Args)]
@@ -27,7 +28,7 @@ pub struct Args {
 /// Prints the problems; fails if there are any (with `--lenient`, if one of them is an error: a loop that snaps, for one,
 /// may be meant).
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let (mut problems, loops) = problems(&args, context)?;
+    let (mut problems, loops, document) = problems(&args, context)?;
     let failing = problems.len();
     problems.extend(loops);
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
@@ -35,7 +36,8 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let list = serde_json::to_value(&problems).map_err(|e| Error::at("the list of problems", e))?;
         context.print(format_args!("{list:#}"))?;
     } else {
-        problems.iter().try_for_each(|problem| context.print(problem))?;
+        let told = |problem| document.as_ref().map(|document| address::of_problem(document, problem));
+        problems.iter().try_for_each(|problem| context.print(told(problem).as_ref().unwrap_or(problem)))?;
     }
     let warnings = problems.len() - errors;
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
@@ -52,12 +54,12 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     Ok(())
 }
 
-/// The problems, and the warnings about loops that snap.
-fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem>)> {
+/// The problems, the warnings about loops that snap, and the document if it is one.
+fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem>, Option<Document>)> {
     let options = args.reading.options()?;
     let document = match context.document(&args.scene, &options) {
         Ok(document) => document,
-        Err(Error::Scene { problems, .. }) => return Ok((problems, Vec::new())),
+        Err(Error::Scene { problems, .. }) => return Ok((problems, Vec::new(), None)),
         Err(error) => return Err(error),
     };
     let scene = document.scene();
@@ -81,5 +83,5 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     let loops = render::seams::warnings(scene, &materials, || {
         if broken { None } else { render::synth(scene, &materials, None).ok() }
     });
-    Ok((problems, loops))
+    Ok((problems, loops, Some(document)))
 }

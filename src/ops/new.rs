@@ -11,7 +11,6 @@ use crate::base::problem::{Problem, Severity};
 use crate::files::clips::Found;
 use crate::files::materials::{self, Cache};
 use crate::files::{self, clips, disk, models, paths, picture, write};
-use crate::layers::space::fit::Bounds;
 use crate::scene::{Document, Start, check};
 
 /// Make a scene from pictures, models and clips
@@ -123,8 +122,7 @@ impl Making<'_> {
             self.notes.extend(model.notes.into_iter().map(note));
             files.splice(0..0, model.beside);
             let picture = model.picture.as_ref().map(|path| (called(Path::new(path)), path.as_str()));
-            let bounds = Bounds::around(model.mesh.bounds().into_iter().flat_map(<[_; 2]>::from));
-            start.mesh(&name, &named, bounds, picture.as_ref().map(|(name, path)| (&**name, *path)))
+            start.mesh(&name, &named, Some(model.mesh), picture.as_ref().map(|(name, path)| (&**name, *path)))
         } else {
             let found = picture::read(source, &self.options.limits)?;
             self.notes.extend(found.notes.into_iter().map(note));

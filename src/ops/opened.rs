@@ -8,7 +8,7 @@ use crate::base::problem::Problem;
 use crate::files::{self, materials};
 use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth, bands::Bands};
-use crate::scene::Document;
+use crate::scene::{Document, address};
 
 /// A scene and the files it refers to.
 pub struct Opened {
@@ -39,7 +39,7 @@ impl Unloaded {
         let options = options.options()?;
         let document = context.document(path, &options)?;
         for warning in document.warnings() {
-            context.messages.say(&format!("{}: {warning}", path.display()));
+            context.messages.say(&format!("{}: {}", path.display(), address::of_problem(&document, warning)));
         }
         Ok(Unloaded { path: path.to_path_buf(), options, document })
     }
@@ -53,10 +53,9 @@ impl Unloaded {
         let mut cache = materials::Cache::until(context.cancel.clone());
         let loaded = materials::load(&path, document.scene(), &options, &mut cache);
         context.check_cancelled()?;
-        let (materials, warnings) =
-            loaded.map_err(|problems| Error::Scene { file: path.display().to_string(), problems })?;
+        let (materials, warnings) = loaded.map_err(|problems| refused(&path, &document, &problems))?;
         for warning in warnings {
-            context.messages.say(&format!("{}: {warning}", path.display()));
+            context.messages.say(&format!("{}: {}", path.display(), address::of_problem(&document, &warning)));
         }
         Ok(Opened { path, document, materials, _loaded: cache })
     }
@@ -100,6 +99,12 @@ impl Opened {
         if self.materials.stopped() {
             return Error::Interrupted;
         }
-        Error::Scene { file: self.path.display().to_string(), problems: vec![problem] }
+        refused(&self.path, &self.document, &[problem])
     }
+}
+
+/// Problems of the scene in a file, with their addresses.
+fn refused(path: &Path, document: &Document, problems: &[Problem]) -> Error {
+    let problems = problems.iter().map(|problem| address::of_problem(document, problem)).collect();
+    Error::Scene { file: path.display().to_string(), problems }
 }

@@ -164,36 +164,60 @@ pub struct Set {
     pub places: usize,
 }
 
-/// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it.
+/// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it. One that is only right after
+/// another waits for that.
 pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Set> {
     let mut document = document.clone();
     let mut all = Set { edit: Edit::default(), lost: Vec::new(), places: 0 };
-    for setting in settings {
-        let setting = Setting::read(&document, setting)?;
-        let pointers = address::resolve_all(&document, setting.path)?;
-        // Places that are written do not touch one another; others may begin what they share.
-        let written =
-            |pointer: &String| Pointer(pointer).parent().is_some_and(|at| document.json().pointer(at).is_some());
-        let at_once = if pointers.iter().all(written) { pointers.len().max(1) } else { 1 };
-        let n = pointers.len();
-        for (k, some) in pointers.chunks(at_once).enumerate() {
-            let mut edits = Vec::new();
-            for (i, pointer) in some.iter().enumerate() {
-                let value = setting.value(&document, pointer, (k * at_once + i, n))?;
-                let (edit, lost) = Edit::set_told(&document, pointer, value);
-                all.lost.extend(lost.map(|lost| format!("{}: {lost}", setting.path)));
-                edits.push(edit);
+    let mut waiting: Vec<&String> = settings.iter().collect();
+    while !waiting.is_empty() {
+        let (before, mut refusal) = (waiting.len(), None);
+        waiting.retain(|setting| match one(&document, setting, scene) {
+            Ok((after, set)) => {
+                document = after;
+                all.edit = Edit::all([std::mem::take(&mut all.edit), set.edit]);
+                all.lost.extend(set.lost);
+                all.places += set.places;
+                false
             }
-            let edit = Edit::all(edits);
-            document = document.apply(&edit).map_err(|problems| {
-                let asked = |problem| as_asked(&document, problem, setting.path, some);
-                refused(scene, problems.into_iter().map(asked).collect())
-            })?;
-            all.edit = Edit::all([std::mem::take(&mut all.edit), edit]);
+            Err(error) => {
+                refusal.get_or_insert(error);
+                true
+            }
+        });
+        if let Some(error) = refusal.filter(|_| waiting.len() == before) {
+            return Err(error);
         }
-        all.places += n;
     }
     Ok(all)
+}
+
+/// The document after one setting, and what that did to it.
+fn one(document: &Document, setting: &str, scene: &Path) -> Result<(Document, Set)> {
+    let mut document = document.clone();
+    let mut all = Set { edit: Edit::default(), lost: Vec::new(), places: 0 };
+    let setting = Setting::read(&document, setting)?;
+    let pointers = address::resolve_all(&document, setting.path)?;
+    // Places that are written do not touch one another; others may begin what they share.
+    let written = |pointer: &String| Pointer(pointer).parent().is_some_and(|at| document.json().pointer(at).is_some());
+    let at_once = if pointers.iter().all(written) { pointers.len().max(1) } else { 1 };
+    all.places = pointers.len();
+    for (k, some) in pointers.chunks(at_once).enumerate() {
+        let mut edits = Vec::new();
+        for (i, pointer) in some.iter().enumerate() {
+            let value = setting.value(&document, pointer, (k * at_once + i, all.places))?;
+            let (edit, lost) = Edit::set_told(&document, pointer, value);
+            all.lost.extend(lost.map(|lost| format!("{}: {lost}", setting.path)));
+            edits.push(edit);
+        }
+        let edit = Edit::all(edits);
+        document = document.apply(&edit).map_err(|problems| {
+            let asked = |problem| as_asked(&document, problem, setting.path, some);
+            refused(scene, problems.into_iter().map(asked).collect())
+        })?;
+        all.edit = Edit::all([std::mem::take(&mut all.edit), edit]);
+    }
+    Ok((document, all))
 }
 
 /// A setting, taken apart.
@@ -248,13 +272,10 @@ impl<'a> Setting<'a> {
     }
 }
 
-/// The problem with its place written as in `path`, the form in which the person gave `pointers`.
+/// The problem with the address of its place, written as in `path` if it is what the person called so.
 fn as_asked(document: &Document, problem: Problem, path: &str, pointers: &[String]) -> Problem {
-    if path.starts_with('/') {
-        return problem;
-    }
-    let own = matches!(pointers, [only] if problem.path == *only) && !path.contains('*');
-    Problem { path: if own { path.to_owned() } else { address::told(document, &problem.path) }, ..problem }
+    let own = matches!(pointers, [only] if problem.path == *only) && !path.contains('*') && !path.starts_with('/');
+    if own { Problem { path: path.to_owned(), ..problem } } else { address::of_problem(document, &problem) }
 }
 
 /// Splits a line of settings: a space ends a setting if the `PATH=` of another follows. So a text with spaces needs no
@@ -348,6 +369,20 @@ mod tests {
         ] {
             assert_eq!(parse(setting).ok(), expected, "{setting}");
         }
+    }
+
+    #[test]
+    fn the_order_of_settings_does_not_matter_where_one_asks_for_another() {
+        let document = Start::default().picture("cat", "cat.png", (9, 9)).document().unwrap();
+        let pair = ["layers.cat.color=#203040", "layers.cat.kind=fill"].map(str::to_owned);
+        let edited = |settings: &[String]| edit(&document, settings, Path::new("s")).map(|set| set.edit);
+        for settings in [pair.to_vec(), pair.iter().rev().cloned().collect()] {
+            let after = document.apply(&edited(&settings).unwrap()).unwrap();
+            assert_eq!(after.json()["layers"][0], json!({ "kind": "fill", "name": "cat", "color": "#203040" }));
+        }
+        let wrong = ["layers.cat.colour=3", "title=a"].map(str::to_owned);
+        let wrong = edited(&wrong).map(drop).unwrap_err().to_string();
+        assert!(wrong.contains("\"colour\""), "what is wrong is told: {wrong}");
     }
 
     #[test]

@@ -198,7 +198,7 @@ fn encode_in(light: &[Rgba], out: &mut [[u8; 4]]) {
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are
 /// computed, but of layers that are made whole, so that a small view of a large picture is cheap.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
-    let at = (scene_time, &*Kept::of(synth, scene_time));
+    let at = (scene_time, &*Kept::frame(synth, scene_time));
     mean_lines(std::slice::from_ref(synth), at, Columns::Some(columns), rows)
 }
 

@@ -65,12 +65,14 @@ pub fn frame(synth: &Synth, scene_time: f64, part: &Part) -> Frame {
     Frame::from_cells(part.dots.0, part.dots.1, cells)
 }
 
-/// As [`frame`], of a pass, to look at: each dot is the pixel in its middle, since numbers of triangles have no mean.
+/// As [`frame`], of a pass, to look at, over the dimmed frame where that helps: each dot is the pixel in its middle, since
+/// numbers of triangles have no mean.
 pub fn pass(synth: &Synth, scene_time: f64, part: &Part, asked: &Asked) -> Frame {
     let asked = asked.looked_at();
     let columns = Line::new(part.corner.x, part.scale, part.dots.0, 1, synth.size.0);
     let rows = Line::new(part.corner.y, part.scale, part.dots.1, 1, synth.size.1);
-    let pixels = passes::view(asked.pass, &asked.lattice(synth, scene_time, &columns.pixels, &rows.pixels));
+    let seen = |asked: &Asked| asked.lattice(synth, scene_time, &columns.pixels, &rows.pixels);
+    let pixels = passes::view_over(&asked, &seen(&asked), || seen(&asked.in_color()));
     let at = |x: usize, y: usize| match (columns.of(x), rows.of(y)) {
         ([Some(x)], [Some(y)]) => *pixels.get(*x, *y),
         _ => [0; 4],

@@ -92,6 +92,11 @@ impl Asked {
         Asked { pass, ..self.clone() }
     }
 
+    /// The finished frame in place of it, of the same layer.
+    pub fn in_color(&self) -> Asked {
+        Asked { pass: &COLOR, of: None, ..self.clone() }
+    }
+
     fn which(&self) -> Which<'_> {
         Which { pass: self.pass, of: self.of.as_deref() }
     }
@@ -151,8 +156,7 @@ fn lines(which: Which, synth: &Synth, time: f64, columns: Columns, rows: &[usize
     let stills: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
     // What is drawn on surfaces, for passes that not all layers in space have.
     let own = PASSES.iter().all(|common| *common != pass);
-    let groups = synth.stage.groups.iter().filter(|_| own);
-    let drawn: Vec<Option<Vec<Rgba>>> = groups.map(|group| whole::pass(synth, group, &moment, which)).collect();
+    let drawn = own.then(|| whole::Kept::pass(synth, time, which));
     let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
     let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
     lines.for_each(|(out, &y)| {
@@ -172,7 +176,7 @@ fn lines(which: Which, synth: &Synth, time: f64, columns: Columns, rows: &[usize
                     nearer.for_each(|((cell, _), _)| *cell = [number, number, number, 1.0]);
                 }
             }
-            if let Some(Some(drawn)) = drawn.get(i) {
+            if let Some(Some(drawn)) = drawn.as_ref().and_then(|drawn| drawn.groups.get(i)) {
                 let at = |cell: usize| drawn[y * synth.size.0 + columns.at(cell)];
                 let drawn = own.iter_mut().enumerate().map(|(cell, own)| (own, at(cell)));
                 drawn.filter(|(_, drawn)| drawn[3] > 0.0).for_each(|(own, drawn)| *own = drawn);
@@ -240,10 +244,7 @@ fn color(pass: &Pass, cell: Rgba, [low, high]: [f32; 2]) -> [u8; 4] {
         Holds::Light => encode(cell),
         Holds::Count if covered == 0.0 => [0, 0, 0, 255],
         _ if covered == 0.0 => [0; 4],
-        Holds::Vector if *pass == pass::UV => {
-            let [r, g, _] = hue(z as u32);
-            [code(x.rem_euclid(1.0)), code(y.rem_euclid(1.0)), r / 2 + g / 2, 255]
-        }
+        Holds::Vector if *pass == pass::UV => [code(x.rem_euclid(1.0)), code(y.rem_euclid(1.0)), 0, 255],
         Holds::Vector => [code(x * 0.5 + 0.5), code(y * 0.5 + 0.5), code(z * 0.5 + 0.5), 255],
         Holds::Number if *pass == OBJECT => {
             let [r, g, b] = hue(x as u32);

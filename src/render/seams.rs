@@ -120,13 +120,13 @@ mod tests {
             (
                 json!({}),
                 "repeat",
-                &["/layers/0/zones/0: warning: the loop snaps", "from 1 to 0", "cosine", "ping-pong"][..],
+                &["layers.0.zones.0: warning: the loop snaps", "from 1 to 0", "cosine", "ping-pong"][..],
             ),
             (json!({ "shift": 0.25 }), "repeat", &["at t = 0.75"]),
             (
                 json!({ "position": { "function": "cosine" }, "sampler": { "clip": "c" } }),
                 "repeat",
-                &["/layers/0/zones/0/sampler: warning: the loop snaps", "frame 3 of 7", "take 1.4 s"],
+                &["layers.0.zones.0.sampler: warning: the loop snaps", "frame 3 of 7", "take 1.4 s"],
             ),
             (
                 json!({ "speed": 1.5, "position": { "function": "cosine" } }),

@@ -9,7 +9,7 @@ use super::Synth;
 use super::stage::{Group, Stage};
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::{Columns, Moment};
-use crate::layers::parts::pass::{COLOR, Which};
+use crate::layers::parts::pass::{COLOR, Pass, Which};
 use crate::layers::ready::{Ready, Still, Surfaces};
 
 /// The groups of a scene at one time that are made whole.
@@ -21,35 +21,71 @@ pub struct Wholes {
     groups: Vec<Option<Whole>>,
 }
 
-/// What was made whole last, for those who want some pixels of a frame after others.
+/// What was made whole last, for those who want some pixels after others: of a frame, and of a pass.
 #[derive(Clone, Debug, Default)]
-pub struct Kept(Arc<Mutex<Option<(MadeOf, Arc<Wholes>)>>>);
+pub struct Kept {
+    frame: Slot<Wholes>,
+    pass: Slot<Drawn>,
+}
+
+type Slot<T> = Arc<Mutex<Option<(MadeOf, Arc<T>)>>>;
+
+/// What of a pass is drawn on surfaces.
+#[derive(Debug)]
+pub struct Drawn {
+    pass: Pass,
+    of: Option<String>,
+    /// One for each group, all its pixels; `None` where nothing is drawn.
+    pub groups: Vec<Option<Vec<Rgba>>>,
+}
 
 /// The scene time, the stage and the layers.
 type MadeOf = (f64, Arc<Stage>, Vec<Arc<dyn Ready>>);
 
 impl Kept {
     /// What is made whole of one frame: as it is kept, or made now.
-    pub fn of(synth: &Synth, scene_time: f64) -> Arc<Wholes> {
-        if !synth.has_strokes() {
-            return Arc::new(Wholes::new(std::slice::from_ref(synth), scene_time));
-        }
-        let mut kept = synth.kept.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_same = |(time, stage, layers): &MadeOf| {
-            let mut pairs = layers.iter().zip(&synth.layers);
-            *time == scene_time && *stage == synth.stage && pairs.all(|(own, other)| Arc::ptr_eq(own, other))
-        };
-        if let Some((_, wholes)) = kept.as_ref().filter(|(made_of, _)| is_same(made_of)) {
-            return wholes.clone();
-        }
-        // Room for the next, before that is made.
-        *kept = None;
-        let wholes = Arc::new(Wholes::new(std::slice::from_ref(synth), scene_time));
-        if !synth.is_stopped() {
-            *kept = Some(((scene_time, synth.stage.clone(), synth.layers.clone()), wholes.clone()));
-        }
-        wholes
+    pub fn frame(synth: &Synth, scene_time: f64) -> Arc<Wholes> {
+        let make = || Wholes::new(std::slice::from_ref(synth), scene_time);
+        kept(&synth.kept.frame, (synth, scene_time), |_| true, make)
     }
+
+    /// The same of a pass.
+    pub fn pass(synth: &Synth, scene_time: f64, which: Which) -> Arc<Drawn> {
+        let make = || {
+            let moment = synth.moment(scene_time);
+            let groups = synth.stage.groups.iter().map(|group| pass(synth, group, &moment, which)).collect();
+            Drawn { pass: *which.pass, of: which.of.map(str::to_owned), groups }
+        };
+        let is_same = |drawn: &Drawn| drawn.pass == *which.pass && drawn.of.as_deref() == which.of;
+        kept(&synth.kept.pass, (synth, scene_time), is_same, make)
+    }
+}
+
+/// What a slot holds, if it was made of the same and fits, or what is made now.
+fn kept<T>(
+    slot: &Slot<T>,
+    (synth, scene_time): (&Synth, f64),
+    fits: impl Fn(&T) -> bool,
+    make: impl FnOnce() -> T,
+) -> Arc<T> {
+    if !synth.has_strokes() {
+        return Arc::new(make());
+    }
+    let mut kept = slot.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_same = |(time, stage, layers): &MadeOf| {
+        let mut pairs = layers.iter().zip(&synth.layers);
+        *time == scene_time && *stage == synth.stage && pairs.all(|(own, other)| Arc::ptr_eq(own, other))
+    };
+    if let Some((_, made)) = kept.as_ref().filter(|(made_of, made)| is_same(made_of) && fits(made)) {
+        return made.clone();
+    }
+    // Room for the next, before that is made.
+    *kept = None;
+    let made = Arc::new(make());
+    if !synth.is_stopped() {
+        *kept = Some(((scene_time, synth.stage.clone(), synth.layers.clone()), made.clone()));
+    }
+    made
 }
 
 /// All pixels of a group.
@@ -147,7 +183,7 @@ fn surfaces(stills: &[(usize, Box<dyn Still + '_>)], (width, height): (usize, us
 
 /// What a pass shows that is drawn on the surfaces of a group, in these columns and rows; transparent elsewhere. `None` if
 /// nothing is drawn there.
-pub fn pass(synth: &Synth, group: &Group, moment: &Moment, which: Which) -> Option<Vec<Rgba>> {
+fn pass(synth: &Synth, group: &Group, moment: &Moment, which: Which) -> Option<Vec<Rgba>> {
     is_whole(synth, group).then(|| {
         let stills: Vec<(usize, Box<dyn Still + '_>)> =
             group.layers().iter().map(|&layer| (layer, synth.layers[layer].at(moment))).collect();
@@ -186,27 +222,38 @@ mod tests {
     #[test]
     fn a_frame_is_made_once_for_all_that_want_pixels_of_it() {
         let synth = synth(None);
-        let first = Kept::of(&synth, 0.25);
-        assert!(Arc::ptr_eq(&first, &Kept::of(&synth.clone(), 0.25)));
-        assert!(!Arc::ptr_eq(&first, &Kept::of(&synth, 0.5)), "another time");
-        let last = Kept::of(&synth, 0.5);
+        let first = Kept::frame(&synth, 0.25);
+        assert!(Arc::ptr_eq(&first, &Kept::frame(&synth.clone(), 0.25)));
+        assert!(!Arc::ptr_eq(&first, &Kept::frame(&synth, 0.5)), "another time");
+        let last = Kept::frame(&synth, 0.5);
         let other = Synth { stage: Arc::new(Stage { camera: None, ..(*synth.stage).clone() }), ..synth.clone() };
-        assert!(!Arc::ptr_eq(&last, &Kept::of(&other, 0.5)), "another camera");
+        assert!(!Arc::ptr_eq(&last, &Kept::frame(&other, 0.5)), "another camera");
         assert_eq!(cpu::lattice(&synth, 0.5, &[9, 20], &[11]).cells()[1], *cpu::linear(&synth, 0.5).get(20, 11));
+    }
+
+    #[test]
+    fn a_pass_is_made_once_for_all_that_want_pixels_of_it() {
+        let synth = synth(None);
+        let [ink, tone] =
+            ["ink", "tone"].map(|name| crate::render::passes::all().find(|pass| pass.name == name).unwrap());
+        let of = |pass, time| Kept::pass(&synth, time, Which { pass, of: None });
+        let first = of(ink, 0.25);
+        assert!(Arc::ptr_eq(&first, &of(ink, 0.25)) && first.groups[0].is_some());
+        assert!(!Arc::ptr_eq(&of(ink, 0.25), &of(tone, 0.25)) && !Arc::ptr_eq(&of(tone, 0.5), &of(tone, 0.25)));
     }
 
     #[test]
     fn what_is_stopped_is_neither_drawn_nor_kept() {
         let stop = Arc::new(AtomicBool::new(true));
         let synth = synth(Some(stop.clone()));
-        let first = Kept::of(&synth, 0.0);
+        let first = Kept::frame(&synth, 0.0);
         let paper = |wholes: &Wholes| {
             let colors = &wholes.groups[0].as_ref().unwrap().color;
             // Without noise only outlines are drawn.
             colors.iter().filter(|color| color[3] == 1.0 && color[0] > 0.8).count()
         };
         stop.store(false, Ordering::Relaxed);
-        let second = Kept::of(&synth, 0.0);
+        let second = Kept::frame(&synth, 0.0);
         assert!(!Arc::ptr_eq(&first, &second));
         assert_ne!(paper(&first), paper(&second));
     }

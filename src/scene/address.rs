@@ -8,8 +8,8 @@ use super::Document;
 use super::field::{self, name_of};
 use super::schema::{Body, Place, Shape};
 use crate::base::error::{Error, Result};
-use crate::base::pointer::{self, Pointer};
-use crate::base::problem::{nearest, quoted};
+use crate::base::pointer::{self, Pointer, spelled};
+use crate::base::problem::{Problem, nearest, quoted};
 
 /// The JSON pointer of an address.
 ///
@@ -96,6 +96,11 @@ pub fn told(document: &Document, pointer: &str) -> String {
     std::iter::once(address).filter(|address| !address.is_empty()).chain(rest).collect::<Vec<_>>().join(".")
 }
 
+/// A problem with the address of its place, for people.
+pub fn of_problem(document: &Document, problem: &Problem) -> Problem {
+    Problem { path: told(document, &problem.path), ..problem.clone() }
+}
+
 /// The address of `below`, which is `token` below the place with that address and shape.
 pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Place) -> String {
     let step = match body {
@@ -105,16 +110,6 @@ pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Pl
     };
     let step = step.unwrap_or_else(|| spelled(token, false));
     if address.is_empty() { step } else { format!("{address}.{step}") }
-}
-
-/// A name as it is written in an address: in quotes if it needs them.
-fn spelled(name: &str, in_list: bool) -> String {
-    let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_+".contains(c));
-    // In a list digits are an index, and - is the place after the last.
-    if plain && !(in_list && (name == "-" || name.starts_with(|c: char| c.is_ascii_digit()))) {
-        return name.to_owned();
-    }
-    format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
 /// One step of an address.

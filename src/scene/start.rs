@@ -6,14 +6,16 @@ use serde_json::{Map, Value, json};
 
 use super::build::unique_name;
 use super::{Document, FRAME, VERSION};
+use crate::base::geometry::farther;
 use crate::base::maths;
+use crate::base::mesh::Mesh;
 use crate::base::number;
 use crate::base::problem::Problem;
 use crate::layers::KINDS;
 use crate::layers::parts::materials::List;
 use crate::layers::parts::moment::Space;
 use crate::layers::space::camera::Camera;
-use crate::layers::space::fit::{Bounds, fit};
+use crate::layers::space::fit::fit;
 use crate::layers::technique::{Kind, Shown};
 
 /// Where a new camera sees meshes from.
@@ -26,7 +28,8 @@ pub struct Start {
     lists: Map<String, Value>,
     layers: Vec<Value>,
     frame: Option<(usize, usize)>,
-    bounds: Option<Bounds>,
+    /// What is to be seen.
+    meshes: Vec<Mesh>,
     /// Whether a layer is in space.
     in_space: bool,
     /// See [`Start::fitted`].
@@ -43,11 +46,12 @@ impl Start {
         self
     }
 
-    /// Adds a mesh between two corners, in a file, with a layer that shows it; on its surface an image, by name and path.
-    pub fn mesh(mut self, name: &str, path: &str, bounds: Option<Bounds>, surface: Option<(&str, &str)>) -> Start {
+    /// Adds a mesh in a file, with a layer that shows it; on its surface an image, by name and path. What is known of it the
+    /// camera will see.
+    pub fn mesh(mut self, name: &str, path: &str, known: Option<Mesh>, surface: Option<(&str, &str)>) -> Start {
         let mesh = self.put(List::Meshes, name, json!({ "path": path }));
         let image = surface.map(|(name, path)| self.image(name, path));
-        self.bounds = self.bounds.into_iter().chain(bounds).reduce(|a, b| a.and(&b));
+        self.meshes.extend(known);
         self.layer(List::Meshes, &Shown { name: &mesh, image: image.as_deref(), ..Shown::default() });
         self
     }
@@ -78,7 +82,7 @@ impl Start {
     pub fn document(mut self) -> Result<Document, Vec<Problem>> {
         let mut scene = Map::from_iter([("plica".to_owned(), VERSION.into())]);
         if self.in_space {
-            scene.insert("camera".into(), camera(self.bounds, self.frame.unwrap_or(FRAME)));
+            scene.insert("camera".into(), camera(&self.meshes, self.frame.unwrap_or(FRAME)));
         }
         scene.extend(List::NAMED.iter().filter_map(|list| self.lists.remove_entry(list.words().0)));
         scene.insert("layers".into(), self.layers.into());
@@ -118,10 +122,11 @@ impl Start {
     }
 }
 
-/// A camera that sees everything between `bounds`, in short numbers.
-fn camera(bounds: Option<Bounds>, frame: (usize, usize)) -> Value {
-    let Some(bounds) = bounds else { return json!({}) };
-    let [position, target] = fit(&bounds, [BACK, DVec3::Y], Camera::default().fov, frame);
+/// A camera that sees all of these meshes, in short numbers.
+fn camera(meshes: &[Mesh], frame: (usize, usize)) -> Value {
+    let reach = |ways: &[DVec3]| meshes.iter().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
+    let fitted = fit(&reach, [BACK, DVec3::Y], Camera::default().fov, frame);
+    let Some([position, target]) = fitted else { return json!({}) };
     let distance = position.distance(target);
     let fine = (0..10).map(maths::ten_to).find(|parts| distance * parts >= 1e4).unwrap_or(1e9);
     let short = |point: DVec3| point.to_array().map(|v| number::json((v * fine).round() / fine));
@@ -131,25 +136,30 @@ fn camera(bounds: Option<Bounds>, frame: (usize, usize)) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::mesh::Vertex;
     use crate::layers::space::eye::Eye;
 
     #[test]
     fn the_camera_sees_all_meshes_in_short_numbers() {
         for (scale, size) in [(1.0, (400, 400)), (0.1, (90, 400)), (1e5, (1280, 720))] {
             let bounds = [[-1.0, 0.0, -2.0], [1.0, 3.0, 0.5], [4.0, 0.1, 0.3]].map(|at| DVec3::from(at) * scale);
-            let boxes = bounds.map(|at| Bounds::around([at, at + scale]));
+            let pair = |at: DVec3| {
+                let vertices = [at, at + scale].map(|position| Vertex { position, ..Vertex::default() }).to_vec();
+                Mesh { vertices, ..Mesh::default() }
+            };
+            let meshes = bounds.map(pair);
             let start = Start::default().picture("cat", "cat.png", size);
-            let start = boxes.iter().fold(start, |start, one| start.mesh("box", "box.obj", *one, None));
+            let start = meshes.iter().fold(start, |start, mesh| start.mesh("box", "box.obj", Some(mesh.clone()), None));
             let document = start.document().unwrap();
             let eye = document.scene().camera.as_ref().unwrap().at(0.0, size);
             let Eye { middle_px, .. } = eye;
-            let corners = boxes.iter().flatten().flat_map(Bounds::corners);
+            let corners = meshes.iter().flat_map(|mesh| &mesh.vertices).map(|vertex| vertex.position);
             let reach = corners.map(|corner| {
                 let from_middle = (eye.project(eye.seen(corner)) - middle_px) / middle_px;
                 from_middle.abs().max_element()
             });
             let reach = reach.fold(0.0, f64::max);
-            assert!((0.7..0.91).contains(&reach), "{scale}: {reach}");
+            assert!((0.899..0.901).contains(&reach), "{scale}: {reach}");
             let text = document.to_text();
             let camera = text.lines().find(|line| line.contains("\"camera\"")).unwrap();
             assert!(camera.len() < 100, "{camera}");

@@ -126,7 +126,8 @@ fn change(json: &Value, path: &str, new: &Value) -> String {
     match old.map(|old| words(shape, old)) {
         None if new_words.is_empty() => format!("{at} added"),
         None => format!("{at} {new_words}"),
-        Some(old) if old == new_words => format!("{at} changed"),
+        // Objects have no words.
+        Some(old) if old == new_words || old.is_empty() || new_words.is_empty() => format!("{at} changed"),
         Some(old) => format!("{at} {old} → {new_words}"),
     }
 }
@@ -138,7 +139,8 @@ fn removal(json: &Value, path: &str) -> String {
         Some(default) => {
             let old = found.value.map(|value| words(Some(found.shape), value)).unwrap_or_default();
             let default = words(Some(found.shape), default);
-            if old == default { format!("{at} back to its default") } else { format!("{at} {old} → {default}") }
+            let is_told = old != default && !old.is_empty() && !default.is_empty();
+            if is_told { format!("{at} {old} → {default}") } else { format!("{at} back to its default") }
         }
         None => format!("{at} deleted"),
     }
@@ -194,6 +196,7 @@ fn words(shape: Option<Shape>, value: &Value) -> String {
     let text = match (shape.map(Shape::body), value) {
         (Some(Body::Tagged(tag)), Value::Object(map)) => map.get(tag).and_then(Value::as_str).unwrap_or("?").to_owned(),
         (_, Value::Object(_)) => String::new(),
+        (_, Value::Array(items)) if items.is_empty() => "none".into(),
         (_, Value::Array(items)) if items.iter().all(Value::is_number) && items.len() <= 4 => {
             items.iter().map(number).collect::<Vec<_>>().join(", ")
         }

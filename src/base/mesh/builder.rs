@@ -172,7 +172,8 @@ impl Builder {
         let without_uv = |corners: &[u32; 3]| corners.iter().any(|&at| self.chain[at as usize].uv == NONE);
         let without_uv = self.triangles.iter().position(without_uv);
         let degenerate = self.triangles.iter().filter(|corners| facing(self.places(corners)).is_none()).count();
-        let mesh = Mesh { vertices, triangles: self.triangles, without_uv, degenerate };
+        let mut mesh = Mesh { vertices, triangles: self.triangles, without_uv, degenerate, inside_out: false };
+        mesh.inside_out = mesh.is_inside_out();
         let mut share = self.share.and(more);
         share.shrink(mesh.bytes());
         Ok((mesh, share))
@@ -311,6 +312,20 @@ mod tests {
         }
         assert_eq!(mesh.bounds(), Some((DVec3::NEG_ONE, DVec3::ONE)));
         assert_eq!(mesh.bytes(), 8 * 64 + 12 * 12);
+    }
+
+    #[test]
+    fn a_mesh_turned_inside_out_is_known_also_with_holes() {
+        let corners: Vec<[f64; 3]> =
+            (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2 & 1].map(|bit| 100.0 + f64::from(bit))).collect();
+        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let turned = |side: &[u32; 4]| bare(&[side[0], side[3], side[2], side[1]]);
+        for (kept, inside_out) in [(6, true), (5, true), (4, true), (2, true), (1, false)] {
+            let of =
+                |sides: Vec<Vec<_>>| mesh(&corners, &[], &[], &sides.iter().map(|side| &side[..]).collect::<Vec<_>>());
+            assert_eq!(of(sides[..kept].iter().map(turned).collect()).inside_out, inside_out, "{kept} sides");
+            assert!(!of(sides[..kept].iter().map(|side| bare(side)).collect()).inside_out, "{kept} sides");
+        }
     }
 
     #[test]

@@ -10,7 +10,8 @@ use kurbo::Rect;
 use serde_json::{Value, json};
 
 use self::model::FillLayer;
-use super::parts::moment::Space;
+use super::parts::moment::{Moment, Space};
+use super::parts::readout::ReadOut;
 use super::ready::{Making, Ready};
 use super::technique::{Checked, Kind, Starts, Technique, halfway};
 use crate::base::problem::Problem;
@@ -51,6 +52,16 @@ impl Technique for FillLayer {
             Rect::from_points((x0, y0), (x1, y1))
         });
         line.unwrap_or(Rect::new(0.0, 0.0, 100.0, 100.0))
+    }
+
+    fn probe(
+        &self,
+        making: &Making,
+        _ready: Option<&dyn Ready>,
+        pixel: (usize, usize),
+        _moment: &Moment,
+    ) -> Result<Option<ReadOut>, Problem> {
+        Ok(Some(synth::Synth::new(self, making.place).read_out(&self.name, pixel)))
     }
 
     fn synth(&self, making: &Making, _previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {

@@ -9,7 +9,7 @@ use crate::base::pixels::Linear;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::shots::{SeenFrom, Taken};
 use crate::layers::space::eye::Eye;
-use crate::layers::space::fit::{Bounds, fit};
+use crate::layers::space::fit::fit;
 
 /// Where one stands: before the sides of a cube, then before its corners.
 const WAYS: [(&str, [f64; 3]); 14] = [
@@ -36,21 +36,20 @@ const FOV: f64 = 30.0;
 pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
     let pose = Pose { bend: Bend::default(), ..synth.pose.clone() };
     let own = Synth { pose, strokes: None, ..synth.clone() };
-    let Some((low, high)) = own.mesh.bounds() else { return Vec::new() };
-    let (bounds, size_px) = (Bounds { low, high }, (side_px, side_px));
+    let size_px = (side_px, side_px);
     let unseen = Moment { t, size_px, eye: None, left_out: 0, magnified: 1 };
     let placed = own.pose.at(own.time(&unseen));
-    let taken = WAYS.into_iter().map(|(name, back)| {
+    let taken = WAYS.into_iter().filter_map(|(name, back)| {
         let back = DVec3::from(back).normalize_or_zero();
         let up = if back.y.abs() < 1.0 { DVec3::Y } else { DVec3::Z };
-        let [position, target] = fit(&bounds, [back, up], FOV, size_px);
+        let [position, target] = fit(&|ways| own.mesh.reach(ways), [back, up], FOV, size_px)?;
         let [position, target] = [position, target].map(|at| short(at, position.distance(target)));
         let world = |at| placed.point(at, DVec3::ZERO).0;
         let eye = Eye::new([world(position), world(target), placed.turn * up], FOV, size_px);
         let moment = Moment { eye: Some(eye), ..unseen };
         let picture = Linear::from_cells(side_px, side_px, Seen::new(&own, &moment).bare().0);
         let up = Some(up).filter(|up| *up != DVec3::Y);
-        Taken { name, from: SeenFrom::Standing { position, target, up, fov: Some(FOV) }, picture }
+        Some(Taken { name, from: SeenFrom::Standing { position, target, up, fov: Some(FOV) }, picture })
     });
     taken.filter(|taken| taken.picture.cells().iter().any(|cell| cell[3] > 0.0)).collect()
 }

@@ -11,6 +11,7 @@ use crate::base::problem::Problem;
 use crate::layers::parts::measures::Measures;
 use crate::layers::parts::moment::Moment;
 use crate::layers::ready::{Making, Ready as _};
+use crate::layers::space::fit;
 
 /// The measures of the strokes as the layer is at one time; none without strokes, without a camera, or once `step`, which is
 /// told how many frames are drawn of how many, says that it is cancelled.
@@ -29,7 +30,7 @@ pub fn measure(
     let Some(of) = main_noise(&ready.strokes).map(str::to_owned) else {
         return Err(Problem::error("/strokes/marks", "no mark is made of a noise: there is nothing to measure"));
     };
-    let Some(bounds) = synth.bounds(moment.t) else { return Ok(None) };
+    let Some(middle) = fit::middle(&|ways| synth.reach(moment.t, ways)) else { return Ok(None) };
     let ways = measure::ways(&ready);
     // Given its strokes by any anchor, it shows the same surface.
     let synth = Synth { strokes: Some(Arc::new((*ready).clone())), ..synth };
@@ -45,7 +46,7 @@ pub fn measure(
         done += 1;
         Some(Frame::new(&ways, &given))
     };
-    let Some(mut found) = measure::moves((&eye, bounds.middle()), steps, &mut draw) else { return Ok(None) };
+    let Some(mut found) = measure::moves((&eye, middle), steps, &mut draw) else { return Ok(None) };
     found.iter_mut().zip(flatness).for_each(|((_, figures), flatness)| figures.flatness = flatness);
     Ok(step(done, done).then_some(Measures { of, ways: found }))
 }

@@ -7,6 +7,7 @@ pub mod frame;
 pub mod marks;
 pub mod measure;
 pub mod model;
+mod odd;
 pub mod plan;
 pub mod pose;
 pub mod probe;
@@ -90,7 +91,9 @@ impl Technique for MeshLayer {
         let strokes = self.strokes.as_ref().zip(without);
         let strokes = strokes.and_then(|(own, triangle)| strokes::check::without_uv(own, &self.mesh, triangle));
         let fits = self.surface.slot().check_materials(materials).into_iter().map(|problem| problem.under("/surface"));
-        surface.into_iter().chain(fits).chain(strokes.map(|problem| problem.under("/strokes"))).collect()
+        let odd = materials.meshes.get(&self.mesh).into_iter().flat_map(|mesh| odd::warnings(self, mesh));
+        let strokes = strokes.map(|problem| problem.under("/strokes"));
+        surface.into_iter().chain(fits).chain(strokes).chain(odd).collect()
     }
 
     fn check_made(&self, making: &Making) -> Vec<Problem> {

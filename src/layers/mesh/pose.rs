@@ -24,26 +24,28 @@ pub struct Pose {
     /// How far it turns about the world's y in one timeline, counter-clockwise as seen from above.
     #[schemars(extend("unit" = "degrees"))]
     pub spin: f64,
-    /// How it bends.
+    /// How it leans to one side: nothing up to `from` on its axis, by all `degrees` from `to` on, more and more between. For a
+    /// tree that sways, set degrees=20, to=(its height) and swing=1.
     pub bend: Bend,
 }
 
-/// A turn about the z through the model's origin that grows along an axis of the model.
+/// A turn about the z through the model's origin that grows along an axis of the model: to the left, where the degrees are
+/// positive and the axis is y.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Bend {
-    /// The whole turn.
+    /// How far it leans from `to` on; counter-clockwise as seen from the front, so that a positive turn leans to the left.
     #[schemars(extend("unit" = "degrees"))]
     pub degrees: f64,
-    /// The axis of the model along which the turn grows, from `from` to `to`.
+    /// The axis of the model along which the turn grows: y for what stands.
     pub axis: Axis,
-    /// Where the turn begins on the axis.
+    /// Where on the axis the turn begins, before the scale of the pose.
     #[schemars(extend("unit" = "m"))]
     pub from: f64,
-    /// Where the turn is whole.
+    /// Where on the axis it has reached all degrees: the height of what stands, before the scale of the pose.
     #[schemars(extend("unit" = "m"))]
     pub to: f64,
-    /// How many times it swings to both sides in one timeline; 0 stands still.
+    /// How many times it swings to both sides in one timeline; with 0 it stands still, bent.
     #[schemars(extend("unit" = "cycles"))]
     pub swing: f64,
 }

@@ -4,11 +4,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::frame::Seen;
 use super::synth::Synth;
 use super::{around, marks, plan, probe, strokes};
+use crate::base::geometry;
 use crate::base::pixels::Linear;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
@@ -17,7 +19,6 @@ use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Under;
 use crate::layers::parts::shots::Taken;
 use crate::layers::ready::{Ready, Still};
-use crate::layers::space::fit::Bounds;
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
@@ -75,15 +76,16 @@ impl Ready for Synth {
         probe::under(self, pixel, moment)
     }
 
-    fn bounds(&self, t: f64) -> Option<Bounds> {
+    fn reach(&self, t: f64, ways: &[DVec3]) -> Option<Vec<f64>> {
         let placed = self.pose.at(if self.still { 0.0 } else { t });
-        let world = |at| placed.point(at, DVec3::ZERO).0;
-        if placed.bend_radians == 0.0 {
-            let (low, high) = self.mesh.bounds()?;
-            return Bounds::around(Bounds { low, high }.corners().map(world));
+        if placed.bend_radians != 0.0 {
+            let world = self.mesh.vertices.par_iter().map(|vertex| placed.point(vertex.position, DVec3::ZERO).0);
+            return geometry::reach(world, ways);
         }
-        let corners = self.mesh.triangles.iter().flatten();
-        Bounds::around(corners.map(|&corner| world(self.mesh.vertices[corner as usize].position)))
+        // Ways are fewer than vertices: they are turned in place of those.
+        let own: Vec<DVec3> = ways.iter().map(|way| placed.turn.transpose() * *way * placed.scale).collect();
+        let far = self.mesh.reach(&own)?;
+        Some(far.into_iter().zip(ways).map(|(far, way)| far + way.dot(placed.position)).collect())
     }
 
     fn largest_texture(&self) -> usize {
@@ -101,9 +103,9 @@ mod tests {
     use crate::layers::timeline::Wrap;
 
     #[test]
-    fn the_box_is_around_what_the_pose_makes_of_the_mesh() {
+    fn it_reaches_as_far_as_what_the_pose_makes_of_the_mesh() {
         let corner = |[x, y]: [f64; 2]| Vertex { position: DVec3::new(x, y, 0.0), ..Vertex::default() };
-        let vertices = [[0.0, 0.0], [0.0, 2.0], [0.5, 2.0], [9.0, 9.0]].map(corner).to_vec();
+        let vertices = [[0.0, 0.0], [0.0, 2.0], [0.5, 2.0]].map(corner).to_vec();
         let mesh = Arc::new(Mesh { vertices, triangles: vec![[0, 1, 2]], ..Mesh::default() });
         let materials = Materials { meshes: [("m".to_owned(), mesh)].into(), ..Materials::default() };
         for (pose, t, low, high) in [
@@ -113,8 +115,11 @@ mod tests {
         ] {
             let layer = format!(r#"{{"name": "m", "mesh": "m", "pose": {pose}}}"#);
             let layer: MeshLayer = serde_json::from_str(&layer).unwrap();
-            let found = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap().bounds(t).unwrap();
-            let far = (found.low - DVec3::from(low)).length().max((found.high - DVec3::from(high)).length());
+            let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap();
+            let ways = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]).concat();
+            let found = synth.reach(t, &ways).unwrap();
+            let expected = (0..3).flat_map(|axis| [high[axis], -f64::from(low[axis])]);
+            let far = found.iter().zip(expected).map(|(a, b): (&f64, f64)| (a - b).abs()).fold(0.0, f64::max);
             assert!(far < 1e-12, "{pose}: {found:?}");
         }
     }

@@ -3,90 +3,156 @@
 use glam::DVec3;
 
 use super::eye::{Eye, NEAR_M};
+use crate::base::maths::lerp;
 
 /// What is to be seen reaches to at most this share of the frame.
 const SHARE: f64 = 0.9;
 
-/// A box along the axes of the world, by its lowest and its highest corner.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// The lowest corner.
-    pub low: DVec3,
-    /// The highest corner.
-    pub high: DVec3,
+/// The camera stands before it by at least this share of its depth.
+const LEAST_BEFORE: f64 = 0.125;
+
+/// On the side of the frame that has room to spare, the middle is sought in so many steps.
+const STEPS: usize = 8;
+
+/// How far something reaches along each of some ways of the world: the greatest scalar product of one of its points with
+/// it. `None` where there is nothing.
+pub type Reach<'a> = &'a dyn Fn(&[DVec3]) -> Option<Vec<f64>>;
+
+/// The middle of the box along the axes of the world around something.
+pub fn middle(reach: Reach) -> Option<DVec3> {
+    let far = reach(&[DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z])?;
+    let [x, y, z, left, down, back] = far.try_into().ok()?;
+    Some(DVec3::new(x - left, y - down, z - back) / 2.0)
 }
 
-impl Bounds {
-    /// The smallest box around points; `None` around none.
-    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Bounds> {
-        let point = points.into_iter().map(|at| Bounds { low: at, high: at });
-        point.reduce(|a, b| a.and(&b))
-    }
-
-    /// The smallest box around two.
-    pub fn and(&self, other: &Bounds) -> Bounds {
-        Bounds { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// Its corners.
-    pub fn corners(&self) -> [DVec3; 8] {
-        let side = |i: usize, axis: usize| if (i >> axis) & 1 == 0 { self.low[axis] } else { self.high[axis] };
-        std::array::from_fn(|i| DVec3::new(side(i, 0), side(i, 1), side(i, 2)))
-    }
-
-    /// Its middle.
-    pub fn middle(&self) -> DVec3 {
-        (self.low + self.high) / 2.0
-    }
+/// The position and the target of the camera that looks from the direction `back` and sees all of something, as near as can
+/// be, with a vertical field of view of `fov` degrees, in frames of this width and height.
+///
+/// With z along `back`, x to the right and s the slope of the right edge of what is to be filled, a point is left of that edge
+/// where x + s z is at most that of the camera: the farthest point along (1, s) alone decides, and so on each side.
+pub fn fit(reach: Reach, [back, up]: [DVec3; 2], fov: f64, size: (usize, usize)) -> Option<[DVec3; 2]> {
+    let eye = Eye::new([back.normalize_or(DVec3::Z), DVec3::ZERO, up], fov, size);
+    let [right, up, back] = [0, 1, 2].map(|axis| eye.turn.row(axis));
+    let [nearest, deepest] = reach(&[back, -back])?.try_into().ok()?;
+    let half = eye.middle_px * SHARE / eye.focal_px;
+    let across = Side::new(reach, [right, back], half.x)?;
+    let upward = Side::new(reach, [up, back], half.y)?;
+    // What is long and thin is not looked at from its very end.
+    let before = ((nearest + deepest) * LEAST_BEFORE).max(2.0 * NEAR_M);
+    let distance = across.needed().max(upward.needed()).max(nearest + before);
+    let beside = right * across.middle(distance) + up * upward.middle(distance);
+    // It looks at what is half way between the nearest and the deepest.
+    Some([distance, (nearest - deepest) / 2.0].map(|along| beside + back * along))
 }
 
-/// The position and the target of a camera that sees all of a box from the direction `back`, with a vertical field of view
-/// of `fov` degrees, in frames of this width and height.
-pub fn fit(bounds: &Bounds, [back, up]: [DVec3; 2], fov: f64, size: (usize, usize)) -> [DVec3; 2] {
-    let (target, back) = (bounds.middle(), back.normalize_or(DVec3::Z));
-    let eye = Eye::new([target + back, target, up], fov, size);
-    let half_px = eye.middle_px * SHARE;
-    let needed = bounds.corners().map(|corner| {
-        let seen = eye.turn * (corner - target);
-        let across = (seen.x.abs() / half_px.x).max(seen.y.abs() / half_px.y) * eye.focal_px;
-        seen.z + across.max(2.0 * NEAR_M)
-    });
-    let distance = needed.into_iter().fold(2.0 * NEAR_M, f64::max);
-    [target + back * distance, target]
+/// How far something reaches beside lines of several slopes, on both sides of an axis of the frame.
+struct Side {
+    slopes: [f64; STEPS + 1],
+    far: [[f64; 2]; STEPS + 1],
+}
+
+impl Side {
+    /// Slopes up to that of the edge of the frame.
+    fn new(reach: Reach, [axis, back]: [DVec3; 2], steepest: f64) -> Option<Side> {
+        let slopes = std::array::from_fn(|k| steepest * k as f64 / STEPS as f64);
+        let ways: Vec<DVec3> = slopes.iter().flat_map(|slope| [axis, -axis].map(|side| side + back * *slope)).collect();
+        let far = reach(&ways)?;
+        Some(Side { slopes, far: std::array::from_fn(|k| [far[2 * k], far[2 * k + 1]]) })
+    }
+
+    /// How far back it has to stand at least.
+    fn needed(&self) -> f64 {
+        let [right, left] = self.far[STEPS];
+        (right + left) / (2.0 * self.slopes[STEPS])
+    }
+
+    /// Where it stands on the axis so that there is as much room on both sides, if it is so far back.
+    fn middle(&self, distance: f64) -> f64 {
+        let [right, left] = self.far[STEPS];
+        let room = |k: usize| 2.0 * self.slopes[k] * distance - self.far[k][0] - self.far[k][1];
+        let between = |k: usize| (self.far[k][0] - self.far[k][1]) / 2.0;
+        // The slope at which both sides are filled. Room grows with it.
+        let after = (1..=STEPS).find(|k| room(*k) >= 0.0).unwrap_or(STEPS);
+        let (least, most) = (room(after - 1), room(after));
+        let share = if most > least { (-least / (most - least)).clamp(0.0, 1.0) } else { 1.0 };
+        let sought = lerp(between(after - 1), between(after), share);
+        let end = self.slopes[STEPS] * distance;
+        sought.min(end - left).max(right - end)
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use rayon::prelude::*;
+
     use super::*;
+    use crate::base::geometry::reach;
+
+    fn fitted(points: &[DVec3], [back, up]: [DVec3; 2], fov: f64, size: (usize, usize)) -> [DVec3; 2] {
+        fit(&|ways| reach(points.par_iter().copied(), ways), [back, up], fov, size).unwrap()
+    }
+
+    /// The least and the greatest place of points in the frame, where 1 is its edge.
+    fn places(points: &[DVec3], view: [DVec3; 2], fov: f64, size: (usize, usize)) -> [glam::DVec2; 2] {
+        let eye = Eye::new([view[0], view[1], DVec3::Y], fov, size);
+        let places = points.iter().map(|point| {
+            let seen = eye.seen(*point);
+            assert!(seen.z < -NEAR_M, "{point} is behind");
+            (eye.project(seen) - eye.middle_px) / eye.middle_px
+        });
+        let places: Vec<_> = places.collect();
+        [places.iter().copied().reduce(|a, b| a.min(b)), places.iter().copied().reduce(|a, b| a.max(b))]
+            .map(Option::unwrap)
+    }
 
     #[test]
-    fn every_corner_is_in_the_frame_and_the_frame_is_filled() {
-        let flat = Bounds { low: DVec3::new(-1.0, 0.0, -4.0), high: DVec3::new(1.0, 0.0, 4.0) };
-        let tall = Bounds { low: DVec3::new(10.0, -3.0, 2.0), high: DVec3::new(11.0, 40.0, 2.5) };
-        for bounds in [flat, tall] {
+    fn the_frame_is_filled_by_what_is_seen_and_that_stands_in_its_middle() {
+        let round = |i: u32| crate::base::maths::TAU * f64::from(i) / 40.0;
+        let (sin, cos) = (crate::base::maths::sin, crate::base::maths::cos);
+        let ring: Vec<DVec3> = (0..40).map(|i| DVec3::new(3.0 + cos(round(i)), 5.0, sin(round(i)))).collect();
+        let pole = vec![DVec3::new(0.0, -3.0, 0.0), DVec3::new(0.0, 40.0, 0.5)];
+        // A box around it would be larger by far.
+        let diagonal = vec![DVec3::new(-3.0, 0.0, -3.0), DVec3::new(3.0, 4.0, 3.0)];
+        let tetrahedron = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+        let tetrahedron = tetrahedron.map(|at| DVec3::from(at) * 1e-3).to_vec();
+        for points in [ring, pole, diagonal, tetrahedron] {
             for size in [(1280, 720), (100, 900)] {
-                for (back, fov) in [([0.0, 0.3, 1.0], 40.0), ([-2.0, 1.0, 0.1], 100.0), ([0.0, 1.0, 0.0], 8.0)] {
-                    let [position, target] = fit(&bounds, [DVec3::from(back), DVec3::Y], fov, size);
-                    let eye = Eye::new([position, target, DVec3::Y], fov, size);
-                    let reach = bounds.corners().map(|corner| {
-                        let seen = eye.seen(corner);
-                        assert!(seen.z < -NEAR_M, "{bounds:?} {size:?} {back:?}: behind");
-                        let from_middle = (eye.project(seen) - eye.middle_px) / eye.middle_px;
-                        from_middle.abs().max_element()
-                    });
-                    let reach = reach.into_iter().fold(0.0, f64::max);
-                    assert!((reach - SHARE).abs() < 1e-9, "{bounds:?} {size:?} {back:?}: {reach}");
+                for (back, fov) in [([0.0, 0.3, 1.0], 40.0), ([-2.0, 1.0, 0.1], 100.0), ([0.3, 1.0, 0.0], 8.0)] {
+                    let ways = [DVec3::from(back), DVec3::Y];
+                    let view = fitted(&points, ways, fov, size);
+                    let [least, most] = places(&points, view, fov, size);
+                    let widest = most.max(-least).max_element();
+                    let near = (most.abs() - least.abs()).abs().max_element();
+                    let told = format!("{points:?} {size:?} {back:?}: {least} {most}");
+                    let back = ways[0].normalize();
+                    let [nearest, deepest] =
+                        [back, -back].map(|way| reach(points.par_iter().copied(), &[way]).unwrap()[0]);
+                    let before = view[0].dot(back) - nearest;
+                    let nearest_allowed = ((nearest + deepest) * LEAST_BEFORE).max(2.0 * NEAR_M);
+                    let filled = (widest - SHARE).abs() < 1e-9 || (before - nearest_allowed).abs() < 1e-9;
+                    assert!(filled && widest < SHARE + 1e-9 && near < 0.03, "{told}");
                 }
             }
         }
     }
 
     #[test]
+    fn what_is_long_is_not_seen_from_its_very_end() {
+        let [position, target] = fitted(&[DVec3::Z * 8.0, DVec3::ZERO], [DVec3::Z, DVec3::Y], 40.0, (4, 4));
+        assert_eq!((position, target), (DVec3::Z * 9.0, DVec3::Z * 4.0));
+    }
+
+    #[test]
     fn a_point_is_seen_from_in_front() {
-        let point = Bounds::around([DVec3::ONE]).unwrap();
-        let [position, target] = fit(&point, [DVec3::Z, DVec3::Y], 40.0, (4, 4));
+        let [position, target] = fitted(&[DVec3::ONE], [DVec3::Z, DVec3::Y], 40.0, (4, 4));
         assert_eq!(target, DVec3::ONE);
-        assert!(position.z > 1.0 + NEAR_M);
-        assert_eq!(Bounds::around([]), None);
+        assert!(position.z > 1.0 + NEAR_M && position.truncate() == target.truncate());
+        assert_eq!(fit(&|_| None, [DVec3::Z, DVec3::Y], 40.0, (4, 4)), None);
+    }
+
+    #[test]
+    fn the_middle_is_that_of_the_box() {
+        let points = [DVec3::new(1.0, -2.0, 5.0), DVec3::new(3.0, 4.0, 0.0), DVec3::new(1.5, 0.0, 4.9)];
+        assert_eq!(middle(&|ways| reach(points.par_iter().copied(), ways)), Some(DVec3::new(2.0, 1.0, 2.5)));
     }
 }

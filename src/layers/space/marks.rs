@@ -37,14 +37,24 @@ const LINES: i32 = 10;
 /// The y axis is as long as so many of its cells.
 const TALL: f64 = 4.0;
 
-/// The line between two places of the world as it is in the frame; `None` if all of it is behind the eye or beside the
-/// frame. It reaches a little beyond the frame at most.
+/// The line between two places of the world as far as it is in the frame; `None` if all of it is behind the eye or beside the
+/// frame.
 pub fn line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[Point; 2]> {
     deep_line(moment, eye, ends).map(|ends| ends.map(|(at, _)| at))
 }
 
 /// The same, each end with 1 / its depth, which is even along the line in the frame.
 pub fn deep_line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[(Point, f64); 2]> {
+    deep_part(moment, eye, ends, 0.0)
+}
+
+/// A place of the world in the frame, or beside it by at most half of its sides.
+pub fn spot(moment: &Moment, eye: &Eye, at: DVec3) -> Option<Point> {
+    deep_part(moment, eye, [at; 2], 0.5).map(|[(at, _), _]| at)
+}
+
+/// As [`deep_line`], reaching beyond the frame by this share of its sides.
+fn deep_part(moment: &Moment, eye: &Eye, ends: [DVec3; 2], beyond: f64) -> Option<[(Point, f64); 2]> {
     let [mut a, mut b] = ends.map(|end| eye.seen(end));
     let (depth_a, depth_b) = (-a.z, -b.z);
     if depth_a < NEAR_M && depth_b < NEAR_M {
@@ -60,7 +70,7 @@ pub fn deep_line(moment: &Moment, eye: &Eye, ends: [DVec3; 2]) -> Option<[(Point
     let [a, b] = [a, b].map(|end| end.with_z(end.z.min(-NEAR_M)));
     let [at_a, at_b] = [a, b].map(|end| eye.project(end)).map(|at| Point::new(at.x, at.y));
     let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
-    let room = Rect::new(0.0, 0.0, width, height).inflate(width / 2.0, height / 2.0);
+    let room = Rect::new(0.0, 0.0, width, height).inflate(width * beyond, height * beyond);
     let shares = within(room, [at_a, at_b])?;
     Some(shares.map(|share| (at_a + (at_b - at_a) * share, lerp(-1.0 / a.z, -1.0 / b.z, share))))
 }
@@ -181,7 +191,11 @@ mod tests {
         let eye = moment.eye.unwrap();
         let through = line(&moment, &eye, [DVec3::new(0.0, 0.0, -50.0), DVec3::new(0.0, 0.0, 50.0)]).unwrap();
         assert!(through.iter().all(|end| (end.x - 100.0).abs() < 1e-9), "{through:?}");
-        assert!((through[1].y - 150.0).abs() < 1e-6, "as far as half a frame beyond it: {through:?}");
+        assert!((through[1].y - 100.0).abs() < 1e-6, "to the edge of the frame: {through:?}");
+        let beside = DVec3::new(4.0, 0.0, 0.0);
+        assert_eq!(line(&moment, &eye, [beside; 2]), None);
+        assert!(spot(&moment, &eye, beside).is_some_and(|at| at.x > 200.0), "dots are gripped a little beside it too");
+        assert_eq!(spot(&moment, &eye, beside * 9.0), None);
         assert_eq!(line(&moment, &eye, [DVec3::new(0.0, 0.0, 9.0), DVec3::new(1.0, 3.0, 50.0)]), None, "behind");
         assert_eq!(line(&moment, &eye, [DVec3::new(90.0, 0.0, 0.0), DVec3::new(90.0, 1.0, 0.0)]), None, "beside");
         let [a, b] = line(&moment, &eye, [DVec3::ZERO, DVec3::X]).unwrap();

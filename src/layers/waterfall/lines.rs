@@ -7,8 +7,8 @@ use super::automatic::{Node, Values};
 use super::hash::Random;
 use super::model::Foam;
 use super::path::Path;
+use crate::base::geometry;
 use crate::base::maths::{TAU, cos, sin};
-use crate::layers::space::fit::Bounds;
 
 /// Foam starts so far above the pool, in meters.
 const ABOVE: f64 = 1e-6;
@@ -51,14 +51,17 @@ pub fn lines(values: &Values, foam: &Foam, random: Random) -> Vec<Line> {
     all
 }
 
-/// The box around all lines, as wide as what they carry.
-pub fn bounds(values: &Values, lines: &[Line]) -> Option<Bounds> {
-    let places = lines.iter().filter(|line| line.carries()).flat_map(|line| {
-        let wide = DVec3::splat(values.kinds[usize::from(line.foam)].look.widest() / 2.0);
-        let at = move |i: usize| values.laws.at(&line.path, line.life * i as f64 / PLACES as f64).0;
-        (0..=PLACES).flat_map(move |i| [at(i) - wide, at(i) + wide])
-    });
-    Bounds::around(places)
+/// How far all lines reach along each of these ways, as wide as what they carry.
+pub fn reach(values: &Values, lines: &[Line], ways: &[DVec3]) -> Option<Vec<f64>> {
+    let of_kind = |foam: bool| {
+        let wide = values.kinds[usize::from(foam)].look.widest() / 2.0;
+        let places = lines.par_iter().filter(|line| line.foam == foam && line.carries()).flat_map_iter(|line| {
+            (0..=PLACES).map(|i| values.laws.at(&line.path, line.life * i as f64 / PLACES as f64).0)
+        });
+        let far = geometry::reach(places, ways)?;
+        Some(far.into_iter().zip(ways).map(|(far, way)| far + wide * way.length()).collect())
+    };
+    [false, true].into_iter().filter_map(of_kind).reduce(geometry::farther)
 }
 
 /// Those from the lip.

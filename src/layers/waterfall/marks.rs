@@ -9,7 +9,7 @@ use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
-use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OVERLAY, line};
+use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OVERLAY, line, spot};
 
 const LINES: &str = "view-lines";
 
@@ -67,7 +67,7 @@ fn of_nodes(synth: &Synth, moment: &Moment, eye: &Eye) -> Vec<Mark> {
     for (i, node) in synth.values.lip.iter().enumerate() {
         let landing = Fall::new(&synth.values, node).end().map(|(at, _)| (&LANDING, at));
         for (look, at) in std::iter::once((&NODE, node.at)).chain(landing) {
-            let dot = line(moment, eye, [at; 2]).map(|[dot, _]| Shape::Dot(dot));
+            let dot = spot(moment, eye, at).map(Shape::Dot);
             marks.extend(dot.map(|dot| Mark::new(look, format!("/lip/{i}"), dot)));
         }
     }

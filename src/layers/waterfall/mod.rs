@@ -36,6 +36,7 @@ pub mod upload;
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use glam::DVec3;
 use kurbo::Rect;
 use serde_json::{Value, json};
 
@@ -48,7 +49,6 @@ use super::parts::picking::Picks;
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::space::eye::Ray;
-use super::space::fit::Bounds;
 use super::technique::{Checked, Kind, Shown, Starts, Technique, Template, halfway};
 use crate::base::problem::Problem;
 
@@ -112,9 +112,9 @@ impl Technique for WaterfallLayer {
         Rect::new(0.0, 0.0, side, side)
     }
 
-    fn extent(&self) -> Option<Bounds> {
+    fn reach(&self, ways: &[DVec3]) -> Option<Vec<f64>> {
         let values = automatic::Values::of(self);
-        lines::bounds(&values, &lines::lines(&values, &self.foam, hash::Random(self.seed)))
+        lines::reach(&values, &lines::lines(&values, &self.foam, hash::Random(self.seed)), ways)
     }
 
     fn automatic(&self, path: &str) -> Option<Value> {

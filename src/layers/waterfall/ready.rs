@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::check::carried;
 use super::frame::Seen;
 use super::synth::Synth;
@@ -14,7 +16,6 @@ use crate::layers::parts::picking::{Picking, Sight};
 use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Fact;
 use crate::layers::ready::{Ready, Still};
-use crate::layers::space::fit::Bounds;
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
@@ -41,8 +42,8 @@ impl Ready for Synth {
         marks::marks(self, view, moment)
     }
 
-    fn bounds(&self, _t: f64) -> Option<Bounds> {
-        lines::bounds(&self.values, &self.lines)
+    fn reach(&self, _t: f64, ways: &[DVec3]) -> Option<Vec<f64>> {
+        lines::reach(&self.values, &self.lines, ways)
     }
 
     /// What cannot be seen in a single frame: the measure of all that is automatic, how long water is on its way, and how

@@ -24,6 +24,7 @@ use crate::files::outputs::{self, Place};
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
+use crate::scene::address;
 
 /// Render frames to numbered files, an animation or a stream
 #[derive(clap::Args)]
@@ -138,8 +139,11 @@ fn write(
     let mut renderer = Renderer::new(args, opened, (show.width, show.height), todo.len())?;
     let _encoding = opened.materials.budget.take(target.memory(&show), &show.place)?;
     if todo.len() > 1 {
-        let loops = seams::warnings(opened.document.scene(), &opened.materials, || renderer.samples.first());
-        loops.iter().for_each(|warning| context.messages.say(&format!("{}: {warning}", args.scene.display())));
+        let document = &opened.document;
+        for warning in seams::warnings(document.scene(), &opened.materials, || renderer.samples.first()) {
+            let warning = address::of_problem(document, &warning);
+            context.messages.say(&format!("{}: {warning}", args.scene.display()));
+        }
     }
     let total = todo.len() as u64;
     let mut sink = target.begin(show)?;

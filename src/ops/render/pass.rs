@@ -33,6 +33,12 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let asked = Asked::parse(args.pass.as_deref().unwrap_or(COLOR.name), &scene);
     let asked = asked.map_err(|what| Error::Usage(format!("--pass: {what}")))?;
     asked.emptiness(&scene).iter().for_each(|told| context.messages.say(told));
+    if args.samples > 1 && *asked.pass != COLOR {
+        context.messages.say(&format!(
+            "--samples {} changes nothing: {} has one sample in the middle of each pixel, since data has no mean",
+            args.samples, asked.pass.name
+        ));
+    }
     let frames = match &args.frames {
         Some(text) => range::parse(text, scene.timeline.frames())?,
         None => (0..scene.timeline.frames()).collect(),

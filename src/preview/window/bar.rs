@@ -243,7 +243,7 @@ mod tests {
         state.words.follow_scene(vec![Problem::error("/images", "no picture")]);
         assert_eq!(said(&state).1, TEXT, "problems stand in a list of their own");
         state.words.put_away();
-        assert_eq!(said(&state), ("/images: no picture".into(), WARNING));
+        assert_eq!(said(&state), ("images: no picture".into(), WARNING));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::own_view::OwnView;
 use super::worker::Event;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
-use crate::base::pixels::{Linear, decode, encode};
+use crate::base::pixels::{Frame, decode, encode};
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
 use crate::render::passes::{self, Asked};
@@ -38,8 +38,8 @@ pub struct Kept {
 
 /// Of the frame, and of the one that it is shown beside or compared with.
 pub type Textures = (wgpu::Texture, Option<wgpu::Texture>);
-/// The same as numbers, and how many pixels of the frame one of them stands for.
-type Pictures = (Linear, Option<Linear>, usize);
+/// The same as colors to look at, and how many pixels of the frame one of them stands for.
+type Pictures = (Frame, Option<Frame>, usize);
 /// A scene and its time.
 type At<'a> = (&'a Synth, f64);
 
@@ -94,9 +94,8 @@ impl Kept {
     }
 
     fn take(&mut self, gpu: &Gpu, made_for: For, (frame, other, each): &Pictures) -> Result<()> {
-        let asked = made_for.asked.looked_at();
-        let frame = upload(gpu, &asked, frame)?;
-        let other = other.as_ref().map(|other| upload(gpu, &asked, other)).transpose()?;
+        let frame = upload(gpu, frame)?;
+        let other = other.as_ref().map(|other| upload(gpu, other)).transpose()?;
         (self.textures, self.each, self.made_for) = (Some((frame, other)), *each, Some(made_for));
         Ok(())
     }
@@ -104,9 +103,13 @@ impl Kept {
 
 fn pictures(asked: &Asked, (synth, time): At, other: Option<At>) -> Pictures {
     let asked = asked.looked_at();
-    let (frame, each) = passes::thinned(&asked, synth, time, MOST);
-    let other = other.map(|(synth, time)| passes::thinned(&asked, synth, time, MOST).0);
-    (frame, other, each)
+    let seen = |(synth, time): At| {
+        let (picture, each) = passes::thinned(&asked, synth, time, MOST);
+        let frame = || passes::thinned(&asked.in_color(), synth, time, MOST).0;
+        (passes::view_over(&asked, &picture, frame), each)
+    };
+    let (frame, each) = seen((synth, time));
+    (frame, other.map(|other| seen(other).0), each)
 }
 
 /// Pictures that are being made beside the event loop.
@@ -154,8 +157,7 @@ impl Drop for Making {
 }
 
 /// A pass as a texture to look at: sRGB, premultiplied in linear light.
-fn upload(gpu: &Gpu, asked: &Asked, picture: &Linear) -> Result<wgpu::Texture> {
-    let view = passes::view(asked.pass, picture);
+fn upload(gpu: &Gpu, view: &Frame) -> Result<wgpu::Texture> {
     let premultiplied = |code: [u8; 4]| {
         let [r, g, b, a] = decode(code);
         let [r, g, b, _] = encode([r, g, b, 1.0]);

@@ -10,8 +10,10 @@ use crate::layers::space::camera::Camera;
 const TURN_DEGREES: f64 = 5.0;
 /// A drag over a logical pixel turns by this, in degrees.
 const DRAG_DEGREES: f64 = 0.4;
-/// A key walks by this share of the distance from the target.
-const WALK: f64 = 0.05;
+/// A key walks by this share of what is seen, from top to bottom at the target.
+const WALK: f64 = 0.07;
+/// Right before a surface it walks as if this share of what the scene's camera sees were seen.
+const LEAST_SEEN: f64 = 0.1;
 
 impl State {
     /// Takes the camera that the scene's layers in space are seen by; without one there is nothing to steer.
@@ -54,10 +56,13 @@ impl State {
         };
         match way {
             "orbit" => self.change_view(|own| own.orbit(right * TURN_DEGREES, up * TURN_DEGREES)),
-            "walk" => self.change_view(|own| {
-                let step = own.distance() * WALK;
-                own.walk(right * step, up * step);
-            }),
+            "walk" => {
+                let least = self.camera.as_ref().map_or(0.0, |camera| OwnView::of(camera, 0.0).pixel(1.0) * LEAST_SEEN);
+                self.change_view(|own| {
+                    let step = own.pixel(1.0).max(least) * WALK;
+                    own.walk(right * step, up * step);
+                });
+            }
             "dolly" => self.change_view(|own| own.dolly(up)),
             _ => return false,
         }
@@ -110,6 +115,20 @@ mod tests {
         let eye = Camera::default().at(0.0, (320, 200));
         let seen = eye.project(eye.seen(DVec3::from(Camera::default().target) * 2.0 - DVec3::from(moved.target)));
         assert!((seen - eye.middle_px).distance(DVec2::new(10.0, 0.0)) < 1e-6, "under the pointer: {moved:?}");
+        state.steer("own-view-off");
+        let mut steps = Vec::new();
+        for nearer in [0, 200] {
+            for _ in 0..nearer {
+                state.steer("dolly-nearer");
+            }
+            state.steer("walk-right");
+            let before = state.own_camera().unwrap();
+            state.steer("walk-right");
+            let way = DVec3::from(state.own_camera().unwrap().position) - DVec3::from(before.position);
+            steps.push(way.length());
+        }
+        assert!((0.19..0.22).contains(&steps[0]), "a twentieth of the way to the target: {steps:?}");
+        assert!((steps[1] - steps[0] * LEAST_SEEN).abs() < 1e-9, "right before it still a tenth of that: {steps:?}");
         let other = Camera { position: [1.0, 2.0, 3.0], ..Camera::default() };
         state.look_from(Some(&other));
         assert_eq!(state.own_camera(), Some(other.clone()), "the editor says from where");

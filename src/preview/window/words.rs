@@ -94,13 +94,13 @@ mod tests {
         let mut words = Words::default();
         assert!(!words.put_away() && words.in_one_line().is_none());
         words.follow_scene(vec![problem("/a"), problem("/b")]);
-        assert_eq!(words.in_one_line().unwrap(), "/a: wrong (and 1 more)");
+        assert_eq!(words.in_one_line().unwrap(), "a: wrong (and 1 more)");
         assert!(words.put_away() && words.listed().is_empty() && !words.put_away());
         words.follow_scene(vec![problem("/a"), problem("/b")]);
         assert!(words.listed().is_empty(), "the same ones");
         words.follow_link(vec![problem("/c")]);
         assert_eq!(words.listed().len(), 3);
-        assert_eq!(words.of_scene(), "/a: wrong (and 1 more)");
+        assert_eq!(words.of_scene(), "a: wrong (and 1 more)");
         words.follow_link(Vec::new());
         words.follow_scene(Vec::new());
         words.reduced = Some("reduced".into());

@@ -240,7 +240,7 @@ mod tests {
         assert!(all.iter().any(|e| matches!(e, Event::Update(Update::Said(FromEditor::Notice(n))) if n == "hello")));
         let last = all.iter().rfind(|e| !matches!(e, Event::Update(_)));
         let Some(Event::Problems(problems)) = last else { panic!("{all:?}") };
-        assert!(problems[0].to_string().contains("/layers/0/image"), "{all:?}");
+        assert_eq!(problems[0].path, "/layers/0/image", "{all:?}");
     }
 
     #[test]

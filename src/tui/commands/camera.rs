@@ -7,13 +7,14 @@ use serde_json::json;
 
 use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
+use crate::base::geometry::farther;
 use crate::files::materials::{self, Cache};
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Space;
 use crate::layers::ready::{Making, Ready};
 use crate::layers::space::camera::{self, Camera};
-use crate::layers::space::fit::{Bounds, fit};
+use crate::layers::space::fit::{Reach, fit};
 use crate::render::frame_size;
 use crate::scene::Scene;
 use crate::tui::events::Effect;
@@ -89,13 +90,14 @@ pub fn eye(state: &State) -> Result<Camera, String> {
 
 fn see_all(state: &mut State, call: &Call) -> Done {
     let before = state.document().scene().camera.clone();
-    let made = state.picture.synth.as_ref().and_then(|synth| Some((bounds(&synth.layers)?, synth.size)));
-    let seen = match made {
-        Some(made) => Ok(made),
-        None => unmade(state),
-    };
-    let (bounds, size) = match (seen, &before) {
-        (Ok(seen), _) => seen,
+    let of = before.clone().unwrap_or_default();
+    let ([position, target, up], fov) = of.view(state.play.time);
+    let back = if before.is_some() { position - target } else { FIRST_BACK };
+    let fitted = |reach: Reach, size| fit(reach, [back, up], fov, size);
+    let made = state.picture.synth.as_ref();
+    let seen = made.and_then(|synth| fitted(&|ways| reach(&synth.layers, ways), synth.size));
+    let [position, target] = match (seen.map_or_else(|| unmade(state, &fitted), Ok), &before) {
+        (Ok(seen), _) => seen.map(Into::into),
         (Err(why), Some(_)) => return Err(why),
         // A layer in space asks for a camera before there is anything to see.
         (Err(why), None) => {
@@ -103,26 +105,25 @@ fn see_all(state: &mut State, call: &Call) -> Done {
             return write(state, call, &Camera::default(), &said);
         }
     };
-    let of = before.clone().unwrap_or_default();
-    let ([position, target, up], fov) = of.view(state.play.time);
-    let back = if before.is_some() { position - target } else { FIRST_BACK };
-    let [position, target] = fit(&bounds, [back, up], fov, size).map(Into::into);
     write(state, call, &Camera { position, target, up: up.into(), fov, ..of }, "the camera sees all that is in space")
 }
 
-/// The box around all that is in space, over the whole timeline.
-fn bounds(layers: &[Arc<dyn Ready>]) -> Option<Bounds> {
+/// How far all that is in space reaches, over the whole timeline.
+fn reach(layers: &[Arc<dyn Ready>], ways: &[DVec3]) -> Option<Vec<f64>> {
     let times = (0..TIMES).map(|k| f64::from(k) / f64::from(TIMES));
-    let all = times.flat_map(|t| layers.iter().filter_map(move |layer| layer.bounds(t)));
-    all.reduce(|a, b| a.and(&b))
+    times.flat_map(|t| layers.iter().filter_map(move |layer| layer.reach(t, ways))).reduce(farther)
 }
 
-/// The box around all layers in space, or without any around all meshes, and the size of frames: where nothing is shown, or not
-/// yet. Files are read only where the document does not tell. Otherwise why there is none.
-fn unmade(state: &State) -> Result<(Bounds, (usize, usize)), String> {
+/// Where a camera sees all of something in frames of this size.
+type Fitted<'a> = &'a dyn Fn(Reach, (usize, usize)) -> Option<[DVec3; 2]>;
+
+/// Where a camera sees all layers in space, or without any all meshes, where nothing is shown, or not yet. Files are read only
+/// where the document does not tell. Otherwise why there is nothing to see.
+fn unmade(state: &State, fitted: Fitted) -> Result<[DVec3; 2], String> {
     let scene = state.document().scene();
-    if let Some(told) = extent(scene) {
-        return Ok((told, frame_size(scene, &Materials::default())));
+    let sized = scene.size.is_some() || scene.layers.iter().all(|layer| layer.technique().frame_of().is_none());
+    if let Some(seen) = fitted(&|ways| told(scene, ways), frame_size(scene, &Materials::default())).filter(|_| sized) {
+        return Ok(seen);
     }
     if scene.meshes.is_empty() && !scene.layers.iter().any(is_in_space) {
         return Err("nothing in it is in space: :add MODEL.obj adds a mesh, and :camera fit sees it".into());
@@ -132,22 +133,21 @@ fn unmade(state: &State) -> Result<(Bounds, (usize, usize)), String> {
     let in_space = scene.layers.iter().filter(|layer| is_in_space(layer));
     let making = Making::plain(scene.timeline.wrap, &materials);
     let layers: Vec<_> = in_space.filter_map(|layer| layer.technique().synth(&making, None).ok()).collect();
-    let meshes = || materials.meshes.values().flat_map(|mesh| mesh.bounds()).flat_map(<[_; 2]>::from);
-    let seen = if layers.is_empty() { Bounds::around(meshes()) } else { bounds(&layers) };
+    let meshes = |ways: &[DVec3]| materials.meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
+    let all = |ways: &[DVec3]| if layers.is_empty() { meshes(ways) } else { reach(&layers, ways) };
     let why = || problems.first().map_or("nothing is in space".to_owned(), |problem| problem.message.clone());
-    Ok((seen.ok_or_else(why)?, frame_size(scene, &materials)))
+    fitted(&all, frame_size(scene, &materials)).ok_or_else(why)
 }
 
 fn is_in_space(layer: &Layer) -> bool {
     layer.technique().kind().space == Space::World
 }
 
-/// The box around all layers in space, if the document tells that of each, and the size of frames too.
-fn extent(scene: &Scene) -> Option<Bounds> {
-    let sized = scene.size.is_some() || scene.layers.iter().all(|layer| layer.technique().frame_of().is_none());
-    let in_space = scene.layers.iter().filter(|layer| sized && is_in_space(layer));
-    let told = in_space.map(|layer| layer.technique().extent()).collect::<Option<Vec<_>>>()?;
-    told.into_iter().reduce(|a, b| a.and(&b))
+/// How far all layers in space reach, if the document tells that of each.
+fn told(scene: &Scene, ways: &[DVec3]) -> Option<Vec<f64>> {
+    let in_space = scene.layers.iter().filter(|layer| is_in_space(layer));
+    let told = in_space.map(|layer| layer.technique().reach(ways)).collect::<Option<Vec<_>>>()?;
+    told.into_iter().reduce(farther)
 }
 
 /// Makes a camera that stands still the scene's; says so, and what is lost by it.

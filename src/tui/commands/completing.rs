@@ -17,6 +17,7 @@ const PATHS: &[(&str, bool)] = &[
     ("e!", false),
     ("log", false),
     ("source", false),
+    ("style", true),
     ("w", false),
     ("w!", false),
     ("wq", false),

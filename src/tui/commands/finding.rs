@@ -19,8 +19,7 @@ pub const COMMANDS: &[Command] = &[
     command("jump-mark", "a..z", "Go to a mark", jump_mark),
     command("jumps", "[older|newer]", "Go back and forward along the jumps, or list them", jumps)
         .counted_with(&["older", "newer"]),
-    command("sibling", "next|previous", "Go to the same place of the next zone or tool like this one", sibling)
-        .counted(),
+    command("sibling", "next|previous", "Go to the same place of the next item like this one", sibling).counted(),
 ];
 
 /// The letter that a command takes.
@@ -264,7 +263,7 @@ fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, Strin
     let json = state.document().json();
     let mut item = node;
     loop {
-        let (list, last) = Pointer(item).split().ok_or("this is not in a list: go to a zone or a tool")?;
+        let (list, last) = Pointer(item).split().ok_or("this is not in a list: go to an item of one")?;
         if let (Some(index), Some(items)) = (pointer::index(&last), json.pointer(list).and_then(|list| list.as_array()))
         {
             let tag = match Place::of(json, item).map(|place| place.shape.body()) {

@@ -6,8 +6,8 @@ use super::command::{Call, Command, Done, command};
 use super::contexts::contexts;
 use super::fields;
 use crate::base::pointer::Pointer;
-use crate::scene::address;
-use crate::scene::field::{self, Field, Kind};
+use crate::scene::field::{self, Child, Field, Kind};
+use crate::scene::{Document, address};
 use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::document::{derived, sheet};
 use crate::tui::keys::OWN_FILE;
@@ -137,6 +137,9 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
     lines.extend(wrapped(field.help, WIDTH));
     lines.push(String::new());
     let mut say = |name: &str, text: String| {
+        if text.is_empty() {
+            return;
+        }
         let mut parts = wrapped(&text, WIDTH - 10).into_iter();
         lines.push(format!("{name:<9} {}", parts.next().unwrap_or_default()));
         lines.extend(parts.map(|line| format!("{:<9} {line}", "")));
@@ -152,8 +155,15 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
         say("default", sheet::summary(field, default));
     }
     let path = plain(&address::address(document, at));
+    let is_object = matches!(field.kind, Kind::Object | Kind::Tagged { .. });
+    let inside = if is_object { field::children(document, at) } else { Vec::new() };
+    let inside: Vec<_> = inside.into_iter().filter(|child| !sheet::is_node(&child.field.kind)).collect();
     if !path.is_empty() {
-        say("path", format!("{path}   (:set {path}=VALUE)"));
+        let one = inside.first().map(|child| format!(".{}", plain(&child.name))).unwrap_or_default();
+        say("path", format!("{path}   (:set {path}{one}=VALUE)"));
+    }
+    for (i, child) in inside.iter().enumerate() {
+        say(if i == 0 { "fields" } else { "" }, line(document, child));
     }
     if let Some((kind, help, formula)) = formula(state, at) {
         say(&kind, help);
@@ -161,6 +171,16 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
     }
     lines.push(String::new());
     lines
+}
+
+/// A field of an object in a line: name, value, unit, and what it is.
+fn line(document: &Document, child: &Child) -> String {
+    let value = derived::value(document, &child.pointer).unwrap_or_default();
+    let value = sheet::summary(&child.field, &value);
+    let unit = child.field.unit.filter(|unit| *unit != "1").map(|unit| format!(" {unit}")).unwrap_or_default();
+    let name = plain(&child.name);
+    let what = if value.is_empty() { name } else { format!("{name} = {value}{unit}") };
+    format!("{what}: {}", child.field.help)
 }
 
 fn value(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> String {

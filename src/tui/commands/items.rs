@@ -111,7 +111,20 @@ fn add_file(state: &mut State, path: &str) -> Done {
     let (edit, pointer) = added.ok_or("there is no list for it")?;
     state.edit(edit, false)?;
     go_to(state, &pointer);
+    tell_added(state, list, path);
     Ok(())
+}
+
+/// Says what was added, and whether its file is missing: a clip was found before.
+fn tell_added(state: &mut State, list: List, path: &str) {
+    let (map, one) = list.words();
+    let place = paths::beside(state.scene.path(), path);
+    if list != List::Clips && !place.exists() {
+        return state.complain(plain(&format!("{path} is among the {map}, but there is no file {}", place.display())));
+    }
+    let unseen = state.document().scene().layers.is_empty();
+    let next = if unseen { ": now add a layer that shows it (o on layers)" } else { "" };
+    state.say(plain(&format!("the {one} {} is among the {map}{next}", quoted(called(path)))));
 }
 
 /// Adds so many items at the cursor. If a path or a kind is needed, it is typed or chosen next.

@@ -46,8 +46,9 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
         return obey(state, &format!("fill {}", Value::from(rows)), None);
     }
     let most = limits.items();
-    let items =
-        target(state).ok_or("no list here takes rows: go to anchors, points or keyframes")?.items(text, most)?;
+    let items = target(state)
+        .ok_or("no list here takes rows: go to one whose items are numbers in columns")?
+        .items(text, most)?;
     let value = if let [one] = &items[..] { one.clone() } else { Value::from(items) };
     obey(state, &format!("paste {value}"), None)
 }

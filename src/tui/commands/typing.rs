@@ -136,6 +136,8 @@ fn run_typed(state: &mut State, call: &Call) -> Done {
 fn complete(state: &mut State, call: &Call) -> Done {
     let Mode::Line(mut line) = state.typing.mode.clone() else { return Ok(()) };
     let wanted = completing::path_of(line.text.value()).filter(|_| line.kind == ':' && line.offered().is_none());
+    // Names come before files.
+    let wanted = wanted.filter(|_| completing::candidates(call.table, state, line.text.value()).is_empty());
     if let Some((name, path, beside)) = wanted {
         let beside = beside.then(|| state.scene.path().parent().map(Path::to_owned)).flatten();
         state.effects.push_back(Effect::Complete { name: name.into(), path: path.into(), beside });

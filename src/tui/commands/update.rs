@@ -123,7 +123,7 @@ fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
 
 /// A problem of the files that a scene names, with the address of its place.
 fn told(document: &Document, problem: &Problem) -> String {
-    Problem { path: address::told(document, &problem.path), ..problem.clone() }.to_string()
+    address::of_problem(document, problem).to_string()
 }
 
 /// Applies an edit that a script asks for.

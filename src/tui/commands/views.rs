@@ -10,6 +10,7 @@ use super::profiles::shown;
 use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::shots::{SeenFrom, Shot};
 use crate::layers::space::camera::Camera;
+use crate::layers::space::fit;
 use crate::ops::views::paint::{self, Sight};
 use crate::scene::shots;
 use crate::tui::events::Effect;
@@ -136,14 +137,15 @@ fn go(state: &mut State, name: Option<&str>) -> Done {
     let technique = state.document().scene().layers[layer].technique();
     let from = technique.lying().and_then(|lying| lying.get(index)?.from).ok_or("its camera sees nothing")?;
     let place = technique.model_to_world(state.play.time).ok_or("the layer has no model")?;
-    let middle = state.picture.synth.as_ref().and_then(|synth| synth.layers.get(layer)?.bounds(state.play.time));
+    let made = state.picture.synth.as_ref().and_then(|synth| synth.layers.get(layer));
+    let middle = made.and_then(|made| fit::middle(&|ways| made.reach(state.play.time, ways)));
     let ([position, target, up], fov) = match from {
         SeenFrom::Standing { position, target, up, fov } => {
             let up = up.unwrap_or(DVec3::Y);
             ([position, target, up], fov.unwrap_or(Camera::default().fov))
         }
         SeenFrom::Shot(shot) => {
-            let middle = middle.map_or(DVec3::ZERO, |bounds| place.inverse().transform_point3(bounds.middle()));
+            let middle = middle.map_or(DVec3::ZERO, |middle| place.inverse().transform_point3(middle));
             let distance = (middle - shot.position()).dot(shot.forward()).max(1e-3);
             ([shot.position(), shot.position() + shot.forward() * distance, shot.up()], fov(&shot))
         }

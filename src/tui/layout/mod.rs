@@ -20,8 +20,10 @@ pub struct Areas {
     pub table: Rect,
     /// The description of the field under the cursor.
     pub detail: Rect,
-    /// The vector field, the position functions and the picture, if there is room.
-    pub right: Option<[Rect; 3]>,
+    /// The vector field and the position functions, if there is room for them and the scene has any.
+    pub plots: Option<[Rect; 2]>,
+    /// The picture, if there is room for it on the right.
+    pub picture: Option<Rect>,
     /// The status line.
     pub status: Rect,
     /// The command line.
@@ -34,8 +36,8 @@ const DETAIL: u16 = 5;
 /// Rows of the read-out of a pixel, which replaces the description.
 const PROBE: u16 = 9;
 
-/// The areas of a screen, with or without the read-out of a pixel.
-pub fn areas(screen: Rect, probing: bool) -> Areas {
+/// The areas of a screen.
+pub fn areas(screen: Rect, state: &State) -> Areas {
     let [body, status, line] =
         Layout::vertical([Constraint::Fill(1), Constraint::Length(1), Constraint::Length(1)]).areas(screen);
     let right = if screen.width >= WIDE { screen.width * 2 / 5 } else { 0 };
@@ -45,30 +47,40 @@ pub fn areas(screen: Rect, probing: bool) -> Areas {
     let columns = Layout::horizontal(columns).spacing(Spacing::Overlap(1)).split(body);
     let (tree, middle, right) = (columns[0], columns[1], columns.get(2).copied().unwrap_or_default());
     let [table, detail] =
-        Layout::vertical([Constraint::Fill(1), Constraint::Length(if probing { PROBE } else { DETAIL })])
+        Layout::vertical([Constraint::Fill(1), Constraint::Length(if state.picture.probing { PROBE } else { DETAIL })])
             .spacing(Spacing::Overlap(1))
             .areas(middle);
+    let right = Some(right).filter(|right| right.width > 0);
     let stack = [Constraint::Fill(3), Constraint::Length((body.height / 5).max(6)), Constraint::Fill(5)];
-    let right = (right.width > 0).then(|| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
-    Areas { tree, table, detail, right, status, line }
+    let stacked = right.filter(|_| has_curves(state));
+    let stacked = stacked.map(|right| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
+    let plots = stacked.map(|[field, position, _]| [field, position]);
+    Areas { tree, table, detail, plots, picture: stacked.map(|[.., picture]| picture).or(right), status, line }
+}
+
+/// Whether something in the scene moves along curves, which have vectors too: whatever is shown of it just now, so that panes
+/// do not come and go with the cursor.
+fn has_curves(state: &State) -> bool {
+    let wrap = state.timeline().wrap;
+    state.document().scene().layers.iter().any(|layer| !layer.technique().curves(wrap).is_empty())
 }
 
 /// The areas of the screen as it is: without the lesson, and the pane that has the focus alone where it is enlarged. Panes
 /// that are not shown have an empty area.
 pub fn areas_of(state: &State) -> Areas {
     let screen = screen(state);
-    let all = areas(screen, state.picture.probing);
+    let all = areas(screen, state);
     if !state.cursor.enlarged {
         return all;
     }
     let body = Rect { height: screen.height.saturating_sub(2), ..screen };
     let none = Rect::ZERO;
     if state.cursor.focus == Pane::Tree && !matches!(state.typing.mode, Mode::Aim) {
-        return Areas { tree: body, table: none, detail: none, right: None, ..all };
+        return Areas { tree: body, table: none, detail: none, plots: None, picture: None, ..all };
     }
     let detail = Constraint::Length(if state.picture.probing { PROBE } else { DETAIL });
     let [table, detail] = Layout::vertical([Constraint::Fill(1), detail]).spacing(Spacing::Overlap(1)).areas(body);
-    Areas { tree: none, table, detail, right: None, ..all }
+    Areas { tree: none, table, detail, plots: None, picture: None, ..all }
 }
 
 /// The screen without the lesson at its bottom.
@@ -78,14 +90,14 @@ pub fn screen(state: &State) -> Rect {
 
 /// Whether the picture is in the middle column, because there is no room on the right.
 pub fn picture_in_middle(state: &State, areas: &Areas) -> bool {
-    areas.right.is_none() && (state.cursor.focus == Pane::Picture || matches!(state.typing.mode, Mode::Aim))
+    areas.picture.is_none() && (state.cursor.focus == Pane::Picture || matches!(state.typing.mode, Mode::Aim))
 }
 
 /// The pane at a place of the screen, of those that can have the focus.
 pub fn pane_at(state: &State, at: Position) -> Option<Pane> {
     let areas = areas_of(state);
     let in_middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
-    let picture = areas.right.map(|[.., picture]| picture).or(in_middle);
+    let picture = areas.picture.or(in_middle);
     let panes = [(Pane::Tree, Some(areas.tree)), (Pane::Picture, picture), (Pane::Table, Some(areas.table))];
     panes.into_iter().find(|(_, area)| area.is_some_and(|area| area.contains(at))).map(|(pane, _)| pane)
 }
@@ -102,7 +114,7 @@ pub fn picture_area(state: &State) -> Option<Rect> {
     }
     let areas = areas_of(state);
     let middle = picture_in_middle(state, &areas).then(|| middle(state, &areas));
-    areas.right.map(|[.., picture]| picture).or(middle).map(|area| area.inner(Margin::new(1, 1)))
+    areas.picture.or(middle).map(|area| area.inner(Margin::new(1, 1)))
 }
 
 /// The first of `count` rows to show in `height` lines, so that row `at` is in the middle if possible.

@@ -8,6 +8,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::widgets::{Clear, Widget};
 
 use super::{hints, typed, write};
+use crate::scene::address;
 use crate::tui::state::{Mode, State};
 use crate::tui::text::color;
 use crate::tui::text::wrap::{width, wrapped_lines};
@@ -30,7 +31,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     }
     let Some(message) = &state.message else {
         if let Some(problem) = &state.outside.problem {
-            let problem = plain(&problem.to_string());
+            let problem = plain(&address::of_problem(state.document(), problem).to_string());
             let more = if width(&problem) + 2 > area.width { " … (:problems) " } else { "" };
             write(buffer, area, 1, 0, &problem, color::faint());
             write(buffer, area, i32::from(area.width) - i32::from(width(more)), 0, more, color::faint());

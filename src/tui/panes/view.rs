@@ -45,11 +45,13 @@ pub fn draw(frame: &mut Frame, state: &State) {
         let inner = block(frame, areas.detail, "probe");
         panes::probe::draw(state, inner, frame.buffer_mut());
     }
-    if let Some([field, position, picture]) = areas.right {
+    if let Some([field, position]) = areas.plots {
         let inner = block(frame, field, "field");
         panes::field::draw(state, inner, frame.buffer_mut());
         let inner = block(frame, position, "position");
         panes::position::draw(state, inner, frame.buffer_mut());
+    }
+    if let Some(picture) = areas.picture {
         let inner = pane(frame, state, picture, Pane::Picture, &panes::picture::title(state));
         cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
     }

@@ -165,8 +165,7 @@ impl State {
 
     /// Why an edit is refused, with its place as people write it.
     fn refusal(&self, problems: Vec<Problem>) -> String {
-        let told = |problem: Problem| Problem { path: address::told(self.document(), &problem.path), ..problem };
-        first(&problems.into_iter().map(told).collect::<Vec<_>>())
+        first(&problems.iter().map(|problem| address::of_problem(self.document(), problem)).collect::<Vec<_>>())
     }
 
     /// Adapts to a change of the document, and passes it on.

@@ -187,7 +187,7 @@ fn a_style_goes_by_name_by_file_or_is_taken_away() {
     let style = |state: &mut State, text: &str| press(state, &format!(": \"style {text}\" Enter"));
     style(&mut state, &bad.display().to_string());
     let (is_bad, told) = said_last(&state);
-    assert!(is_bad && told.starts_with(&format!("{}: /sise: unknown field", bad.display())), "{told}");
+    assert!(is_bad && told.starts_with(&format!("{}: sise: unknown field", bad.display())), "{told}");
     // In the form the field does as the command: what changed the old style goes with it.
     press(&mut state, "/ \"style\" Enter Enter \"c\" Enter");
     assert_eq!(at(&state, STROKES), json!({ "style": "charcoal", "ink": "#203040" }), "{:?}", state.message);

@@ -312,12 +312,25 @@ fn every_zone_has_its_curve_and_few_rows_its_place() {
     assert!(text.contains("a left eye s 0.707"), "{text}");
 }
 
+#[test]
+fn a_scene_in_which_nothing_has_a_curve_leaves_their_room_to_the_picture() {
+    let mut mesh = state_of(r#"{"plica": 1, "layers": [{"kind": "fill", "name": "sky"}]}"#);
+    let mut zones = opened((160, 48));
+    for (state, has) in [(&mut mesh, false), (&mut zones, true)] {
+        state.size = (160, 48);
+        let areas = layout::areas(Rect::new(0, 0, 160, 48), state);
+        assert_eq!(areas.plots.is_some(), has);
+        assert_eq!(areas.picture.unwrap().height == 46, !has, "{areas:?}");
+        assert_eq!((screen(state).contains("field"), screen(state).contains("position")), (has, has));
+    }
+}
+
 /// Outside pictures and fields, a screen has the same text with and without colors, and only the terminal's own 16 colors.
 #[test]
 fn colors_say_nothing_by_themselves() {
     let chrome = |state: &State| {
-        let areas = layout::areas(Rect::new(0, 0, 160, 48), state.picture.probing);
-        let [field, _, picture] = areas.right.unwrap();
+        let areas = layout::areas(Rect::new(0, 0, 160, 48), state);
+        let (field, picture) = (areas.plots.unwrap()[0], areas.picture.unwrap());
         let all = cells(state);
         let kept = all.area.positions().filter(|at| !field.contains(*at) && !picture.contains(*at));
         kept.map(|at| all.cell(at).unwrap().clone()).collect::<Vec<_>>()
@@ -352,14 +365,17 @@ fn colors_say_nothing_by_themselves() {
 
 #[test]
 fn panes_say_what_the_items_of_a_layer_are_called() {
-    let fill = r#"{"plica": 1, "layers": [{"kind": "fill", "name": "sky"}]}"#;
-    let empty = r#"{"plica": 1, "images": {"cat": {"path": "cat.png"}},
-        "layers": [{"kind": "picture", "name": "face", "image": "cat"}]}"#;
-    for (scene, words) in [
+    let fill = r#"{"kind": "fill", "name": "sky"}"#;
+    let empty = r#"{"kind": "picture", "name": "face", "image": "cat"}"#;
+    for (layer, words) in [
         (fill, ["this layer has no vector field", "nothing here moves"]),
         (empty, ["select a zone", "the layer has no zones"]),
     ] {
-        let mut state = state_of(scene);
+        let zone = r#"{"name": "all", "outline": {"kind": "rectangle", "x": 0, "y": 0, "width": 9, "height": 9}}"#;
+        let mut state = state_of(&format!(
+            r#"{{"plica": 1, "images": {{"cat": {{"path": "cat.png"}}}},
+                "layers": [{layer}, {{"kind": "picture", "name": "other", "image": "cat", "zones": [{zone}]}}]}}"#
+        ));
         state.size = (160, 48);
         let shown = screen(&state);
         assert!(words.iter().all(|word| shown.contains(word)), "{shown}");

@@ -139,6 +139,20 @@ fn entries_take_the_decimal_comma() {
 }
 
 #[test]
+fn the_help_of_an_object_tells_what_is_set_in_it() {
+    let scene = r#"{"plica": 1, "meshes": {"m": {"path": "m.obj"}}, "layers": [{"kind": "mesh", "name": "tree", "mesh": "m"}]}"#;
+    let mut state = state_of(scene);
+    press(&mut state, ": \"help bend\" Enter");
+    let Mode::Pages(pages) = &state.typing.mode else { panic!("no help") };
+    let text = pages.lines.join("\n");
+    for part in
+        ["layers.tree.pose.bend.degrees=VALUE)", "fields    degrees = 0 degrees: How far it leans", "axis = y: "]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+#[test]
 fn the_help_of_entries_opens_over_one_and_leaves_it_as_typed() {
     let mut state = state();
     press(&mut state, &motion("l i \"12\" ?"));
@@ -205,10 +219,13 @@ pub fn what_was_said_and_what_is_wrong_can_be_read_again() {
 }
 
 #[test]
-fn settings_are_answered_in_the_form_that_was_asked() {
+fn settings_are_answered_with_addresses() {
     for (line, answer) in [
         ("set layers.0.zones.0.feather=-3", "layers.0.zones.0.feather: -3 is too small: 0 to 1000000 px"),
-        ("set /layers/0/zones/0/feather=-3", "/layers/0/zones/0/feather: -3 is too small: 0 to 1000000 px"),
+        (
+            "set /layers/0/zones/0/feather=-3",
+            "layers.face.zones.\"left eye\".feather: -3 is too small: 0 to 1000000 px",
+        ),
         (
             "set layers.0.zones.0.feather=3 layers.0.zones.1.speed=2",
             "layers.0.zones.0.feather, layers.0.zones.1.speed are set",

@@ -8,7 +8,7 @@ use super::document::Text;
 use super::nodes;
 use super::source::{Source, With, data};
 use crate::base::budget::Share;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::files::paths;
 
 /// The pictures of the base colors of the default scene, each once, in the order in which its nodes show them. Paths are
@@ -62,7 +62,7 @@ pub(in crate::files::mesh) fn embedded<T>(
     read: impl FnOnce(&[u8]) -> Result<T>,
 ) -> Result<T> {
     let source = Source::of(bytes, with)?;
-    let found = source.get(&source.document.images, image, "image")?;
+    let Some(found) = source.document.images.get(image) else { return Err(missing(&source, image, with.place)) };
     let (bytes, _share): (Cow<[u8]>, Share) = match (&found.uri, found.buffer_view) {
         (Some(Text(uri)), _) if outside(&found.uri).is_none() => {
             let (bytes, share) = data(uri, with.place, with.budget)?;
@@ -76,4 +76,16 @@ pub(in crate::files::mesh) fn embedded<T>(
         (None, None) => return Err(source.wrong(format!("image {image} is empty"))),
     };
     read(&bytes)
+}
+
+/// That there is no image with this number, and which there are.
+fn missing(source: &Source, image: usize, place: &str) -> Error {
+    let (there, model) = (source.document.images.len(), paths::file_of(place));
+    let what = format!("there is no picture {image} in the model");
+    let cure = match there {
+        0 => "it has no pictures in it: name a file".to_owned(),
+        1 => format!("there is only {model}#0"),
+        _ => format!("there are {model}#0 to {model}#{}", there - 1),
+    };
+    source.wrong(what).cure(cure)
 }

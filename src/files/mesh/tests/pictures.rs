@@ -64,7 +64,7 @@ fn a_picture_in_a_model_is_read_by_its_number() {
     for (place, expected) in [
         ("sub/cow.glb#2", "image 2 is not in the file (name it by sub/skins/red one.png)"),
         ("cow.glb#3", "image 3 is empty (export it again)"),
-        ("cow.glb#4", "there is no image 4: there are 4 (export it again)"),
+        ("cow.glb#4", "there is no picture 4 in the model (there are cow.glb#0 to cow.glb#3)"),
     ] {
         assert_eq!(read(place).unwrap_err(), format!("{place}: {expected}"));
     }

@@ -113,60 +113,60 @@ fn what_is_not_written_is_told() {
 #[test]
 fn what_is_wrong_is_told_with_its_place_and_the_cure() {
     for (written, expected) in [
-        (json!({ "ink": "red" }), "/ink: \"red\" is no color (as #20304a)"),
-        (json!({ "ink": "#20304a80" }), "/ink: \"#20304a80\" is no color (as #20304a)"),
-        (json!({ "tone": { "dark": 0.95 } }), "/tone/dark: dark is not below light (0.95 and 0.9) (make it smaller)"),
+        (json!({ "ink": "red" }), "ink: \"red\" is no color (as #20304a)"),
+        (json!({ "ink": "#20304a80" }), "ink: \"#20304a80\" is no color (as #20304a)"),
+        (json!({ "tone": { "dark": 0.95 } }), "tone.dark: dark is not below light (0.95 and 0.9) (make it smaller)"),
         (
             json!({ "noises": { "a": { "spacing": 400, "regularity": 4 } } }),
-            "/noises/a/spacing: spacing 400 times regularity 4 times size 1 gives waves of radius 1600.000 px (1 to 1000 px are drawn) (the nearest spacing is 250.0000)",
+            "noises.a.spacing: spacing 400 times regularity 4 times size 1 gives waves of radius 1600.000 px (1 to 1000 px are drawn) (the nearest spacing is 250.0000)",
         ),
         (
             json!({ "size": 0.1, "vary": { "by": "facing", "low": 0.5, "high": 1 } }),
-            "/noises/a/spacing: spacing 7.5 times regularity 2.4 times size 0.1 gives waves of radius 0.900 px (1 to 1000 px are drawn) (the nearest spacing is 8.3333)",
+            "noises.a.spacing: spacing 7.5 times regularity 2.4 times size 0.1 gives waves of radius 0.900 px (1 to 1000 px are drawn) (the nearest spacing is 8.3333)",
         ),
         (
             json!({ "noises": { "a": null } }),
-            "/noises/a: the mark \"light\" is made of the noise \"a\", which is not there (there are \"b\", \"c\": give the mark one of them, or \"off\": true)",
+            "noises.a: the mark \"light\" is made of the noise \"a\", which is not there (there are \"b\", \"c\": give the mark one of them, or \"off\": true)",
         ),
         (
             json!({ "style": "watercolor", "noises": { "a": { "spacing": 9 } } }),
-            "/noises/a: warning: no mark is made of the noise \"a\" (name it as the noise of a mark, or remove it)",
+            "noises.a: warning: no mark is made of the noise \"a\" (name it as the noise of a mark, or remove it)",
         ),
         (
             json!({ "marks": [{ "name": "drak", "off": true }] }),
-            "/marks/0/name: warning: the style has no mark \"drak\" that could be left out (did you mean \"dark\"?)",
+            "marks.0.name: warning: the style has no mark \"drak\" that could be left out (did you mean \"dark\"?)",
         ),
         (
             json!({ "marks": [{ "name": "light", "grain": { "noise": "bb", "amount": 1 } }] }),
-            "/marks/0/grain/noise: the mark \"light\" is made of the noise \"bb\", which is not there (did you mean \"b\"?)",
+            "marks.0.grain.noise: the mark \"light\" is made of the noise \"bb\", which is not there (did you mean \"b\"?)",
         ),
         (
             json!({ "marks": [{ "name": "new" }] }),
-            "/marks/0: the mark \"new\" has no kind, and the style has no \"new\" (give it a kind: ink, pigment, relief or outline)",
+            "marks.0: the mark \"new\" has no kind, and the style has no \"new\" (give it a kind: ink, pigment, relief or outline)",
         ),
         (
             json!({ "marks": [{ "name": "p", "kind": "pigment", "noise": "a", "strength": 2 }] }),
-            "/marks/0/strength: 2 is too large: the strength of pigment is 0 to 1",
+            "marks.0.strength: 2 is too large: the strength of pigment is 0 to 1",
         ),
         (
             json!({ "marks": [{ "name": "dark", "color": "blue" }] }),
-            "/marks/0/color: \"blue\" is no color (ink, paper, scene, or as #20304a)",
+            "marks.0.color: \"blue\" is no color (ink, paper, scene, or as #20304a)",
         ),
         (
             json!({ "marks": [{ "name": "dark" }, { "name": "dark" }] }),
-            "/marks/1/name: the name \"dark\" is taken (number 0 of the list has it)",
+            "marks.1.name: the name \"dark\" is taken (number 0 of the list has it)",
         ),
         (
             json!({ "direction": { "along": "axis", "axis": [0, 0, 0] } }),
-            "/direction/axis: the axis has no direction (make it [0, 1, 0] for strokes that run up and down)",
+            "direction.axis: the axis has no direction (make it [0, 1, 0] for strokes that run up and down)",
         ),
         (
             json!({ "noises": { "b": { "direction": { "along": "image" } } } }),
-            "/noises/b/direction/image: strokes along an image name none (name an image of the scene; along curvature needs none)",
+            "noises.b.direction.image: strokes along an image name none (name an image of the scene; along curvature needs none)",
         ),
         (
             json!({ "style": "none", "ground": "clear", "noises": { "a": {} }, "marks": [{ "name": "p", "kind": "relief", "noise": "a" }] }),
-            "/marks: warning: nothing will show: the ground is clear, and no mark is ink or an outline",
+            "marks: warning: nothing will show: the ground is clear, and no mark is ink or an outline",
         ),
     ] {
         let found = messages(written.clone());
