@@ -12,15 +12,32 @@ fn main() {
     divan::main();
 }
 
-/// Anchors on a picture of 1920 x 1080 pixels, with a radius that contains 32 of them on average.
-#[divan::bench(args = [62, 94, 1000], sample_count = 5)]
+/// Anchors on a picture of 1920 x 1080 pixels.
+#[divan::bench(args = [62, 94, 1000, 10000], sample_count = 5)]
 fn shepard_1920x1080(bencher: Bencher, anchors: usize) {
     synthesis(bencher, (1920, 1080), anchors, r#"{"method":"shepard"}"#);
 }
 
-#[divan::bench(args = [62, 94, 1000], sample_count = 5)]
+#[divan::bench(args = [94, 1000, 10000], sample_count = 5)]
+fn shepard_of_power_3_5_1920x1080(bencher: Bencher, anchors: usize) {
+    synthesis(bencher, (1920, 1080), anchors, r#"{"method":"shepard","power":3.5}"#);
+}
+
+/// The radius that contains 32 anchors on average.
+fn radius(anchors: usize) -> f64 {
+    (32.0 * 1920.0 * 1080.0 / (std::f64::consts::PI * anchors as f64)).sqrt()
+}
+
+#[divan::bench(args = [94], sample_count = 5)]
+fn modified_shepard_random_1920x1080(bencher: Bencher, anchors: usize) {
+    let (radius, ring) = (radius(anchors), radius(anchors) / 5.0);
+    let method = format!(r#"{{"method":"modified-shepard-random","radius":{radius},"ring":{ring}}}"#);
+    synthesis(bencher, (1920, 1080), anchors, &method);
+}
+
+#[divan::bench(args = [62, 94, 1000, 10000], sample_count = 5)]
 fn modified_shepard_1920x1080(bencher: Bencher, anchors: usize) {
-    let radius = (32.0 * 1920.0 * 1080.0 / (std::f64::consts::PI * anchors as f64)).sqrt();
+    let radius = radius(anchors);
     synthesis(bencher, (1920, 1080), anchors, &format!(r#"{{"method":"modified-shepard","radius":{radius}}}"#));
 }
 

@@ -1,4 +1,4 @@
-//! The pixels of a zone: membership, jump vectors and thresholds, row by row on all cores. Each pixel's sums are always
+//! The pixels of a zone: membership, jump vectors and thresholds, band by band on all cores. Each pixel's sums are always
 //! made in the same order, so that the bytes do not depend on the number of threads.
 
 use std::ops::Range;
@@ -9,7 +9,9 @@ use rayon::prelude::*;
 
 use super::anchors::{Dense, anchors, dense};
 use super::fold::{Fold, Rule};
-use super::interpolation::{Interpolation, Interpolator, Jumps, RUN, Run};
+use super::interpolation::area::{Area, Stretch};
+use super::interpolation::cells::Cell;
+use super::interpolation::{Interpolation, Interpolator};
 use super::model::Zone;
 use super::outline::Outline;
 use super::regions::{Crossings, Regions};
@@ -19,6 +21,7 @@ use crate::base::geometry::Polygon;
 use crate::base::maths::smoothstep;
 use crate::base::pixels::Grid;
 use crate::base::problem::Problem;
+use crate::base::simd::vectorised;
 use crate::layers::parts::materials::Materials;
 
 /// The pixels of a zone: membership, jump vectors, thresholds. Covers the outline's bounding box within the picture.
@@ -64,13 +67,19 @@ impl Ragged {
         &self.values[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
-    fn of_lists<'a>(lists: impl Iterator<Item = &'a [f64]>) -> Self {
-        let mut ragged = Ragged { starts: vec![0], values: Vec::new() };
-        for list in lists {
+    /// The lists of `pixels` pixels, from those that are not empty, in order.
+    fn of_lists<'a>(pixels: usize, lists: impl Iterator<Item = (usize, &'a [f64])>) -> Self {
+        let mut ragged = Ragged { starts: Vec::with_capacity(pixels + 1), values: Vec::new() };
+        for (pixel, list) in lists {
+            ragged.starts.resize(pixel + 1, ragged.values.len() as u32);
             ragged.values.extend_from_slice(list);
-            ragged.starts.push(ragged.values.len() as u32);
         }
+        ragged.starts.resize(pixels + 1, ragged.values.len() as u32);
         ragged
+    }
+
+    fn bytes(&self) -> u64 {
+        (size_of_val(&self.starts[..]) + size_of_val(&self.values[..])) as u64
     }
 
     /// The concatenation of several.
@@ -173,10 +182,12 @@ impl Prepared {
     /// As [`Interpolator::new`].
     pub fn new(inputs: &Inputs, materials: &Materials) -> Result<Self, Problem> {
         // From the inputs alone: what else it read could change without the field being made anew.
-        let Inputs { outline, motion, interpolation, feather, fold, range, size: _, place } = inputs;
+        let Inputs { outline, motion, interpolation, feather, fold, range, size, place } = inputs;
+        let size = [size.0 as u32, size.1 as u32];
+        let anchors = anchors(motion, outline);
         Ok(Prepared {
             outline: outline.polygon(),
-            interpolator: Interpolator::new(interpolation, anchors(motion, outline), materials)?,
+            interpolator: Interpolator::new(interpolation, &anchors, size, *place, materials)?,
             dense: dense(motion, materials),
             feather: *feather,
             fold: fold.as_ref().and_then(|fold| Some((fold.rule()?, Regions::new(fold.regions())))),
@@ -185,59 +196,67 @@ impl Prepared {
         })
     }
 
-    /// The pixels of row `y`, from column `x0` on.
-    pub fn row(&self, x0: usize, y: usize, width: usize) -> Vec<Pixel> {
-        let mut crossings = Vec::new();
-        self.outline.row_crossings(y as f64 + self.place.y, &mut crossings);
-        let inside = |x: usize| crossings.partition_point(|&c| c <= x as f64 + self.place.x) % 2 == 1;
-        let mut pixels: Vec<Pixel> =
-            (x0..x0 + width).map(|x| Pixel { inside: inside(x), ..Pixel::default() }).collect();
-        for (i, run) in pixels.chunks_mut(RUN).enumerate() {
-            let (Some(first), Some(last)) = (run.iter().position(|p| p.inside), run.iter().rposition(|p| p.inside))
-            else {
-                continue;
-            };
-            let pixel = ((x0 + i * RUN + first) as u32, y as u32);
-            self.fill(&Run { pixel, place: self.place, len: last - first + 1 }, &mut run[first..=last]);
-        }
-        pixels
-    }
-
-    /// Jump vectors and crossings of a run.
-    fn fill(&self, run: &Run, pixels: &mut [Pixel]) {
-        let mut jumps = Jumps::default();
-        self.interpolator.run(run, &mut jumps);
-        let q = |k: usize| Point::new(run.x(k), run.y());
-        let feather = self.feather_of(Rect::from_points(q(0), q(run.len - 1)));
-        for (k, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.inside) {
-            let interpolated = Vec2::new(jumps.x[k], jumps.y[k]);
-            pixel.jump = self.dense.iter().fold(interpolated, |sum, dense| sum + dense.at(q(k))) * feather(q(k));
+    /// The pixel in column `x`, row `y`.
+    pub fn pixel(&self, x: usize, y: usize) -> Pixel {
+        let from = [x as u32, y as u32];
+        let area = Area { from, to: from.map(|first| first + 1) };
+        let mut inside = [false];
+        spans(&self.outline, &area, self.place, &mut inside);
+        let mut pixel = Pixel { inside: inside[0], ..Pixel::default() };
+        let cells = self.interpolator.cells(&area, &|| false).unwrap_or_default();
+        for cell in cells.iter().filter(|_| inside[0]) {
+            self.interpolator.fill(cell, &area, &|_| true, &mut |mut stretch| {
+                self.move_densely(&mut stretch, &inside);
+                pixel.jump = Vec2::new(stretch.x[0], stretch.y[0]);
+                self.cross(&stretch, &inside, &mut |_, crossings| pixel.crossings = crossings);
+            });
         }
         if let Some((_, regions)) = &self.fold {
-            let members = regions.memberships(q(0), run.len);
-            for (i, few) in pixels.chunks_mut(FEW).enumerate() {
-                self.cross(regions, |k| q(i * FEW + k), |region, k| members[region][i * FEW + k], few);
-            }
+            let q = Point::new(x as f64 + self.place.x, y as f64 + self.place.y);
+            pixel.crossings.inside = regions.memberships(q, 1).iter().any(|member| member[0]);
+        }
+        pixel
+    }
+
+    /// Adds dense fields to interpolated jump vectors, and weakens both by the feather.
+    fn move_densely(&self, stretch: &mut Stretch, inside: &[bool]) {
+        if self.dense.is_empty() && self.feather <= 0.0 {
+            return;
+        }
+        let feather = self.feather_of(Rect::from_points(self.q(stretch, 0), self.q(stretch, inside.len() - 1)));
+        for k in (0..inside.len()).filter(|k| inside[*k]) {
+            let q = self.q(stretch, k);
+            let interpolated = Vec2::new(stretch.x[k], stretch.y[k]);
+            let jump = self.dense.iter().fold(interpolated, |sum, dense| sum + dense.at(q)) * feather(q);
+            (stretch.x[k], stretch.y[k]) = (jump.x, jump.y);
         }
     }
 
-    /// Crossings of a few neighboring pixels: only the sides within reach of their paths are looked at.
-    fn cross(
-        &self,
-        regions: &Regions,
-        q: impl Fn(usize) -> Point,
-        member_of: impl Fn(usize, usize) -> bool,
-        pixels: &mut [Pixel],
-    ) {
-        let (low, high) = self.range;
-        let path = |(k, pixel): (usize, &Pixel)| Rect::from_points(q(k) + pixel.jump * low, q(k) + pixel.jump * high);
-        let paths = pixels.iter().enumerate().filter(|(_, pixel)| pixel.inside).map(path);
-        let Some(reach) = paths.reduce(|reach, path| reach.union(path)) else { return };
-        let sides = regions.sides_within(reach);
-        let mut member = vec![false; regions.count()];
-        for (k, pixel) in pixels.iter_mut().enumerate().filter(|(_, pixel)| pixel.inside) {
-            member.iter_mut().enumerate().for_each(|(region, one)| *one = member_of(region, k));
-            pixel.crossings = regions.crossings(q(k), pixel.jump, self.range, &sides, &member);
+    /// The place that is evaluated in pixel `k` of a stretch.
+    fn q(&self, stretch: &Stretch, k: usize) -> Point {
+        let [x, y] = stretch.pixel.map(f64::from);
+        Point::new(x + k as f64 + self.place.x, y + self.place.y)
+    }
+
+    /// Tells the crossings of pixels of a stretch that may have any. Few neighbors at a time: only the sides within reach
+    /// of their paths are looked at.
+    fn cross(&self, stretch: &Stretch, inside: &[bool], tell: &mut dyn FnMut(usize, Crossings)) {
+        let (Some((_, regions)), (low, high)) = (&self.fold, self.range) else { return };
+        let jump = |k: usize| Vec2::new(stretch.x[k], stretch.y[k]);
+        for first in (0..inside.len()).step_by(FEW) {
+            let few = || (first..inside.len().min(first + FEW)).filter(|k| inside[*k]);
+            let path = |k| Rect::from_points(self.q(stretch, k) + jump(k) * low, self.q(stretch, k) + jump(k) * high);
+            let Some(reach) = few().map(path).reduce(|reach, path| reach.union(path)) else { continue };
+            let sides = regions.sides_within(reach);
+            if sides.is_empty() {
+                continue;
+            }
+            let members = regions.memberships(self.q(stretch, first), FEW);
+            let mut member = vec![false; regions.count()];
+            for k in few() {
+                member.iter_mut().zip(&members).for_each(|(one, of_region)| *one = of_region[k - first]);
+                tell(k, regions.crossings(self.q(stretch, k), jump(k), self.range, &sides, &member));
+            }
         }
     }
 
@@ -267,69 +286,144 @@ pub type Made = Result<Option<(Arc<Field>, Share)>, Problem>;
 impl Prepared {
     /// The field in these columns and rows of the picture only; `None` and errors as for [`Field::new`].
     pub fn field(&self, part: (Range<usize>, Range<usize>), materials: &Materials) -> Made {
-        let prepared = self;
-        let Some((x0, y0, width, height)) = pixel_box(prepared.outline.bounds(), part) else { return Ok(None) };
+        let Some((x0, y0, width, height)) = pixel_box(self.outline.bounds(), part) else { return Ok(None) };
+        let from = [x0 as u32, y0 as u32];
+        let area = Area { from, to: [from[0] + width as u32, from[1] + height as u32] };
         let take = |bytes| materials.budget.try_take(bytes).map_err(|short| short.problem(""));
-        let row = |y: usize| {
+        let stopped = || Problem::error("", "stopped");
+        let count = width * height;
+        let (regions, one) = if self.fold.is_some() { (count, 2 * size_of::<u32>() + 1) } else { (0, 0) };
+        let mut share = take((count * (size_of::<[f32; 2]>() + 1 + one)) as u64)?;
+        let cells = self.interpolator.cells(&area, &|| materials.stopped()).ok_or_else(stopped)?;
+        let _of_cells = take(cells.iter().map(Cell::bytes).sum())?;
+        let (mut inside, mut jumps) = (vec![false; count], vec![[0.0; 2]; count]);
+        let mut in_region = vec![false; regions];
+        let bands = bands(&cells, &area, (&mut inside, &mut jumps, &mut in_region));
+        let made = bands.into_par_iter().map(|band| {
+            let folds = self.make(band, materials).ok_or_else(stopped)?;
+            // The bands' and the whole field's are both in memory for a moment.
+            let share = take(2 * folds.iter().map(Ragged::bytes).sum::<u64>())?;
+            Ok((folds, share))
+        });
+        let made = made.collect::<Result<Vec<_>, Problem>>()?;
+        let (folds, shares): (Vec<[Ragged; 2]>, Vec<Share>) = made.into_iter().unzip();
+        let folds = self.fold.as_ref().map(|(rule, _)| Folds {
+            rule: *rule,
+            inside: Grid::from_cells(width, height, in_region),
+            ahead: Ragged::concat(folds.iter().map(|[ahead, _]| ahead)),
+            behind: Ragged::concat(folds.iter().map(|[_, behind]| behind)),
+        });
+        drop(shares);
+        let lists = folds.iter().flat_map(|folds| [&folds.ahead, &folds.behind]);
+        share = share.and(take(lists.map(|list| size_of_val(&list.values[..]) as u64).sum())?);
+        let (inside, jumps) = (Grid::from_cells(width, height, inside), Grid::from_cells(width, height, jumps));
+        Ok(Some((Arc::new(Field { x0, y0, inside, jumps, folds }), share)))
+    }
+
+    /// Makes a band, and lists the crossings ahead and behind; `None` if stopped.
+    fn make(&self, band: Band, materials: &Materials) -> Option<[Ragged; 2]> {
+        let Band { area, cells, inside, jumps, in_region } = band;
+        spans(&self.outline, &area, self.place, inside);
+        if let Some((_, regions)) = &self.fold {
+            regions.polygons().iter().for_each(|polygon| spans(polygon, &area, self.place, in_region));
+        }
+        // Now in order: cells are far from each other in memory that was never used.
+        jumps.fill([0.0; 2]);
+        let inside = &*inside;
+        let width = (area.to[0] - area.from[0]) as usize;
+        let at = |[x, y]: [u32; 2]| (y - area.from[1]) as usize * width + (x - area.from[0]) as usize;
+        let wanted = |part: &Area| {
+            let columns = (part.to[0] - part.from[0]) as usize;
+            (part.from[1]..part.to[1]).any(|y| inside[at([part.from[0], y])..][..columns].contains(&true))
+        };
+        let mut found: Vec<(usize, Crossings)> = Vec::new();
+        for cell in cells {
             if materials.stopped() {
-                return Err(Problem::error("", "stopped"));
+                return None;
             }
-            let row = Row::of(&prepared.row(x0, y, width));
-            // The rows and the whole field are both in memory for a moment.
-            let share = take(2 * row.bytes())?;
-            materials.made(width as u64);
-            Ok((row, share))
+            self.interpolator.fill(cell, &area, &wanted, &mut |mut stretch| {
+                let first = at(stretch.pixel);
+                let inside = &inside[first..first + stretch.x.len()];
+                self.move_densely(&mut stretch, inside);
+                let jumps = &mut jumps[first..first + inside.len()];
+                vectorised(
+                    #[inline(always)]
+                    || narrow(&stretch, inside, jumps),
+                );
+                self.cross(&stretch, inside, &mut |k, crossings| found.push((first + k, crossings)));
+            });
+            materials.made(cell.area().and(&area).map_or(0, |part| part.count()));
+        }
+        found.sort_unstable_by_key(|(pixel, _)| *pixel);
+        let lists = |of: fn(&Crossings) -> &[f64]| {
+            Ragged::of_lists(in_region.len(), found.iter().map(|(pixel, crossings)| (*pixel, of(crossings))))
         };
-        let rows = (y0..y0 + height).into_par_iter().map(row).collect::<Result<Vec<_>, _>>()?;
-        let (rows, shares): (Vec<Row>, Vec<Share>) = rows.into_iter().unzip();
-        let kept = rows.iter().map(Row::bytes).sum();
-        let field = Field {
-            x0,
-            y0,
-            inside: Grid::from_cells(width, height, joined(&rows, |row| &row.inside)),
-            jumps: Grid::from_cells(width, height, joined(&rows, |row| &row.jumps)),
-            folds: prepared.fold.as_ref().map(|(rule, _)| Folds {
-                rule: *rule,
-                inside: Grid::from_cells(width, height, joined(&rows, |row| &row.in_region)),
-                ahead: Ragged::concat(rows.iter().map(|row| &row.ahead)),
-                behind: Ragged::concat(rows.iter().map(|row| &row.behind)),
-            }),
-        };
-        drop((rows, shares));
-        Ok(Some((Arc::new(field), take(kept)?)))
+        Some([lists(|crossings| &crossings.ahead), lists(|crossings| &crossings.behind)])
     }
 }
 
-/// A row of a field in its final form, without the memory that its pixels took while being computed.
-struct Row {
-    inside: Vec<bool>,
-    jumps: Vec<[f32; 2]>,
-    in_region: Vec<bool>,
-    ahead: Ragged,
-    behind: Ragged,
+/// Jump vectors in single precision, those outside the zone 0.
+#[inline(always)]
+fn narrow(stretch: &Stretch, inside: &[bool], jumps: &mut [[f32; 2]]) {
+    for (jump, (x, y)) in jumps.iter_mut().zip(stretch.x.iter().zip(&*stretch.y)) {
+        *jump = [*x as f32, *y as f32];
+    }
+    if inside.contains(&false) {
+        jumps.iter_mut().zip(inside).filter(|(_, inside)| !**inside).for_each(|(jump, _)| *jump = [0.0; 2]);
+    }
 }
 
-impl Row {
-    /// How many bytes it takes.
-    fn bytes(&self) -> u64 {
-        let flags = self.inside.len() + self.in_region.len();
-        let lists = |ragged: &Ragged| size_of_val(&ragged.starts[..]) + size_of_val(&ragged.values[..]);
-        (flags + size_of_val(&self.jumps[..]) + lists(&self.ahead) + lists(&self.behind)) as u64
-    }
+/// Neighboring rows of a field, and the cells that they lie in.
+struct Band<'a> {
+    area: Area,
+    cells: &'a [Cell],
+    inside: &'a mut [bool],
+    jumps: &'a mut [[f32; 2]],
+    in_region: &'a mut [bool],
+}
 
-    fn of(pixels: &[Pixel]) -> Self {
-        Row {
-            inside: pixels.iter().map(|p| p.inside).collect(),
-            jumps: pixels.iter().map(|p| [p.jump.x as f32, p.jump.y as f32]).collect(),
-            in_region: pixels.iter().map(|p| p.crossings.inside).collect(),
-            ahead: Ragged::of_lists(pixels.iter().map(|p| p.crossings.ahead.as_slice())),
-            behind: Ragged::of_lists(pixels.iter().map(|p| p.crossings.behind.as_slice())),
+/// Membership, jump vectors and membership of the regions (or nothing), row by row.
+type Rows<'a> = (&'a mut [bool], &'a mut [[f32; 2]], &'a mut [bool]);
+
+/// The bands of a field: of each row of cells one.
+fn bands<'a>(cells: &'a [Cell], area: &Area, mut rows: Rows<'a>) -> Vec<Band<'a>> {
+    let mut bands = Vec::new();
+    for cells in cells.chunk_by(|a, b| a.area().from[1] == b.area().from[1]) {
+        let from = [area.from[0], cells[0].area().from[1].max(area.from[1])];
+        let area = Area { from, to: [area.to[0], cells[0].area().to[1].min(area.to[1])] };
+        let count = area.count() as usize;
+        let (inside, jumps, in_region) = rows;
+        let (inside, jumps) = (inside.split_at_mut(count), jumps.split_at_mut(count));
+        let in_region = in_region.split_at_mut(count.min(in_region.len()));
+        bands.push(Band { area, cells, inside: inside.0, jumps: jumps.0, in_region: in_region.0 });
+        rows = (inside.1, jumps.1, in_region.1);
+    }
+    bands
+}
+
+/// Marks the pixels of `area`, row by row, whose `place` is inside the polygon.
+fn spans(polygon: &Polygon, area: &Area, place: Vec2, marked: &mut [bool]) {
+    let mut crossings = Vec::new();
+    let (first, end) = (f64::from(area.from[0]), f64::from(area.to[0]));
+    // The first column at or after a crossing, by the very sum that decides it.
+    let column = |crossing: f64| {
+        let reached = |x: f64| crossing <= x + place.x;
+        let mut x = (crossing - place.x).ceil().clamp(first, end);
+        while x > first && reached(x - 1.0) {
+            x -= 1.0;
+        }
+        while x < end && !reached(x) {
+            x += 1.0;
+        }
+        (x - first) as usize
+    };
+    let rows = marked.chunks_exact_mut((area.to[0] - area.from[0]) as usize);
+    for (row, y) in rows.zip(area.from[1]..) {
+        polygon.row_crossings(f64::from(y) + place.y, &mut crossings);
+        for pair in crossings.chunks_exact(2) {
+            row[column(pair[0])..column(pair[1])].fill(true);
         }
     }
-}
-
-fn joined<T: Copy>(rows: &[Row], of: impl Fn(&Row) -> &Vec<T>) -> Vec<T> {
-    rows.iter().map(|row| of(row).as_slice()).collect::<Vec<_>>().concat()
 }
 
 /// The pixels that `bounds` touches in a part of a picture: first column and row, width, height.

@@ -55,11 +55,8 @@ pub fn probe(
             continue;
         }
         let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
-        let pixel = Prepared::new(&inputs, materials)
-            .map_err(|problem| problem.under(&format!("/zones/{index}")))?
-            .row(x, y, 1)
-            .pop()
-            .unwrap_or_default();
+        let pixel =
+            Prepared::new(&inputs, materials).map_err(|problem| problem.under(&format!("/zones/{index}")))?.pixel(x, y);
         if pixel.inside {
             let source = source(layer, index, &own, making)?;
             let clock = zone.clock(wrap);

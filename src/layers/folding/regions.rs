@@ -39,6 +39,11 @@ impl Regions {
         Regions { polygons: outlines.iter().map(Outline::polygon).collect() }
     }
 
+    /// The regions as polygons.
+    pub fn polygons(&self) -> &[Polygon] {
+        &self.polygons
+    }
+
     /// Number of regions.
     pub fn count(&self) -> usize {
         self.polygons.len()

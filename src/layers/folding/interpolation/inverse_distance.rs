@@ -1,130 +1,216 @@
 //! Shepard's inverse distance weighting and its modified forms (equations 4.1 to 4.3).
 
-use super::{Jumps, Method, RUN, Run};
+use super::kernel::{Apart, Fate, Kernel, Pair, TOLERANCE_PX, gap2};
 use crate::base::maths;
-use crate::layers::folding::anchor::Anchor;
 
-/// Weighted sums over the places of a run.
-struct Sums {
-    /// Image coordinates of the places.
-    xs: [f64; RUN],
-    at_y: f64,
-    weight: [f64; RUN],
-    x: [f64; RUN],
-    y: [f64; RUN],
+/// The share of [`TOLERANCE_PX`] that interpolated weights may take.
+const SHARE: f64 = 0.25;
+
+/// Weights of d^-2.
+pub struct InverseSquare {
+    gap2: f64,
 }
 
-impl Sums {
-    fn new(run: &Run) -> Self {
-        Sums { xs: run.xs(), at_y: run.y(), weight: [0.0; RUN], x: [0.0; RUN], y: [0.0; RUN] }
+impl InverseSquare {
+    /// For jump vectors that differ by at most `spread`; `None` if that is too much for interpolated weights.
+    pub fn new(spread: f64) -> Option<Self> {
+        Some(InverseSquare { gap2: gap2(SHARE * TOLERANCE_PX / spread, |d2| 1.0 / d2)? })
     }
+}
 
-    /// Adds `anchor`; `weight` gives its weight from the index of a place and its squared distance.
+impl Kernel<3> for InverseSquare {
     #[inline(always)]
-    fn add(&mut self, anchor: &Anchor, weight: impl Fn(usize, f64) -> f64) {
-        let dy = self.at_y - anchor.at.y;
-        let dy2 = dy * dy;
-        for k in 0..RUN {
-            let dx = self.xs[k] - anchor.at.x;
-            let w = weight(k, dx * dx + dy2);
-            self.weight[k] += w;
-            self.x[k] += w * anchor.jump.x;
-            self.y[k] += w * anchor.jump.y;
-        }
-    }
-
-    /// Writes the weighted means; (0, 0) where all weights are 0.
-    fn write(&self, out: &mut Jumps) {
-        for k in 0..RUN {
-            let any = self.weight[k] > 0.0;
-            out.x[k] = if any { self.x[k] / self.weight[k] } else { 0.0 };
-            out.y[k] = if any { self.y[k] / self.weight[k] } else { 0.0 };
-        }
-    }
-}
-
-/// Every anchor counts with weight d^-power.
-pub struct Shepard {
-    /// The power.
-    pub power: f64,
-}
-
-impl Method for Shepard {
-    /// Places exactly at an anchor get undefined values.
-    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
-        let mut sums = Sums::new(run);
-        if self.power == 2.0 {
-            anchors.iter().for_each(|anchor| sums.add(anchor, |_, d2| 1.0 / d2));
-        } else {
-            // Relative to the nearest anchor, so that no power overflows or underflows.
-            let mut nearest2 = [f64::INFINITY; RUN];
-            for anchor in anchors {
-                let dy = run.y() - anchor.at.y;
-                for (nearest, x) in nearest2.iter_mut().zip(sums.xs) {
-                    let dx = x - anchor.at.x;
-                    *nearest = nearest.min(dx * dx + dy * dy);
-                }
-            }
-            let half = self.power / 2.0;
-            anchors.iter().for_each(|anchor| {
-                sums.add(
-                    anchor,
-                    |k, d2| if k < run.len && d2 > 0.0 { maths::pow(nearest2[k] / d2, half) } else { 0.0 },
-                );
-            });
-        }
-        sums.write(out);
-    }
-}
-
-/// Only anchors within `radius` pixels count; in the outer ring, at random.
-pub struct Modified {
-    /// Anchors farther than this do not count, in pixels.
-    pub radius: f64,
-    /// Width of the outer ring in pixels, and the seed.
-    pub ring: Option<(f64, u32)>,
-}
-
-impl Method for Modified {
-    /// Uses only the anchors that reach the run. Places exactly at an anchor get undefined values.
-    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps) {
-        let mut sums = Sums::new(run);
-        let radius2 = self.radius * self.radius;
-        for (index, anchor) in anchors.iter().enumerate().filter(|(_, anchor)| run.reach2(anchor) < radius2) {
-            match self.ring {
-                None => sums.add(anchor, |_, d2| self.weight(d2)),
-                Some((ring, seed)) => sums.add(anchor, |k, d2| {
-                    let d = d2.sqrt();
-                    let in_ring = self.radius - ring < d && d < self.radius;
-                    if in_ring && !counts(run, k, index, seed) { 0.0 } else { self.weight(d2) }
-                }),
-            }
-        }
-        sums.write(out);
-    }
-}
-
-impl Modified {
     fn weight(&self, d2: f64) -> f64 {
-        let d = d2.sqrt();
-        let w = (self.radius - d).max(0.0) / (self.radius * d);
+        maths::reciprocal_in_loops(d2)
+    }
+
+    fn fate(&self, apart: &Apart) -> Fate {
+        far_or_near(apart, self.gap2)
+    }
+
+    #[inline(always)]
+    fn jumps<const N: usize>(&self, sums: &[[f64; N]; 3], _xs: &[f64; N], _y: f64) -> [[f64; N]; 2] {
+        means(sums)
+    }
+}
+
+/// Weights of d^-power for small powers.
+pub struct Power {
+    half: f64,
+    gap2: f64,
+}
+
+impl Power {
+    /// The largest power: weights neither overflow nor underflow.
+    const MOST: f64 = 30.0;
+
+    /// For jump vectors that differ by at most `spread`; `None` if power or spread are too much for interpolated weights.
+    pub fn new(power: f64, spread: f64) -> Option<Self> {
+        let half = power / 2.0;
+        let gap2 = |()| gap2(SHARE * TOLERANCE_PX / spread, |d2| maths::pow(d2, -half));
+        Some(Power { half, gap2: (power <= Self::MOST).then_some(()).and_then(gap2)? })
+    }
+}
+
+impl Kernel<3> for Power {
+    #[inline(always)]
+    fn weight(&self, d2: f64) -> f64 {
+        maths::exp_in_loops(-self.half * maths::ln_in_loops(d2))
+    }
+
+    fn fate(&self, apart: &Apart) -> Fate {
+        far_or_near(apart, self.gap2)
+    }
+
+    #[inline(always)]
+    fn jumps<const N: usize>(&self, sums: &[[f64; N]; 3], _xs: &[f64; N], _y: f64) -> [[f64; N]; 2] {
+        means(sums)
+    }
+}
+
+/// Weights of d^-power, relative to that of the nearest anchor: no power overflows or underflows. For large powers, as
+/// most anchors have no weight worth mentioning.
+pub struct Steep {
+    half: f64,
+    /// Anchors farther than the nearest one by this factor, squared, do not count.
+    beyond2: f64,
+}
+
+impl Steep {
+    /// For `count` anchors with jump vectors that differ by at most `spread`.
+    pub fn new(power: f64, spread: f64, count: usize) -> Self {
+        let half = power / 2.0;
+        let all = count as f64 * spread / (SHARE * TOLERANCE_PX);
+        Steep { half, beyond2: maths::pow(all.max(1.0), 1.0 / half) }
+    }
+}
+
+impl Kernel<3> for Steep {
+    const RELATIVE: bool = true;
+
+    #[inline(always)]
+    fn weight(&self, d2: f64) -> f64 {
+        d2
+    }
+
+    #[inline(always)]
+    fn weight_near(&self, pair: Pair) -> f64 {
+        maths::exp_in_loops(self.half * maths::ln_in_loops(pair.nearest2 / pair.d2))
+    }
+
+    fn fate(&self, apart: &Apart) -> Fate {
+        if apart.nearest2 > self.beyond2 * apart.closest2 { Fate::Dropped } else { Fate::Near }
+    }
+
+    #[inline(always)]
+    fn jumps<const N: usize>(&self, sums: &[[f64; N]; 3], _xs: &[f64; N], _y: f64) -> [[f64; N]; 2] {
+        means(sums)
+    }
+}
+
+/// Only anchors within a radius count; in the outer ring, at random.
+pub struct Modified<const RANDOM: bool> {
+    inverse_radius: f64,
+    radius2: f64,
+    /// Beyond this the ring begins.
+    within2: f64,
+    seed: u32,
+    gap2: f64,
+}
+
+impl<const RANDOM: bool> Modified<RANDOM> {
+    /// The share of [`TOLERANCE_PX`] that interpolated weights may take where they are d^-2, as they are near the anchor.
+    /// Near the radius they are less; there [`Kernel::doubt`] finds places where the error is too large.
+    const SHARE: f64 = 1.0 / 32.0;
+
+    /// For jump vectors that differ by at most `spread`. `ring` is the width of the outer ring, 0 unless it is random.
+    pub fn new(radius: f64, ring: f64, seed: u32, spread: f64) -> Self {
+        let within = (radius - ring).max(0.0);
+        Modified {
+            inverse_radius: 1.0 / radius,
+            radius2: radius * radius,
+            within2: within * within,
+            seed: seed.wrapping_mul(0x9E37_79B9),
+            gap2: gap2(Self::SHARE * TOLERANCE_PX / spread, |d2| 1.0 / d2).unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+impl<const RANDOM: bool> Kernel<3> for Modified<RANDOM> {
+    #[inline(always)]
+    fn weight(&self, d2: f64) -> f64 {
+        let w = maths::reciprocal_root_in_loops(d2) - self.inverse_radius;
+        let w = if d2 < self.radius2 { w } else { 0.0 };
         w * w
     }
+
+    #[inline(always)]
+    fn weight_near(&self, pair: Pair) -> f64 {
+        // Without a branch, which would keep the compiler from using vectors.
+        let weight = self.weight(pair.d2);
+        let in_ring = if RANDOM { weight * self.counts(pair) } else { weight };
+        if pair.d2 > self.within2 { in_ring } else { weight }
+    }
+
+    fn fate(&self, apart: &Apart) -> Fate {
+        if apart.nearest2 >= self.radius2 {
+            Fate::Dropped
+        } else if apart.farthest2 <= self.within2 {
+            far_or_near(apart, self.gap2)
+        } else {
+            Fate::Near
+        }
+    }
+
+    /// The error of (1/d - 1/R)² is at most that of 1/d² + 2/(d R), each to within a share of itself, and d <= R.
+    fn doubt(&self, apart: &Apart) -> f64 {
+        3.0 * Self::SHARE / apart.nearest2
+    }
+
+    #[inline(always)]
+    fn jumps<const N: usize>(&self, sums: &[[f64; N]; 3], _xs: &[f64; N], _y: f64) -> [[f64; N]; 2] {
+        means(sums)
+    }
 }
 
-/// Whether an anchor counts for a pixel in the ring: k = 1 in equation 4.3.
-fn counts(run: &Run, k: usize, anchor: usize, seed: u32) -> bool {
-    let (i, j) = run.pixel;
-    pcg3d(i.wrapping_add(k as u32), j, (anchor as u32).wrapping_add(seed.wrapping_mul(0x9E37_79B9)))[0] >> 31 == 1
+impl<const RANDOM: bool> Modified<RANDOM> {
+    /// Whether an anchor counts for a pixel in the ring: k in equation 4.3, 0 or 1.
+    #[inline(always)]
+    fn counts(&self, pair: Pair) -> f64 {
+        f64::from(pcg3d(pair.pixel[0], pair.pixel[1], pair.index.wrapping_add(self.seed))[0] >> 31)
+    }
+}
+
+#[inline(always)]
+fn far_or_near(apart: &Apart, gap2: f64) -> Fate {
+    if apart.nearest2 >= gap2 * apart.half2 { Fate::Far } else { Fate::Near }
+}
+
+/// The weighted means; (0, 0) where all weights are 0.
+#[inline(always)]
+fn means<const N: usize>([weight, x, y]: &[[f64; N]; 3]) -> [[f64; N]; 2] {
+    let mut means = [*x, *y];
+    for k in 0..N {
+        let one = if weight[k] > 0.0 { 1.0 / weight[k] } else { 0.0 };
+        means[0][k] *= one;
+        means[1][k] *= one;
+    }
+    means
 }
 
 /// The hash of Jarzynski and Olano 2020, "Hash Functions for GPU Rendering".
+#[inline(always)]
 pub fn pcg3d(x: u32, y: u32, z: u32) -> [u32; 3] {
-    let mix = |[x, y, z]: [u32; 3]| {
+    #[inline(always)]
+    fn next(v: u32) -> u32 {
+        v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
+    }
+    #[inline(always)]
+    fn mix([x, y, z]: [u32; 3]) -> [u32; 3] {
         let x = x.wrapping_add(y.wrapping_mul(z));
         let y = y.wrapping_add(z.wrapping_mul(x));
         [x, y, z.wrapping_add(x.wrapping_mul(y))]
-    };
-    let v = mix([x, y, z].map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)));
-    mix(v.map(|v| v ^ (v >> 16)))
+    }
+    let [x, y, z] = mix([next(x), next(y), next(z)]);
+    mix([x ^ (x >> 16), y ^ (y >> 16), z ^ (z >> 16)])
 }

@@ -1,8 +1,8 @@
 //! How anchors spread to the pixels between them (docs/folding.md, section 4). A new method needs one variant here and one
 //! file beside this one.
 //!
-//! Fields are evaluated in runs of neighboring pixels in a row: the outer loop is over anchors, the inner one over
-//! pixels, which the compiler vectorises without changing the order of any pixel's sum.
+//! A method is a [`kernel`]: how the weight of an anchor depends on its distance, and what follows from the weighted sums.
+//! [`cells`] makes the sums, for every method in the same way.
 
 use kurbo::Vec2;
 use schemars::JsonSchema;
@@ -11,11 +11,18 @@ use serde::{Deserialize, Serialize};
 use super::anchor::Anchor;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
-use inverse_distance::{Modified, Shepard};
+use area::{Area, Stretch};
+use cells::{Cell, Cells};
+use inverse_distance::{InverseSquare, Modified, Power, Steep};
+use kernel::{Kernel, Source, sources, spread};
 use rigid::Rigid;
 use thin_plate::{NoPlate, Plate};
 
+pub mod area;
+pub mod cells;
+mod chebyshev;
 mod inverse_distance;
+mod kernel;
 mod rigid;
 mod thin_plate;
 
@@ -75,77 +82,21 @@ fn two() -> f64 {
     2.0
 }
 
-/// Pixels in the longest [`Run`].
-pub const RUN: usize = 64;
-
 /// A pixel closer to an anchor than this, in pixels, takes that anchor's vector.
 const AT_ANCHOR_PX: f64 = 1e-6;
 
-/// A run of neighboring pixels in a row, and the place in each pixel at which the field is evaluated.
-#[derive(Clone, Copy, Debug)]
-pub struct Run {
-    /// Column and row of the first pixel.
-    pub pixel: (u32, u32),
-    /// The place in each pixel, from its top-left corner; (0.5, 0.5) is the centre.
-    pub place: Vec2,
-    /// Number of pixels, at most [`RUN`].
-    pub len: usize,
-}
-
-impl Run {
-    /// Image coordinate x of place `k`.
-    pub fn x(&self, k: usize) -> f64 {
-        f64::from(self.pixel.0) + k as f64 + self.place.x
-    }
-
-    /// Image coordinates x of all places, and of those that would follow up to [`RUN`].
-    fn xs(&self) -> [f64; RUN] {
-        std::array::from_fn(|k| self.x(k))
-    }
-
-    /// Image coordinate y of all places.
-    pub fn y(&self) -> f64 {
-        f64::from(self.pixel.1) + self.place.y
-    }
-
-    /// Squared distance from `anchor` to the nearest place of the run.
-    fn reach2(&self, anchor: &Anchor) -> f64 {
-        let dx = (self.x(0) - anchor.at.x).max(anchor.at.x - self.x(self.len - 1)).max(0.0);
-        let dy = self.y() - anchor.at.y;
-        dx * dx + dy * dy
-    }
-}
-
-/// Jump vectors of a run, x and y separately.
-pub struct Jumps {
-    /// x in pixels.
-    pub x: [f64; RUN],
-    /// y in pixels.
-    pub y: [f64; RUN],
-}
-
-impl Default for Jumps {
-    fn default() -> Self {
-        Jumps { x: [0.0; RUN], y: [0.0; RUN] }
-    }
-}
-
 /// A method, prepared for the anchors of a zone.
 trait Method: Send + Sync {
-    /// Writes the interpolated jump vectors of `run` to the beginning of `out`; there is always at least one anchor.
-    fn run(&self, anchors: &[Anchor], run: &Run, out: &mut Jumps);
+    /// The cells that `area` touches, from left to right and down; `None` once `stopped`.
+    fn cells(&self, area: &Area, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>>;
 
-    /// Whether a pixel at an anchor takes the anchor's vector, whatever [`Method::run`] writes there.
-    fn passes_anchors(&self) -> bool {
-        true
-    }
+    /// Tells the jump vectors of the pixels that are in `area` and in `cell`, which [`Method::cells`] made, without parts
+    /// that are not `wanted`.
+    fn fill(&self, cell: &Cell, area: &Area, wanted: &dyn Fn(&Area) -> bool, tell: &mut dyn FnMut(Stretch));
 }
 
 /// The anchors of a zone, prepared for interpolation.
-pub struct Interpolator {
-    anchors: Vec<Anchor>,
-    method: Box<dyn Method>,
-}
+pub struct Interpolator(Box<dyn Method>);
 
 impl Interpolation {
     /// Bytes of memory that preparing `count` anchors takes, besides the anchors.
@@ -161,61 +112,81 @@ impl Interpolation {
 }
 
 impl Interpolator {
-    /// Prepares `anchors`; for a thin plate this solves its equations, within the memory that is left and until
-    /// cancelled.
+    /// Prepares `anchors` for a picture of `size` and the `place` in each pixel that is evaluated, from its top-left
+    /// corner. For a thin plate this solves its equations, within the memory that is left and until cancelled.
     ///
     /// # Errors
     /// If they need too much memory, or the synthesis is cancelled; the problem's path is relative to the zone.
     pub fn new(
         interpolation: &Interpolation,
-        mut anchors: Vec<Anchor>,
+        anchors: &[Anchor],
+        size: [u32; 2],
+        place: Vec2,
         materials: &Materials,
     ) -> Result<Self, Problem> {
         let bytes = interpolation.bytes(anchors.len() as u64);
         let _share = materials.budget.try_take(bytes).map_err(|short| short.problem("/interpolation"))?;
-        let method: Box<dyn Method> = match *interpolation {
-            Interpolation::Shepard { power } => Box::new(Shepard { power }),
-            Interpolation::ModifiedShepard { radius } => Box::new(Modified { radius, ring: None }),
+        let over = Over { anchors, size, place: [place.x, place.y] };
+        let spread = spread(anchors.iter().map(|anchor| [anchor.jump.x, anchor.jump.y]));
+        Ok(Interpolator(match *interpolation {
+            Interpolation::Shepard { power } => over.shepard(power, spread),
+            Interpolation::ModifiedShepard { radius } => over.means(Modified::<false>::new(radius, 0.0, 0, spread)),
             Interpolation::ModifiedShepardRandom { radius, ring, seed } => {
-                Box::new(Modified { radius, ring: Some((ring, seed)) })
+                over.means(Modified::<true>::new(radius, ring, seed, spread))
             }
             Interpolation::ThinPlate { smoothing } => {
-                anchors = thin_plate::distinct(&anchors);
-                match Plate::solve(&anchors, smoothing, &|| materials.stopped()) {
-                    Ok(plate) => Box::new(plate),
-                    Err(NoPlate::Flat) => Box::new(Shepard { power: two() }),
+                let distinct = thin_plate::distinct(anchors);
+                let over = Over { anchors: &distinct, ..over };
+                match Plate::solve(&distinct, smoothing, &|| materials.stopped()) {
+                    Ok(plate) => over.sums(sources(&distinct, |index, _| plate.terms(index)), plate),
+                    Err(NoPlate::Flat) => over.shepard(two(), spread),
                     Err(NoPlate::Stopped) => return Err(Problem::error("/interpolation", "stopped")),
                 }
             }
-            Interpolation::Rigid {} => Box::new(Rigid),
-        };
-        Ok(Interpolator { anchors, method })
-    }
-
-    /// Writes the interpolated jump vectors of `run` to the beginning of `out`; (0, 0) without anchors.
-    pub fn run(&self, run: &Run, out: &mut Jumps) {
-        if self.anchors.is_empty() {
-            *out = Jumps::default();
-            return;
-        }
-        self.method.run(&self.anchors, run, out);
-        if self.method.passes_anchors() {
-            self.take_anchors_at(run, out);
-        }
-    }
-
-    /// Gives pixels at an anchor its vector; the first anchor there counts.
-    fn take_anchors_at(&self, run: &Run, out: &mut Jumps) {
-        for anchor in self.anchors.iter().rev() {
-            let dy = run.y() - anchor.at.y;
-            let k = (anchor.at.x - run.x(0)).round();
-            if dy.abs() < AT_ANCHOR_PX && k >= 0.0 && k < run.len as f64 {
-                let k = k as usize;
-                let dx = run.x(k) - anchor.at.x;
-                if dx * dx + dy * dy < AT_ANCHOR_PX * AT_ANCHOR_PX {
-                    (out.x[k], out.y[k]) = (anchor.jump.x, anchor.jump.y);
-                }
+            Interpolation::Rigid {} if anchors.is_empty() => over.shepard(two(), spread),
+            Interpolation::Rigid {} => {
+                let rigid = Rigid::new(anchors, spread);
+                over.sums(sources(anchors, |_, anchor| rigid.terms(anchor)), rigid)
             }
+        }))
+    }
+
+    /// The cells that `area` touches, from left to right and down; `None` once `stopped`.
+    pub fn cells(&self, area: &Area, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>> {
+        self.0.cells(area, stopped)
+    }
+
+    /// Tells the jump vectors of the pixels that are in `area` and in `cell`, one of [`Interpolator::cells`], a stretch at
+    /// a time, without parts that are not `wanted`.
+    pub fn fill(&self, cell: &Cell, area: &Area, wanted: &dyn Fn(&Area) -> bool, tell: &mut dyn FnMut(Stretch)) {
+        self.0.fill(cell, area, wanted, tell);
+    }
+}
+
+/// Anchors over a picture.
+#[derive(Clone, Copy)]
+struct Over<'a> {
+    anchors: &'a [Anchor],
+    size: [u32; 2],
+    place: [f64; 2],
+}
+
+impl Over<'_> {
+    fn sums<const C: usize>(self, sources: Vec<Source<C>>, kernel: impl Kernel<C> + 'static) -> Box<dyn Method> {
+        Box::new(Cells::new(kernel, sources, self.size, self.place))
+    }
+
+    /// Weighted means of the jump vectors.
+    fn means(self, kernel: impl Kernel<3> + 'static) -> Box<dyn Method> {
+        self.sums(sources(self.anchors, |_, anchor| [1.0, anchor.jump.x, anchor.jump.y]), kernel)
+    }
+
+    fn shepard(self, power: f64, spread: f64) -> Box<dyn Method> {
+        let steep = || Steep::new(power, spread, self.anchors.len());
+        if power == two() {
+            InverseSquare::new(spread).map_or_else(|| self.means(steep()), |kernel| self.means(kernel))
+        } else {
+            Power::new(power, spread).map_or_else(|| self.means(steep()), |kernel| self.means(kernel))
         }
     }
 }

@@ -7,6 +7,7 @@ use kurbo::{Point, Vec2};
 
 use super::*;
 use crate::base::budget::Budget;
+use crate::base::maths;
 use crate::layers::tests::variants;
 
 const METHODS: [&str; 9] = [
@@ -21,13 +22,30 @@ const METHODS: [&str; 9] = [
     r#"{"method":"rigid"}"#,
 ];
 
-fn at(json: &str, anchors: &[[f64; 4]], pixel: (u32, u32)) -> Vec2 {
-    let interpolator =
-        Interpolator::new(&serde_json::from_str(json).unwrap(), make(anchors), &Materials::default()).unwrap();
-    let run = Run { pixel, place: Vec2::new(0.5, 0.5), len: 1 };
-    let mut out = Jumps::default();
-    interpolator.run(&run, &mut out);
-    Vec2::new(out.x[0], out.y[0])
+const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
+
+fn interpolator(json: &str, anchors: &[Anchor], size: [u32; 2], place: Vec2) -> Interpolator {
+    let interpolation = serde_json::from_str(json).unwrap();
+    Interpolator::new(&interpolation, anchors, size, place, &Materials::default()).unwrap()
+}
+
+/// The jump vectors of an area, row by row.
+fn jumps(interpolator: &Interpolator, area: Area) -> Vec<Vec2> {
+    let width = (area.to[0] - area.from[0]) as usize;
+    let mut found = vec![Vec2::new(f64::NAN, f64::NAN); area.count() as usize];
+    for cell in interpolator.cells(&area, &|| false).unwrap() {
+        interpolator.fill(&cell, &area, &|_| true, &mut |Stretch { pixel: [x, y], x: xs, y: ys }| {
+            let first = (y - area.from[1]) as usize * width + (x - area.from[0]) as usize;
+            let told = found[first..].iter_mut().zip(xs.iter().zip(ys.iter()));
+            told.for_each(|(found, (x, y))| *found = Vec2::new(*x, *y));
+        });
+    }
+    found
+}
+
+fn at(json: &str, anchors: &[[f64; 4]], (x, y): (u32, u32)) -> Vec2 {
+    let interpolator = interpolator(json, &make(anchors), [100, 100], CENTRE);
+    jumps(&interpolator, Area { from: [x, y], to: [x + 1, y + 1] })[0]
 }
 
 fn make(anchors: &[[f64; 4]]) -> Vec<Anchor> {
@@ -110,18 +128,129 @@ fn thin_plate_reproduces_an_affine_map_and_rigid_a_rotation() {
     assert_near(at(METHODS[8], &anchors, (12, 8)), (-8.5 - 12.5, 12.5 - 8.5), 1e-9);
 }
 
+/// Anchors on a picture of 96 x 80: all over it, in a heap of a hundredth of a pixel, on a line, and around it.
+fn nasty(kind: usize, count: usize, reach: f64) -> Vec<Anchor> {
+    let anchor = |i: usize| {
+        let part = |step: f64| (i as f64 * step).fract();
+        let (a, b) = (part(0.754_877_666), part(0.569_840_291));
+        let at = match kind {
+            0 => Point::new(96.0 * a, 80.0 * b),
+            1 if !i.is_multiple_of(8) => Point::new(30.2 + a / 100.0, 40.3 + b / 100.0),
+            2 => Point::new(96.0 * a, 80.0 * a),
+            _ => Point::new(96.0 * (8.0 * a - 4.0), 80.0 * (8.0 * b - 4.0)),
+        };
+        let jump = if i % 5 < 3 { Vec2::ZERO } else { Vec2::new(part(0.31) - 0.5, part(0.47) - 0.5) * (2.0 * reach) };
+        Anchor { at, jump, tool: 0 }
+    };
+    (0..count).map(anchor).collect()
+}
+
+/// The jump vector at a place by the formula of the documentation, term by term.
+fn exact(interpolation: &Interpolation, anchors: &[Anchor], pixel: [u32; 2], q: Point) -> Vec2 {
+    let distance = |anchor: &Anchor| (anchor.at - q).hypot2().sqrt();
+    if let Some(there) = anchors.iter().find(|anchor| distance(anchor) < AT_ANCHOR_PX) {
+        return there.jump;
+    }
+    if *interpolation == (Interpolation::Rigid {}) {
+        return exact_rigid(anchors, q);
+    }
+    let nearest = anchors.iter().map(distance).fold(f64::INFINITY, f64::min);
+    let reaching = |d: f64, radius: f64| maths::powi((radius - d).max(0.0) / (radius * d), 2);
+    let (mut total, mut sum) = (0.0, Vec2::ZERO);
+    for (index, anchor) in anchors.iter().enumerate() {
+        let d = distance(anchor);
+        let w = match *interpolation {
+            Interpolation::Shepard { power } => maths::pow(nearest / d, power),
+            Interpolation::ModifiedShepard { radius } => reaching(d, radius),
+            Interpolation::ModifiedShepardRandom { radius, ring, seed } => {
+                let hash = inverse_distance::pcg3d(
+                    pixel[0],
+                    pixel[1],
+                    (index as u32).wrapping_add(seed.wrapping_mul(0x9E37_79B9)),
+                );
+                if d > radius - ring && hash[0] >> 31 == 0 { 0.0 } else { reaching(d, radius) }
+            }
+            Interpolation::ThinPlate { .. } | Interpolation::Rigid {} => unreachable!("not a weighted mean"),
+        };
+        total += w;
+        sum += anchor.jump * w;
+    }
+    if total > 0.0 { sum / total } else { Vec2::ZERO }
+}
+
+/// As [`exact`]: from the weighted centers p* and q*, and the sum of w conj(p - p*) (p + u - q*).
+fn exact_rigid(anchors: &[Anchor], q: Point) -> Vec2 {
+    let weights: Vec<f64> = anchors.iter().map(|anchor| 1.0 / (anchor.at - q).hypot2()).collect();
+    let total: f64 = weights.iter().sum();
+    let mean = |of: &dyn Fn(&Anchor) -> Vec2| {
+        anchors.iter().zip(&weights).fold(Vec2::ZERO, |sum, (anchor, w)| sum + of(anchor) * (w / total))
+    };
+    let (from, to) = (mean(&|anchor| anchor.at - q), mean(&|anchor| anchor.at - q + anchor.jump));
+    let turn = mean(&|anchor| {
+        let (p, r) = (anchor.at - q - from, anchor.at - q + anchor.jump - to);
+        Vec2::new(p.dot(r), p.cross(r))
+    });
+    let turn = turn / turn.hypot2().sqrt();
+    to - Vec2::new(turn.x * from.x - turn.y * from.y, turn.y * from.x + turn.x * from.y)
+}
+
 #[test]
-fn a_run_is_its_pixels() {
-    let anchors: Vec<[f64; 4]> = (0..40).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
+fn sums_by_cells_are_the_sums() {
+    let [width, height] = [96, 80];
+    for json in [
+        METHODS[0],
+        METHODS[1],
+        METHODS[2],
+        METHODS[3],
+        METHODS[4],
+        METHODS[5],
+        METHODS[8],
+        r#"{"method":"shepard","power":0.01}"#,
+        r#"{"method":"modified-shepard","radius":300}"#,
+        r#"{"method":"modified-shepard-random","radius":120,"ring":20}"#,
+    ] {
+        let interpolation = serde_json::from_str(json).unwrap();
+        for (kind, count, reach) in [(0, 400, 50.0), (1, 200, 50.0), (2, 200, 1000.0), (3, 400, 1000.0)] {
+            let (anchors, place) = (nasty(kind, count, reach), Vec2::new(0.25, 0.75));
+            // Rows that have the heap and leaves of several cells.
+            let rows = Area { from: [0, 30], to: [width, 42] };
+            let found = jumps(&interpolator(json, &anchors, [width, height], place), rows);
+            for [x, y] in (0..40).map(|i| [i * 37 % width, 30 + i * 29 % 12]).chain([[30, 39], [30, 40]]) {
+                let q = Point::new(f64::from(x), f64::from(y)) + place;
+                let exact = exact(&interpolation, &anchors, [x, y], q);
+                let error = (found[((y - 30) * width + x) as usize] - exact).hypot2().sqrt();
+                assert!(error <= kernel::TOLERANCE_PX, "{json}, anchors {kind}, pixel {x}, {y}: {error} px");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_thin_plate_by_cells_passes_its_anchors() {
+    let mut anchors = nasty(0, 120, 200.0);
+    anchors.iter_mut().for_each(|anchor| anchor.at = (anchor.at.floor().to_vec2() + CENTRE).to_point());
+    let distinct = thin_plate::distinct(&anchors);
+    let rows = Area { from: [0, 20], to: [96, 32] };
+    let found = jumps(&interpolator(METHODS[6], &anchors, [96, 80], CENTRE), rows);
+    let seen = distinct.iter().filter(|anchor| (20.0..32.0).contains(&anchor.at.y));
+    for anchor in seen {
+        let error = found[(anchor.at.y as usize - 20) * 96 + anchor.at.x as usize] - anchor.jump;
+        assert!(error.hypot2().sqrt() <= kernel::TOLERANCE_PX, "{anchor:?}: {error:?}");
+    }
+}
+
+#[test]
+fn a_pixel_is_the_same_in_any_part() {
+    let anchors = nasty(0, 60, 10.0);
     for method in METHODS {
-        let interpolator =
-            Interpolator::new(&serde_json::from_str(method).unwrap(), make(&anchors), &Materials::default()).unwrap();
-        let mut out = Jumps::default();
-        interpolator.run(&Run { pixel: (3, 9), place: Vec2::new(0.25, 0.75), len: 50 }, &mut out);
-        for k in 0..50u32 {
-            let mut one = Jumps::default();
-            interpolator.run(&Run { pixel: (3 + k, 9), place: Vec2::new(0.25, 0.75), len: 1 }, &mut one);
-            assert_eq!((out.x[k as usize], out.y[k as usize]), (one.x[0], one.y[0]), "{method} {k}");
+        let interpolator = interpolator(method, &anchors, [96, 80], Vec2::new(0.25, 0.75));
+        let whole = jumps(&interpolator, Area { from: [0, 0], to: [96, 80] });
+        for from in [[3, 9], [70, 40], [31, 66]] {
+            let part = jumps(&interpolator, Area { from, to: from.map(|from| from + 14) });
+            for (k, found) in part.into_iter().enumerate() {
+                let (x, y) = (from[0] as usize + k % 14, from[1] as usize + k / 14);
+                assert_eq!(found, whole[y * 96 + x], "{method} {x} {y}");
+            }
         }
     }
 }
@@ -137,7 +266,8 @@ fn the_hash_is_that_of_the_paper() {
 fn a_thin_plate_takes_no_more_memory_than_there_is_and_ends_when_asked_to() {
     let anchors: Vec<[f64; 4]> = (0..100).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
     let solve = |materials: &Materials| {
-        Interpolator::new(&serde_json::from_str(METHODS[6]).unwrap(), make(&anchors), materials).map(drop)
+        Interpolator::new(&serde_json::from_str(METHODS[6]).unwrap(), &make(&anchors), [61, 23], CENTRE, materials)
+            .map(drop)
     };
     let budget = |most| Materials { budget: Budget::new(most), ..Materials::default() };
     let needed = thin_plate::bytes(100);
@@ -157,5 +287,5 @@ fn a_thin_plate_has_the_same_bits_everywhere() {
     let anchors: Vec<[f64; 4]> =
         (0..70).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i % 5.0, -i % 3.0]).collect();
     let found = at(METHODS[6], &anchors, (20, 7));
-    assert_eq!((found.x.to_bits(), found.y.to_bits()), (4609792142237502732, 4599545483544193280), "{found:?}");
+    assert_eq!((found.x.to_bits(), found.y.to_bits()), (4609792142237502614, 4599545483544192436), "{found:?}");
 }

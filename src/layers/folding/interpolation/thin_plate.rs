@@ -5,13 +5,17 @@
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 
-use super::{Jumps, Method, Run};
+use super::chebyshev::Chebyshev;
+use super::kernel::{Apart, Fate, GAPS, Kernel, TOLERANCE_PX};
 use crate::base::cholesky::{Matrix, stride};
 use crate::base::maths;
 use crate::layers::folding::anchor::Anchor;
 
 /// Anchors closer than this to an earlier one, in pixels, are dropped.
 const SAME_PX: f64 = 1e-6;
+
+/// The share of [`TOLERANCE_PX`] that interpolated kernels may take.
+const SHARE: f64 = 0.25;
 
 /// Terms of the affine part: constant, along x, along y.
 const AFFINE: usize = 3;
@@ -21,10 +25,22 @@ const AFFINE: usize = 3;
 pub struct Plate {
     center: Point,
     scale: f64,
-    /// Place and weights (for x and y) of each kernel.
-    kernels: Vec<(Vec2, Vec2)>,
+    /// The weights of the anchors' kernels, for x and y.
+    weights: Vec<Vec2>,
     /// The affine part.
     affine: [Vec2; AFFINE],
+    /// The square of one pixel, in squares of `scale`.
+    shrink: f64,
+    /// Where kernels may be interpolated.
+    reaches: Vec<Reach>,
+}
+
+/// Kernels are interpolated in cells of at most this size that are this far away.
+struct Reach {
+    /// The square of the gap in half sides of the cell.
+    gap2: f64,
+    /// The largest square of half the side of the cell, in pixels.
+    half2: f64,
 }
 
 /// Bytes that solving a plate through `count` anchors takes.
@@ -76,34 +92,55 @@ impl Plate {
             weights.iter_mut().zip(&solved).for_each(|(weight, x)| *weight += part * *x);
             affine.iter_mut().zip(terms).for_each(|(affine, term)| *affine += part * term);
         }
-        let kernels = places.into_iter().zip(weights).collect();
-        Ok(Plate { center, scale, kernels, affine })
+        let reaches = reaches(&weights, scale);
+        Ok(Plate { center, scale, weights, affine, shrink: 1.0 / (scale * scale), reaches })
     }
 }
 
-impl Method for Plate {
-    fn passes_anchors(&self) -> bool {
-        false
+impl Plate {
+    /// What is summed for anchor `index`.
+    pub fn terms(&self, index: usize) -> [f64; 2] {
+        let weight = self.weights[index];
+        [weight.x, weight.y]
+    }
+}
+
+impl Kernel<2> for Plate {
+    const PASSES_ANCHORS: bool = false;
+
+    #[inline(always)]
+    fn weight(&self, d2: f64) -> f64 {
+        kernel(d2 * self.shrink)
     }
 
-    /// Evaluates the plate at the places of the run; it has its own copy of the anchors.
-    fn run(&self, _anchors: &[Anchor], run: &Run, out: &mut Jumps) {
-        let xs = run.xs().map(|x| (x - self.center.x) / self.scale);
-        let y = (run.y() - self.center.y) / self.scale;
-        for (k, x) in xs.into_iter().enumerate() {
-            let flat = self.affine[0] + self.affine[1] * x + self.affine[2] * y;
-            (out.x[k], out.y[k]) = (flat.x, flat.y);
-        }
-        for (at, weight) in &self.kernels {
-            let dy = y - at.y;
-            for (k, x) in xs.into_iter().enumerate() {
-                let dx = x - at.x;
-                let u = kernel(dx * dx + dy * dy);
-                out.x[k] += weight.x * u;
-                out.y[k] += weight.y * u;
-            }
-        }
+    fn fate(&self, apart: &Apart) -> Fate {
+        let near_enough = |reach: &Reach| apart.half2 <= reach.half2 && apart.nearest2 >= reach.gap2 * apart.half2;
+        if self.reaches.iter().any(near_enough) { Fate::Far } else { Fate::Near }
     }
+
+    #[inline(always)]
+    fn jumps<const N: usize>(&self, sums: &[[f64; N]; 2], xs: &[f64; N], y: f64) -> [[f64; N]; 2] {
+        let mut jumps = *sums;
+        let y = (y - self.center.y) / self.scale;
+        for (k, x) in xs.iter().enumerate() {
+            let x = (x - self.center.x) / self.scale;
+            jumps[0][k] += self.affine[0].x + self.affine[1].x * x + self.affine[2].x * y;
+            jumps[1][k] += self.affine[0].y + self.affine[1].y * x + self.affine[2].y * y;
+        }
+        jumps
+    }
+}
+
+/// For each gap the cells in which the errors of all kernels together are within the tolerance. In a cell of half side h
+/// a kernel is h² times that in one of half side 1, but for a multiple of r², which is interpolated exactly: so are errors.
+fn reaches(weights: &[Vec2], scale: f64) -> Vec<Reach> {
+    let chebyshev = Chebyshev::new();
+    let all: f64 = weights.iter().map(|weight| weight.hypot2().sqrt()).sum();
+    let reach = |gap: f64| {
+        let error = chebyshev.error(gap, kernel, |_| 1.0);
+        Reach { gap2: gap * gap, half2: SHARE * TOLERANCE_PX * scale * scale / (error * all) }
+    };
+    GAPS.into_iter().map(reach).collect()
 }
 
 /// K with the smoothing on its diagonal, and the x and y of the jump vectors as columns beside it.
