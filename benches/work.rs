@@ -21,7 +21,9 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let done = match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         [] => return ExitCode::SUCCESS, // `cargo bench` runs every benchmark; this one is for scripts/bench
-        [work @ ("field" | "frame"), scene, count, file @ ..] if file.len() < 2 => run(work, scene, count, file.first()),
+        [work @ ("field" | "frame"), scene, count, file @ ..] if file.len() < 2 => {
+            run(work, scene, count, file.first())
+        }
         _ => Err(Error::Usage("work field|frame SCENE COUNT [FILE]".into())),
     };
     match done {

@@ -118,7 +118,7 @@ mod tests {
             let synth = Synth::new(&layer, &Making::plain(Wrap::Repeat, &materials), None).unwrap();
             let ways = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]).concat();
             let found = synth.reach(t, &ways).unwrap();
-            let expected = (0..3).flat_map(|axis| [high[axis], -f64::from(low[axis])]);
+            let expected = (0..3).flat_map(|axis| [high[axis], -low[axis]]);
             let far = found.iter().zip(expected).map(|(a, b): (&f64, f64)| (a - b).abs()).fold(0.0, f64::max);
             assert!(far < 1e-12, "{pose}: {found:?}");
         }
