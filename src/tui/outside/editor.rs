@@ -125,23 +125,29 @@ impl Editor {
             interrupted: false,
             drawn: None,
         };
-        editor.begin();
-        editor.load_keys();
-        if editor.screen.is_some() {
-            editor.state.memory.recall(files::kept::read());
-        }
-        editor.begin_tutor();
-        typed.iter().filter_map(input::event).for_each(|event| editor.take(event));
-        if editor.options.window && editor.screen.is_some() && editor::opens_by_itself() {
-            editor.preview.open_window();
-        }
-        if let (Some(keep), true) = (editor.options.keep_recovery, editor.state.scene.offered().is_some()) {
-            editor.take(Event::Line(format!("recovery {}", if keep { "keep" } else { "drop" })));
-        }
-        if let Some(script) = editor.options.script.clone() {
-            editor.source(&script)?;
-        }
+        editor.enter(&typed)?;
         Ok(editor)
+    }
+
+    /// What happens before the first key: keymap, what was kept, lessons, what was `typed` meanwhile, window and script.
+    fn enter(&mut self, typed: &[input::Piece]) -> Result<()> {
+        self.begin();
+        self.load_keys();
+        if self.screen.is_some() {
+            self.state.memory.recall(files::kept::read());
+        }
+        self.begin_tutor();
+        typed.iter().filter_map(input::event).for_each(|event| self.take(event));
+        if self.options.window && self.screen.is_some() && editor::opens_by_itself() {
+            self.preview.open_window();
+        }
+        if let (Some(keep), true) = (self.options.keep_recovery, self.state.scene.offered().is_some()) {
+            self.take(Event::Line(format!("recovery {}", if keep { "keep" } else { "drop" })));
+        }
+        if let Some(script) = self.options.script.clone() {
+            self.source(&script)?;
+        }
+        Ok(())
     }
 
     /// Begins the lessons. The tutor's folder becomes the current one, so that its output is beside its scene.

@@ -59,13 +59,7 @@ impl Editor {
                 let most = self.options.files.limits.paste;
                 self.job = Some(pipe::start(program, table, most, self.sender.clone()));
             }
-            Effect::Complete { name, path, beside } => {
-                let folder = beside.as_deref().unwrap_or(Path::new("."));
-                // One line for a clip, before its many files.
-                let clips = if name == "add" { clips::complete(folder, &path) } else { Vec::new() };
-                let found = clips.into_iter().chain(paths::complete(folder, &path));
-                self.take(Event::Completed(found.map(|path| format!("{name} {}", said::one_word(&path))).collect()));
-            }
+            Effect::Complete { name, path, beside } => self.complete(&name, &path, beside.as_deref()),
             Effect::Copy(text) => match &mut self.screen {
                 Some(screen) => terminal::copy(screen, &text),
                 // Without a screen there is no clipboard.
@@ -84,6 +78,15 @@ impl Editor {
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
         }
+    }
+
+    /// Completes the path of the command `name`, from the folder `beside`.
+    fn complete(&mut self, name: &str, path: &str, beside: Option<&Path>) {
+        let folder = beside.unwrap_or(Path::new("."));
+        // One line for a clip, before its many files.
+        let clips = if name == "add" { clips::complete(folder, path) } else { Vec::new() };
+        let found = clips.into_iter().chain(paths::complete(folder, path));
+        self.take(Event::Completed(found.map(|path| format!("{name} {}", said::one_word(&path))).collect()));
     }
 
     /// Saves the scene, to another file if one is given, and then leaves if asked to.
