@@ -41,6 +41,7 @@ const OF_ONE_TECHNIQUE: &[&str] = &[
     "benches/scenes/mod.rs",
     "benches/synthesis.rs",
     "benches/waterfall.rs",
+    "benches/work.rs",
     "tests/display/mod.rs",
     "tests/gpu.rs",
     "tests/profiles.rs",

@@ -32,13 +32,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let scene = read.document.scene().clone();
     let asked = Asked::parse(args.pass.as_deref().unwrap_or(COLOR.name), &scene);
     let asked = asked.map_err(|what| Error::Usage(format!("--pass: {what}")))?;
-    asked.emptiness(&scene).iter().for_each(|told| context.messages.say(told));
-    if args.samples > 1 && *asked.pass != COLOR {
-        context.messages.say(&format!(
-            "--samples {} changes nothing: {} has one sample in the middle of each pixel, since data has no mean",
-            args.samples, asked.pass.name
-        ));
-    }
+    context.say_all(&asked.emptiness(&scene).into_iter().chain(unsampled(args.samples, &asked)).collect::<Vec<_>>());
     let frames = match &args.frames {
         Some(text) => range::parse(text, scene.timeline.frames())?,
         None => (0..scene.timeline.frames()).collect(),
@@ -75,6 +69,14 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     };
     context.done(&what, outputs::size(files.paths()), begun);
     Ok(())
+}
+
+/// Why more samples change nothing, where they do not.
+fn unsampled(samples: u32, asked: &Asked) -> Option<String> {
+    (samples > 1 && *asked.pass != COLOR).then(|| {
+        let name = asked.pass.name;
+        format!("--samples {samples} changes nothing: {name} has one sample in the middle of each pixel, since data has no mean")
+    })
 }
 
 /// A pass to look at.
