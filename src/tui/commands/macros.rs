@@ -38,8 +38,10 @@ fn play(state: &mut State, call: &Call) -> Done {
     let lines = state.memory.recorder.play(letter)?;
     for _ in 0..call.times_of("play-macro")? {
         for (at, line) in lines.iter().enumerate() {
-            repeat(state, call, line)
-                .map_err(|why| format!("macro {letter} stopped at line {} ({line}): {why}", at + 1))?;
+            repeat(state, call, line).map_err(|why| match line.starts_with("play-macro") {
+                true => why, // it says itself which macro stopped, and where
+                false => format!("macro {letter} stopped at line {} ({line}): {why}", at + 1),
+            })?;
         }
     }
     Ok(())
