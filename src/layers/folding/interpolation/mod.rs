@@ -1,7 +1,7 @@
 //! How anchors spread to the pixels between them (docs/folding.md, section 4). A new method needs one variant here and one
 //! file beside this one.
 //!
-//! A method is a [`kernel`]: how the weight of an anchor depends on its distance, and what follows from the weighted sums.
+//! A method is a `kernel`: how the weight of an anchor depends on its distance, and what follows from the weighted sums.
 //! [`cells`] makes the sums, for every method in the same way.
 
 use kurbo::Vec2;
