@@ -5,7 +5,7 @@ use crate::base::picture::Picture;
 /// How much of the shorter side that is.
 const SHARE: f64 = 0.05;
 
-/// The feather of a picture, in pixels: none where its own alpha says where it ends.
+/// The feather of a picture, in pixels; 0 if its own alpha says where it ends.
 pub fn px(picture: &Picture) -> f64 {
     let shorter = picture.width().min(picture.height()) as f64;
     if ends_by_itself(picture) { 0.0 } else { (SHARE * shorter * 100.0).round() / 100.0 }
