@@ -111,12 +111,28 @@ pub static SRGB_16: LazyLock<Arc<Light<65536>>> = LazyLock::new(|| Arc::new(Ligh
 /// The value of every half float.
 static HALVES: LazyLock<Box<[f32]>> = LazyLock::new(|| (0..=u16::MAX).map(value_of_half).collect());
 
-/// The linear, premultiplied RGBA of pixel `i`.
+/// The pixels of a picture as linear, premultiplied RGBA.
 trait Texels {
-    fn at(&self, i: usize) -> Rgba;
+    /// The samples of a pixel.
+    type Cell;
 
-    /// Those of all pixels from `first` on.
-    fn row(&self, first: usize, out: &mut [Rgba]);
+    /// All pixels, row by row.
+    fn cells(&self) -> &[Self::Cell];
+
+    /// What the samples mean.
+    fn of(&self, cell: &Self::Cell) -> Rgba;
+
+    /// Pixel `i`.
+    #[inline]
+    fn at(&self, i: usize) -> Rgba {
+        self.of(&self.cells()[i])
+    }
+
+    /// All pixels from `first` on.
+    #[inline]
+    fn row(&self, first: usize, out: &mut [Rgba]) {
+        out.iter_mut().zip(&self.cells()[first..]).for_each(|(out, cell)| *out = self.of(cell));
+    }
 }
 
 struct Codes<'a, C, const N: usize, const CODES: usize> {
@@ -124,7 +140,14 @@ struct Codes<'a, C, const N: usize, const CODES: usize> {
     light: &'a Light<CODES>,
 }
 
-impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Codes<'_, C, N, CODES> {
+impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texels for Codes<'_, C, N, CODES> {
+    type Cell = [C; N];
+
+    #[inline]
+    fn cells(&self) -> &[[C; N]] {
+        self.cells
+    }
+
     #[inline]
     fn of(&self, cell: &[C; N]) -> Rgba {
         let [r, g, b] = self.light.of(if N < 3 { [cell[0].into(); 3] } else { [0, 1, 2].map(|c| cell[c].into()) });
@@ -136,41 +159,24 @@ impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Code
     }
 }
 
-impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texels for Codes<'_, C, N, CODES> {
-    #[inline]
-    fn at(&self, i: usize) -> Rgba {
-        self.of(&self.cells[i])
-    }
-
-    #[inline]
-    fn row(&self, first: usize, out: &mut [Rgba]) {
-        out.iter_mut().zip(&self.cells[first..]).for_each(|(out, cell)| *out = self.of(cell));
-    }
-}
-
 struct Values<'a, T, const N: usize> {
     cells: &'a [[T; N]],
     value: &'a dyn Fn(T) -> f32,
 }
 
-impl<T: Copy, const N: usize> Values<'_, T, N> {
+impl<T: Copy, const N: usize> Texels for Values<'_, T, N> {
+    type Cell = [T; N];
+
+    #[inline]
+    fn cells(&self) -> &[[T; N]] {
+        self.cells
+    }
+
     #[inline]
     fn of(&self, cell: &[T; N]) -> Rgba {
         let cell = cell.map(self.value);
         let alpha = if N % 2 == 1 { 1.0 } else { cell[N - 1] };
         if N < 3 { [cell[0], cell[0], cell[0], alpha] } else { [cell[0], cell[1], cell[2], alpha] }
-    }
-}
-
-impl<T: Copy, const N: usize> Texels for Values<'_, T, N> {
-    #[inline]
-    fn at(&self, i: usize) -> Rgba {
-        self.of(&self.cells[i])
-    }
-
-    #[inline]
-    fn row(&self, first: usize, out: &mut [Rgba]) {
-        out.iter_mut().zip(&self.cells[first..]).for_each(|(out, cell)| *out = self.of(cell));
     }
 }
 

@@ -14,6 +14,7 @@ pub mod mesh;
 pub mod parts;
 pub mod ready;
 pub mod space;
+pub mod starts;
 pub mod technique;
 #[cfg(test)]
 mod tests;

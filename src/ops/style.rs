@@ -14,7 +14,7 @@ use crate::files::draft::DraftFile;
 use crate::files::limits::Limits;
 use crate::files::styles as own;
 use crate::files::{outputs, write};
-use crate::layers::technique::Style;
+use crate::layers::starts::Style;
 use crate::scene::styles::{self, NOTHING, Source};
 use crate::scene::{Document, json};
 

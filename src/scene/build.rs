@@ -12,7 +12,8 @@ use crate::layers::KINDS;
 use crate::layers::parts::materials::List;
 use crate::layers::parts::moment::Space;
 use crate::layers::space::camera;
-use crate::layers::technique::{Kind, Starts, Technique, Turned};
+use crate::layers::starts::Starts;
+use crate::layers::technique::{Kind, Technique, Turned};
 
 impl Edit {
     /// Writes `value` at `path`. Missing parents are created from their defaults; `null` removes an optional value, so

@@ -11,7 +11,7 @@ use super::schema::{Body, Place};
 use super::{Document, field, shape};
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
-use crate::layers::technique::Starts;
+use crate::layers::starts::Starts;
 
 /// More items than this are inserted by replacing the whole list: a single operation, however many there are.
 const ONE_BY_ONE: usize = 100;

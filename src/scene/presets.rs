@@ -7,7 +7,8 @@ use super::{Document, json};
 use crate::base::pointer::Pointer;
 use crate::base::problem;
 use crate::layers::KINDS;
-use crate::layers::technique::{Kind, Preset, Technique};
+use crate::layers::starts::Preset;
+use crate::layers::technique::{Kind, Technique};
 
 /// A preset, with the technique whose layers it is for.
 #[derive(Clone, Copy, Debug)]

@@ -12,7 +12,8 @@ use crate::base::problem::{Problem, quoted};
 use crate::layers::KINDS;
 use crate::layers::parts::materials::{List, Of, What};
 use crate::layers::parts::shots::{Laid, Laying, SeenFrom, Shot};
-use crate::layers::technique::{Kind, Shown};
+use crate::layers::starts::Shown;
+use crate::layers::technique::Kind;
 
 /// A picture that is to lie on a layer.
 #[derive(Clone, Debug)]

@@ -16,7 +16,8 @@ use crate::layers::parts::materials::List;
 use crate::layers::parts::moment::Space;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::fit;
-use crate::layers::technique::{Kind, Shown};
+use crate::layers::starts::Shown;
+use crate::layers::technique::Kind;
 
 /// Where a new camera sees meshes from.
 const BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);

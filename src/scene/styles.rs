@@ -8,7 +8,8 @@ use super::{Document, Edit, json};
 use crate::base::pointer::Pointer;
 use crate::base::problem::{self, Problem};
 use crate::layers::KINDS;
-use crate::layers::technique::{Kind, Style, Styles};
+use crate::layers::starts::{Style, Styles};
+use crate::layers::technique::Kind;
 
 /// What a layer is to be drawn in.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,8 @@ use self::model::FillLayer;
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::ReadOut;
 use super::ready::{Making, Ready};
-use super::technique::{Checked, Kind, Starts, Technique, halfway};
+use super::starts::{Starts, halfway};
+use super::technique::{Checked, Kind, Technique};
 use crate::base::problem::Problem;
 
 /// The technique.

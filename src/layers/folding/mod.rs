@@ -51,7 +51,8 @@ use super::parts::moment::{Moment, Space};
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready};
-use super::technique::{Bundle, Checked, Count, Counted, Kind, Starts, Technique, Template, Turned};
+use super::starts::{Starts, Template};
+use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
 use super::timeline::{Timeline, Wrap};
 use crate::base::problem::Problem;
 

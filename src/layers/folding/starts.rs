@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::model::PictureLayer;
 use crate::base::number;
 use crate::base::pointer::Pointer;
-use crate::layers::technique::Shown;
+use crate::layers::starts::Shown;
 
 /// Used in place of a zone where there is none yet.
 const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);

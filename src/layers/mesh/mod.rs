@@ -30,7 +30,8 @@ use super::parts::pass::Pass;
 use super::parts::readout::ReadOut;
 use super::parts::shots::{Laid, Laying, Lying};
 use super::ready::{Making, Ready};
-use super::technique::{Checked, Kind, Shown, Starts, Technique, Template};
+use super::starts::{Shown, Starts, Template};
+use super::technique::{Checked, Kind, Technique};
 use crate::base::problem::Problem;
 
 /// The technique.

@@ -12,7 +12,7 @@ use crate::base::problem::Problem;
 use crate::base::text::short;
 use crate::layers::check;
 use crate::layers::keyframes;
-use crate::layers::technique::{Starts, halfway};
+use crate::layers::starts::{Starts, halfway};
 
 /// Where the scene is seen from. It looks from its position to its target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -49,7 +49,8 @@ use super::parts::picking::Picks;
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::space::eye::Ray;
-use super::technique::{Checked, Kind, Shown, Starts, Technique, Template, halfway};
+use super::starts::{Shown, Starts, Template, halfway};
+use super::technique::{Checked, Kind, Technique};
 use crate::base::problem::Problem;
 
 /// The technique.

@@ -1,6 +1,6 @@
 //! What else flows along lines: presets that turn the default fall into a fountain, smoke, a fire or a cloud.
 
-use crate::layers::technique::Preset;
+use crate::layers::starts::Preset;
 
 macro_rules! preset {
     ($name:literal, $help:literal, $wants:literal) => {

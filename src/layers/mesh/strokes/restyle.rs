@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::force::{self, Strokes};
 use super::styles::LIST;
-use crate::layers::technique::Styles;
+use crate::layers::starts::Styles;
 
 /// The styles of mesh layers.
 pub static STYLES: Styles = Styles { field: "/strokes", name: "/style", list: LIST, named, own, whole };

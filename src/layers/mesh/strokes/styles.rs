@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::layers::technique;
+use crate::layers::starts;
 
 /// Where strokes come from. Its doc comments say what each is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -35,7 +35,7 @@ pub enum Style {
 
 macro_rules! style {
     ($name:literal, $help:literal) => {
-        technique::Style {
+        starts::Style {
             name: $name,
             help: $help,
             table: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/styles/", $name, ".json")),
@@ -44,7 +44,7 @@ macro_rules! style {
 }
 
 /// The styles that the program brings.
-pub const LIST: &[technique::Style] = &[
+pub const LIST: &[starts::Style] = &[
     style!("hatching", "parallel pen strokes that grow denser in the dark"),
     style!("cross-hatching", "pen strokes in layers across one another"),
     style!("stipple", "dots that grow denser in the dark"),

@@ -8,7 +8,7 @@ use super::marks::{Ink, Outline, Pigment, Set};
 use super::model::{Along, Direction, Force, Noise};
 use super::restyle::STYLES;
 use super::styles::Style;
-use crate::layers::technique;
+use crate::layers::starts;
 
 fn read(written: Value) -> Strokes {
     serde_json::from_value(written).unwrap()
@@ -64,7 +64,7 @@ fn without_a_style_there_is_only_what_is_written() {
 
 #[test]
 fn every_style_is_whole_and_says_so_itself() {
-    for technique::Style { name, .. } in STYLES.list {
+    for starts::Style { name, .. } in STYLES.list {
         let found = read(json!({ "style": name }));
         let style = found.style;
         assert!(style != Style::None && (style == Style::default()) == (*name == "hatching"), "{name}");
