@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use divan::Bencher;
 use divan::counter::BytesCount;
 use plica::base::error::Error;
-use plica::files::{Limits, mesh};
+use plica::files::{Options, mesh};
 
 fn main() {
     divan::main();
@@ -21,9 +21,10 @@ fn load(bencher: Bencher, name: &str) {
         return;
     };
     let bytes = path.metadata().map_or(0, |found| found.len());
-    let limits = Limits::default();
+    let options = Options::default();
     let alone = |path: &str| Err(Error::at(path, "is not there"));
-    let load = || mesh::decode(File::open(&path).expect("it is there"), name, &limits, &limits.budget(), &alone);
+    let budget = options.limits.budget();
+    let load = || mesh::decode(File::open(&path).expect("it is there"), name, &options, &budget, &alone);
     bencher.counter(BytesCount::new(bytes)).bench(|| load().expect("it is a mesh"));
 }
 

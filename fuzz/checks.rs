@@ -8,7 +8,7 @@ use plica::base::budget::Budget;
 use plica::base::error::Error;
 use plica::base::expression::{Variables, evaluate};
 use plica::files::journal::{self, Contents};
-use plica::files::{Limits, fields, mesh, picture, recovery};
+use plica::files::{Limits, Options, fields, mesh, picture, recovery};
 use plica::preview::wire::frame;
 use plica::preview::wire::message::{FromEditor, Message, ToEditor};
 use plica::scene::Document;
@@ -88,11 +88,11 @@ pub fn flo(bytes: &[u8]) {
 /// A mesh has vertices for all corners, and they are as a renderer expects them; what it kept on the way is given back.
 pub fn mesh(bytes: &[u8]) {
     let limits = Limits { triangles: 1 << 16, mesh: 1 << 20, memory: 64 << 20, ..Limits::default() };
-    let budget = limits.budget();
+    let (budget, options) = (limits.budget(), Options { limits: limits.clone(), ..Options::default() });
     let none = |path: &str| Err(Error::at(path, "is not there"));
-    let _ = mesh::pictures(file(bytes), "a.glb", &limits);
+    let _ = mesh::pictures(file(bytes), "a.glb", &options);
     let _ = picture::header(file(bytes), "a.glb#0", &limits);
-    let Ok((mesh, _, share)) = mesh::decode(file(bytes), "a.obj", &limits, &budget, &none) else {
+    let Ok((mesh, _, share)) = mesh::decode(file(bytes), "a.obj", &options, &budget, &none) else {
         assert_eq!(budget.taken(), 0);
         return;
     };

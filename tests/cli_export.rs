@@ -92,7 +92,10 @@ fn wrong_command_lines_are_told_and_leave_nothing() {
         ("render s.plica.json -o a.gif --skip-existing", "numbered files"),
         ("render s.plica.json -o a.gif --matrix bt601", "y4m and video"),
         ("render s.plica.json -o a.y4m --matrix bt2020", "bt709"),
-        ("render s.plica.json -o a.png", "6 frames do not fit one PNG"),
+        (
+            "render s.plica.json -o a.png",
+            "6 frames do not fit one PNG (--frames 0 renders the first, a pattern such as %04d.png numbers them, .apng animates",
+        ),
         ("render s.plica.json -o %d.jpg", "end in .png"),
         ("render s.plica.json -o -", "--format"),
         ("render s.plica.json -o - --format gif", "y4m or rgba"),

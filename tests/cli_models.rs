@@ -159,7 +159,9 @@ fn what_of_a_model_cannot_be_read_is_told() {
     std::fs::write(at("lost.gltf"), gltf("lost.bin", "x.png")).unwrap();
     std::fs::write(at("from/bare.gltf"), gltf("parts/square.bin", "gone.png")).unwrap();
     std::fs::write(at("from/far.gltf"), gltf("../square.bin", "parts/skin.png")).unwrap();
+    std::fs::write(at("from/out.gltf"), gltf("parts/square.bin", "../cat.png")).unwrap();
     std::fs::write(at("square.bin"), square()).unwrap();
+    std::fs::write(at("flat0.obj"), "v 0 0 0\nf 1 1 1\n").unwrap();
     std::fs::write(at("a.ply"), "ply\nformat ascii 1.0\n").unwrap();
     std::fs::write(at("b.STL"), [0; 84]).unwrap();
     std::fs::write(at("huge.obj"), "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
@@ -174,12 +176,22 @@ fn what_of_a_model_cannot_be_read_is_told() {
             "huge.obj: its coordinates reach 1e30 m, at most 1e8 m can be seen (scale it down",
             false,
         ),
-        (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder", false),
+        (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder (give --allow-outside", false),
         (
             &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],
-            "../square.bin, which is not in the model's folder",
+            "names ../square.bin, which is not in its folder and cannot be copied with it (make the scene beside it)",
             false,
         ),
+        (&["new", "from/far.gltf", "--allow-outside"], "the scene needs --allow-outside wherever", true),
+        (&["check", "from/far.plica.json"], "1 error", false),
+        (&["check", "from/far.plica.json", "--allow-outside"], "no problems", true),
+        (&["new", "from/out.gltf"], "its picture is not shown: out.gltf: has a part at ../cat.png", true),
+        (
+            &["new", "from/out.gltf", "--allow-outside", "-o", "from/seen.plica.json"],
+            "the scene needs --allow-outside wherever",
+            true,
+        ),
+        (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
         (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
         // A picture by its content, whatever its name.
         (&["new", "cat.obj"], "", true),
@@ -192,6 +204,13 @@ fn what_of_a_model_cannot_be_read_is_told() {
         json!({ "kind": "mesh", "name": "bare", "mesh": "bare" })
     );
     assert_eq!(get(folder.path(), "cat.plica.json", "/layers/0/kind"), json!("picture"));
+    let (told, _) = plica(&at("from"), &["check", "--lenient", "bare.plica.json"], true);
+    assert!(
+        told.contains("meshes.bare.path: warning: bare.gltf: its picture gone.png: there is no such file"),
+        "{told}"
+    );
+    let seen = plica(&at("from"), &["get", "--allow-outside", "seen.plica.json", "images.cat.path"], true);
+    assert_eq!(seen.0, "\"../cat.png\"\n");
     assert!(!at("to/far.gltf").exists() && !at("to/far.plica.json").exists() && !at("lost.plica.json").exists());
 }
 

@@ -238,6 +238,9 @@ impl Parser<'_> {
         }
         match FUNCTIONS.iter().find(|f| f.name == name) {
             Some(function) => self.call(function),
+            None if ["nan", "inf", "infinity"].contains(&name.to_lowercase().as_str()) => {
+                Err(Mistake { what: format!("`{name}` is not a finite number"), ..before })
+            }
             None => Err(Mistake {
                 what: format!("`{name}` is not known here (known: {}, pi, sqrt and the like)", self.variables.names()),
                 ..before
@@ -356,6 +359,7 @@ mod tests {
             ("", 1, "found the end"),
             ("5 5", 3, "operator"),
             ("2*q", 3, "`q` is not known"),
+            ("2*NaN", 3, "`NaN` is not a finite number"),
             ("(1", 3, "`)`"),
             ("1.2.3", 1, "not a number"),
             ("sqrt(1,2)", 10, "takes 1 number, found 2 (here a comma separates"),

@@ -21,6 +21,8 @@ pub struct Mesh {
     pub degenerate: usize,
     /// Whether what its triangles face is its inside, wherever that is not quite closed.
     pub inside_out: bool,
+    /// The file, relative to its own, of the picture that it comes with; `None` if that is in its own, or if there is none.
+    pub picture: Option<String>,
 }
 
 /// A corner that triangles share.

@@ -24,7 +24,12 @@ pub enum Kind {
     Any,
     /// A number that is too large for 64 bits of floating point.
     TooLargeNumber,
+    /// Something that does not move, which matters where nothing else does.
+    Still,
 }
+
+/// What to do about a number that is too large.
+pub const LARGEST: &str = "the largest is 1.7e308";
 
 /// Something wrong in a scene: where, what, and how to mend it.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -87,16 +92,20 @@ impl fmt::Display for Problem {
     }
 }
 
-/// `did you mean "this"?` where one is near, else all there are. Long words and long lists, which only a hostile file has,
-/// are not compared.
-pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
+/// The name most like a word, if one is. Long words and long lists, which only a hostile file has, are not compared.
+pub fn like<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 100;
     const MOST: usize = 1000;
-    let comparable = known.clone().take(MOST).filter(|name| name.len().max(word.len()) <= LONGEST);
+    let comparable = known.take(MOST).filter(|name| name.len().max(word.len()) <= LONGEST);
     let scored = comparable.map(|name| (strsim::normalized_damerau_levenshtein(word, name), name));
-    match scored.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((likeness, name)) if likeness >= 0.5 => Some(format!("did you mean {}?", quoted(name))),
-        _ => known.clone().next().map(|_| there_are(known)),
+    scored.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness >= 0.5).map(|(_, name)| name)
+}
+
+/// `did you mean "this"?` where one is near, else all there are.
+pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
+    match like(word, known.clone()) {
+        Some(name) => Some(format!("did you mean {}?", quoted(name))),
+        None => known.clone().next().map(|_| there_are(known)),
     }
 }
 

@@ -39,8 +39,8 @@ impl Files {
         };
         let Some(pattern) = Pattern::parse(path, &ENDINGS, "passes are OpenEXR or PNG files")? else {
             let [number] = numbers else {
-                let what =
-                    format!("{} frames do not fit one file (a pattern such as %04d.exr numbers them)", numbers.len());
+                let cure = "--frames 0 renders the first, a pattern such as %04d.exr numbers them";
+                let what = format!("{} frames do not fit one file ({cure})", numbers.len());
                 return Err(Error::Usage(format!("{}: {what}", path.display())));
             };
             return Ok(Files { places: [(*number, guard.file(path, kind)?)].into(), kind });

@@ -89,6 +89,11 @@ fn in_folder(folder: &Path) -> Result<Found> {
     let mut all: Vec<Series> = series(names.iter().map(String::as_str)).into_iter().filter(shown).collect();
     match all.as_slice() {
         [] => Err(no_series(folder, &names)),
+        [one] if one.numbers.len() * 2 < names.iter().filter(|name| !name.starts_with('.')).count() => {
+            let cure = format!("if they are a clip, name {}", folder.join(&one.pattern).display());
+            let what = format!("holds {} numbered pictures among other files", one.numbers.len());
+            Err(Error::at(folder.display(), what).cure(cure))
+        }
         [_] => Ok(found(folder, all.remove(0))),
         several => {
             let patterns: Vec<&str> = several.iter().map(|one| one.pattern.as_str()).collect();
@@ -155,11 +160,16 @@ mod tests {
 
     #[test]
     fn what_is_no_clip_is_told_with_the_cure() {
-        let folder = folder(&["none/cat.png", "one/0000.png", "two/a1.png", "two/a2.png", "two/b1.png", "two/b2.png"]);
+        let some = ["some/a1.png", "some/a2.png", "some/b.png", "some/c.png", "some/d.png", "some/.hidden.png"];
+        let folder = folder(
+            &[&some[..], &["none/cat.png", "one/0000.png", "two/a1.png", "two/a2.png", "two/b1.png", "two/b2.png"]]
+                .concat(),
+        );
         for (name, told) in [
             ("none", "none: holds no numbered pictures (name them as 0001.png"),
             ("one", "one: holds no two pictures with one name and different numbers; 0000.png alone is no clip"),
             ("nosuch/%04d.png", "nosuch: there is no such folder"),
+            ("some", "some: holds 2 numbered pictures among other files (if they are a clip, name "),
             ("two", "two: holds several clips: a%d.png, b%d.png (name one of them, as "),
             ("two/%04d.png", "two/%04d.png: there is no such file (the first frame would be 0000.png or 0001.png)"),
             ("two/%x.png", "\"%x\" is no frame number (%04d stands for"),

@@ -26,6 +26,7 @@ pub mod profiles;
 pub mod recovery;
 pub mod scene;
 pub mod session;
+pub mod sources;
 pub mod styles;
 pub mod temporary;
 mod through;

@@ -48,22 +48,26 @@ pub fn read(path: &Path, options: &Options) -> Result<Model> {
     let open = || paths::open_named(path);
     let sibling = |name: &str| paths::open(&scene, name, options);
     let place = path.display().to_string();
-    let (mesh, mut notes, _share) = mesh::decode(open()?, &place, limits, &limits.budget(), &sibling)?;
+    let (mesh, mut notes, _share) = mesh::decode(open()?, &place, options, &limits.budget(), &sibling)?;
     let reach = mesh.bounds().map_or(0.0, |(least, most)| least.abs().max(most.abs()).max_element());
     if reach > FARTHEST_M {
         let what = format!("its coordinates reach {reach:e} m, at most {FARTHEST_M:e} m can be seen");
         return Err(Error::at(&place, what).cure("scale it down where it was made, and export it again"));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut beside = mesh::parts(open()?, &name, limits)?;
-    let offered = mesh::pictures(open()?, &name, limits)?;
+    let mut beside = mesh::parts(open()?, &name, options)?;
+    let lost = |error: Error| format!("its picture is not shown: {error}");
+    let offered = mesh::pictures(open()?, &name, options).unwrap_or_else(|error| {
+        notes.push(lost(error));
+        Vec::new()
+    });
     let shown = |picture: &String| picture::decode(sibling(picture)?, picture, limits, &limits.budget()).map(|_| ());
     let picture = match offered.first() {
         Some(_) if mesh.without_uv.is_some() => None,
         Some(picture) => match shown(picture) {
             Ok(()) => Some(picture.clone()),
             Err(error) => {
-                notes.push(format!("its picture is not shown: {error}"));
+                notes.push(lost(error));
                 None
             }
         },

@@ -114,7 +114,7 @@ fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found
 /// The files that a model names. What is wrong with it shows when it is loaded.
 fn parts(file: &mut File, path: &str, options: &Options) -> Vec<String> {
     let copy = file.rewind().and_then(|()| file.try_clone());
-    copy.ok().and_then(|file| mesh::parts(file, path, &options.limits).ok()).unwrap_or_default()
+    copy.ok().and_then(|file| mesh::parts(file, path, options).ok()).unwrap_or_default()
 }
 
 /// The reason alone: the reader knows the path.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Options, disk};
 use crate::base::error::{Error, Result};
+use crate::base::problem;
 use crate::base::system::beneath;
 
 /// Where a path written in a scene points: relative to the scene's folder.
@@ -126,9 +127,23 @@ fn explain(place: &str, path: &Path, error: io::Error) -> Error {
     match error.kind() {
         io::ErrorKind::CrossesDevices => Error::at(place, "leads out of the scene's folder")
             .cure("copy the file beside the scene, or give --allow-outside"),
-        io::ErrorKind::NotFound => no_layer(place, path).unwrap_or_else(|| Error::at(place, "there is no such file")),
+        io::ErrorKind::NotFound => {
+            no_layer(place, path).unwrap_or_else(|| Error::at(place, "there is no such file").cure(how_to_find(path)))
+        }
         _ => Error::at(place, format!("cannot be opened: {error}")),
     }
+}
+
+/// What to do about a file that is not there: its folder may be missing, or another be meant.
+fn how_to_find(path: &Path) -> String {
+    let folder = disk::folder_of(path);
+    let Ok(entries) = std::fs::read_dir(folder) else { return format!("there is no folder {}", folder.display()) };
+    let names: Vec<String> = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
+    let like = problem::like(&wanted, lower.iter().map(String::as_str));
+    let name = like.and_then(|like| names.get(lower.iter().position(|name| name == like)?));
+    name.map_or("put it there, or mend the name".to_owned(), |name| format!("did you mean {name}?"))
 }
 
 /// A path as typed by a person: a leading `~` is the home folder, as in a shell.
@@ -188,7 +203,9 @@ mod tests {
             ("/dev/zero", Some("--allow-outside"), Some("a device")),
             ("sub", Some("a folder"), Some("a folder")),
             ("fifo", Some("a FIFO"), Some("a FIFO")),
-            ("no.png", Some("no such file"), Some("no such file")),
+            ("no.png", Some("no such file (put it there, or mend"), Some("no such file (put it there, or mend")),
+            ("sub/Cat.jpg", Some("no such file (did you mean cat.png?)"), Some("no such file (did you mean cat.png?)")),
+            ("gone/a.png", Some("no such file (there is no folder "), Some("no such file (there is no folder ")),
             ("no.exr#layer", Some("no such file"), Some("no such file")),
             ("sub/b.GLB#12", None, None),
             ("sub/b.GLB#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),

@@ -28,6 +28,9 @@ const END: &[u8] = b"END\n";
 const CONTAINERS: &str = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,gif,apng,mpeg,mpegts,mpegvideo,ogg,flv,ivf,\
                           yuv4mpegpipe,asf,h264,hevc,m4v,mxf,nut,dv";
 
+/// What to do about a video that ffmpeg cannot read.
+const OTHERWISE: &str = "copy it again from where it came, or name numbered pictures: falls/%04d.jpg";
+
 /// The most bytes of what ffmpeg says.
 const MOST_SAID: usize = 4096;
 
@@ -179,15 +182,12 @@ impl Frames<'_> {
             let mut source = BufReader::new(output);
             while matches!(self.next(&mut source, copy)?, Next::Frame) {}
         }
-        let said = ffmpeg.end().map_err(|what| Error::at(place, format!("ffmpeg: {what}")))?;
+        let said = ffmpeg.end().map_err(|what| Error::at(place, format!("ffmpeg: {what}")).cure(OTHERWISE))?;
         match (self.all.len() as u64, wanted.count.map(u64::from)) {
             (0, _) if said.is_empty() => {
                 Err(Error::at(place, format!("has no frame {}", wanted.first)).cure("lower first"))
             }
-            (0, _) => {
-                Err(Error::at(place, format!("ffmpeg: {said}"))
-                    .cure("name a video, or numbered pictures: falls/%04d.jpg"))
-            }
+            (0, _) => Err(Error::at(place, format!("ffmpeg: {said}")).cure(OTHERWISE)),
             (found, Some(count)) if found < count => {
                 let what = format!("has {found} frames from number {} on, and {count} are wanted", wanted.first);
                 Err(Error::at(place, what).cure("lower count, or leave it out"))

@@ -77,7 +77,8 @@ pub fn replace_into(to: &Path, name: &str, bytes: &[u8]) -> Result<()> {
     write_atomic(&made_within(to, name)?, bytes)
 }
 
-fn is_below(name: &str) -> bool {
+/// Whether a name means a file of a folder or below.
+pub fn is_below(name: &str) -> bool {
     Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
 }
 

@@ -63,7 +63,8 @@ pub fn ascending(what: &str, numbers: impl Iterator<Item = f64>, path: impl Fn(u
     let pairs = numbers.windows(2).enumerate().filter(|(_, pair)| pair[1] <= pair[0]);
     pairs
         .map(|(i, pair)| {
-            Problem::error(path(i + 1), format!("{what} must ascend: {} does not come after {}", pair[1], pair[0]))
+            let message = format!("{what} must ascend: {} does not come after {}", pair[1], pair[0]);
+            Problem::error(path(i + 1), message).hint("put them in order, or change this one")
         })
         .collect()
 }

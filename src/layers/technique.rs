@@ -58,6 +58,16 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
+    /// Whether the layer changes while the time runs, as far as the document tells.
+    fn moves(&self) -> bool {
+        false
+    }
+
+    /// A warning with the reason, if nothing of the layer is in the frame at any of these moments.
+    fn unseen(&self, _moments: &[Moment], _materials: &Materials) -> Option<Problem> {
+        None
+    }
+
     /// The problems that only show when the layer is made, which takes as long; asked for where there are no others.
     fn check_made(&self, _making: &Making) -> Vec<Problem> {
         Vec::new()

@@ -10,8 +10,9 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
 use crate::files::clips::Found;
 use crate::files::materials::{self, Cache};
-use crate::files::{self, clips, disk, models, paths, picture, write};
-use crate::scene::{Document, Start, check};
+use crate::files::{self, clips, disk, models, paths, picture, sources, write};
+use crate::layers::parts::materials::List;
+use crate::scene::{Document, Start, address, check};
 
 /// Make a scene from pictures, models and clips
 #[derive(clap::Args)]
@@ -39,7 +40,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 
 /// The scene file that belongs to a picture, to a layer of it, to a model or to a clip: beside it, with its name.
 pub fn beside(source: &Path) -> PathBuf {
-    if clips::is_one(source) {
+    if sources::list_of(source) == List::Clips {
         return source.with_file_name(format!("{}.plica.json", clip_called(source)));
     }
     let file = source.to_str().map_or(source, |path| Path::new(paths::file_of(path)));
@@ -76,7 +77,12 @@ pub fn create(path: &Path, sources: &[PathBuf], options: &files::Options) -> Res
         making.add(source)?;
     }
     let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
-    let document = making.start.document().map_err(refused)?;
+    let materials = making.start.known();
+    let document = making.start.document_under(options.rules()).map_err(refused)?;
+    let odd = check::check_materials(document.scene(), &materials).into_iter();
+    let odd = odd.filter(|problem| problem.severity == Severity::Warning);
+    let place = path.display();
+    making.notes.extend(odd.map(|odd| format!("{place}: {}", address::of_problem(&document, &odd))));
     let folder = disk::folder_of(path);
     making.copies.iter().try_for_each(|(file, name)| write::copy_into(file, folder, name))?;
     write::write_new(path, document.to_text().as_bytes())?;
@@ -109,7 +115,8 @@ struct Making<'a> {
 
 impl Making<'_> {
     fn add(&mut self, source: &Path) -> Result<()> {
-        if clips::is_one(source) {
+        let list = sources::list_of(source);
+        if list == List::Clips {
             return self.add_clip(source);
         }
         let named = file_name(source)?;
@@ -117,7 +124,7 @@ impl Making<'_> {
         let (name, place) = (called(source), source.display());
         let note = |note: String| format!("{place}: {note}");
         let start = std::mem::take(&mut self.start);
-        self.start = if models::is_one(source) {
+        self.start = if list == List::Meshes {
             let model = models::read(source, self.options)?;
             self.notes.extend(model.notes.into_iter().map(note));
             files.splice(0..0, model.beside);
@@ -135,7 +142,15 @@ impl Making<'_> {
         }
         if !same_folder(source, self.path) {
             let folder = disk::folder_of(source);
+            if let Some(outside) = files.iter().find(|file| !write::is_below(file)) {
+                let what = format!("names {outside}, which is not in its folder and cannot be copied with it");
+                return Err(Error::at(source.display(), what).cure("make the scene beside it"));
+            }
             self.copies.extend(files.into_iter().map(|file| (folder.join(&file), file)));
+        } else if files.iter().any(|file| !write::is_below(file)) {
+            self.notes.push(format!(
+                "{place}: names files outside its folder: the scene needs --allow-outside wherever it is opened"
+            ));
         }
         Ok(())
     }

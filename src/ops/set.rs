@@ -342,7 +342,7 @@ pub fn parse(setting: &str) -> Result<(&str, Value)> {
     match crate::scene::json::parse(value) {
         Ok(json) => Ok((&setting[..at], json)),
         Err(problem) if problem.kind == problem::Kind::TooLargeNumber => {
-            Err(Error::at(&setting[..at], format!("{value} is not a finite number")))
+            Err(Error::at(&setting[..at], format!("{value} is too large a number")).cure(problem::LARGEST))
         }
         Err(_) => Ok((&setting[..at], Value::from(value))),
     }

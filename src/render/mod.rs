@@ -3,8 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use glam::DVec3;
 use kurbo::Vec2;
 
+use crate::base::geometry::farther;
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
@@ -12,7 +14,8 @@ use crate::layers::parts::moment::{CENTRE, Moment};
 use crate::layers::ready::{Making, Ready, Texture, Textures};
 use crate::layers::space::camera::Camera;
 use crate::layers::timeline::Timeline;
-use crate::scene::{FRAME, Scene};
+use crate::scene::Scene;
+pub use crate::scene::sight::frame_size;
 
 pub mod bands;
 pub mod cpu;
@@ -181,13 +184,8 @@ fn textures(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> R
     Ok(made)
 }
 
-/// Width and height of a frame: those of the scene, else those of the first picture that a layer gives it, else
-/// 1280 x 720.
-pub fn frame_size(scene: &Scene, materials: &Materials) -> (usize, usize) {
-    if let Some([width, height]) = scene.size {
-        return (width as usize, height as usize);
-    }
-    let named = scene.layers.iter().find_map(|layer| layer.technique().frame_of());
-    let picture = named.and_then(|name| materials.pictures.get(name));
-    picture.map_or(FRAME, |picture| (picture.width(), picture.height()))
+/// How far all layers in space reach along each of these ways of the world, at so many times of the timeline.
+pub fn reach(layers: &[Arc<dyn Ready>], times: u32, ways: &[DVec3]) -> Option<Vec<f64>> {
+    let times = (0..times).map(|k| f64::from(k) / f64::from(times));
+    times.flat_map(|t| layers.iter().filter_map(move |layer| layer.reach(t, ways))).reduce(farther)
 }

@@ -33,11 +33,20 @@ pub fn all() -> impl Iterator<Item = &'static Pass> {
     PASSES.into_iter().chain(KINDS.iter().flat_map(|kind| kind.passes))
 }
 
-/// The name of the pass after one, as [`Asked::parse`] reads it, or after the frame: one after the other, then the frame.
+/// The names of the passes, besides the frame, in which a scene has something.
 #[cfg(feature = "window")]
-pub fn next(now: Option<&str>) -> &'static str {
-    let name = now.and_then(|now| now.split(':').next()).unwrap_or(COLOR.name);
-    all().skip_while(|pass| pass.name != name).nth(1).map_or(COLOR.name, |pass| pass.name)
+pub fn shown(scene: &Scene) -> Vec<&'static str> {
+    all().filter(|pass| **pass != COLOR && is_shown(pass, None, scene)).map(|pass| pass.name).collect()
+}
+
+/// The pass of these that is so many places after one, as [`Asked::parse`] reads it, or after the frame: one after the other,
+/// then the frame.
+#[cfg(feature = "window")]
+pub fn step(passes: &[&'static str], now: Option<&str>, by: isize) -> &'static str {
+    let name = now.and_then(|now| now.split(':').next());
+    let at = passes.iter().position(|pass| Some(*pass) == name).map_or(0, |at| at + 1);
+    let to = (at as isize + by).rem_euclid(passes.len() as isize + 1);
+    (to as usize).checked_sub(1).map_or(COLOR.name, |to| passes[to])
 }
 
 /// The table of passes, one per line.

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Scene, references, shape};
+use super::{Scene, references, shape, sight};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::pointer::Pointer;
-use crate::base::problem::{Problem, Severity};
+use crate::base::problem::{Kind, Problem, Severity};
 use crate::layers::parts::materials::{List, Materials, Of};
 use crate::layers::parts::moment::Space;
 use crate::layers::technique::{Checked, Technique};
@@ -138,24 +138,26 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems.extend(names(scene));
     problems.extend(paths(scene, rules));
     problems.extend(references::problems(scene));
+    if moves(scene) {
+        problems.retain(|problem| problem.kind != Kind::Still);
+    }
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems
+}
+
+/// Whether something in the scene changes while the time runs.
+fn moves(scene: &Scene) -> bool {
+    let turns = scene.camera.as_ref().is_some_and(|camera| camera.turn != 0.0 || camera.keys.len() > 1);
+    let in_space = |layer: &Layer| layer.technique().kind().space == Space::World;
+    scene.layers.iter().any(|layer| layer.technique().moves() || turns && in_space(layer))
 }
 
 /// The problems with which a scene can be open and edited, but not shown. Some show only with the pictures and fields:
 /// outlines outside their picture, masks and fields of another size; those that could not be loaded are skipped.
 pub fn check_materials(scene: &Scene, materials: &Materials) -> Vec<Problem> {
     let mut problems = below_layers(scene, |layer| layer.check_materials(materials));
-    problems.extend(unseen(scene));
+    problems.extend(sight::problems(scene, materials));
     problems
-}
-
-/// A layer in space that no camera sees.
-fn unseen(scene: &Scene) -> Option<Problem> {
-    let in_space = |layer: &Layer| layer.technique().kind().space == Space::World;
-    let lost = scene.layers.iter().position(in_space).filter(|_| scene.camera.is_none())?;
-    let problem = Problem::error(format!("/layers/{lost}"), "the layer is in space, and the scene has no camera");
-    Some(problem.hint("set camera={}, or in the editor :camera fit, which sees everything"))
 }
 
 fn below_layers(scene: &Scene, check: impl Fn(&dyn Technique) -> Vec<Problem>) -> Vec<Problem> {

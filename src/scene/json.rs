@@ -9,7 +9,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 use serde_json::{Map, Value};
 
 pub use crate::base::change::same;
-use crate::base::problem::{Kind, Problem};
+use crate::base::problem::{Kind, LARGEST, Problem};
 
 /// How deep objects and lists may be nested.
 pub const MAX_DEPTH: usize = 64;
@@ -51,7 +51,7 @@ pub fn parse(text: &str) -> Result<Value, Problem> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let value = Seed { depth: 0 }.deserialize(&mut deserializer);
-    value.and_then(|value| deserializer.end().map(|()| value)).map_err(|error| place(&error))
+    value.and_then(|value| deserializer.end().map(|()| value)).map_err(|error| place(&error, text))
 }
 
 /// Messages of serde_json, and the same in plainer words: its `classify` does not tell them apart.
@@ -66,14 +66,25 @@ const PLAINER: [(&str, &str); 6] = [
 
 const OUT_OF_RANGE: &str = "number out of range";
 
-fn place(error: &serde_json::Error) -> Problem {
+fn place(error: &serde_json::Error, text: &str) -> Problem {
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
     let what = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
     let plainer = PLAINER.iter().find(|(theirs, _)| *theirs == what).map_or(what, |(_, ours)| ours);
-    let kind = if what == OUT_OF_RANGE { Kind::TooLargeNumber } else { Kind::Any };
-    Problem { kind, ..Problem::error("", format!("line {line}, column {column}: {plainer}")) }
+    let at = |what: &str| Problem::error("", format!("line {line}, column {column}: {what}"));
+    if what == OUT_OF_RANGE {
+        return Problem { kind: Kind::TooLargeNumber, ..at(plainer).hint(LARGEST) };
+    }
+    let rest = text.lines().nth(line.saturating_sub(1)).and_then(|line| line.get(column.saturating_sub(1)..));
+    let word = |word: &&&str| rest.is_some_and(|rest| rest.starts_with(**word));
+    match NO_NUMBERS.iter().find(word) {
+        Some(word) => at(&format!("{word} is no number in JSON")).hint("write a finite number"),
+        None => at(plainer),
+    }
 }
+
+/// What other formats write where there is no number.
+const NO_NUMBERS: [&str; 4] = ["NaN", "nan", "Infinity", "inf"];
 
 /// Reads one value at a given depth.
 #[derive(Clone, Copy)]
@@ -286,7 +297,8 @@ mod tests {
         for (text, expected) in [
             ("{ \"a\": 1,\n  \"a\": 2 }", "line 2, column 5: \"a\" appears twice in one object"),
             ("[1e999]", "line 1, column 6: the number is too large"),
-            ("{ \"a\": NaN }", "line 1, column 8: expected a value: a number, a text in quotes, a list, an object"),
+            ("{ \"a\": NaN }", "line 1, column 8: NaN is no number in JSON"),
+            ("{ \"a\":\n x }", "line 2, column 2: expected a value: a number, a text in quotes, a list, an object"),
             ("{ \"a\": 1 } x", "line 1, column 12: trailing characters"),
             ("", "line 1, column 0: the text ends where a value was expected"),
         ] {

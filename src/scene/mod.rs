@@ -30,6 +30,7 @@ mod references;
 pub mod schema;
 mod shape;
 pub mod shots;
+pub mod sight;
 mod start;
 pub mod styles;
 pub mod words;

@@ -93,11 +93,7 @@ impl Walk {
         }
         match (shape.body(), value) {
             (Body::Number { integer }, Value::Number(number)) => {
-                if integer && number.is_f64() {
-                    self.report(format!("expected a whole number, found {number}"), None);
-                } else {
-                    self.in_range(number, shape.range(), shape.unit());
-                }
+                self.number(number, integer, shape.range(), shape.unit());
             }
             (Body::Text, Value::String(text)) if text.chars().count() < shape.min_length() => {
                 self.report("is empty".into(), Some(format!("expected {}", expected(shape))));
@@ -110,10 +106,7 @@ impl Walk {
             (Body::Numbers(count), Value::Array(items)) if items.len() == count => {
                 let (range, whole) = (shape.range(), shape.has_whole_numbers());
                 self.items(items, |walk, item| match item {
-                    Value::Number(number) if whole && number.is_f64() => {
-                        walk.report(format!("expected a whole number, found {number}"), None);
-                    }
-                    Value::Number(number) => walk.in_range(number, range, shape.unit()),
+                    Value::Number(number) => walk.number(number, whole, range, shape.unit()),
                     _ => walk.report(format!("expected a number, found {}", found(item)), None),
                 });
             }
@@ -135,12 +128,20 @@ impl Walk {
         }
     }
 
-    fn in_range(&mut self, written: &Number, range: Option<(f64, f64)>, unit: Option<&str>) {
-        let (Some((min, max)), Some(number)) = (range, written.as_f64()) else { return };
-        if !(min..=max).contains(&number) {
-            let side = if number < min { "small" } else { "large" };
-            let range = range_text(range, unit).unwrap_or_default();
-            self.report(format!("{written} is too {side}: {range}"), None);
+    fn number(&mut self, written: &Number, whole: bool, range: Option<(f64, f64)>, unit: Option<&str>) {
+        let Some(number) = written.as_f64() else { return };
+        match range {
+            Some(range @ (min, max)) if !(min..=max).contains(&number) => {
+                let side = if number < min { "small" } else { "large" };
+                let range = range_text(Some(range), unit).unwrap_or_default();
+                self.report(format!("{written} is too {side}: {range}"), None);
+            }
+            _ if whole && written.is_f64() => {
+                let hint =
+                    (number.fract() == 0.0 && number.abs() < 1e18).then(|| format!("write it as {}", number as i64));
+                self.report(format!("expected a whole number, found {written}"), hint);
+            }
+            _ => {}
         }
     }
 

@@ -1,10 +1,14 @@
 //! A new scene: a layer for each picture, mesh and clip, made by the techniques that can start from one, and a camera that
 //! sees all meshes.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 
 use super::build::unique_name;
+use super::check::Rules;
 use super::{Document, FRAME, VERSION};
 use crate::base::geometry::farther;
 use crate::base::maths;
@@ -12,7 +16,7 @@ use crate::base::mesh::Mesh;
 use crate::base::number;
 use crate::base::problem::Problem;
 use crate::layers::KINDS;
-use crate::layers::parts::materials::List;
+use crate::layers::parts::materials::{List, Materials};
 use crate::layers::parts::moment::Space;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::fit;
@@ -30,7 +34,7 @@ pub struct Start {
     layers: Vec<Value>,
     frame: Option<(usize, usize)>,
     /// What is to be seen.
-    meshes: Vec<Mesh>,
+    meshes: BTreeMap<String, Arc<Mesh>>,
     /// Whether a layer is in space.
     in_space: bool,
     /// See [`Start::fitted`].
@@ -52,7 +56,7 @@ impl Start {
     pub fn mesh(mut self, name: &str, path: &str, known: Option<Mesh>, surface: Option<(&str, &str)>) -> Start {
         let mesh = self.put(List::Meshes, name, json!({ "path": path }));
         let image = surface.map(|(name, path)| self.image(name, path));
-        self.meshes.extend(known);
+        self.meshes.extend(known.map(|known| (mesh.clone(), Arc::new(known))));
         self.layer(List::Meshes, &Shown { name: &mesh, image: image.as_deref(), ..Shown::default() });
         self
     }
@@ -71,6 +75,11 @@ impl Start {
         self
     }
 
+    /// What is known of the meshes, by the names that they have in it.
+    pub fn known(&self) -> Materials {
+        Materials { meshes: self.meshes.clone(), ..Materials::default() }
+    }
+
     /// What the last layer has that one of something whose size is not known would not have, as JSON.
     pub fn fitted(&self) -> Option<&str> {
         self.fitted.as_deref()
@@ -80,14 +89,22 @@ impl Start {
     ///
     /// # Errors
     /// If what is in it is no scene: a path that none can have, for example.
-    pub fn document(mut self) -> Result<Document, Vec<Problem>> {
+    pub fn document(self) -> Result<Document, Vec<Problem>> {
+        self.document_under(Rules::default())
+    }
+
+    /// The scene under other rules.
+    ///
+    /// # Errors
+    /// As [`Start::document`].
+    pub fn document_under(mut self, rules: Rules) -> Result<Document, Vec<Problem>> {
         let mut scene = Map::from_iter([("plica".to_owned(), VERSION.into())]);
         if self.in_space {
             scene.insert("camera".into(), camera(&self.meshes, self.frame.unwrap_or(FRAME)));
         }
         scene.extend(List::NAMED.iter().filter_map(|list| self.lists.remove_entry(list.words().0)));
         scene.insert("layers".into(), self.layers.into());
-        Document::from_json(scene.into())
+        Document::from_json_under(scene.into(), rules)
     }
 
     fn image(&mut self, name: &str, path: &str) -> String {
@@ -124,8 +141,8 @@ impl Start {
 }
 
 /// A camera that sees all of these meshes, in short numbers.
-fn camera(meshes: &[Mesh], frame: (usize, usize)) -> Value {
-    let reach = |ways: &[DVec3]| meshes.iter().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
+fn camera(meshes: &BTreeMap<String, Arc<Mesh>>, frame: (usize, usize)) -> Value {
+    let reach = |ways: &[DVec3]| meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
     let fitted = fit(&reach, [BACK, DVec3::Y], Camera::default().fov, frame);
     let Some([position, target]) = fitted else { return json!({}) };
     let distance = position.distance(target);

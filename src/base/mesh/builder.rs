@@ -172,7 +172,7 @@ impl Builder {
         let without_uv = |corners: &[u32; 3]| corners.iter().any(|&at| self.chain[at as usize].uv == NONE);
         let without_uv = self.triangles.iter().position(without_uv);
         let degenerate = self.triangles.iter().filter(|corners| facing(self.places(corners)).is_none()).count();
-        let mut mesh = Mesh { vertices, triangles: self.triangles, without_uv, degenerate, inside_out: false };
+        let mut mesh = Mesh { vertices, triangles: self.triangles, without_uv, degenerate, ..Mesh::default() };
         mesh.inside_out = mesh.is_inside_out();
         let mut share = self.share.and(more);
         share.shrink(mesh.bytes());

@@ -124,7 +124,8 @@ impl Target {
         match (FORMATS.iter().find(|f| f.extensions.contains(&named)), numbers.len()) {
             (Some(format), _) => Ok(Target(Goal::File(guard.file(path, format.kind)?, format))),
             (None, n) if extension == "png" => Err(Error::Usage(format!(
-                "{place}: {n} frames do not fit one PNG (a pattern such as %04d.png numbers them, .apng animates them)"
+                "{place}: {n} frames do not fit one PNG (--frames 0 renders the first, a pattern such as %04d.png numbers them, .apng \
+                 animates them)"
             ))),
             _ => {
                 let what = format!("{place}: the extension names no format; these do:\n{}", formats::table());

@@ -114,14 +114,14 @@ impl Sources<'_> {
             Ok((found.picture, found.notes, share))
         };
         allowed.expect(rest.len());
-        let load = |path: &String| {
-            let loaded = one(path, &like_first);
+        let load = |(before, path): (usize, &String)| {
+            let loaded = one(path, &like_first).map_err(|error| frame_missing(error, before + 1));
             allowed.progress.iter().for_each(|progress| progress.done(1));
             // What was read before, as the first of another clip, say, has not been compared.
             loaded.and_then(|frame| same_size(path, (frame.value.width(), frame.value.height()), size).map(|()| frame))
         };
         let mut all = vec![(self.key(first), Ok(start))];
-        all.par_extend(rest.par_iter().map(|path| (self.key(path), load(path))));
+        all.par_extend(rest.par_iter().enumerate().map(|(i, path)| (self.key(path), load((i, path)))));
         notes(named, paths.iter().zip(all.iter().map(|(_, frame)| frame)), problems);
         all
     }
@@ -174,8 +174,19 @@ fn same_size(place: &str, found: (usize, usize), first: (usize, usize)) -> Resul
 /// What to do if already the first frame is not there.
 fn first_missing(error: Error, clip: &scene::Clip) -> Error {
     match error {
-        Error::Failed { place, what, cure: None } if what.ends_with("no such file") => {
+        Error::Failed { place, what, .. } if what.ends_with("no such file") => {
             let cure = format!("the clip begins with number {}: if others are there, set first", clip.first);
+            Error::Failed { place, what, cure: Some(cure) }
+        }
+        other => other,
+    }
+}
+
+/// What to do if a frame after the first is not there, of a clip that counts on it; `before` it are others.
+fn frame_missing(error: Error, before: usize) -> Error {
+    match error {
+        Error::Failed { place, what, .. } if what.ends_with("no such file") => {
+            let cure = format!("lower the clip's count to {before}, or put the frame there");
             Error::Failed { place, what, cure: Some(cure) }
         }
         other => other,

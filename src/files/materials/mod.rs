@@ -140,9 +140,16 @@ impl Sources<'_> {
         let stop = cache.stop.clone();
         let progress = cache.progress.take();
         let limits = &self.options.limits;
-        let allowed = Allowed { limits, budget: &budget, stop: stop.as_deref(), progress: progress.as_deref() };
+        let allowed = Allowed {
+            options: self.options,
+            limits,
+            budget: &budget,
+            stop: stop.as_deref(),
+            progress: progress.as_deref(),
+        };
         let pictures = self.load(&named::pictures(scene), allowed, &decode_picture, &mut cache.pictures, &mut problems);
         let meshes = self.load(&named::meshes(scene), allowed, &decode_mesh, &mut cache.meshes, &mut problems);
+        self.check_pictures(scene, &meshes, &mut problems);
         let fields = self.load(&named::fields(scene), allowed, &decode_field, &mut cache.fields, &mut problems);
         let clips = self.clips(scene, allowed, &mut cache.clips, &mut problems);
         let mut materials = Materials { pictures, meshes, fields, clips, stop, budget, ..Materials::default() };
@@ -150,6 +157,25 @@ impl Sources<'_> {
         masks::lay(scene, &mut materials, &mut cache.masks, &mut problems);
         problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
         (materials, problems)
+    }
+
+    /// Warns of models whose own picture is not there, where the scene does not name that itself.
+    fn check_pictures(&self, scene: &Scene, meshes: &BTreeMap<String, Arc<Mesh>>, problems: &mut Vec<Problem>) {
+        // Only what is named goes to other machines.
+        if matches!(self.place, Place::Copies(_)) {
+            return;
+        }
+        for named in named::meshes(scene) {
+            let mesh = meshes.get(named.key).filter(|mesh| mesh.without_uv.is_none());
+            let Some(picture) = mesh.and_then(|mesh| mesh.picture.as_deref()) else { continue };
+            let path = super::paths::sibling(named.path, picture);
+            let is_named = scene.images.values().any(|image| image.path == path);
+            if let Some(error) = self.open(&path).err().filter(|_| !is_named) {
+                let Problem { message, hint, .. } = problem(&named, error);
+                let told = Problem::warning(&named.at, format!("{}: its picture {message}", named.path));
+                problems.push(Problem { hint, ..told });
+            }
+        }
     }
 
     /// The key of a file in the cache.
@@ -255,6 +281,7 @@ impl Sources<'_> {
 /// What loading may consume, the flag that cancels it, and how far it is.
 #[derive(Clone, Copy)]
 struct Allowed<'a> {
+    options: &'a Options,
     limits: &'a Limits,
     budget: &'a Budget,
     stop: Option<&'a AtomicBool>,
@@ -272,7 +299,7 @@ impl Allowed<'_> {
 type Decode<'a, T> = &'a (dyn Fn(File, &str, Allowed, mesh::Opener) -> Result<(T, Vec<String>, Share)> + Sync);
 
 fn decode_mesh(file: File, place: &str, allowed: Allowed, sibling: mesh::Opener) -> Result<(Mesh, Vec<String>, Share)> {
-    mesh::decode(file, place, allowed.limits, allowed.budget, sibling)
+    mesh::decode(file, place, allowed.options, allowed.budget, sibling)
 }
 
 fn decode_picture(file: File, place: &str, allowed: Allowed, _: mesh::Opener) -> Result<(Picture, Vec<String>, Share)> {

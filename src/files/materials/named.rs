@@ -100,7 +100,7 @@ fn model(
     let file = files::paths::open(scene_path, path, options).ok()?;
     let stamp = Stamp::of(&file).ok()?;
     let known = before.get(path).filter(|(old, _)| *old == stamp).cloned();
-    Some(known.unwrap_or_else(|| (stamp, mesh::parts(file, path, &options.limits).unwrap_or_default())))
+    Some(known.unwrap_or_else(|| (stamp, mesh::parts(file, path, options).unwrap_or_default())))
 }
 
 /// The files that `scene` names, as the paths written in it, without those that are not there yet.

@@ -4,8 +4,8 @@
 
 use std::fs::File;
 
-use super::Limits;
 use super::picture::kinds;
+use super::{Limits, Options};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
@@ -61,18 +61,20 @@ pub fn is_foreign(name: &str) -> bool {
 pub fn decode(
     file: File,
     place: &str,
-    limits: &Limits,
+    options: &Options,
     budget: &Budget,
     sibling: Opener,
 ) -> Result<(Mesh, Vec<String>, Share)> {
+    let Options { limits, allow_outside: outside } = options;
     let (kind, bytes, share) = whole(file, place, limits, budget)?;
-    let (builder, mut notes) = match kind {
-        Kind::Obj => obj::read(&bytes, place, limits, budget)?,
-        Kind::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling })?,
+    let (builder, mut notes, picture) = match kind {
+        Kind::Obj => obj::read(&bytes, place, limits, budget).map(|(builder, notes)| (builder, notes, None))?,
+        Kind::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling, outside: *outside })?,
     };
     // The file is not kept beside the mesh.
     drop((bytes, share));
     let (mesh, share) = builder.finish()?;
+    let mesh = Mesh { picture, ..mesh };
     notes.extend(unseen(&mesh));
     Ok((mesh, notes, share))
 }
@@ -82,12 +84,13 @@ pub fn decode(
 ///
 /// # Errors
 /// As [`decode`], as far as what it lists shows.
-pub fn pictures(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
+pub fn pictures(file: File, place: &str, options: &Options) -> Result<Vec<String>> {
+    let Options { limits, allow_outside: outside } = options;
     let budget = &limits.budget();
     let (kind, bytes, _share) = whole(file, place, limits, budget)?;
     match kind {
         Kind::Obj => Ok(Vec::new()),
-        Kind::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone }),
+        Kind::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
 }
 
@@ -95,12 +98,13 @@ pub fn pictures(file: File, place: &str, limits: &Limits) -> Result<Vec<String>>
 ///
 /// # Errors
 /// As [`pictures`].
-pub fn parts(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
+pub fn parts(file: File, place: &str, options: &Options) -> Result<Vec<String>> {
+    let Options { limits, allow_outside: outside } = options;
     let budget = &limits.budget();
     let (kind, bytes, _share) = whole(file, place, limits, budget)?;
     match kind {
         Kind::Obj => Ok(Vec::new()),
-        Kind::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone }),
+        Kind::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
 }
 
@@ -108,7 +112,8 @@ pub fn parts(file: File, place: &str, limits: &Limits) -> Result<Vec<String>> {
 pub(super) fn embedded(file: File, place: &str, image: usize, limits: &Limits) -> Result<File> {
     let budget = &limits.budget();
     let (_, bytes, _share) = whole(file, place, limits, budget)?;
-    gltf::embedded(&bytes, image, With { place, limits, budget, sibling: &alone }, |bytes| {
+    let with = With { place, limits, budget, sibling: &alone, outside: false };
+    gltf::embedded(&bytes, image, with, |bytes| {
         let _share = budget.take(bytes.len() as u64, place)?;
         system::in_memory(bytes).map_err(|error| Error::at(place, error))
     })
@@ -118,10 +123,11 @@ fn alone(path: &str) -> Result<File> {
     Err(Error::at(path, "has pictures of a model in it, which Plica does not read there").cure("export it as .glb"))
 }
 
+/// What a layer of the mesh does not tell: where no triangle has an area, that says so.
 fn unseen(mesh: &Mesh) -> Option<String> {
     let (unseen, all) = (mesh.degenerate, mesh.triangles.len());
     let have = if unseen == 1 { "has no area and is" } else { "have no area and are" };
-    (unseen > 0).then(|| format!("{unseen} of {all} triangles {have} never seen"))
+    (unseen > 0 && unseen < all).then(|| format!("{unseen} of {all} triangles {have} never seen"))
 }
 
 /// The kind of an open file, all of it, and the memory that it takes. What is no mesh is not read further than to where

@@ -12,7 +12,7 @@ use super::{counts, fold::Fold, needs, outline::Outline};
 use super::{model::PictureLayer, model::Zone, tools::Tool};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
-use crate::base::problem::{Problem, quoted};
+use crate::base::problem::{Kind, Problem, quoted};
 use crate::layers::check as rules;
 use crate::layers::parts::materials::{Materials, Of, Use, What};
 use crate::layers::technique::Checked;
@@ -111,8 +111,9 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
         let hint = "remove either the fold or the sampler";
         problems.push(Problem::error("/fold", "a mask and a sampler image do not go together").hint(hint));
     }
-    if zone.motion.iter().all(|tool| matches!(tool, Tool::StillBorder { .. })) && zone.clip().is_none() {
-        problems.push(Problem::warning("/motion", "nothing moves: no tool gives a jump vector").hint("add a point"));
+    if zone.is_still() {
+        let problem = Problem::warning("/motion", "nothing moves: no tool gives a jump vector").hint("add a point");
+        problems.push(Problem { kind: Kind::Still, ..problem });
     }
     problems.extend(motion(zone));
     if problems.is_empty() {

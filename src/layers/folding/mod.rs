@@ -102,6 +102,10 @@ impl Technique for PictureLayer {
         needs::memory(self)
     }
 
+    fn moves(&self) -> bool {
+        self.zones.iter().any(|zone| !zone.is_still())
+    }
+
     fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
         check::check_materials(self, materials)
     }

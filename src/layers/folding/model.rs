@@ -69,6 +69,11 @@ impl Zone {
         self.sampler.as_ref()?.clip.as_deref()
     }
 
+    /// Whether nothing in it can move: no tool gives a jump vector, and it shows no clip.
+    pub fn is_still(&self) -> bool {
+        self.motion.iter().all(|tool| matches!(tool, Tool::StillBorder { .. })) && self.clip().is_none()
+    }
+
     /// All its anchors, tools in list order.
     pub fn anchors(&self) -> Vec<Anchor> {
         anchors(&self.motion, &self.outline)

@@ -15,6 +15,7 @@ pub mod ready;
 pub mod strokes;
 pub mod surface;
 pub mod synth;
+mod unseen;
 
 use std::sync::Arc;
 
@@ -95,6 +96,15 @@ impl Technique for MeshLayer {
         let odd = materials.meshes.get(&self.mesh).into_iter().flat_map(|mesh| odd::warnings(self, mesh));
         let strokes = strokes.map(|problem| problem.under("/strokes"));
         surface.into_iter().chain(fits).chain(strokes).chain(odd).collect()
+    }
+
+    fn moves(&self) -> bool {
+        let (pose, redrawn) = (&self.pose, self.strokes.as_ref().is_some_and(|own| own.redraw > 0.0));
+        pose.spin != 0.0 || pose.bend.swing * pose.bend.degrees != 0.0 || redrawn
+    }
+
+    fn unseen(&self, moments: &[Moment], materials: &Materials) -> Option<Problem> {
+        unseen::warning(self, materials.meshes.get(&self.mesh)?, moments)
     }
 
     fn check_made(&self, making: &Making) -> Vec<Problem> {

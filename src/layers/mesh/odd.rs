@@ -32,7 +32,7 @@ fn out_of_size(layer: &MeshLayer, mesh: &Mesh) -> Option<Problem> {
     let size = half * layer.pose.scale * 2.0;
     let why = match size {
         0.0 => return None,
-        _ if size < NEAR_M => format!("nothing nearer than {NEAR_M} m is seen, so that it is never large"),
+        _ if size < NEAR_M => format!("the camera sees nothing nearer than {NEAR_M} m, and this stays small"),
         _ if size > MOST_M => format!("no camera stands so far away that it sees more than {MOST_M:e} m"),
         _ => return None,
     };

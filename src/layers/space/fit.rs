@@ -25,6 +25,30 @@ pub fn middle(reach: Reach) -> Option<DVec3> {
     Some(DVec3::new(x - left, y - down, z - back) / 2.0)
 }
 
+/// A ball around something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Its middle.
+    pub middle: DVec3,
+    /// Its radius, in meters.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// The ball around the box along the axes of the world around something.
+    pub fn around(reach: Reach) -> Option<Ball> {
+        let middle = middle(reach)?;
+        let far = reach(&[DVec3::X, DVec3::Y, DVec3::Z])?;
+        let corner = DVec3::from_array(far.try_into().ok()?);
+        Some(Ball { middle, radius: corner.distance(middle) })
+    }
+
+    /// See [`Reach`].
+    pub fn reach(&self, ways: &[DVec3]) -> Option<Vec<f64>> {
+        Some(ways.iter().map(|way| way.dot(self.middle) + way.length() * self.radius).collect())
+    }
+}
+
 /// The position and the target of the camera that looks from the direction `back` and sees all of something, as near as can
 /// be, with a vertical field of view of `fov` degrees, in frames of this width and height.
 ///
@@ -154,5 +178,9 @@ mod tests {
     fn the_middle_is_that_of_the_box() {
         let points = [DVec3::new(1.0, -2.0, 5.0), DVec3::new(3.0, 4.0, 0.0), DVec3::new(1.5, 0.0, 4.9)];
         assert_eq!(middle(&|ways| reach(points.par_iter().copied(), ways)), Some(DVec3::new(2.0, 1.0, 2.5)));
+        let ball = Ball::around(&|ways| reach(points.par_iter().copied(), ways)).unwrap();
+        assert!(points.iter().all(|point| point.distance(ball.middle) <= ball.radius + 1e-9), "{ball:?}");
+        let [position, target] = fit(&|ways| ball.reach(ways), [DVec3::Z, DVec3::Y], 60.0, (9, 9)).unwrap();
+        assert!((target - ball.middle).length() < 1e-9 && position.z > ball.middle.z + ball.radius, "{position}");
     }
 }

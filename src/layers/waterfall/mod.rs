@@ -87,6 +87,10 @@ impl Technique for WaterfallLayer {
         vec![("/sprites".into(), sprites::bytes_of(&self.sprites))]
     }
 
+    fn moves(&self) -> bool {
+        true
+    }
+
     fn check_materials(&self, materials: &Materials) -> Vec<Problem> {
         let sources = synth::sources(self, materials);
         sources.map_or_else(|_| Vec::new(), |sources| check::with_sources(self, &sources))

@@ -50,7 +50,7 @@ pub struct Args {
     /// Render what frames are made from, to .exr files (or .png, to look at); NAME:LAYER renders one layer only
     #[arg(long, value_name = "NAME")]
     pass: Option<String>,
-    /// N x N samples per pixel: smooth edges of folds
+    /// N x N samples per pixel, at most 16 x 16: smooth edges of folds and meshes
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     samples: u32,
     /// Draw with the GPU instead of the reference renderer

@@ -4,7 +4,7 @@
 use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::news::{News, Sink};
 use crate::base::error::{Error, Result};
@@ -227,19 +227,41 @@ impl Drop for Talk {
 
 /// Where replies go: to the editor while there is one.
 #[derive(Clone, Default)]
-struct Outlet(Arc<Mutex<Option<Box<dyn Write + Send>>>>);
+struct Outlet(Arc<Mutex<End>>);
+
+#[derive(Default)]
+struct End {
+    writer: Option<Box<dyn Write + Send>>,
+    /// Where the window looks from, which an editor that comes later has to know.
+    looks: Option<ToEditor>,
+}
+
+impl End {
+    /// A connection that cannot be written to is lost for reading too; the reading thread notices that.
+    fn write(&mut self, message: &ToEditor) {
+        if self.writer.as_mut().is_some_and(|writer| frame::write(writer, message).is_err()) {
+            self.writer = None;
+        }
+    }
+}
 
 impl Outlet {
-    fn set(&self, writer: Option<Box<dyn Write + Send>>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = writer;
+    fn end(&self) -> MutexGuard<'_, End> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A connection that cannot be written to is lost for reading too; the reading thread notices that.
+    fn set(&self, writer: Option<Box<dyn Write + Send>>) {
+        let mut end = self.end();
+        end.writer = writer;
+        end.looks.clone().iter().for_each(|looks| end.write(looks));
+    }
+
     fn send(&self, message: &ToEditor) {
-        let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if writer.as_mut().is_some_and(|writer| frame::write(writer, message).is_err()) {
-            *writer = None;
+        let mut end = self.end();
+        if let ToEditor::Camera(camera) = message {
+            end.looks = camera.is_some().then(|| message.clone());
         }
+        end.write(message);
     }
 
     fn pass_on(&self, replies: &Receiver<ToEditor>, heard: &Sender<Heard>) {
@@ -274,5 +296,42 @@ fn problems(error: Error, scene: &str) -> Vec<Problem> {
             vec![cure.into_iter().fold(problem, Problem::hint)]
         }
         other => vec![Problem::error("", other.to_string())],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::space::camera::Camera;
+
+    #[derive(Clone, Default)]
+    struct Sent(Arc<Mutex<Vec<u8>>>);
+
+    impl Write for Sent {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0.lock().unwrap().write(bytes)
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn an_editor_that_comes_later_hears_where_the_window_looks_from() {
+        let outlet = Outlet::default();
+        for (said, told) in [
+            (Some(ToEditor::Camera(Some(Camera::default()))), Some(ToEditor::Camera(Some(Camera::default())))),
+            (Some(ToEditor::Pointer { x: 1.0, y: 2.0 }), Some(ToEditor::Camera(Some(Camera::default())))),
+            (Some(ToEditor::Camera(None)), None),
+        ] {
+            said.iter().for_each(|said| outlet.send(said));
+            let sent = Sent::default();
+            outlet.set(Some(Box::new(sent.clone())));
+            let bytes = sent.0.lock().unwrap().clone();
+            let heard = frame::read::<ToEditor>(&mut bytes.as_slice(), 1 << 20).unwrap();
+            assert_eq!(heard, told, "{said:?}");
+            outlet.set(None);
+        }
     }
 }

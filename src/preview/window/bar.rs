@@ -90,7 +90,7 @@ fn said(state: &State) -> (String, Color) {
     } else if let Some(why) = &state.no_pass {
         Some(why.clone())
     } else if let Some(pass) = &state.pass {
-        Some(format!("pass {pass}, D shows the next"))
+        Some(format!("pass {pass}, D shows the next, Backspace the one before"))
     } else if state.shows("view-seam") {
         let last = state.timeline.frames() - 1;
         Some(format!("seam: frame {last} against 0, differences x 8"))
@@ -208,7 +208,7 @@ mod tests {
         }
         assert_eq!(first_that_fits(times(&state), 1.0, width), "");
         assert_eq!(right_text(&state, 999.0, width), "200 %   ? keys");
-        state.take_camera(Some(&Default::default()));
+        state.take_camera(Some(&Default::default()), None);
         state.run("orbit-left");
         assert_eq!(right_text(&state, 999.0, width), "200 %   own view, 0 ends it   ? keys");
         assert_eq!(right_text(&state, width("own view, 0 ends it"), width), "own view, 0 ends it");

@@ -42,7 +42,9 @@ impl App {
             "mark-point" => self.tell(command, self.state.marked),
             "select-point" => self.tell(command, self.state.pointed()),
             TRY_NOW => self.reply(ToEditor::Command(command.to_owned())),
-            "next-pass" => self.reply(ToEditor::Command(views::show_pass(self.state.pass.as_deref()))),
+            "next-pass" | "previous-pass" => {
+                self.reply(ToEditor::Command(views::show_pass(self.state.pass.as_deref())))
+            }
             switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
                 self.reply(ToEditor::Command(setting));
             }),

@@ -16,6 +16,7 @@ use crate::base::problem::Problem;
 use crate::preview::Transport as Leading;
 use crate::preview::follow::Update;
 use crate::preview::wire::message::{FromEditor, ToEditor};
+use crate::render::passes;
 
 /// How long to wait for a scene before the window opens with a notice alone.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -73,7 +74,8 @@ impl App {
     fn load(&mut self, ready: &Ready) {
         let (width, height) = ready.synth.size;
         self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
-        self.state.take_camera(ready.synth.stage.seen_by());
+        self.state.take_camera(ready.synth.stage.seen_by(), ready.around);
+        self.state.passes = passes::shown(&ready.scene);
     }
 
     fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, show: Show, reduced: Option<String>) {

@@ -18,6 +18,7 @@ pub fn command(key: &Key, held: ModifiersState, again: bool) -> Option<&'static 
         Key::Named(NamedKey::ArrowDown) => "Down",
         Key::Named(NamedKey::Escape) => "Esc",
         Key::Named(NamedKey::Enter) => "Enter",
+        Key::Named(NamedKey::Backspace) => "Backspace",
         Key::Named(NamedKey::F11) => "F11",
         Key::Named(NamedKey::Space) => "Space",
         Key::Character(text) if text == "=" => "+", // the same key without Shift on many keyboards
@@ -43,6 +44,7 @@ mod tests {
             ("Down", NamedKey::ArrowDown),
             ("Esc", NamedKey::Escape),
             ("Enter", NamedKey::Enter),
+            ("Backspace", NamedKey::Backspace),
             ("F11", NamedKey::F11),
             ("Space", NamedKey::Space),
         ];

@@ -133,6 +133,7 @@ pub fn color_of(mark: &Mark) -> Color {
 mod tests {
     use super::super::viewport::Fit;
     use super::*;
+    use crate::layers::space::marks::{AXES, FRUSTUM, GRID as GROUND};
 
     static LOOK: Look = Look::new("dashed", 0, [240, 160, 40, 255], 1.6).dashed(6.0, 4.0).dots(Dot::Square, 3.0);
     const AREA: Size = Size::new(200.0, 100.0);
@@ -166,6 +167,24 @@ mod tests {
         let cell = mark(Shape::Cell(Point::new(50.3, 50.0), 4.5, [9; 4]), false);
         let canvas = draw(&[cell], &viewport(), AREA, 1.0);
         assert_eq!((canvas.strokes[0].a, canvas.strokes[0].b), ([48.0, 48.0], [53.0, 52.0]));
+    }
+
+    #[test]
+    fn lines_in_space_stand_out_on_light_and_dark() {
+        let line = || Shape::Line { points: vec![Point::new(20.0, 20.0), Point::new(60.0, 20.0)], closed: false };
+        for look in AXES.iter().chain([&GROUND, &FRUSTUM]) {
+            let canvas = draw(&[Mark::new(look, "", line())], &viewport(), AREA, 1.0);
+            let [rim, inner] = [canvas.strokes.first(), canvas.strokes.last()].map(|stroke| stroke.unwrap().color);
+            for ground in [0.0, 56.0, 74.0, 128.0, 255.0] {
+                let over = |color: Color, under: f64| {
+                    let far = |c: usize| (f64::from(color[c]) - under) * f64::from(color[3]) / 255.0;
+                    [0, 1, 2].map(far).into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap()
+                };
+                let edge = over(rim, ground);
+                let seen = edge.abs().max(over(inner, ground + edge).abs());
+                assert!(seen > 60.0, "{} on {ground}: {seen}", look.name);
+            }
+        }
     }
 
     #[test]

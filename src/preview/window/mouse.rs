@@ -239,7 +239,7 @@ mod tests {
     fn in_space_the_middle_button_goes_round_and_shift_moves_along() {
         let (now, scene) = (Instant::now(), Camera::default());
         let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
-        state.take_camera(Some(&scene));
+        state.take_camera(Some(&scene), None);
         let across = [(100.0, 100.0), (150.0, 100.0)];
         for (button, alt, shift) in [
             (Button::Middle, false, false),

@@ -6,13 +6,16 @@ use glam::{DMat3, DVec3};
 use crate::base::maths::pow;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::eye::{Eye, NEAR_M};
+use crate::layers::space::fit::{Ball, fit};
 
 /// The angle between the line of sight and the poles is at least this, in degrees.
 const POLE_DEGREES: f64 = 1.0;
 /// A step makes the distance from the target this many times shorter.
 const NEARER: f64 = 1.15;
-/// How near to the target, and how far from it, it goes, in meters.
+/// How near to the target, and how far from it, it goes, in meters, where it is not known how large is what is seen.
 const DISTANCES_M: (f64, f64) = (2.0 * NEAR_M, 1e6);
+/// The same by the radius of what is seen.
+const OF_RADIUS: (f64, f64) = (2e-3, 1e2);
 
 /// A camera at one time, to be steered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,11 +73,26 @@ impl OwnView {
         self.shift(x * right + y * up);
     }
 
-    /// Goes nearer to the target by steps, never past it; farther if they are negative.
-    pub fn dolly(&mut self, steps: f64) {
-        let distance = (self.distance() * pow(NEARER, -steps)).clamp(DISTANCES_M.0, DISTANCES_M.1);
+    /// Goes nearer to the target by steps, never past it; farther if they are negative. It stays where something of what is
+    /// seen is more than a dot, and outside of the smallest of it.
+    pub fn dolly(&mut self, steps: f64, around: Option<&Ball>) {
+        let (near, far) = around.map_or(DISTANCES_M, |ball| {
+            let away = self.target.distance(ball.middle);
+            ((ball.radius * OF_RADIUS.0).max(DISTANCES_M.0), (ball.radius * OF_RADIUS.1).max(DISTANCES_M.0) + away)
+        });
+        // A view that began elsewhere is not pulled back.
+        let now = self.distance();
+        let distance = (now * pow(NEARER, -steps)).clamp(near.min(now), far.max(now));
         let back = (self.position - self.target).normalize_or(DVec3::Z);
         self.position = self.target + back * distance;
+    }
+
+    /// Goes to where it sees all of it in the same direction, in frames of this width and height.
+    pub fn see(&mut self, around: &Ball, size: (usize, usize)) {
+        let view = [self.position - self.target, self.up];
+        if let Some([position, target]) = fit(&|ways| around.reach(ways), view, self.fov, size) {
+            (self.position, self.target) = (position, target);
+        }
     }
 
     /// Goes to the right and forward on the level, in meters.
@@ -135,14 +153,34 @@ mod tests {
     }
 
     #[test]
-    fn a_dolly_never_passes_the_target() {
+    fn a_dolly_never_passes_the_target_nor_loses_what_is_seen() {
         let mut own = view();
-        own.dolly(1.0);
+        own.dolly(1.0, None);
         assert!((own.distance() * NEARER - view().distance()).abs() < 1e-9);
-        for (steps, distance) in [(1e4, DISTANCES_M.0), (-1e4, DISTANCES_M.1)] {
-            own.dolly(steps);
-            assert!((own.distance() - distance).abs() < 1e-6 * distance, "{own:?}");
-            assert!((way(&own) - way(&view())).length() < 1e-6);
+        let ball = |radius| Ball { middle: view().target, radius };
+        for (around, near, far) in [
+            (None, DISTANCES_M.0, DISTANCES_M.1),
+            (Some(ball(1.0)), DISTANCES_M.0, 100.0),
+            (Some(ball(1000.0)), 2.0, 1e5),
+            (Some(ball(1e-3)), DISTANCES_M.0, view().distance()),
+        ] {
+            for (steps, distance) in [(1e4, near), (-1e4, far)] {
+                let mut own = view();
+                own.dolly(steps, around.as_ref());
+                assert!((own.distance() - distance).abs() < 1e-6 * distance, "{around:?}: {own:?}");
+                assert!((way(&own) - way(&view())).length() < 1e-6);
+            }
         }
+    }
+
+    #[test]
+    fn all_is_seen_in_the_same_direction() {
+        let (mut own, ball) = (view(), Ball { middle: DVec3::new(9.0, 0.0, 0.0), radius: 2.0 });
+        own.walk(500.0, -300.0);
+        own.see(&ball, (200, 100));
+        let seen = own.camera().at(0.0, (200, 100));
+        let middle = seen.project(seen.seen(ball.middle));
+        assert!((middle - seen.middle_px).length() < 1e-6 && (way(&own) - way(&view())).length() < 1e-9, "{own:?}");
+        assert!((5.0..9.0).contains(&own.distance()), "{own:?}");
     }
 }

@@ -6,7 +6,7 @@ use super::state::{Panel, State};
 use super::viewport::Fit;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::views::{self, FIELD};
-use crate::render::passes::next;
+use crate::render::passes;
 
 /// A key moves the border between still and moving by this share of the picture.
 const WIPE_STEP: f64 = 0.05;
@@ -57,7 +57,8 @@ impl State {
             "last-frame" => self.transport.go_to_end(&self.timeline),
             "slower" => self.transport.change_speed(-1),
             "faster" => self.transport.change_speed(1),
-            "next-pass" => self.pass = views::pass_in(&views::show_pass(Some(next(self.pass.as_deref())))).flatten(),
+            "next-pass" => self.step_pass(1),
+            "previous-pass" => self.step_pass(-1),
             "field-closer" => self.field_step = FIELD.step(self.field_step, -1),
             "field-wider" => self.field_step = FIELD.step(self.field_step, 1),
             "wipe-left" => self.move_wipe(-WIPE_STEP),
@@ -91,6 +92,15 @@ impl State {
         if panel || marked || self.words.put_away() { Outcome::Redraw } else { Outcome::Window }
     }
 
+    /// Shows the pass so many places on, of those in which the scene has something.
+    fn step_pass(&mut self, by: isize) {
+        let pass = passes::step(&self.passes, self.pass.as_deref(), by);
+        self.pass = views::pass_in(&views::show_pass(Some(pass))).flatten();
+        if self.passes.is_empty() {
+            self.words.notice = Some("no passes: nothing in the scene is in space".to_owned());
+        }
+    }
+
     fn move_wipe(&mut self, by: f64) {
         self.switches.set("view-wipe", Some(true));
         self.wipe = (self.wipe + by).clamp(0.0, 1.0);
@@ -103,7 +113,6 @@ mod tests {
 
     use super::*;
     use crate::preview::keys::KEYS;
-    use crate::render::passes;
 
     #[test]
     fn every_command_of_the_key_table_is_known() {
@@ -137,19 +146,25 @@ mod tests {
     #[test]
     fn the_passes_are_shown_one_after_the_other() {
         let mut state = State::for_tests();
-        let all: Vec<&str> = passes::all().map(|pass| pass.name).filter(|name| *name != "color").collect();
-        assert_eq!(all[..5], ["depth", "normal", "uv", "object", "shade"]);
-        for pass in all.iter().copied().map(Some).chain([None, Some("depth")]) {
-            assert_eq!(state.run("next-pass"), Outcome::Redraw);
-            assert_eq!(state.pass.as_deref(), pass);
+        for command in ["next-pass", "previous-pass"] {
+            assert_eq!((state.run(command), state.pass.as_deref()), (Outcome::Redraw, None), "there are none");
         }
-        for (command, pass, next) in
-            [("pass uv:face", Some("uv:face"), Some("object")), ("pass color", None, Some("depth"))]
-        {
+        state.passes = vec!["depth", "uv", "shade"];
+        for (command, pass) in [
+            ("next-pass", Some("depth")),
+            ("next-pass", Some("uv")),
+            ("next-pass", Some("shade")),
+            ("next-pass", None),
+            ("previous-pass", Some("shade")),
+            ("previous-pass", Some("uv")),
+            ("pass uv:face", Some("uv:face")),
+            ("next-pass", Some("shade")),
+            ("pass noise", Some("noise")),
+            ("previous-pass", Some("shade")),
+            ("pass color", None),
+        ] {
             state.run(command);
-            assert_eq!(state.pass.as_deref(), pass);
-            state.run("next-pass");
-            assert_eq!(state.pass.as_deref(), next);
+            assert_eq!(state.pass.as_deref(), pass, "{command}");
         }
     }
 

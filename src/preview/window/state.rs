@@ -8,6 +8,7 @@ use super::transport::Transport;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
 use crate::layers::space::camera::Camera;
+use crate::layers::space::fit::Ball;
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
 
@@ -25,6 +26,8 @@ pub struct State {
     pub picture: Size,
     /// The scene's camera, if layers in space are seen by it.
     pub camera: Option<Camera>,
+    /// What is around all that is in space, as far as that is known.
+    pub around: Option<Ball>,
     /// Where the window looks from, if that is not where the scene's camera does.
     pub own: Option<OwnView>,
     /// Zoom and place.
@@ -35,6 +38,8 @@ pub struct State {
     pub timeline: Timeline,
     /// Which overlays and other switches are on.
     pub switches: Switches,
+    /// The passes in which the scene has something, in order.
+    pub passes: Vec<&'static str>,
     /// The pass that is shown in place of the frame, as `NAME` or `NAME:LAYER`.
     pub pass: Option<String>,
     /// Why it cannot be shown.
@@ -96,11 +101,13 @@ impl Default for State {
             scale: 1.0,
             picture: Size::ZERO,
             camera: None,
+            around: None,
             own: None,
             viewport: Viewport::default(),
             transport: Transport::default(),
             timeline: Timeline::default(),
             switches: Switches::default(),
+            passes: Vec::new(),
             pass: None,
             no_pass: None,
             drawing: false,

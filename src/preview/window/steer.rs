@@ -5,6 +5,7 @@ use kurbo::Vec2;
 use super::own_view::OwnView;
 use super::state::State;
 use crate::layers::space::camera::Camera;
+use crate::layers::space::fit::Ball;
 
 /// A key turns by this, in degrees.
 const TURN_DEGREES: f64 = 5.0;
@@ -16,9 +17,10 @@ const WALK: f64 = 0.07;
 const LEAST_SEEN: f64 = 0.1;
 
 impl State {
-    /// Takes the camera that the scene's layers in space are seen by; without one there is nothing to steer.
-    pub fn take_camera(&mut self, camera: Option<&Camera>) {
-        self.camera = camera.cloned();
+    /// Takes the camera that the scene's layers in space are seen by, and what is around them; without a camera there is
+    /// nothing to steer.
+    pub fn take_camera(&mut self, camera: Option<&Camera>, around: Option<Ball>) {
+        (self.camera, self.around) = (camera.cloned(), around);
         self.own = self.own.filter(|_| camera.is_some());
     }
 
@@ -46,7 +48,15 @@ impl State {
             self.own = None;
             return true;
         }
+        if command == "own-view-all" {
+            if let Some(around) = self.around {
+                let size = (self.picture.width as usize, self.picture.height as usize);
+                self.change_view(|own| own.see(&around, size));
+            }
+            return true;
+        }
         let Some((way, to)) = command.split_once('-') else { return false };
+        let around = self.around;
         let (right, up) = match to {
             "left" => (-1.0, 0.0),
             "right" => (1.0, 0.0),
@@ -63,7 +73,7 @@ impl State {
                     own.walk(right * step, up * step);
                 });
             }
-            "dolly" => self.change_view(|own| own.dolly(up)),
+            "dolly" => self.change_view(|own| own.dolly(up, around.as_ref())),
             _ => return false,
         }
         true
@@ -86,7 +96,8 @@ impl State {
 
     /// The wheel goes nearer by steps.
     pub fn wheel_nearer(&mut self, steps: i32) {
-        self.change_view(|own| own.dolly(f64::from(steps)));
+        let around = self.around;
+        self.change_view(|own| own.dolly(f64::from(steps), around.as_ref()));
     }
 }
 
@@ -101,7 +112,7 @@ mod tests {
         let mut state = State::for_tests();
         assert!(state.steer("orbit-left"));
         assert_eq!(state.own_camera(), None);
-        state.take_camera(Some(&Camera::default()));
+        state.take_camera(Some(&Camera::default()), None);
         assert!(!state.steer("orbit-sideways") && !state.steer("zoom-in"));
         assert_eq!(state.own_camera(), None);
         for command in ["orbit-left", "walk-forward", "dolly-nearer"] {
@@ -129,13 +140,17 @@ mod tests {
         }
         assert!((0.19..0.22).contains(&steps[0]), "a twentieth of the way to the target: {steps:?}");
         assert!((steps[1] - steps[0] * LEAST_SEEN).abs() < 1e-9, "right before it still a tenth of that: {steps:?}");
+        assert!(state.steer("own-view-all"), "of what is not known");
+        state.take_camera(Some(&Camera::default()), Some(Ball { middle: DVec3::X, radius: 1.0 }));
+        state.steer("own-view-all");
+        assert!((DVec3::from(state.own_camera().unwrap().target) - DVec3::X).length() < 1e-9);
         let other = Camera { position: [1.0, 2.0, 3.0], ..Camera::default() };
         state.look_from(Some(&other));
         assert_eq!(state.own_camera(), Some(other.clone()), "the editor says from where");
         state.look_from(None);
         assert_eq!(state.own_camera(), None);
         state.look_from(Some(&other));
-        state.take_camera(None);
+        state.take_camera(None, None);
         assert_eq!(state.own_camera(), None);
     }
 }

@@ -16,6 +16,7 @@ use crate::base::fault;
 use crate::base::problem::Problem;
 use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
+use crate::layers::space::fit::Ball;
 use crate::preview::follow::Update;
 use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::{self, Synth};
@@ -25,6 +26,8 @@ use crate::scene::Scene;
 const BETWEEN: Duration = Duration::from_millis(500);
 const READING: &str = "reading the files";
 const SYNTHESISING: &str = "synthesising";
+/// What moves is looked at at so many times, for what is around it.
+const TIMES: u32 = 2;
 /// How often to check for a signal.
 const LOOK: Duration = Duration::from_millis(250);
 
@@ -59,6 +62,8 @@ pub struct Ready {
     pub scene: Arc<Scene>,
     /// Its synthesis.
     pub synth: Synth,
+    /// What is around all that is in space.
+    pub around: Option<Ball>,
     /// Its revision.
     pub revision: u64,
     /// What the synthesis took, in milliseconds.
@@ -201,7 +206,8 @@ fn synthesise(
             Ok(synth) => {
                 previous = Some(synth.clone());
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
-                send(Event::Ready(Ready { scene, synth, revision, synth_ms, problems }))?;
+                let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
+                send(Event::Ready(Ready { scene, synth, around, revision, synth_ms, problems }))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
             Err(problem) => send(Event::Problems(if problems.is_empty() { vec![problem] } else { problems }))?,

@@ -1,7 +1,5 @@
 //! The scene's camera: from what a window shows, and so that all that is in space is seen.
 
-use std::sync::Arc;
-
 use glam::{DMat3, DVec3};
 use serde_json::json;
 
@@ -12,10 +10,10 @@ use crate::files::materials::{self, Cache};
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Space;
-use crate::layers::ready::{Making, Ready};
+use crate::layers::ready::Making;
 use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{Reach, fit};
-use crate::render::frame_size;
+use crate::render::{frame_size, reach};
 use crate::scene::Scene;
 use crate::tui::events::Effect;
 use crate::tui::state::State;
@@ -47,8 +45,8 @@ fn camera(state: &mut State, call: &Call) -> Done {
 fn take(state: &mut State, call: &Call) -> Done {
     let own = state.outside.camera.clone();
     let own = own.ok_or(match state.outside.window.is_empty() {
-        true => "there is no window to take the camera from: :view opens one",
-        false => "the window shows the scene's camera: move its own first (drag with the middle button)",
+        true => "there is no window to take the camera from: :view opens one, and plica view elsewhere joins",
+        false => "the window moved last shows the scene's camera: move it first (drag with the middle button)",
     })?;
     write(state, call, &own, "the window's camera is the scene's now")
 }
@@ -95,7 +93,7 @@ fn see_all(state: &mut State, call: &Call) -> Done {
     let back = if before.is_some() { position - target } else { FIRST_BACK };
     let fitted = |reach: Reach, size| fit(reach, [back, up], fov, size);
     let made = state.picture.synth.as_ref();
-    let seen = made.and_then(|synth| fitted(&|ways| reach(&synth.layers, ways), synth.size));
+    let seen = made.and_then(|synth| fitted(&|ways| reach(&synth.layers, TIMES, ways), synth.size));
     let [position, target] = match (seen.map_or_else(|| unmade(state, &fitted), Ok), &before) {
         (Ok(seen), _) => seen.map(Into::into),
         (Err(why), Some(_)) => return Err(why),
@@ -106,12 +104,6 @@ fn see_all(state: &mut State, call: &Call) -> Done {
         }
     };
     write(state, call, &Camera { position, target, up: up.into(), fov, ..of }, "the camera sees all that is in space")
-}
-
-/// How far all that is in space reaches, over the whole timeline.
-fn reach(layers: &[Arc<dyn Ready>], ways: &[DVec3]) -> Option<Vec<f64>> {
-    let times = (0..TIMES).map(|k| f64::from(k) / f64::from(TIMES));
-    times.flat_map(|t| layers.iter().filter_map(move |layer| layer.reach(t, ways))).reduce(farther)
 }
 
 /// Where a camera sees all of something in frames of this size.
@@ -134,7 +126,7 @@ fn unmade(state: &State, fitted: Fitted) -> Result<[DVec3; 2], String> {
     let making = Making::plain(scene.timeline.wrap, &materials);
     let layers: Vec<_> = in_space.filter_map(|layer| layer.technique().synth(&making, None).ok()).collect();
     let meshes = |ways: &[DVec3]| materials.meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
-    let all = |ways: &[DVec3]| if layers.is_empty() { meshes(ways) } else { reach(&layers, ways) };
+    let all = |ways: &[DVec3]| if layers.is_empty() { meshes(ways) } else { reach(&layers, TIMES, ways) };
     let why = || problems.first().map_or("nothing is in space".to_owned(), |problem| problem.message.clone());
     fitted(&all, frame_size(scene, &materials)).ok_or_else(why)
 }

@@ -7,11 +7,14 @@ use crate::tui::text::plain;
 use serde_json::{Map, Value, json as value};
 
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
+use crate::base::error::Error;
 use crate::base::problem::quoted;
-use crate::files::{clips, paths};
+use crate::files::{clips, models, paths, picture, sources};
+
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
 use crate::scene::schema::Place;
@@ -95,36 +98,73 @@ fn add(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name.
+/// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name. What is there is read first, so
+/// that nothing broken is added; a picture or a mesh may come later.
 fn add_file(state: &mut State, path: &str) -> Done {
-    let list = list_for(path);
+    let place = beside(state, path);
+    let (list, options) = (sources::list_of(&place), state.scene.options());
     let mut entry = value!({ "path": path });
-    if matches!(list, List::Clips) {
-        let found = clips::find(&paths::beside(state.scene.path(), path)).map_err(|error| error.to_string())?;
-        if found.first > 0 {
-            entry["first"] = found.first.into();
+    let mut notes = Vec::new();
+    let refused = |error: Error| error.to_string();
+    let name = match list {
+        List::Clips => {
+            let found = clips::find(&place).map_err(refused)?;
+            let folder = if place.is_dir() { path.trim_end_matches('/') } else { folder_of(path) };
+            if found.first > 0 {
+                entry["first"] = found.first.into();
+            }
+            entry["path"] =
+                if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) }.into();
+            notes.extend(found.note);
+            let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
+            clips::called(&found.name, last).to_owned()
         }
-    }
-    let entry = (called(path).to_owned(), entry);
+        List::Meshes if place.exists() => {
+            notes = models::read(&place, options).map_err(refused)?.notes;
+            stem(path).to_owned()
+        }
+        List::Images if files_of(&place).exists() => {
+            notes = picture::read(&place, &options.limits).map_err(refused)?.notes;
+            stem(path).to_owned()
+        }
+        _ => stem(path).to_owned(),
+    };
     let map = format!("/{}", list.words().0);
-    let added = Edit::insert_entries(state.document(), &map, [entry].into_iter().collect());
+    let added = Edit::insert_entries(state.document(), &map, [(name.clone(), entry)].into_iter().collect());
     let (edit, pointer) = added.ok_or("there is no list for it")?;
     state.edit(edit, false)?;
     go_to(state, &pointer);
-    tell_added(state, list, path);
+    tell_added(state, list, (&name, path), &notes);
     Ok(())
 }
 
-/// Says what was added, and whether its file is missing: a clip was found before.
-fn tell_added(state: &mut State, list: List, path: &str) {
+/// Where a path as typed is, as a picture, a model or a clip is named: with the part of the file that it means.
+fn beside(state: &State, path: &str) -> PathBuf {
+    let file = paths::beside(state.scene.path(), path);
+    match path.strip_prefix(paths::file_of(path)).filter(|part| !part.is_empty()) {
+        Some(part) => file.with_file_name(format!("{}{part}", file.file_name().unwrap_or_default().to_string_lossy())),
+        None => file,
+    }
+}
+
+/// The file of a path that may mean a part of it.
+fn files_of(place: &Path) -> &Path {
+    place.to_str().map_or(place, |place| Path::new(paths::file_of(place)))
+}
+
+/// Says what was added, what of it is not supported, and whether its file is missing: a clip was found before.
+fn tell_added(state: &mut State, list: List, (name, path): (&str, &str), notes: &[String]) {
     let (map, one) = list.words();
     let place = paths::beside(state.scene.path(), path);
-    if list != List::Clips && !place.exists() {
+    // Of a clip of numbered files, some are there.
+    let found = place.exists() || list == List::Clips && name_of(path).contains('%');
+    if !found {
         return state.complain(plain(&format!("{path} is among the {map}, but there is no file {}", place.display())));
     }
     let unseen = state.document().scene().layers.is_empty();
     let next = if unseen { ": now add a layer that shows it (o on layers)" } else { "" };
-    state.say(plain(&format!("the {one} {} is among the {map}{next}", quoted(called(path)))));
+    let notes: String = notes.iter().map(|note| format!("; {note}")).collect();
+    state.say(plain(&format!("the {one} {} is among the {map}{next}{notes}", quoted(name))));
 }
 
 /// Adds so many items at the cursor. If a path or a kind is needed, it is typed or chosen next.
@@ -319,35 +359,19 @@ fn unused(document: &Document, path: &str, deleted: &[String]) -> Done {
     }
 }
 
-/// The extensions of files with meshes; `model.glb#0` is a picture in one.
-const MESHES: [&str; 3] = ["obj", "glb", "gltf"];
-
-/// The list of the scene that a file goes to, by its name.
-fn list_for(path: &str) -> List {
-    let name = path.rsplit('/').next().unwrap_or(path);
-    let extension = name.rsplit('.').next().unwrap_or_default().to_lowercase();
-    if clips::is_called(name) {
-        List::Clips
-    } else if MESHES.contains(&extension.as_str()) {
-        List::Meshes
-    } else {
-        List::Images
-    }
+/// The name in a path, without the folder.
+fn name_of(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
 }
 
-/// What a file is called in a scene: its name without extension, or for numbered files what is before the number, or their
-/// folder.
-fn called(path: &str) -> &str {
-    let (folder, name) = path.rsplit_once('/').unwrap_or(("clip", path));
-    if list_for(path) == List::Clips {
-        return clips::called(name, folder.rsplit('/').next().unwrap_or(folder));
-    }
-    stem(path)
+/// The folder in a path, without the slash.
+fn folder_of(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
 /// The name of a file without folder and extension.
 pub fn stem(path: &str) -> &str {
-    let file = path.rsplit('/').next().unwrap_or(path);
+    let file = name_of(path);
     file.split_once('.').map_or(file, |(stem, _)| stem)
 }
 

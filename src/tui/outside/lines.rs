@@ -1,6 +1,6 @@
 //! The line mode, for a terminal that cannot draw (TERM=dumb) or without a terminal. The commands that are otherwise typed
 //! after `:` come from standard input; answers go to standard output as plain text, mistakes to standard error with the
-//! number of the line. Long work runs in the foreground.
+//! number of the line, and without a person the first of them ends the session. Long work runs in the foreground.
 
 use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
@@ -30,7 +30,8 @@ struct Session {
     interactive: bool,
     /// How many lines were read.
     number: usize,
-    failed: usize,
+    /// The line that was refused: without a person, nothing after it is run.
+    refused: Option<usize>,
     /// Whether the input has ended once while there were unsaved edits.
     warned: bool,
     /// What happens to unsaved edits at the end of the input.
@@ -47,7 +48,7 @@ impl Editor {
     /// Runs the lines of standard input until one leaves, or until they end.
     ///
     /// # Errors
-    /// Some lines failed, and no person was there to see it.
+    /// A line was refused, and no person was there to see it.
     pub fn run_lines(mut self, events: &mpsc::Receiver<Event>) -> Result<()> {
         let interactive = terminal::is_interactive();
         let mut session = Session { interactive, ..Session::default() };
@@ -140,7 +141,11 @@ impl Editor {
         let bad = self.state.message.as_ref().is_some_and(|message| message.bad);
         if bad {
             let text = self.state.message.take().map(|message| message.text).unwrap_or_default();
-            session.failed += 1;
+            if !session.interactive && session.number > 0 {
+                session.refused = Some(session.number);
+                session.left = (!self.state.scene.is_saved()).then(|| self.state.scene.left_unsaved());
+                self.leaving = true;
+            }
             let mut lines = text.lines();
             let first = lines.next().unwrap_or_default();
             match session.interactive {
@@ -202,11 +207,7 @@ impl Session {
     }
 
     fn result(&self) -> Result<()> {
-        let failed = match self.failed {
-            0 => None,
-            1 => Some("1 line failed".to_owned()),
-            many => Some(format!("{many} lines failed")),
-        };
+        let failed = self.refused.map(|line| format!("line {line} was refused, and nothing after it was run"));
         match (failed, &self.left) {
             (None, None) => Ok(()),
             (_, left) if self.interactive => {

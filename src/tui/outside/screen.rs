@@ -94,6 +94,10 @@ impl Editor {
             // Remove the last message about the window, which is outdated.
             self.state.message.take_if(|message| message.text == self.window_told);
             self.window_told.clone_from(&seen);
+            if !matches!(self.preview.status(), Status::Connected { .. }) {
+                // The window that it is of has gone.
+                self.state.outside.camera = None;
+            }
             let off = matches!(self.preview.status(), Status::OffBecause(_));
             if off {
                 self.state.complain(seen.clone());

@@ -52,7 +52,7 @@ fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
     press(&mut state, "u");
     assert_eq!(camera(&state), json!({ "turn": 90, "fov": 30 }), "one step of undo");
     update(&mut state, said(ToEditor::Camera(None)));
-    assert!(run(&mut state, "camera take").starts_with("the window shows"), "it is back at the scene's");
+    assert!(run(&mut state, "camera take").starts_with("the window moved last shows"), "it is back at the scene's");
 }
 
 #[test]

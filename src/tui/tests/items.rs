@@ -6,8 +6,10 @@ use super::support::{press, said_last, state, state_of};
 use super::{check, motion, zone};
 use crate::scene::field::{self, Kind};
 use crate::tui::commands::update::update;
+use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::{Mode, Pane, State};
+use crate::tui::text::color::Depth;
 
 #[test]
 pub fn pictures_and_names_come_and_go() {
@@ -41,6 +43,50 @@ pub fn pictures_and_names_come_and_go() {
         press(&mut state, &keys);
         assert!(said_last(&state).0 && said_last(&state).1.starts_with(words), "{keys}: {}", said_last(&state).1);
     }
+}
+
+#[test]
+fn what_is_broken_is_not_added_and_what_a_file_is_its_content_tells() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("s.plica.json"), r#"{ "plica": 1, "layers": [] }"#).unwrap();
+    let mut state = State::new(OpenScene::in_memory(&at("s.plica.json")), (80, 24), Depth::None);
+    std::fs::create_dir_all(at("falls")).unwrap();
+    image::RgbaImage::new(2, 2).save(at("cat.png")).unwrap();
+    for name in ["cat.obj", "falls/3.png", "falls/4.png"] {
+        std::fs::copy(at("cat.png"), at(name)).unwrap();
+    }
+    let models = [
+        ("nan.obj", "v 0 0 nan\nf 1 1 1\n"),
+        ("none.obj", "v 0 0 0\n"),
+        ("hello.glb", "hello"),
+        ("broken.png", "\u{89}PNG"),
+        ("empty.obj", ""),
+        ("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n"),
+    ];
+    models.iter().for_each(|(name, text)| std::fs::write(at(name), text).unwrap());
+    for (path, bad, part, pointer) in [
+        ("nan.obj", true, "line 1: \"nan\" is not a finite number", ""),
+        ("none.obj", true, "has no triangles", ""),
+        ("hello.glb", true, "is not a mesh", ""),
+        ("broken.png", true, "broken.png: ", ""),
+        ("empty.obj", true, "is empty", ""),
+        ("no.mp4", true, "there is no file", "/clips/no"),
+        ("no.obj", true, "there is no file", "/meshes/no"),
+        ("cat.obj", false, "the image \"cat\" is among the images", "/images/cat"),
+        ("tri.obj", false, "its points and lines are not drawn", "/meshes/tri"),
+        ("falls", false, "the clip \"falls\" is among the clips", "/clips/falls"),
+    ] {
+        let before = state.document().json().clone();
+        press(&mut state, &format!(": \"add {path}\" Enter"));
+        let (is_bad, told) = said_last(&state);
+        assert!(is_bad == bad && told.contains(part), "{path}: {told}");
+        match pointer {
+            "" => assert_eq!(state.document().json(), &before, "{path}"),
+            pointer => assert!(state.document().json().pointer(pointer).is_some(), "{path}: {told}"),
+        }
+    }
+    assert_eq!(super::support::at(&state, "/clips/falls"), json!({ "path": "falls/%d.png", "first": 3 }));
 }
 
 #[test]

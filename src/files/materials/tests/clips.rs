@@ -84,7 +84,12 @@ fn what_is_wrong_names_the_frame_and_the_cure() {
     let none = serde_json::json!({});
     for (widths, more, limit, said) in [
         (vec![], none.clone(), None, "falls/0000.png: there is no such file (the clip begins with number 0"),
-        (vec![2, 2], serde_json::json!({ "count": 3 }), None, "falls/0002.png: there is no such file"),
+        (
+            vec![2, 2],
+            serde_json::json!({ "count": 3 }),
+            None,
+            "falls/0002.png: there is no such file (lower the clip's count to 2, or put the frame there)",
+        ),
         (vec![2, 2, 3], none.clone(), None, "falls/0002.png: is 3 x 1, and the clip's first frame 2 x 1 (make all"),
         (vec![2, 0, 2], none.clone(), None, "falls/0001.png: "),
         (vec![2, 2, 2], none.clone(), Some("frames=2"), "falls/%04d.png: it has 3 frames, at most 2"),

@@ -21,8 +21,8 @@ pub(super) use source::With;
 use document::{Material, Node, Primitive, TextureInfo};
 use source::Source;
 
-/// The lists and the triangles of a file, and what in it is not supported.
-pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>)> {
+/// The lists and the triangles of a file, what in it is not supported, and the file of its picture, relative to its own.
+pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Option<String>)> {
     let With { place, limits, budget, .. } = with;
     let source = Source::of(bytes, with)?;
     let nodes = nodes(&source)?;
@@ -52,7 +52,8 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>)> {
             "its bones and morph targets are not applied: it is shown as it is stored",
         ),
     ];
-    Ok((builder, notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect()))
+    let notes = notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect();
+    Ok((builder, notes, pictures::first_file(&source)))
 }
 
 /// How corners make triangles.

@@ -15,18 +15,30 @@ use crate::files::paths;
 /// as a scene names them that names the model by `place`.
 pub(in crate::files::mesh) fn named(bytes: &[u8], with: With) -> Result<Vec<String>> {
     let source = &Source::of(bytes, with)?;
+    let named = |index: usize| -> Result<String> {
+        let image = source.get(&source.document.images, index, "image")?;
+        Ok(match outside(&image.uri) {
+            Some(uri) => paths::sibling(with.place, &source.path(uri)?),
+            None => format!("{}#{index}", with.place),
+        })
+    };
+    shown(source)?.into_iter().map(named).collect()
+}
+
+/// The file, relative to its own, of the first picture that its surfaces show; `None` if that is in it, or if there is none.
+pub(super) fn first_file(source: &Source) -> Option<String> {
+    let image = source.document.images.get(*shown(source).ok()?.first()?)?;
+    // Where that may not be is told by whoever opens it.
+    source.any_path(outside(&image.uri)?).ok()
+}
+
+/// The images of the base colors of the default scene, each once.
+fn shown(source: &Source) -> Result<Vec<usize>> {
     let (mut meshes, mut images, mut found) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
     for (node, _) in nodes(source)? {
         let Some(mesh) = node.mesh.filter(|&mesh| meshes.insert(mesh)) else { continue };
         for primitive in &source.get(&source.document.meshes, mesh, "mesh")?.primitives {
-            let Some(index) = base_color(source, primitive.material)?.filter(|&image| images.insert(image)) else {
-                continue;
-            };
-            let image = source.get(&source.document.images, index, "image")?;
-            found.push(match outside(&image.uri) {
-                Some(uri) => paths::sibling(with.place, &source.path(uri)?),
-                None => format!("{}#{index}", with.place),
-            });
+            found.extend(base_color(source, primitive.material)?.filter(|&image| images.insert(image)));
         }
     }
     Ok(found)

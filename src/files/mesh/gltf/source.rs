@@ -44,6 +44,8 @@ pub(in crate::files::mesh) struct With<'a> {
     pub(in crate::files::mesh) limits: &'a Limits,
     pub(in crate::files::mesh) budget: &'a Budget,
     pub(in crate::files::mesh) sibling: Opener<'a>,
+    /// Whether it may name files outside its folder.
+    pub(in crate::files::mesh) outside: bool,
 }
 
 /// A file taken apart.
@@ -117,12 +119,21 @@ impl<'a> Source<'a> {
         };
         match usize::try_from(buffer.byte_length).ok().and_then(|length| bytes.get(..length)) {
             Some(bytes) => Ok(bytes),
-            None => Err(cut_short(self.with.place)),
+            None => Err(self.short_buffer(buffer, bytes.len())),
         }
     }
 
+    /// What is said of a buffer that is shorter than the file says.
+    fn short_buffer(&self, buffer: &Buffer, found: usize) -> Error {
+        let beside =
+            buffer.uri.as_ref().filter(|Text(uri)| !uri.starts_with("data:")).and_then(|Text(uri)| self.path(uri).ok());
+        let Some(path) = beside else { return cut_short(self.with.place) };
+        let what = format!("its buffer {path} has {found} bytes, and is to have {}", buffer.byte_length);
+        Error::at(self.with.place, what).cure(format!("copy {path} again from where it came"))
+    }
+
     fn read(&self, index: usize, buffer: &Buffer<'a>) -> Result<(Cow<'a, [u8]>, Share)> {
-        let With { place, limits, budget, sibling } = self.with;
+        let With { place, limits, budget, sibling, .. } = self.with;
         let Some(Text(uri)) = &buffer.uri else {
             let binary = self.binary.filter(|_| index == 0);
             let missing = || self.wrong(format!("buffer {index} is not in the file"));
@@ -138,23 +149,29 @@ impl<'a> Source<'a> {
         Ok((Cow::Owned(bytes), share))
     }
 
-    /// The path, relative to the file, that an address means; it is in the folder of the file, or below.
+    /// The path, relative to the file, that an address means; it is in the folder of the file or below, unless others are
+    /// allowed.
     pub(super) fn path(&self, uri: &str) -> Result<String> {
+        let path = self.any_path(uri)?;
+        let stays = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        match self.with.outside || Path::new(&path).components().all(stays) {
+            true => Ok(path),
+            false => {
+                let what = format!("has a part at {uri}, which is not in the model's folder");
+                let cure = "give --allow-outside, or copy the file beside the model and mend its uri";
+                Err(Error::at(self.with.place, what).cure(cure))
+            }
+        }
+    }
+
+    /// The same, wherever it leads.
+    pub(super) fn any_path(&self, uri: &str) -> Result<String> {
         let scheme = uri.split_once(':').map(|(scheme, _)| scheme).filter(|scheme| !scheme.contains('/'));
         if scheme.is_some() {
             let what = format!("has a part at {uri}, which Plica does not fetch");
             return Err(Error::at(self.with.place, what).cure("export it as .glb, which is one file"));
         }
-        let path = unescaped(uri).ok_or_else(|| self.wrong(format!("has a part at {uri}, which is no path")))?;
-        let stays = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-        match Path::new(&path).components().all(stays) {
-            true => Ok(path),
-            false => {
-                let what = format!("has a part at {uri}, which is not in the model's folder");
-                let cure = "copy the file beside the model and mend its uri, or export it as .glb";
-                Err(Error::at(self.with.place, what).cure(cure))
-            }
-        }
+        unescaped(uri).ok_or_else(|| self.wrong(format!("has a part at {uri}, which is no path")))
     }
 }
 

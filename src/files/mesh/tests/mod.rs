@@ -23,7 +23,8 @@ fn read_with(
         None => Err(Error::at(path, "there is no such file")),
     };
     let budget = limits.budget();
-    let read = decode(file(bytes), name, limits, &budget, &sibling);
+    let options = Options { limits: limits.clone(), ..Options::default() };
+    let read = decode(file(bytes), name, &options, &budget, &sibling);
     let read = read.map(|(mesh, notes, share)| {
         assert_eq!(budget.taken(), mesh.bytes());
         drop(share);
@@ -71,8 +72,8 @@ fn what_is_no_mesh_says_what_it_is() {
         if bytes.contains(&0) {
             let long = file(bytes);
             long.set_len(1 << 40).unwrap();
-            let limits = Limits::default();
-            let error = decode(long, name, &limits, &limits.budget(), &alone).unwrap_err();
+            let options = Options::default();
+            let error = decode(long, name, &options, &options.limits.budget(), &alone).unwrap_err();
             assert_eq!(error.to_string(), format!("{name}: {expected}"));
         }
     }

@@ -45,9 +45,9 @@ fn model() -> Vec<u8> {
 
 #[test]
 fn the_pictures_of_a_model_are_named_as_a_scene_names_them() {
-    let names = pictures(file(&model()), "sub/cow.glb", &Limits::default()).unwrap();
+    let names = pictures(file(&model()), "sub/cow.glb", &Options::default()).unwrap();
     assert_eq!(names, ["sub/skins/red one.png", "sub/cow.glb#0", "sub/cow.glb#1"]);
-    let none = pictures(file(b"v 0 0 0\nf 1 1 1\n"), "a.obj", &Limits::default()).unwrap();
+    let none = pictures(file(b"v 0 0 0\nf 1 1 1\n"), "a.obj", &Options::default()).unwrap();
     assert_eq!(none, [""; 0]);
 }
 
