@@ -257,7 +257,7 @@ fn set_takes_all_or_nothing() {
     for (settings, status, part) in [
         (&["title=Dog", "Z.feather=-1"][..], 1, "-1 is too small: 0 to 1000000 px"),
         (&["title=Dog", "Z.feathr=1"], 1, "did you mean \"feather\"?"),
-        (&["Z.feather=1e999"], 1, "is not a finite number"),
+        (&["Z.feather=1e999"], 1, "is too large a number"),
         (&["Z.feather"], 2, "PATH=VALUE"),
     ] {
         let ran = set(settings);

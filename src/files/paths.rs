@@ -139,10 +139,12 @@ fn how_to_find(path: &Path) -> String {
     let folder = disk::folder_of(path);
     let Ok(entries) = std::fs::read_dir(folder) else { return format!("there is no folder {}", folder.display()) };
     let names: Vec<String> = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    let wanted = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
-    let like = problem::like(&wanted, lower.iter().map(String::as_str));
-    let name = like.and_then(|like| names.get(lower.iter().position(|name| name == like)?));
+    // Names may differ in their ends.
+    let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase();
+    let wanted = stem(&path.file_name().unwrap_or_default().to_string_lossy());
+    let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
+    let like = problem::like(&wanted, stems.iter().map(String::as_str));
+    let name = like.and_then(|like| names.get(stems.iter().position(|stem| stem == like)?));
     name.map_or("put it there, or mend the name".to_owned(), |name| format!("did you mean {name}?"))
 }
 

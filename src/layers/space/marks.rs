@@ -22,7 +22,7 @@ pub const CAMERA_OVERLAY: Overlay =
     Overlay::new(CAMERA, "C", "What the scene's camera sees, looked at from elsewhere", When::EveryFrame);
 
 /// A line on the ground.
-pub static GRID: Look = Look::new("ground", 20, [190, 200, 215, 215], 1.0);
+pub static GRID: Look = Look::new("ground", 20, [190, 200, 215, 215], 0.9);
 /// The axes of the world: x, y, z.
 pub static AXES: [Look; 3] = [
     Look::new("x axis", 21, [235, 110, 90, 255], 1.6).stroke("x"),

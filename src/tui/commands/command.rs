@@ -136,7 +136,7 @@ impl Command {
             let found = if said.text.is_empty() { "nothing".into() } else { problem::quoted(said.text) };
             return Err(match words.as_slice() {
                 [] => format!("{} takes no argument, not {found}", self.name),
-                words => format!("after {} comes {}, not {found}", self.name, one_of(words)),
+                words => format!("{} is followed by {}, not {found}", self.name, one_of(words)),
             });
         }
         let first = said.text.split(' ').next().unwrap_or_default();
