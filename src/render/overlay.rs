@@ -116,7 +116,8 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
 fn is_selected(mark: &str, selection: &str) -> bool {
     // `/layers/0/zones/2` and deeper.
     let is_item = Pointer(selection).tokens().count() >= 4;
-    Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection))
+    // What belongs to nothing in the document, as the ground, is never selected.
+    !mark.is_empty() && (Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection)))
 }
 
 #[cfg(test)]
@@ -133,6 +134,7 @@ mod tests {
             ("/layers/0/zones/2", "/layers/0/zones", false),
             ("/layers/0/zones/2", "/layers/0", false),
             ("/layers/0/zones/2", "", false),
+            ("", "/layers/0/kind", false),
         ] {
             assert_eq!(is_selected(mark, selection), selected, "{mark} {selection}");
         }

@@ -142,7 +142,10 @@ impl Opened {
                     let synth = seen(&show.synth, state.own_camera().as_ref());
                     under(&show.scene, &synth, state.transport.scene_time(&state.timeline), at)
                 });
-                self.pictures(state, show, (marks.revision, wake))?
+                let pictures = self.pictures(state, show, (marks.revision, wake))?;
+                // An older frame would show something else there.
+                state.under.take_if(|_| state.drawing);
+                pictures
             }
             None => self.nothing()?,
         };

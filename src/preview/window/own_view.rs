@@ -15,7 +15,7 @@ const NEARER: f64 = 1.15;
 /// How near to the target, and how far from it, it goes, in meters, where it is not known how large is what is seen.
 const DISTANCES_M: (f64, f64) = (2.0 * NEAR_M, 1e6);
 /// The same by the radius of what is seen.
-const OF_RADIUS: (f64, f64) = (2e-3, 1e2);
+const OF_RADIUS: (f64, f64) = (2e-3, 30.0);
 
 /// A camera at one time, to be steered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,8 +160,8 @@ mod tests {
         let ball = |radius| Ball { middle: view().target, radius };
         for (around, near, far) in [
             (None, DISTANCES_M.0, DISTANCES_M.1),
-            (Some(ball(1.0)), DISTANCES_M.0, 100.0),
-            (Some(ball(1000.0)), 2.0, 1e5),
+            (Some(ball(1.0)), DISTANCES_M.0, 30.0),
+            (Some(ball(1000.0)), 2.0, 3e4),
             (Some(ball(1e-3)), DISTANCES_M.0, view().distance()),
         ] {
             for (steps, distance) in [(1e4, near), (-1e4, far)] {
