@@ -317,6 +317,68 @@ fn every_technique_answers_everything() {
     }
 }
 
+/// A ring with pictures on it, taken from around; `extra` goes over its surface, `views` over each of its views in turn.
+fn viewed(layer: Value, extra: &Value, views: &[Value]) -> Synth {
+    let view = |(i, own): (usize, &Value)| {
+        let angle = i as f64 * TAU / 5.0;
+        let at = [3.0 * maths::sin(angle), 1.0 + 0.4 * i as f64, 3.0 * maths::cos(angle)];
+        let all = json!({"name": i.to_string(), "image": format!("p{}", i % 3), "camera": {"position": at, "fov": 50}});
+        with(all, own)
+    };
+    let views: Vec<Value> = views.iter().enumerate().map(view).collect();
+    let surface = with(json!({"kind": "view-map", "cells": 16, "levels": 3, "atlas": "box", "views": views}), extra);
+    let mesh = json!({"kind": "mesh", "name": "ring", "mesh": "ring", "surface": surface});
+    let scene = json!({"plica": 1, "size": [96, 72], "layers": [with(mesh, &layer)],
+        "camera": {"position": [0.6, 1.5, 2.6], "target": [0, 0, 0], "fov": 50}});
+    let pictures = (0..3).map(|i| (format!("p{i}"), waves(48, 48, i + 1, i == 2)));
+    let materials = Materials {
+        meshes: [("ring".to_owned(), Arc::new(ring()))].into(),
+        pictures: pictures.collect(),
+        ..Materials::default()
+    };
+    render::synth(&serde_json::from_value(scene).unwrap(), &materials, None).unwrap()
+}
+
+#[test]
+fn the_gpu_shows_view_maps_as_the_cpu_does() {
+    let Some(mut gpu) = gpu() else { return };
+    let (none, both) = (json!({}), vec![json!({}); 5]);
+    let cone = json!({"kind": "dependent", "hold": 0.3, "extremes": {"kind": "cone", "degrees": 70}});
+    let linear = with(cone.clone(), &json!({"fade": "linear", "gain": [1.5, 0.8, 0.3], "feather": 9}));
+    let points = json!({"kind": "dependent",
+        "extremes": {"kind": "points", "points": [[-60, 0], [0, -50], [70, 0], [0, 60]]}});
+    let coat = json!({"kind": "independent"});
+    let near = json!({"closer": 0.2, "extremes": {"kind": "auto", "reach": 80}});
+    let far = json!({"farther": 0.3, "camera": {"position": [0.5, 1.2, 9], "fov": 12}});
+    let blend = json!({"blend": {"points": [
+        {"position": [0.6, 1.5, 2.6], "base": 0.8}, {"position": [4, 1, 0], "base": 0.1}]}});
+    let bent = json!({"pose": {"rotate": [20, 40, 10], "scale": 1.3, "position": [0.1, -0.2, 0.3],
+        "bend": {"degrees": 50, "from": -1, "to": 1}}});
+    let scenes = [
+        ("views up to one another", viewed(none.clone(), &none, &both)),
+        ("no view", viewed(none.clone(), &json!({"missing": "#4080c0"}), &[])),
+        ("one view, the rest missing", viewed(none.clone(), &none, &[near.clone()])),
+        ("cones over a coat", viewed(none.clone(), &none, &[coat.clone(), cone, linear, coat.clone()])),
+        ("places over a coat", viewed(none.clone(), &none, &[points.clone(), coat, points])),
+        ("near and far", viewed(none.clone(), &json!({"levels": 5}), &[near, far, json!({})])),
+        ("blend points", viewed(none.clone(), &blend, &both)),
+        ("arrays of directions", viewed(none.clone(), &json!({"directions": 8}), &both)),
+        ("bent", viewed(bent.clone(), &none, &both)),
+        ("bent, arrays of directions", viewed(bent, &json!({"directions": 6}), &both)),
+        ("both sides, by texture", viewed(json!({"sides": "both"}), &json!({"atlas": "uv"}), &both)),
+    ];
+    let frames = scenes.map(|(name, synth)| {
+        assert!(!synth.by_cpu(), "{name}");
+        let frame = gpu.frame(&synth, 0.0).unwrap();
+        let (largest, share) = difference(&frame, &cpu::frame(&synth, 0.0));
+        println!("{name}: {:.3} % differ, by up to {largest}", share * 100.0);
+        assert!(share <= 0.005, "{name}: {:.3} % differ, by up to {largest}", share * 100.0);
+        frame
+    });
+    let distinct: BTreeSet<&[[u8; 4]]> = frames.iter().map(Frame::cells).collect();
+    assert_eq!(distinct.len(), frames.len(), "each shows something else");
+}
+
 #[test]
 fn the_gpu_shows_the_demo_scenes_as_the_cpu_does() {
     let Some(mut gpu) = gpu() else { return };
@@ -328,7 +390,8 @@ fn the_gpu_shows_the_demo_scenes_as_the_cpu_does() {
         let (loaded, _) = files::materials::load(&path, document.scene(), &options, &mut Default::default()).unwrap();
         let synth = render::synth(document.scene(), &loaded, None).unwrap();
         // A frame of thousands of sprites takes the CPU seconds without optimisation.
-        let times = if synth.layers.iter().any(|layer| layer.has_sprites()) { &TIMES[..2] } else { &TIMES[..] };
+        let is_slow = synth.takes_long() || synth.layers.iter().any(|layer| layer.has_sprites());
+        let times = if is_slow { &TIMES[..2] } else { &TIMES[..] };
         times.iter().for_each(|time| check(&mut gpu, profile.name, &synth, *time));
     }
 }

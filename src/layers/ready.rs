@@ -117,6 +117,11 @@ pub trait Ready: Any + Debug + Send + Sync {
         self.has_strokes()
     }
 
+    /// Whether the CPU takes long for a frame of it, and longer still where it pretends to be a GPU.
+    fn takes_long(&self) -> bool {
+        self.has_strokes()
+    }
+
     /// The same layer with nothing that moves.
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready>;
 

@@ -66,6 +66,11 @@ impl Synth {
         self.layers.iter().any(|layer| layer.by_cpu())
     }
 
+    /// Whether the CPU takes long for a frame: one should not wait for it.
+    pub fn takes_long(&self) -> bool {
+        self.layers.iter().any(|layer| layer.takes_long())
+    }
+
     /// Bytes that its strokes need while a frame is drawn, with so many samples a pixel in each direction.
     pub fn stroke_bytes(&self, each_way: u32) -> u64 {
         whole::bytes(self, each_way)

@@ -40,26 +40,47 @@ fn bent(v: vec3f, angle: f32) -> vec3f {
     return vec3f(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
 }
 
-@vertex
-fn corner(@builtin(vertex_index) i: u32) -> Corner {
-    let triangle = textureLoad(triangles, place(i / 3u), 0);
-    let vertex = triangle[i % 3u];
-    let first = textureLoad(vertices, place(2u * vertex), 0);
-    let second = textureLoad(vertices, place(2u * vertex + 1u), 0);
+// A corner of a triangle, and where it is in camera coordinates.
+struct Vertex {
+    seen: vec3f,
+    normal: vec3f,
+    uv: vec2f,
+}
+
+fn vertex(number: u32) -> Vertex {
+    let first = textureLoad(vertices, place(2u * number), 0);
+    let second = textureLoad(vertices, place(2u * number + 1u), 0);
     let angle = mesh.bend * clamp((dot(first.xyz, mesh.along) - mesh.start) / mesh.length, 0.0, 1.0);
-    let seen = (mesh.eye_from_model * vec4f(bent(first.xyz, angle), 1.0)).xyz;
-    let depth = -seen.z;
-    var out: Corner;
-    out.position = vec4f(seen.xy * mesh.focal + depth * mesh.shift, mesh.near, depth);
+    var out: Vertex;
+    out.seen = (mesh.eye_from_model * vec4f(bent(first.xyz, angle), 1.0)).xyz;
     out.normal = (mesh.world_from_normal * vec4f(bent(second.xyz, angle), 0.0)).xyz;
     out.uv = vec2f(first.w, second.w);
     return out;
 }
 
-fn shaded(color: vec4f, normal: vec3f, front: bool) -> vec4f {
+fn projected(seen: vec3f) -> vec4f {
+    let depth = -seen.z;
+    return vec4f(seen.xy * mesh.focal + depth * mesh.shift, mesh.near, depth);
+}
+
+@vertex
+fn corner(@builtin(vertex_index) i: u32) -> Corner {
+    let triangle = textureLoad(triangles, place(i / 3u), 0);
+    let own = vertex(triangle[i % 3u]);
+    var out: Corner;
+    out.position = projected(own.seen);
+    out.normal = own.normal;
+    out.uv = own.uv;
+    return out;
+}
+
+fn shown(front: bool) {
     if !front && mesh.both == 0.0 {
         discard;
     }
+}
+
+fn shaded(color: vec4f, normal: vec3f, front: bool) -> vec4f {
     let facing = normalize(normal) * select(-1.0, 1.0, front);
     let light = mesh.ambient + (1.0 - mesh.ambient) * max(dot(facing, mesh.light), 0.0);
     return vec4f(color.rgb * light, color.a);
@@ -67,6 +88,7 @@ fn shaded(color: vec4f, normal: vec3f, front: bool) -> vec4f {
 
 @fragment
 fn plain(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    shown(front);
     return shaded(mesh.color, in.normal, front);
 }
 
@@ -76,6 +98,7 @@ fn texel(at: vec2i, size: vec2i) -> vec4f {
 
 @fragment
 fn pictured(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    shown(front);
     let size = vec2i(textureDimensions(picture));
     let at = vec2f(fract(in.uv.x), 1.0 - fract(in.uv.y)) * vec2f(size) - 0.5;
     let low = vec2i(floor(at));

@@ -39,7 +39,7 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "mesh",
     space: Space::World,
-    programs: &[&plan::PLAIN, &plan::PICTURED],
+    programs: &[&plan::PLAIN, &plan::PICTURED, surface::PROGRAMS[0], surface::PROGRAMS[1]],
     bundle: None,
     counted: &[],
     overlays: marks::OVERLAYS,

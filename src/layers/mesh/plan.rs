@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3, Mat4};
 
 use super::model::Sides;
 use super::pose::Placed;
+use super::surface::Look;
 use super::synth::Synth;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
@@ -41,7 +42,11 @@ struct Uniform {
 pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
     let Some(eye) = moment.eye else { return Plan::default() };
     let placed = synth.pose.at(synth.time(moment));
-    let (color, picture) = synth.surface.plan(moment);
+    let (program, color, read) = match synth.surface.plan(moment, &placed) {
+        Look::Color(color) => (&PLAIN, color, Vec::new()),
+        Look::Picture(picture) => (&PICTURED, [0.0; 4], vec![picture]),
+        Look::Own(program, binds) => (program, [0.0; 4], binds),
+    };
     let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
     let focal = [2.0 * eye.focal_px / width, 2.0 * eye.focal_px / height];
     // A pixel is drawn at its centre; what is to be seen there is moved there.
@@ -66,8 +71,7 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         Bind::Upload(synth.mesh.clone(), VERTICES),
         Bind::Upload(synth.mesh.clone(), TRIANGLES),
     ];
-    let program = if picture.is_some() { &PICTURED } else { &PLAIN };
-    binds.extend(picture);
+    binds.extend(read);
     let vertices = 3 * synth.mesh.triangles.len() as u32;
     let draw = Draw {
         program,

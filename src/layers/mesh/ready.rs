@@ -38,6 +38,10 @@ impl Ready for Synth {
         self.has_strokes() || self.surface.by_cpu()
     }
 
+    fn takes_long(&self) -> bool {
+        self.has_strokes() || self.surface.takes_long()
+    }
+
     fn lying(&self, compare: bool) -> Option<Vec<Value>> {
         self.surface.lying(compare)
     }

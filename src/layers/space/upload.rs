@@ -31,12 +31,13 @@ impl Upload for Mesh {
     }
 }
 
-fn packed(rows: Rows<'_>, texels: usize, format: Format) -> Packed<'_> {
+/// So many texels in rows of [`WIDTH`].
+pub fn packed(rows: Rows<'_>, texels: usize, format: Format) -> Packed<'_> {
     Packed { size: (WIDTH, texels.div_ceil(WIDTH).max(1)), format, rows }
 }
 
 /// Rows of texels, `N` for each of `count` items.
-fn lines<'a, const N: usize, T: bytemuck::Pod + Default>(
+pub fn lines<'a, const N: usize, T: bytemuck::Pod + Default>(
     count: usize,
     of: impl Fn(usize) -> [[T; 4]; N] + 'a,
 ) -> Rows<'a>

@@ -182,9 +182,10 @@ impl Opened {
         let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
         let asked = state.pass.as_deref().map(|pass| Asked::parse(pass, &show.scene)).transpose();
         state.no_pass = asked.as_ref().err().cloned();
-        // Strokes and view maps are drawn by the CPU, as passes are, and so are sprites where the CPU would only pretend to
-        // be a GPU: that takes several times as long.
-        let by_cpu = show.frames.by_cpu() || show.has_sprites() && self.gpu.device().is_software();
+        // Strokes are drawn by the CPU, as passes are, and so are sprites and view maps where the CPU would only pretend to be a
+        // GPU: that takes several times as long.
+        let much = show.has_sprites() || show.frames.takes_long();
+        let by_cpu = show.frames.by_cpu() || much && self.gpu.device().is_software();
         let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));
         let left_out = state.thin.left_out();
         let frame = (&*thinned(frame.0, left_out), frame.1);

@@ -2,11 +2,12 @@
 //! where something that it shows has changed: what takes long beside the event loop.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use winit::event_loop::EventLoopProxy;
 
 use super::own_view::OwnView;
@@ -70,7 +71,7 @@ impl Kept {
     ) -> Result<Option<Textures>> {
         if self.made_for.as_ref() == Some(wanted) {
             self.making = None;
-        } else if frame.0.by_cpu() {
+        } else if frame.0.takes_long() {
             self.making.take_if(|making| making.gives_way_to(wanted));
             let other = || other.as_ref().map(|(synth, time)| (&**synth, *time));
             let making = self.making.get_or_insert_with(|| Making::start(wanted, (frame, other()), wake));
@@ -112,6 +113,15 @@ fn pictures(asked: &Asked, (synth, time): At, other: Option<At>) -> Pictures {
     (frame, other.map(|other| seen(other).0), each)
 }
 
+/// Runs work on threads of its own. Those of all other work come to nothing new before a view map is filled, say.
+fn beside<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    static THREADS: LazyLock<Option<ThreadPool>> = LazyLock::new(|| ThreadPoolBuilder::new().build().ok());
+    match &*THREADS {
+        Some(threads) => threads.install(work),
+        None => work(),
+    }
+}
+
 /// Pictures that are being made beside the event loop.
 struct Making {
     made_for: For,
@@ -127,7 +137,7 @@ impl Making {
         let (frame, other, asked, wake) = (own(frame), other.map(own), wanted.asked.clone(), wake.clone());
         std::thread::spawn(move || {
             let other = other.as_ref().map(|(synth, time)| (synth, *time));
-            let made = fault::caught(|| pictures(&asked, (&frame.0, frame.1), other));
+            let made = fault::caught(|| beside(|| pictures(&asked, (&frame.0, frame.1), other)));
             // Nobody listens where something else is wanted by now, or once the window is gone.
             let _ = sender.send(made.map_err(|fault| Error::at("window", fault)));
             let _ = wake.send_event(Event::Drawn);
@@ -182,4 +192,30 @@ fn upload(gpu: &Gpu, view: &Frame) -> Result<wgpu::Texture> {
         device.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, size);
         texture
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use rayon::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn pictures_do_not_wait_for_what_else_is_being_made() {
+        // As a filling does, something has all threads until it ends.
+        let end = Arc::new(AtomicBool::new(false));
+        for _ in 0..rayon::current_num_threads() {
+            let end = end.clone();
+            rayon::spawn(move || {
+                while !end.load(Ordering::Relaxed) {
+                    std::thread::sleep(Duration::from_millis(1))
+                }
+            });
+        }
+        let (done, told) = mpsc::channel();
+        std::thread::spawn(move || done.send(beside(|| (0..100_u64).into_par_iter().sum::<u64>())));
+        let sum = told.recv_timeout(Duration::from_secs(20));
+        end.store(true, Ordering::Relaxed);
+        assert_eq!(sum, Ok(4950));
+    }
 }

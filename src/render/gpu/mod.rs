@@ -8,6 +8,7 @@ use crate::base::error::Result;
 use crate::base::pixels::{Frame, Grid};
 use crate::base::progress::Progress;
 use crate::layers::parts::plan::{Plan, Upload};
+use crate::layers::ready::Ready;
 use crate::render::{Synth, cpu};
 
 pub mod device;
@@ -38,8 +39,13 @@ impl Uploader {
     /// # Errors
     /// The device is lost, or has not enough memory; or `stop` was set, soon after that.
     pub fn upload(&self, scenes: &[&Synth], sent: &Progress, stop: &AtomicBool) -> Result<Uploaded> {
-        let layers = scenes.iter().flat_map(|synth| synth.layers.iter().map(|layer| layer.plan(&synth.moment(0.0))));
-        let wanted = layers.flat_map(Plan::uploads);
+        // What the CPU draws itself where it would pretend to be a GPU is not wanted there.
+        let is_drawn = |layer: &&Arc<dyn Ready>| !(self.device.is_software() && layer.takes_long());
+        let plans = scenes.iter().flat_map(|synth| {
+            let moment = synth.moment(0.0);
+            synth.layers.iter().filter(is_drawn).map(move |layer| layer.plan(&moment))
+        });
+        let wanted = plans.flat_map(Plan::uploads);
         kept::upload_all(&self.device, wanted, &self.known, (sent, stop))
     }
 

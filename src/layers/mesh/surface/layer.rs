@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Reader, ReadySurface, Slot, StillSurface, place};
+use super::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::base::mesh::Mesh;
 use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
 use crate::base::problem::Problem;
@@ -63,9 +63,9 @@ impl ReadySurface for Shown {
         Box::new(Still(picture))
     }
 
-    fn plan(&self, moment: &Moment) -> (Rgba, Option<Bind>) {
+    fn plan(&self, moment: &Moment, _placed: &Placed) -> Look {
         let plan = self.0.layer.plan(&self.moment(moment));
-        ([0.0; 4], Some(Bind::Drawn(Box::new(Drawn { size_px: self.0.size_px, plan }))))
+        Look::Picture(Bind::Drawn(Box::new(Drawn { size_px: self.0.size_px, plan })))
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface> {

@@ -22,7 +22,7 @@ use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::materials::{Materials, Use};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
-use crate::layers::parts::plan::Bind;
+use crate::layers::parts::plan::{Bind, Program};
 use crate::layers::parts::readout::Entry;
 use crate::layers::parts::shots::{Laid, Laying, Lying};
 use crate::layers::ready::Making;
@@ -32,6 +32,8 @@ use crate::layers::space::raster::Hit;
 pub const PASSES: [Pass; 3] = [view_map::passes::INDEPENDENT, view_map::passes::DEPENDENT, view_map::passes::COVERAGE];
 /// What is looked at in place of one of them.
 pub const COLORS: Pass = view_map::passes::COLORS;
+/// The programs that kinds of surface add.
+pub static PROGRAMS: [&Program; 2] = [&view_map::plan::EXACT, &view_map::plan::ARRAYS];
 
 /// What the surface of a mesh shows, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -133,11 +135,16 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     /// The surface of a mesh that is placed so, at one time, on the CPU: the reference.
     fn at<'a>(&'a self, moment: &'a Moment, placed: &Placed) -> Box<dyn StillSurface + 'a>;
 
-    /// The same for the GPU: a color that counts where the picture is not used, and the picture.
-    fn plan(&self, moment: &Moment) -> (Rgba, Option<Bind>);
+    /// The same for the GPU.
+    fn plan(&self, moment: &Moment, placed: &Placed) -> Look;
 
     /// Whether the CPU alone can draw it.
     fn by_cpu(&self) -> bool {
+        false
+    }
+
+    /// See `Ready::takes_long`.
+    fn takes_long(&self) -> bool {
         false
     }
 
@@ -173,6 +180,17 @@ impl dyn ReadySurface {
     pub fn downcast<T: ReadySurface>(&self) -> Option<&T> {
         (self as &dyn Any).downcast_ref()
     }
+}
+
+/// What the GPU draws of a surface.
+#[derive(Debug)]
+pub enum Look {
+    /// One color under light: linear, premultiplied.
+    Color(Rgba),
+    /// A picture under light, by the texture coordinates.
+    Picture(Bind),
+    /// What a program of its own makes of these, which follow what all programs for meshes read.
+    Own(&'static Program, Vec<Bind>),
 }
 
 /// A surface at one time.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Reader, ReadySurface, Slot, StillSurface};
+use super::{Before, Look, Reader, ReadySurface, Slot, StillSurface};
 use crate::base::color;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::{Rgba, decode};
@@ -14,7 +14,6 @@ use crate::base::reduce::Reduced;
 use crate::layers::check;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::plan::Bind;
 use crate::layers::ready::Making;
 
 /// One color.
@@ -50,8 +49,8 @@ impl ReadySurface for Paint {
         Box::new(*self)
     }
 
-    fn plan(&self, _moment: &Moment) -> (Rgba, Option<Bind>) {
-        (self.0, None)
+    fn plan(&self, _moment: &Moment, _placed: &Placed) -> Look {
+        Look::Color(self.0)
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface> {

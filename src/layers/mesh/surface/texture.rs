@@ -6,7 +6,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Reader, ReadySurface, Slot, StillSurface, place};
+use super::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::Rgba;
@@ -49,8 +49,8 @@ impl ReadySurface for Image {
         Box::new(Still(&self.0))
     }
 
-    fn plan(&self, _moment: &Moment) -> (Rgba, Option<Bind>) {
-        ([0.0; 4], Some(Bind::Upload(self.0.clone(), 0)))
+    fn plan(&self, _moment: &Moment, _placed: &Placed) -> Look {
+        Look::Picture(Bind::Upload(self.0.clone(), 0))
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface> {

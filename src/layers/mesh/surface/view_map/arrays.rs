@@ -18,9 +18,9 @@ pub struct Arrays {
     /// How many directions there are along a side.
     side: usize,
     /// How the cells of each layer are turned.
-    frames: Vec<Vec<Frame>>,
+    pub frames: Vec<Vec<Frame>>,
     /// The elements of each layer, cell after cell, row by row: half floats, light times opacity, then that.
-    elements: Vec<Vec<[u16; 4]>>,
+    pub elements: Vec<Vec<[u16; 4]>>,
 }
 
 impl Arrays {

@@ -25,9 +25,9 @@ pub struct Layer {
     /// Where each cell is.
     pub cells: Vec<Cell>,
     /// The squares of each chart that may be cells.
-    charts: Vec<Chart>,
+    pub charts: Vec<Chart>,
     /// The cell of each of those squares, or [`NONE`].
-    numbers: Vec<u32>,
+    pub numbers: Vec<u32>,
 }
 
 /// Where a cell is.
@@ -41,12 +41,15 @@ pub struct Cell {
     pub y: i32,
 }
 
-/// A rectangle of squares.
+/// A rectangle of squares, row by row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Chart {
-    first: usize,
-    width: i32,
-    height: i32,
+pub struct Chart {
+    /// The number of its first square.
+    pub first: usize,
+    /// How many are side by side.
+    pub width: i32,
+    /// How many rows.
+    pub height: i32,
 }
 
 impl Layer {

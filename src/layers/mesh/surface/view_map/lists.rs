@@ -8,7 +8,7 @@ use super::entries::{Entry, Told};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lists {
     /// Where the list of each cell begins; one more at the end.
-    starts: Vec<u32>,
+    pub starts: Vec<u32>,
     /// The views, by cells, each list ascending.
     pub views: Vec<u8>,
     /// What they tell.

@@ -29,14 +29,17 @@ pub struct Looked<'a> {
     base: f64,
 }
 
+/// How much of the base coat alone an eye sees.
+pub fn base(points: &Points, eye: &Eye, placed: &Placed) -> f64 {
+    let position = placed.turn.transpose() * (eye.position - placed.position) / placed.scale;
+    points.at(position, placed.turn.transpose() * -eye.turn.row(2))
+}
+
 impl<'a> Looked<'a> {
     /// The map at one time.
     pub fn new(filled: Filled<'a>, points: &Points, moment: &Moment, placed: &Placed) -> Looked<'a> {
         let (map, arrays) = filled;
-        let base = moment.eye.map_or(0.0, |eye| {
-            let position = placed.turn.transpose() * (eye.position - placed.position) / placed.scale;
-            points.at(position, placed.turn.transpose() * -eye.turn.row(2))
-        });
+        let base = moment.eye.map_or(0.0, |eye| base(points, &eye, placed));
         let samples = f64::from(moment.magnified.max(1));
         Looked { map, arrays, placed: *placed, eye: moment.eye, samples: samples * samples, base }
     }

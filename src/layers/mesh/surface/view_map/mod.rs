@@ -24,6 +24,7 @@ pub mod mixer;
 pub mod model;
 pub mod paint;
 pub mod passes;
+pub mod plan;
 pub mod probe;
 pub mod ready;
 pub mod report;
@@ -32,6 +33,7 @@ pub mod slot;
 #[cfg(test)]
 mod tests;
 pub mod told;
+pub mod upload;
 pub mod view;
 pub mod wanted;
 pub mod warnings;

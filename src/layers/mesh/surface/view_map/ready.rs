@@ -4,20 +4,19 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::super::{Place, Reader, ReadySurface, StillSurface};
+use super::super::{Look, Place, Reader, ReadySurface, StillSurface};
 use super::arrays::Arrays;
 use super::blend::Points;
-use super::looked::{Filled, Looked};
+use super::looked::{Filled, Looked, base};
 use super::map::{Map, Wanted};
-use super::{again, passes, probe, told};
+use super::{again, passes, plan, probe, told, upload};
 use crate::base::budget::Share;
 use crate::base::number;
-use crate::base::pixels::{Linear, Rgba};
+use crate::base::pixels::Linear;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
-use crate::layers::parts::plan::Bind;
 use crate::layers::parts::readout::Entry;
 
 /// A view map ready for any time.
@@ -50,9 +49,9 @@ impl ReadySurface for Ready {
         Box::new(Looked::new(self.filled(), &self.points, moment, placed))
     }
 
-    fn plan(&self, _moment: &Moment) -> (Rgba, Option<Bind>) {
-        // The CPU draws it.
-        ([0.0; 4], None)
+    fn plan(&self, moment: &Moment, placed: &Placed) -> Look {
+        let Some(eye) = moment.eye.filter(|_| !self.by_cpu()) else { return Look::Color([0.0; 4]) };
+        plan::look(self, base(&self.points, &eye, placed), eye.focal_px / f64::from(moment.magnified.max(1)))
     }
 
     fn lying(&self, compare: bool) -> Option<Vec<Value>> {
@@ -72,6 +71,10 @@ impl ReadySurface for Ready {
     }
 
     fn by_cpu(&self) -> bool {
+        !upload::fits(self.filled())
+    }
+
+    fn takes_long(&self) -> bool {
         true
     }
 

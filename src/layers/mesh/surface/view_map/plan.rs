@@ -1,0 +1,91 @@
+//! What the GPU draws of a view map: what is filled as textures, which stay as long as the filling is the same, and what changes
+//! with the camera or with how views fade.
+
+use super::ready::Ready;
+use super::upload::{CHARTS, ELEMENTS, ENTRIES, SQUARES, STARTS, TURNS};
+use super::view::{Extremes, View};
+use crate::layers::mesh::surface::Look;
+use crate::layers::parts::plan::{Bind, COMMON, Program};
+
+const SOURCE: &[&str] = &[COMMON, include_str!("../../frame.wgsl"), include_str!("sample.wgsl")];
+
+/// Views mixed in each pixel.
+pub static EXACT: Program = Program { name: "view_map/sample.wgsl", source: SOURCE, vertex: "spot", fragment: "exact" };
+/// Arrays of directions read.
+pub static ARRAYS: Program =
+    Program { name: "view_map/sample.wgsl", source: SOURCE, vertex: "spot", fragment: "arrays" };
+
+/// The most layers.
+const MOST_LAYERS: usize = 9;
+
+/// `Map` in sample.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Uniform {
+    layers: [[u32; 4]; MOST_LAYERS],
+    missing: [f32; 3],
+    base: f32,
+    scale: f32,
+    first: f32,
+    levels: u32,
+    charts: u32,
+    side: u32,
+    unused: [u32; 3],
+}
+
+/// A map of which so much of the base coat alone is seen, by a camera of this focal length, in pixels of the finished frame.
+pub fn look(ready: &Ready, base: f64, focal_px: f64) -> Look {
+    let Ready { map, arrays, .. } = ready;
+    let (mut layers, mut next) = ([[0; 4]; MOST_LAYERS], [0; 2]);
+    for (own, layer) in layers.iter_mut().zip(&map.cells.layers) {
+        *own = [next[0], next[1], 0, 0];
+        next = [next[0] + layer.numbers.len() as u32, next[1] + layer.len() as u32];
+    }
+    let first = f64::from(map.wanted.first);
+    let uniform = Uniform {
+        layers,
+        missing: map.wanted.missing,
+        base: base as f32,
+        scale: (2.0 * first * first / (focal_px * focal_px)) as f32,
+        first: first as f32,
+        levels: map.cells.layers.len().max(1) as u32,
+        charts: map.atlas.extents.len() as u32,
+        side: arrays.as_ref().map_or(0, |arrays| arrays.side() as u32),
+        unused: [0; 3],
+    };
+    let mut binds = vec![
+        Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
+        Bind::Upload(map.atlas.clone(), 0),
+        Bind::Upload(map.cells.clone(), CHARTS),
+        Bind::Upload(map.cells.clone(), SQUARES),
+        Bind::Upload(map.coats.clone(), 0),
+    ];
+    if let Some(arrays) = arrays {
+        binds.extend([TURNS, ELEMENTS].map(|part| Bind::Upload(arrays.clone(), part)));
+        return Look::Own(&ARRAYS, binds);
+    }
+    binds.extend([STARTS, ENTRIES].map(|part| Bind::Upload(map.lists.clone(), part)));
+    binds.push(Bind::List(bytemuck::cast_slice(&views(&map.wanted.views)).to_vec()));
+    Look::Own(&EXACT, binds)
+}
+
+/// Of each view two, then the extreme places of all; never empty.
+fn views(views: &[View]) -> Vec<[f32; 4]> {
+    let (mut all, mut places) = (Vec::with_capacity(2 * views.len()), Vec::new());
+    for view in views {
+        let (kind, reach, own) = match &view.extremes {
+            _ if !view.dependent => (0, 1.0, &[][..]),
+            Extremes::Auto(reach) => (1, *reach, &[][..]),
+            Extremes::Cone(reach) => (2, *reach, &[][..]),
+            Extremes::Points(places) => (3, 1.0, &places[..]),
+        };
+        let kind = if view.fade.linear && view.dependent { kind + 4 } else { kind };
+        let [x, y, z] = view.camera.position.as_vec3().to_array();
+        let first = 2 * views.len() + places.len();
+        all.push([x, y, z, reach as f32]);
+        all.push([(1.0 / (1.0 - view.fade.hold)) as f32, kind as f32, first as f32, own.len() as f32]);
+        places.extend(own.iter().map(|place| place.as_vec3().extend(0.0).to_array()));
+    }
+    all.extend(places);
+    if all.is_empty() { vec![[0.0; 4]] } else { all }
+}
