@@ -1,7 +1,10 @@
 //! What the GPU draws of a view map: what is filled as textures, which stay as long as the filling is the same, and what changes
 //! with the camera or with how views fade.
 
-use super::ready::Ready;
+use std::sync::Arc;
+
+use super::arrays::Arrays;
+use super::map::Map;
 use super::upload::{CHARTS, ELEMENTS, ENTRIES, SQUARES, STARTS, TURNS};
 use super::view::{Extremes, View};
 use crate::layers::mesh::surface::Look;
@@ -34,8 +37,7 @@ struct Uniform {
 }
 
 /// A map of which so much of the base coat alone is seen, by a camera of this focal length, in pixels of the finished frame.
-pub fn look(ready: &Ready, base: f64, focal_px: f64) -> Look {
-    let Ready { map, arrays, .. } = ready;
+pub fn look((map, arrays): (&Arc<Map>, Option<&Arc<Arrays>>), base: f64, focal_px: f64) -> Look {
     let (mut layers, mut next) = ([[0; 4]; MOST_LAYERS], [0; 2]);
     for (own, layer) in layers.iter_mut().zip(&map.cells.layers) {
         *own = [next[0], next[1], 0, 0];
@@ -50,7 +52,7 @@ pub fn look(ready: &Ready, base: f64, focal_px: f64) -> Look {
         first: first as f32,
         levels: map.cells.layers.len().max(1) as u32,
         charts: map.atlas.extents.len() as u32,
-        side: arrays.as_ref().map_or(0, |arrays| arrays.side() as u32),
+        side: arrays.map_or(0, |arrays| arrays.side() as u32),
         unused: [0; 3],
     };
     let mut binds = vec![

@@ -51,7 +51,8 @@ impl ReadySurface for Ready {
 
     fn plan(&self, moment: &Moment, placed: &Placed) -> Look {
         let Some(eye) = moment.eye.filter(|_| !self.by_cpu()) else { return Look::Color([0.0; 4]) };
-        plan::look(self, base(&self.points, &eye, placed), eye.focal_px / f64::from(moment.magnified.max(1)))
+        let focal_px = eye.focal_px / f64::from(moment.magnified.max(1));
+        plan::look((&self.map, self.arrays.as_ref()), base(&self.points, &eye, placed), focal_px)
     }
 
     fn lying(&self, compare: bool) -> Option<Vec<Value>> {
