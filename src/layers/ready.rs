@@ -114,7 +114,7 @@ pub trait Ready: Any + Debug + Send + Sync {
 
     /// Whether the CPU alone can draw it.
     fn by_cpu(&self) -> bool {
-        self.has_strokes()
+        false
     }
 
     /// Whether the CPU takes long for a frame of it, and longer still where it pretends to be a GPU.

@@ -8,7 +8,7 @@ use super::model::{FillLayer, MOST_STOPS};
 use crate::base::pixels::Rgba;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::parts::plan::{Bind, COMMON, Draw, Plan, Program};
 use crate::layers::ready::{Ready, Still};
 
 /// The shader.
@@ -69,18 +69,7 @@ impl Ready for Synth {
         let pair = |v: Vec2| [v.x as f32, v.y as f32];
         let line = Line { origin: pair(self.from), axis: pair(self.axis), place: pair(self.place), count, padding: 0 };
         let bytes = [bytemuck::cast_slice(&stops), bytemuck::bytes_of(&line)].concat();
-        Plan {
-            draws: vec![Draw {
-                program: &PROGRAM,
-                constants: Vec::new(),
-                binds: vec![Bind::Bytes(bytes)],
-                blend: Blend::Replace,
-                vertices: 3,
-                instances: 1,
-                depth: false,
-                scissor_px: None,
-            }],
-        }
+        Plan { draws: vec![Draw::frame(&PROGRAM, vec![Bind::Bytes(bytes)])], ..Plan::default() }
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {

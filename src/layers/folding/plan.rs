@@ -35,17 +35,11 @@ struct ZoneUniform {
 
 /// The plan for the layer at scene time `t`.
 pub fn plan(synth: &Synth, t: f64) -> Plan {
-    let still = Draw {
-        program: &STILL,
-        constants: Vec::new(),
-        binds: vec![Bind::Upload(synth.picture.clone(), 0)],
-        blend: Blend::Replace,
-        vertices: 3,
-        instances: 1,
-        depth: false,
-        scissor_px: None,
-    };
-    Plan { draws: std::iter::once(still).chain(synth.zones.iter().map(|one| zone(one, t))).collect() }
+    let still = Draw::frame(&STILL, vec![Bind::Upload(synth.picture.clone(), 0)]);
+    Plan {
+        draws: std::iter::once(still).chain(synth.zones.iter().map(|one| zone(one, t))).collect(),
+        ..Plan::default()
+    }
 }
 
 fn zone(zone: &ZoneSynth, t: f64) -> Draw {
@@ -61,22 +55,19 @@ fn zone(zone: &ZoneSynth, t: f64) -> Draw {
         Beyond::Transparent => 0.0,
     };
     let size = [field.x0, field.y0, field.inside.width(), field.inside.height()];
+    let binds = vec![
+        Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
+        Bind::Upload(field.clone(), 0),
+        Bind::Upload(field.clone(), 1),
+        Bind::Upload(source.picture_at(t).clone(), 0),
+    ];
     Draw {
-        program: &ZONE,
         constants: vec![
             ("rule", f64::from(field.folds.as_ref().map_or(0, |folds| folds.rule.number()))),
             ("clamps", clamps),
         ],
-        binds: vec![
-            Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
-            Bind::Upload(field.clone(), 0),
-            Bind::Upload(field.clone(), 1),
-            Bind::Upload(source.picture_at(t).clone(), 0),
-        ],
         blend: if source.over { Blend::Over } else { Blend::Replace },
-        vertices: 3,
-        instances: 1,
-        depth: false,
         scissor_px: Some(size.map(|n| n as u32)),
+        ..Draw::frame(&ZONE, binds)
     }
 }

@@ -27,6 +27,11 @@ pub struct View<'a> {
     raster: Option<Raster<'a>>,
 }
 
+/// The vertices of a mesh in the world: where they are, and their normals.
+pub fn world(mesh: &Mesh, placed: &Placed) -> Vec<(DVec3, DVec3)> {
+    mesh.vertices.par_iter().map(|vertex| placed.point(vertex.position, vertex.normal)).collect()
+}
+
 /// What is known of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spot {
@@ -66,8 +71,7 @@ impl Spot {
 impl<'a> View<'a> {
     /// The mesh in a pose, seen at `place` in each pixel.
     pub fn new(mesh: &'a Mesh, sides: Sides, placed: &Placed, place: Vec2, moment: &Moment) -> Self {
-        let vertices = mesh.vertices.par_iter();
-        let world: Vec<(DVec3, DVec3)> = vertices.map(|vertex| placed.point(vertex.position, vertex.normal)).collect();
+        let world = world(mesh, placed);
         let raster = moment.eye.map(|eye| {
             let seen = world.par_iter().map(|(position, _)| eye.seen(*position)).collect();
             Raster::new(&eye, moment.size_px, place, &mesh.triangles, seen, sides == Sides::Both)

@@ -39,7 +39,16 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "mesh",
     space: Space::World,
-    programs: &[&plan::PLAIN, &plan::PICTURED, surface::PROGRAMS[0], surface::PROGRAMS[1]],
+    programs: &[
+        &plan::PLAIN,
+        surface::PROGRAMS[0],
+        surface::PROGRAMS[1],
+        strokes::plan::PROGRAMS[0],
+        strokes::plan::PROGRAMS[1],
+        strokes::plan::PROGRAMS[2],
+        strokes::plan::PROGRAMS[3],
+        strokes::plan::PROGRAMS[4],
+    ],
     bundle: None,
     counted: &[],
     overlays: marks::OVERLAYS,

@@ -1,13 +1,16 @@
-//! What the GPU draws for a mesh layer: all triangles, nearest first to be seen.
+//! What the GPU draws for a mesh layer: all triangles, the nearest in front; and strokes on them.
 
 use glam::{DMat3, DVec3, Mat4};
 
+use super::frame::world;
 use super::model::Sides;
 use super::pose::Placed;
+use super::strokes::{self, Given};
 use super::surface::Look;
 use super::synth::Synth;
+use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::parts::plan::{Bind, COMMON, Draw, Plan, Program, Scratch};
 use crate::layers::space::eye::{Eye, NEAR_M};
 use crate::layers::space::upload::{TRIANGLES, VERTICES};
 
@@ -18,6 +21,11 @@ pub static PLAIN: Program = Program { name: "mesh/frame.wgsl", source: SOURCE, v
 /// The mesh with a picture.
 pub static PICTURED: Program =
     Program { name: "mesh/frame.wgsl", source: SOURCE, vertex: "corner", fragment: "pictured" };
+/// The same with what strokes are drawn from.
+static PLAIN_FACTS: Program =
+    Program { name: "mesh/frame.wgsl", source: SOURCE, vertex: "facet", fragment: "plain_facts" };
+static PICTURED_FACTS: Program =
+    Program { name: "mesh/frame.wgsl", source: SOURCE, vertex: "facet", fragment: "pictured_facts" };
 
 /// `Mesh` in frame.wgsl.
 #[repr(C)]
@@ -47,12 +55,61 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         Look::Picture(picture) => (&PICTURED, [0.0; 4], vec![picture]),
         Look::Own(program, binds) => (program, [0.0; 4], binds),
     };
+    let uniform = uniform(synth, moment, (&eye, &placed), color);
+    let draw = |program, read: Vec<Bind>| {
+        let mut binds = vec![
+            Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
+            Bind::Upload(synth.mesh.clone(), VERTICES),
+            Bind::Upload(synth.mesh.clone(), TRIANGLES),
+        ];
+        binds.extend(read);
+        let vertices = 3 * synth.mesh.triangles.len() as u32;
+        Draw { vertices, depth: true, ..Draw::frame(program, binds) }
+    };
+    let Some(ready) = synth.strokes.as_deref() else {
+        return Plan { draws: vec![draw(program, read)], ..Plan::default() };
+    };
+    // Strokes hide all of its color: only its depths count. They are not drawn on surfaces with programs of their own.
+    let surface = draw(&PLAIN, Vec::new());
+    let program = if read.is_empty() { &PLAIN_FACTS } else { &PICTURED_FACTS };
+    let facts = Draw { into: Some(strokes::plan::shown()), ..draw(program, read) };
+    let (scratch, draws) = on_it(synth, moment, (eye, &placed), ready);
+    Plan { scratch, draws: [surface, facts].into_iter().chain(draws).collect() }
+}
+
+/// The strokes on it.
+fn on_it(
+    synth: &Synth,
+    moment: &Moment,
+    (eye, placed): (Eye, &Placed),
+    ready: &strokes::Ready,
+) -> (Vec<Scratch>, Vec<Draw>) {
+    let given = Given {
+        mesh: &synth.mesh,
+        world: &world(&synth.mesh, placed),
+        placed,
+        both: synth.sides == Sides::Both,
+        toward: synth.light.toward(),
+        eye,
+        size_px: moment.size_px,
+        magnified: f64::from(moment.magnified),
+        t: synth.time(moment),
+        inverse: Vec::new(),
+        triangle: Vec::new(),
+        normal: Vec::new(),
+        shaded: Vec::new(),
+        light: Vec::new(),
+    };
+    strokes::plan::plan(ready, &given, synth.light.ambient)
+}
+
+fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color: Rgba) -> Uniform {
     let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
     let focal = [2.0 * eye.focal_px / width, 2.0 * eye.focal_px / height];
     // A pixel is drawn at its centre; what is to be seen there is moved there.
     let shift = [(1.0 - 2.0 * synth.place.x) / width, (2.0 * synth.place.y - 1.0) / height];
-    let uniform = Uniform {
-        eye_from_model: eye_from_model(&eye, &placed),
+    Uniform {
+        eye_from_model: eye_from_model(eye, placed),
         world_from_normal: columns(placed.turn, DVec3::ZERO),
         along: placed.along.as_vec3().to_array(),
         from: placed.from as f32,
@@ -65,25 +122,7 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         length: placed.length as f32,
         near: NEAR_M as f32,
         both: if synth.sides == Sides::Both { 1.0 } else { 0.0 },
-    };
-    let mut binds = vec![
-        Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
-        Bind::Upload(synth.mesh.clone(), VERTICES),
-        Bind::Upload(synth.mesh.clone(), TRIANGLES),
-    ];
-    binds.extend(read);
-    let vertices = 3 * synth.mesh.triangles.len() as u32;
-    let draw = Draw {
-        program,
-        constants: Vec::new(),
-        binds,
-        blend: Blend::Replace,
-        vertices,
-        instances: 1,
-        depth: true,
-        scissor_px: None,
-    };
-    Plan { draws: vec![draw] }
+    }
 }
 
 fn eye_from_model(eye: &Eye, placed: &Placed) -> [f32; 16] {

@@ -35,7 +35,8 @@ impl Ready for Synth {
     }
 
     fn by_cpu(&self) -> bool {
-        self.has_strokes() || self.surface.by_cpu()
+        // Those with programs of their own do not tell what strokes are drawn from.
+        self.surface.by_cpu() || self.has_strokes() && self.surface.takes_long()
     }
 
     fn takes_long(&self) -> bool {

@@ -31,11 +31,26 @@ impl Program {
     }
 }
 
-/// A whole layer at one time: draws, in order, into a picture of the frame's size that is transparent at first.
+/// A whole layer at one time: draws, in order, into a picture of the frame's size that is transparent at first. With other
+/// layers of a group, the draws into the picture that read no depths come first, then those of layers with textures of their
+/// own, then all others.
 #[derive(Debug, Default)]
 pub struct Plan {
+    /// Textures of its own, of the frame's size, by their numbers in [`Canvas`] and [`Bind::Scratch`].
+    pub scratch: Vec<Scratch>,
     /// The draws.
     pub draws: Vec<Draw>,
+}
+
+/// A texture of the frame's size that is drawn by some draws of a plan and read by later ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scratch {
+    /// One texture.
+    Texels(Format),
+    /// So many on top of one another.
+    Layers(Format, u32),
+    /// Depths.
+    Depths,
 }
 
 impl Plan {
@@ -45,7 +60,7 @@ impl Plan {
         let uploads = binds.flat_map(|bind| match bind {
             Bind::Upload(of, _) => vec![of],
             Bind::Drawn(drawn) => drawn.plan.uploads(),
-            Bind::Bytes(_) | Bind::List(_) | Bind::Depth | Bind::Linear => Vec::new(),
+            Bind::Bytes(_) | Bind::List(_) | Bind::Scratch(_) | Bind::Depth | Bind::Linear => Vec::new(),
         });
         uploads.collect()
     }
@@ -60,6 +75,8 @@ pub struct Draw {
     pub constants: Vec<(&'static str, f64)>,
     /// The resources that the program reads, by binding number.
     pub binds: Vec<Bind>,
+    /// What is drawn into; `None` for the layer's picture.
+    pub into: Option<Canvas>,
     /// How a pixel is blended with what is there.
     pub blend: Blend,
     /// How many vertices are drawn: three for all of the frame.
@@ -72,6 +89,41 @@ pub struct Draw {
     pub scissor_px: Option<[u32; 4]>,
 }
 
+impl Draw {
+    /// A draw of all pixels of the layer's picture.
+    pub fn frame(program: &'static Program, binds: Vec<Bind>) -> Draw {
+        Draw {
+            program,
+            constants: Vec::new(),
+            binds,
+            into: None,
+            blend: Blend::Replace,
+            vertices: 3,
+            instances: 1,
+            depth: false,
+            scissor_px: None,
+        }
+    }
+}
+
+/// What of a plan's own textures is drawn into.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Canvas {
+    /// The textures by their numbers, each with the layer of it, in the order of what the program gives.
+    pub textures: Vec<(usize, u32)>,
+    /// That of the depths by which pixels are tested.
+    pub depths: Option<usize>,
+    /// Whether they are cleared first.
+    pub clear: bool,
+}
+
+impl Canvas {
+    /// One layer of one texture, cleared first.
+    pub fn one(texture: usize, layer: u32) -> Option<Canvas> {
+        Some(Canvas { textures: vec![(texture, layer)], depths: None, clear: true })
+    }
+}
+
 /// How a drawn pixel, with premultiplied alpha, is blended with what is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blend {
@@ -81,6 +133,8 @@ pub enum Blend {
     Over,
     /// What is there shines through by as much as each channel leaves, alpha like colors: in any order the same.
     Screen,
+    /// It is added to what is there.
+    Add,
 }
 
 /// A resource that a program reads.
@@ -93,6 +147,8 @@ pub enum Bind {
     Upload(Arc<dyn Upload>, usize),
     /// A texture that is drawn first.
     Drawn(Box<Drawn>),
+    /// One of the plan's own textures, by its number.
+    Scratch(usize),
     /// The depths of the surfaces that are drawn with the layer, near / depth, 0 where there is none: the draw comes after
     /// them.
     Depth,
@@ -116,6 +172,7 @@ impl fmt::Debug for Bind {
             Bind::List(bytes) => f.debug_tuple("List").field(&bytes.len()).finish(),
             Bind::Upload(_, part) => f.debug_tuple("Upload").field(part).finish(),
             Bind::Drawn(drawn) => drawn.fmt(f),
+            Bind::Scratch(number) => f.debug_tuple("Scratch").field(number).finish(),
             Bind::Depth => f.write_str("Depth"),
             Bind::Linear => f.write_str("Linear"),
         }
@@ -150,6 +207,8 @@ pub enum Format {
     Rgba16Float,
     /// One float.
     R32Float,
+    /// Two floats that can be added to: of 16 bits where the device cannot add to others.
+    Rg32Float,
     /// Four whole numbers.
     Rgba32Uint,
 }

@@ -62,27 +62,20 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         near: NEAR_M as f32,
         unused: [0.0; 2],
     };
-    let draw = Draw {
-        program: &PROGRAM,
-        constants: Vec::new(),
-        binds: vec![
-            Bind::Bytes(bytemuck::bytes_of(&frame).to_vec()),
-            Bind::List(bytemuck::cast_slice(&sprites).to_vec()),
-            Bind::Upload(synth.pictures.clone(), 0),
-            Bind::Upload(synth.residues.clone(), 0),
-            Bind::Linear,
-            Bind::Depth,
-        ],
-        blend: match synth.blend {
-            Mixing::Screen => Blend::Screen,
-            Mixing::Over => Blend::Over,
-        },
-        vertices: 6,
-        instances: sprites.len() as u32,
-        depth: false,
-        scissor_px: None,
+    let binds = vec![
+        Bind::Bytes(bytemuck::bytes_of(&frame).to_vec()),
+        Bind::List(bytemuck::cast_slice(&sprites).to_vec()),
+        Bind::Upload(synth.pictures.clone(), 0),
+        Bind::Upload(synth.residues.clone(), 0),
+        Bind::Linear,
+        Bind::Depth,
+    ];
+    let blend = match synth.blend {
+        Mixing::Screen => Blend::Screen,
+        Mixing::Over => Blend::Over,
     };
-    Plan { draws: vec![draw] }
+    let draw = Draw { blend, vertices: 6, instances: sprites.len() as u32, ..Draw::frame(&PROGRAM, binds) };
+    Plan { draws: vec![draw], ..Plan::default() }
 }
 
 fn sprite(synth: &Synth, atlas: &Atlas, splat: &Splat) -> Sprite {

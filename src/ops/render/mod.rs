@@ -308,8 +308,8 @@ impl<'a> Renderer<'a> {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));
         }
         #[cfg(feature = "window")]
-        // Strokes are the CPU's work, and their samples come from one frame.
-        let gpu = match args.gpu && strokes == 0 {
+        // Samples of strokes come from one frame that is as many times larger, which only the CPU draws.
+        let gpu = match args.gpu && (strokes == 0 || args.samples == 1) {
             true => Some(Box::new(crate::render::gpu::Gpu::new()?)),
             false => None,
         };

@@ -182,8 +182,8 @@ impl Opened {
         let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
         let asked = state.pass.as_deref().map(|pass| Asked::parse(pass, &show.scene)).transpose();
         state.no_pass = asked.as_ref().err().cloned();
-        // Strokes are drawn by the CPU, as passes are, and so are sprites and view maps where the CPU would only pretend to be a
-        // GPU: that takes several times as long.
+        // Passes are drawn by the CPU, and so are sprites, strokes and view maps where the CPU would only pretend to be a GPU: that
+        // takes several times as long.
         let much = show.has_sprites() || show.frames.takes_long();
         let by_cpu = show.frames.by_cpu() || much && self.gpu.device().is_software();
         let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));

@@ -43,21 +43,19 @@ impl Painter {
         let moment = synth.moment(scene_time);
         let stage = &synth.stage;
         self.runner.clear(&mut encoder, &frame, stage.background);
-        let plans = stage.groups.iter().map(|group| {
-            let draws = group.layers().iter().flat_map(|&layer| synth.layers[layer].plan(&moment).draws);
-            Plan { draws: draws.collect() }
-        });
-        for (i, plan) in plans.enumerate() {
+        for (i, group) in stage.groups.iter().enumerate() {
+            let plans: Vec<Plan> = group.layers().iter().map(|&layer| synth.layers[layer].plan(&moment)).collect();
             // Halves lose too much where much is blended.
-            let fine = device.blends_floats() && plan.draws.iter().any(|draw| draw.instances > 1);
+            let mut draws = plans.iter().flat_map(|plan| &plan.draws);
+            let fine = device.blends_floats() && draws.any(|draw| draw.into.is_none() && draw.instances > 1);
             // Beneath the first layer there is often nothing.
             if i == 0 && stage.background == [0.0; 4] && !fine {
-                self.runner.run(device, &mut encoder, &frame, &plan)?;
+                self.runner.run(device, &mut encoder, &frame, &plans)?;
                 continue;
             }
             let (target, format) = if fine { (&mut self.fine, FINE) } else { (&mut self.layer, FRAME) };
             let into = target.get(device, synth.size, format)?;
-            self.runner.run(device, &mut encoder, &into, &plan)?;
+            self.runner.run(device, &mut encoder, &into, &plans)?;
             self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, &frame))?;
         }
         device.checked(|| device.queue.submit([encoder.finish()]))?;

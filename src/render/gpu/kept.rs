@@ -132,6 +132,7 @@ pub fn format(format: Format) -> (wgpu::TextureFormat, usize) {
         Format::Rgba32Float => (wgpu::TextureFormat::Rgba32Float, 16),
         Format::Rgba16Float => (wgpu::TextureFormat::Rgba16Float, 8),
         Format::R32Float => (wgpu::TextureFormat::R32Float, 4),
+        Format::Rg32Float => (wgpu::TextureFormat::Rg32Float, 8),
         Format::Rgba32Uint => (wgpu::TextureFormat::Rgba32Uint, 16),
     }
 }

@@ -14,7 +14,9 @@ use crate::render::{Synth, cpu};
 pub mod device;
 mod draw;
 mod kept;
+mod pipeline;
 mod run;
+mod target;
 
 use device::{Device, failed};
 pub use draw::PROGRAMS;

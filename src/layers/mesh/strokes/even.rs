@@ -7,9 +7,9 @@ use crate::base::maths::exp;
 use crate::base::simd::vectorised;
 
 /// The standard deviation of the neighborhood, in spacings.
-const WIDE: f64 = 0.75;
+pub const WIDE: f64 = 0.75;
 /// Pixels up to so many standard deviations away count.
-const FAR: f64 = 3.0;
+pub const FAR: f64 = 3.0;
 /// The least mean square that a noise is divided by.
 const LEAST: f32 = 0.02;
 

@@ -13,16 +13,19 @@ use crate::base::maths::{TAU, cos, exp, sin, smoothstep};
 use crate::layers::space::eye::NEAR_M;
 
 /// An impulse on the surface.
-struct Flat {
+pub struct Flat {
     /// Where it is, in camera coordinates.
-    at: DVec3,
+    pub at: DVec3,
     /// The directions along its stroke and across it, and the normal of its plane.
-    axes: [DVec3; 3],
-    factor: f64,
-    phase: f64,
+    pub axes: [DVec3; 3],
+    /// How much it counts.
+    pub factor: f64,
+    /// The phase of its wave, in radians.
+    pub phase: f64,
     /// The pixels that it may cover: columns and rows, and the ones after them.
-    from: (usize, usize),
-    to: (usize, usize),
+    pub from: (usize, usize),
+    /// See `from`.
+    pub to: (usize, usize),
 }
 
 /// The sum of all impulses, `px_per_m` pixels of the frame being a meter of the surface. `reach` is how far a kernel goes
@@ -66,7 +69,8 @@ fn kernel(flat: &Flat, recipe: &Recipe, away: DVec3, px_per_m: f64, reach: f64) 
     [weight * cos(TAU / recipe.spacing_px * across + flat.phase), weight * weight / 2.0]
 }
 
-fn flats(surface: &Surface, recipe: &Recipe, aim: &Aim, (px_per_m, reach): (f64, f64)) -> Vec<Flat> {
+/// The impulses that may cover a pixel of the frame; see [`sum`].
+pub fn flats(surface: &Surface, recipe: &Recipe, aim: &Aim, (px_per_m, reach): (f64, f64)) -> Vec<Flat> {
     let halves = [1.0, 1.0, 2.0 * reach].map(|radii| radii * recipe.radius_px / px_per_m);
     let count = surface.mesh.triangles.len() as u32;
     let density = recipe.density(1.0);

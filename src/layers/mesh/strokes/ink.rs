@@ -87,7 +87,7 @@ pub fn draw<'a>(strokes: &'a Force, marks: &'a [Set], sheet: &'a Sheet) -> (Vec<
 }
 
 /// Linear light of `#rrggbb`; what is no color is black.
-fn linear(text: &str) -> DVec3 {
+pub fn linear(text: &str) -> DVec3 {
     let [r, g, b, _] = color::parse(text).map_or([0.0; 4], decode).map(f64::from);
     DVec3::new(r, g, b)
 }
@@ -228,13 +228,16 @@ impl Cell {
 }
 
 /// What a mark is drawn with: a color, or the scene's own times a shade.
-enum Paint {
+pub enum Paint {
+    /// The scene's own, times this.
     Scene(f64),
+    /// This, in linear light.
     Color(DVec3),
 }
 
 impl Paint {
-    fn new(color: &str, shade: f64, strokes: &Force) -> Paint {
+    /// The color of a mark, times a shade.
+    pub fn new(color: &str, shade: f64, strokes: &Force) -> Paint {
         match color {
             "scene" => Paint::Scene(shade),
             "ink" => Paint::Color(linear(&strokes.ink) * shade),

@@ -23,6 +23,7 @@ pub mod model;
 pub mod noise;
 pub mod passes;
 pub mod pieces;
+pub mod plan;
 pub mod restyle;
 pub mod rim;
 pub mod statistics;
@@ -33,6 +34,7 @@ pub mod synth;
 #[cfg(test)]
 mod tests;
 pub mod tone;
+pub mod upload;
 pub mod visible;
 
 use glam::{DVec3, Vec3};
@@ -64,7 +66,8 @@ pub struct Given<'a> {
     pub magnified: f64,
     /// The scene time.
     pub t: f64,
-    /// 1 / the depth of what each pixel shows, whatever that is; 0 where it is nothing.
+    /// 1 / the depth of what each pixel shows, whatever that is; 0 where it is nothing. Empty, as what follows, where only the
+    /// device knows that.
     pub inverse: Vec<f64>,
     /// The triangle of the layer that each pixel shows; `raster::NONE` where it shows none.
     pub triangle: Vec<u32>,

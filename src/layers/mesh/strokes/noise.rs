@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::aim::{Aim, Follows, Grows};
+use super::flat::Flat;
 use super::impulse::{Impulse, Recipe, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
 use super::sum::{Noise, Shown, Trim, covers, sum};
@@ -76,11 +77,32 @@ impl<'a> Scene<'a> {
         self.aimed(wanted, |anchor, aim| self.points(wanted, anchor, aim))
     }
 
+    /// What it is fixed to.
+    pub fn anchor(&self, wanted: &Wanted) -> Anchor {
+        wanted.anchor.unwrap_or(self.ready.strokes.anchor)
+    }
+
+    /// All impulses of one of its noises as if nothing were hidden, and what their kernels cover; `None` for a texture.
+    pub fn emitted(&self, wanted: &Wanted) -> Option<(Vec<Impulse>, Trim)> {
+        self.aimed(wanted, |anchor, aim| self.all_points(wanted, anchor, aim))
+    }
+
+    /// All impulses of one of its noises as a texture.
+    pub fn flats(&self, wanted: &Wanted) -> Vec<Flat> {
+        let measure = (self.px_per_m(), wanted.reach);
+        self.aimed(wanted, |_, aim| flat::flats(&self.surface, &self.recipe(wanted), aim, measure))
+    }
+
+    /// How many pixels of the frame a meter is, for strokes that are a texture.
+    pub fn px_per_m(&self) -> f64 {
+        self.ready.px_per_m * self.scale
+    }
+
     /// Makes something of the anchor of a noise and how its impulses run.
     fn aimed<R>(&self, wanted: &Wanted, make: impl FnOnce(Anchor, &Aim) -> R) -> R {
         let strokes = &self.ready.strokes;
         let direction = wanted.direction.as_ref().unwrap_or(&strokes.direction);
-        let anchor = wanted.anchor.unwrap_or(strokes.anchor);
+        let anchor = self.anchor(wanted);
         let vary = wanted.vary.as_ref().or(strokes.vary.as_ref()).filter(|_| anchor == Anchor::Surface);
         let tensors = |smooth: f64, is: bool| if is { self.tensors(smooth) } else { Tensors::default() };
         let own = tensors(direction.smooth, direction.along == Along::Curvature);
@@ -111,7 +133,8 @@ impl<'a> Scene<'a> {
         make(anchor, &aim)
     }
 
-    fn recipe(&self, wanted: &Wanted) -> Recipe {
+    /// What the impulses of a noise are made by.
+    pub fn recipe(&self, wanted: &Wanted) -> Recipe {
         let spacing_px = self.spacing_px(wanted);
         Recipe {
             key: Recipe::key(self.ready.strokes.seed, self.drawing, wanted.seed),
@@ -124,21 +147,25 @@ impl<'a> Scene<'a> {
 
     /// The impulses of a noise, and what their kernels cover; `None` for a texture.
     fn points(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Option<(Vec<Impulse>, Trim)> {
-        let (shown, recipe) = (&self.shown, self.recipe(wanted));
+        let (mut points, trim) = self.all_points(wanted, anchor, aim)?;
+        if anchor == Anchor::Surface && trim == Trim::Object {
+            visible::weigh(&self.shown, wanted.reach, &mut points);
+        }
+        Some((points, trim))
+    }
+
+    fn all_points(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Option<(Vec<Impulse>, Trim)> {
+        let recipe = self.recipe(wanted);
         match anchor {
             Anchor::Surface => {
-                let mut points = impulses(&self.surface, &recipe, aim);
                 let trim = match wanted.trim {
                     Ends::Depth => Trim::Depth(wanted.reach),
                     Ends::Triangle => Trim::Triangle,
-                    Ends::Object => {
-                        visible::weigh(shown, wanted.reach, &mut points);
-                        Trim::Object
-                    }
+                    Ends::Object => Trim::Object,
                 };
-                Some((points, trim))
+                Some((impulses(&self.surface, &recipe, aim), trim))
             }
-            Anchor::Screen => Some((grid::impulses(shown.size_px, &recipe, aim.drawn), Trim::Object)),
+            Anchor::Screen => Some((grid::impulses(self.shown.size_px, &recipe, aim.drawn), Trim::Object)),
             Anchor::Texture => None,
         }
     }
@@ -147,10 +174,7 @@ impl<'a> Scene<'a> {
         let shown = &self.shown;
         let mut found = match self.points(wanted, anchor, aim) {
             Some((points, trim)) => sum(shown, &points, wanted.overlap, trim),
-            None => {
-                let px_per_m = self.ready.px_per_m * self.scale;
-                flat::sum(&self.surface, shown, &self.recipe(wanted), aim, px_per_m, wanted.reach)
-            }
+            None => flat::sum(&self.surface, shown, &self.recipe(wanted), aim, self.px_per_m(), wanted.reach),
         };
         if wanted.even {
             even::even(shown.size_px, shown.triangle, self.spacing_px(wanted), &mut found);

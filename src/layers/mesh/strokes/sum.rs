@@ -289,6 +289,11 @@ fn near(covers: &mut [f32], inverse: &[f64], level: (f64, f64), (scale, reach): 
     }
 }
 
+/// The variance of a sum on average.
+pub fn variance(overlap: f64) -> f32 {
+    (overlap * INTEGRAL * INTEGRAL / TAU) as f32
+}
+
 /// What sums are divided by.
 struct Scale {
     variance: f32,
@@ -297,7 +302,7 @@ struct Scale {
 
 impl Scale {
     fn new(overlap: f64) -> Scale {
-        let variance = (overlap * INTEGRAL * INTEGRAL / TAU) as f32;
+        let variance = variance(overlap);
         Scale { variance, least: variance * LEAST }
     }
 

@@ -1,0 +1,224 @@
+//! What is compiled of a program: once for each way in which it is used.
+
+use std::collections::HashMap;
+
+use super::device::{Device, failed};
+use super::kept::Texture;
+use crate::base::error::Result;
+use crate::layers::parts::plan::{Blend, Format, Program};
+
+/// The format of depths.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// S + C (1 - S).
+const SCREEN: wgpu::BlendComponent = wgpu::BlendComponent {
+    src_factor: wgpu::BlendFactor::One,
+    dst_factor: wgpu::BlendFactor::OneMinusSrc,
+    operation: wgpu::BlendOperation::Add,
+};
+/// S + C.
+const ADD: wgpu::BlendComponent =
+    wgpu::BlendComponent { dst_factor: wgpu::BlendFactor::One, ..wgpu::BlendComponent::REPLACE };
+
+/// Everything that was compiled.
+#[derive(Default)]
+pub struct Pipelines(HashMap<Key, Pipeline>);
+
+/// Everything that is compiled into a pipeline.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Key {
+    /// The program's address.
+    program: usize,
+    /// Names and bits of the constants.
+    constants: Vec<(&'static str, u64)>,
+    binds: Vec<Kind>,
+    way: Way,
+}
+
+/// How what is drawn gets to what is there.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub struct Way {
+    /// How it is blended.
+    pub blend: Blend,
+    /// The formats that are drawn into.
+    pub into: Vec<wgpu::TextureFormat>,
+    /// Whether pixels are tested by depth; `None` if the pass has no depth.
+    pub depth: Option<bool>,
+}
+
+/// The kind of resource at a binding.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Kind {
+    Uniform,
+    List,
+    Floats,
+    FloatLayers,
+    Filtered,
+    Uints,
+    Depth,
+    Linear,
+}
+
+#[derive(Clone)]
+struct Pipeline {
+    raw: wgpu::RenderPipeline,
+    bindings: wgpu::BindGroupLayout,
+}
+
+/// A resource on the device that a program reads.
+pub enum Bound {
+    /// A uniform.
+    Uniform(wgpu::Buffer),
+    /// An array.
+    List(wgpu::Buffer),
+    /// A texture.
+    Texture(Texture),
+    /// Textures of floats on top of one another.
+    Layers(wgpu::TextureView),
+    /// Depths.
+    Depth(wgpu::TextureView),
+    /// What reads between texels.
+    Linear(wgpu::Sampler),
+}
+
+impl Pipelines {
+    /// A pipeline, compiled if it is new, and its bind group.
+    pub fn get(
+        &mut self,
+        device: &Device,
+        (program, constants): (&'static Program, &[(&'static str, f64)]),
+        bound: &[Bound],
+        way: Way,
+    ) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup)> {
+        let key = Key {
+            program: std::ptr::from_ref(program).addr(),
+            constants: constants.iter().map(|&(name, value)| (name, value.to_bits())).collect(),
+            binds: bound.iter().map(Bound::kind).collect(),
+            way,
+        };
+        let pipeline = match self.0.get(&key) {
+            Some(pipeline) => pipeline.clone(),
+            None => {
+                let made = device.checked(|| compile(&device.raw, program, constants, &key));
+                let made = made.map_err(|error| failed(format!("{}: {error}", program.name)))?;
+                self.0.insert(key, made.clone());
+                made
+            }
+        };
+        let resources = bound.iter().map(Bound::resource).enumerate();
+        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource };
+        let entries: Vec<_> = resources.map(entry).collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &pipeline.bindings, entries: &entries };
+        Ok((pipeline.raw, device.raw.create_bind_group(&descriptor)))
+    }
+}
+
+impl Bound {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Bound::Uniform(buffer) | Bound::List(buffer) => buffer.as_entire_binding(),
+            Bound::Texture(Texture { view, .. }) | Bound::Layers(view) | Bound::Depth(view) => {
+                wgpu::BindingResource::TextureView(view)
+            }
+            Bound::Linear(sampler) => wgpu::BindingResource::Sampler(sampler),
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        match self {
+            Bound::Uniform(_) => Kind::Uniform,
+            Bound::List(_) => Kind::List,
+            Bound::Depth(_) => Kind::Depth,
+            Bound::Layers(_) => Kind::FloatLayers,
+            Bound::Linear(_) => Kind::Linear,
+            Bound::Texture(texture) => match texture.format {
+                Format::Rgba16Float => Kind::Filtered,
+                Format::Rgba32Float | Format::R32Float | Format::Rg32Float => Kind::Floats,
+                Format::Rgba32Uint => Kind::Uints,
+            },
+        }
+    }
+}
+
+impl Kind {
+    fn layout(self) -> wgpu::BindingType {
+        let textures = |sample_type, view_dimension| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        };
+        let texture = |sample_type| textures(sample_type, wgpu::TextureViewDimension::D2);
+        let floats = wgpu::TextureSampleType::Float { filterable: false };
+        let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+        match self {
+            Kind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+            Kind::List => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            Kind::Floats => texture(floats),
+            Kind::FloatLayers => textures(floats, wgpu::TextureViewDimension::D2Array),
+            Kind::Filtered => texture(wgpu::TextureSampleType::Float { filterable: true }),
+            Kind::Uints => texture(wgpu::TextureSampleType::Uint),
+            Kind::Depth => texture(wgpu::TextureSampleType::Depth),
+            Kind::Linear => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        }
+    }
+}
+
+fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], key: &Key) -> Pipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(program.name),
+        source: wgpu::ShaderSource::Wgsl(program.text().into()),
+    });
+    let entry = |(binding, kind): (usize, &Kind)| wgpu::BindGroupLayoutEntry {
+        binding: binding as u32,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty: kind.layout(),
+        count: None,
+    };
+    let entries: Vec<_> = key.binds.iter().enumerate().map(entry).collect();
+    let bindings = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        bind_group_layouts: &[Some(&bindings)],
+        ..Default::default()
+    });
+    let options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+    let blend = match key.way.blend {
+        Blend::Replace => None,
+        Blend::Over => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        Blend::Screen => Some(wgpu::BlendState { color: SCREEN, alpha: SCREEN }),
+        Blend::Add => Some(wgpu::BlendState { color: ADD, alpha: ADD }),
+    };
+    let target = |&format| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL });
+    let targets: Vec<_> = key.way.into.iter().map(target).collect();
+    let raw = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(program.name),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(program.vertex),
+            compilation_options: options.clone(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: key.way.depth.map(depth),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(program.fragment),
+            compilation_options: options,
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    Pipeline { raw, bindings }
+}
+
+/// Tested draws show what is nearest, and of that the first; the others show everything.
+fn depth(tested: bool) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(tested),
+        depth_compare: Some(if tested { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Always }),
+        stencil: Default::default(),
+        bias: Default::default(),
+    }
+}
