@@ -49,6 +49,14 @@ pub struct Mistake {
     pub column: usize,
     /// What was found there.
     pub what: String,
+    /// Whether it can be read, but its value is not a finite number.
+    pub endless: bool,
+}
+
+impl Mistake {
+    fn at(column: usize, what: impl Into<String>) -> Mistake {
+        Mistake { column, what: what.into(), endless: false }
+    }
 }
 
 /// The names of all functions, for help.
@@ -59,7 +67,7 @@ pub fn functions() -> impl Iterator<Item = &'static str> {
 /// The value of an entry. `variables` holds the old value as `v`. The result is finite.
 pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
     if text.len() > LIMIT_BYTES {
-        return Err(Mistake { column: LIMIT_BYTES + 1, what: format!("longer than {LIMIT_BYTES} bytes") });
+        return Err(Mistake::at(LIMIT_BYTES + 1, format!("longer than {LIMIT_BYTES} bytes")));
     }
     let trimmed = text.trim();
     let start = text.len() - text.trim_start().len();
@@ -71,10 +79,9 @@ pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
     let right = parser.any()?;
     parser.space();
     if let Some(found) = parser.peek() {
-        let hint = if found == '=' { ": equal is ==" } else { "" };
-        return Err(parser.mistake(format!("expected an operator, found `{found}`{hint}")));
+        return Err(parser.mistake(format!("expected an operator, found `{found}`{}", hint(found))));
     }
-    let old = variables.get("v").ok_or(Mistake { column: 1, what: "there is no value to change".into() });
+    let old = variables.get("v").ok_or(Mistake::at(1, "there is no value to change"));
     let value = match operator {
         Some('+') => old? + right,
         Some('-') => old? - right,
@@ -82,10 +89,20 @@ pub fn evaluate(text: &str, variables: &Variables) -> Result<f64, Mistake> {
         Some(_) => old? / right,
         None => right,
     };
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Mistake { column: 1, what: "the result is not a finite number".into() })
+    match value.is_finite() {
+        true => Ok(value),
+        false => Err(Mistake { endless: true, ..Mistake::at(1, "the result is not a finite number") }),
+    }
+}
+
+/// What other languages write for what is a word here, or doubled.
+fn hint(found: char) -> &'static str {
+    match found {
+        '=' => ": equal is ==",
+        '&' => ": both is `and`",
+        '|' => ": either is `or`",
+        '!' => ": the opposite is `not`, unequal is !=",
+        _ => "",
     }
 }
 
@@ -115,7 +132,7 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     fn mistake(&self, what: impl Into<String>) -> Mistake {
-        Mistake { column: self.text[..self.at].chars().count() + 1, what: what.into() }
+        Mistake::at(self.text[..self.at].chars().count() + 1, what)
     }
 
     fn rest(&self) -> &str {
@@ -199,7 +216,7 @@ impl Parser<'_> {
         match self.peek() {
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.name(),
-            Some(c) => Err(self.mistake(format!("expected a number, found `{c}`"))),
+            Some(c) => Err(self.mistake(format!("expected a number, found `{c}`{}", hint(c)))),
             None => Err(self.mistake("expected a number, found the end")),
         }
     }
@@ -224,11 +241,11 @@ impl Parser<'_> {
         let plain = text.replace('−', "-");
         let plain = if plain.contains('.') { plain } else { plain.replacen(',', ".", 1) };
         let value = plain.parse().map_err(|_| format!("`{text}` is not a number"));
-        value.map_err(|what| Mistake { column: self.text[..start].chars().count() + 1, what })
+        value.map_err(|what| Mistake::at(self.text[..start].chars().count() + 1, what))
     }
 
     fn name(&mut self) -> Result<f64, Mistake> {
-        let before = Mistake { what: String::new(), ..self.mistake("") };
+        let before = self.mistake("");
         let name = self.run(is_of_name);
         if let Some(value) = self.variables.get(&name) {
             return Ok(value);
@@ -375,6 +392,10 @@ mod tests {
             ("5é", 2, "operator"),
             ("é+", 1, "not known"),
             ("x=3", 2, "found `=`: equal is =="),
+            ("x>1 && x<5", 5, "found `&`: both is `and`"),
+            ("x>1||x<5", 4, "found `|`: either is `or`"),
+            ("!x", 1, "found `!`: the opposite is `not`"),
+            ("x!", 2, "found `!`: the opposite is `not`"),
             ("1<x<5", 5, "two are compared at a time: join with and"),
             ("if(x)", 6, "if takes 3 numbers, found 1"),
             ("x and", 6, "found the end"),

@@ -1,6 +1,6 @@
 //! Files of lines that the editor runs: scripts, and the logs of its sessions, which are scripts too. A log is written
 //! by a separate thread, so that no key waits for a disk; the file is created with the first line, and only the newest
-//! few are kept.
+//! are kept, up to a size.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -14,8 +14,10 @@ use super::paths;
 use crate::base::error::{Error, Result};
 use crate::base::system::folders;
 
-/// How many logs are kept.
-const KEPT: usize = 20;
+/// The logs are kept as long as all of them together take no more bytes than this, the newest in any case.
+const KEPT_BYTES: u64 = 32 << 20;
+/// What the smallest takes on a disk.
+const LEAST_BYTES: u64 = 4 << 10;
 /// The most characters of a scene's name in a log's name: with four bytes each they still fit beside the rest.
 const LONGEST_STEM: usize = 50;
 /// How a log's name ends.
@@ -109,17 +111,28 @@ fn create(path: &Path) -> io::Result<File> {
     let folder = super::disk::folder_of(path);
     std::fs::create_dir_all(folder)?;
     let file = OpenOptions::new().append(true).create_new(true).mode(0o600).open(path)?;
-    let mut all: Vec<(SystemTime, PathBuf)> = std::fs::read_dir(folder)?
+    prune(folder, path, KEPT_BYTES)?;
+    Ok(file)
+}
+
+/// Removes the oldest logs but this one, so that the others take no more than so many bytes.
+fn prune(folder: &Path, own: &Path, most: u64) -> io::Result<()> {
+    let mut all: Vec<(SystemTime, PathBuf, u64)> = std::fs::read_dir(folder)?
         .flatten()
-        .filter(|entry| entry.path().extension().is_some_and(|suffix| suffix == SUFFIX) && entry.path() != path)
-        .filter_map(|entry| Some((entry.metadata().ok()?.modified().ok()?, entry.path())))
+        .filter(|entry| entry.path().extension().is_some_and(|suffix| suffix == SUFFIX) && entry.path() != own)
+        .filter_map(|entry| entry.metadata().ok().map(|known| (entry.path(), known)))
+        .filter_map(|(path, known)| Some((known.modified().ok()?, path, known.len().max(LEAST_BYTES))))
         .collect();
     all.sort();
-    for (_, old) in all.iter().rev().skip(KEPT - 1) {
-        // One log too many does no harm.
-        let _ = std::fs::remove_file(old);
+    let mut taken = 0;
+    for (_, old, bytes) in all.iter().rev() {
+        taken += bytes;
+        if taken > most {
+            // One log too many does no harm.
+            let _ = std::fs::remove_file(old);
+        }
     }
-    Ok(file)
+    Ok(())
 }
 
 #[cfg(test)]
@@ -127,17 +140,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_comes_with_its_first_line_and_the_newest_stay() {
+    fn a_log_comes_with_its_first_line() {
         let folder = tempfile::tempdir().unwrap();
         let inside = folder.path().join("sessions");
         let begin = |scene: &str| Log::begin_in(&inside, Path::new(scene), vec!["plica".into()], |why| panic!("{why}"));
         drop(begin("/a/nothing.plica.json"));
         assert!(!inside.exists());
         std::fs::create_dir(&inside).unwrap();
-        for i in 0..25 {
-            std::fs::write(inside.join(format!("{i}.plica")), "").unwrap();
-        }
-        std::fs::write(inside.join("mine.txt"), "").unwrap();
         let log = begin("/a/cat.plica.json");
         log.write("move down".into());
         log.write("put 5".into());
@@ -145,8 +154,29 @@ mod tests {
         drop(log);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "# plica\nmove down\nput 5\n");
         assert!(path.to_str().unwrap().contains("-cat-"));
-        let left = std::fs::read_dir(&inside).unwrap().count();
-        assert_eq!(left, KEPT + 1, "logs, and a file that is not one");
+    }
+
+    #[test]
+    fn the_newest_logs_stay_up_to_a_size() {
+        let folder = tempfile::tempdir().unwrap();
+        let begun = SystemTime::UNIX_EPOCH;
+        // One of them is larger than the others together.
+        for (i, name) in ["a.plica", "b.plica", "large.plica", "d.plica", "own.plica", "mine.txt"].iter().enumerate() {
+            let path = folder.path().join(name);
+            std::fs::write(&path, vec![b'#'; if *name == "large.plica" { 9000 } else { 10 }]).unwrap();
+            let file = File::options().append(true).open(&path).unwrap();
+            file.set_modified(begun + std::time::Duration::from_secs(1000 + i as u64)).unwrap();
+        }
+        let left = |most| {
+            prune(folder.path(), &folder.path().join("own.plica"), most).unwrap();
+            let names = std::fs::read_dir(folder.path()).unwrap();
+            let mut names: Vec<String> = names.map(|one| one.unwrap().file_name().into_string().unwrap()).collect();
+            names.sort();
+            names
+        };
+        assert_eq!(left(20_000), ["b.plica", "d.plica", "large.plica", "mine.txt", "own.plica"]);
+        assert_eq!(left(5000), ["d.plica", "mine.txt", "own.plica"]);
+        assert_eq!(left(0), ["mine.txt", "own.plica"]);
     }
 
     #[test]

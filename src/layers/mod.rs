@@ -1,5 +1,8 @@
 //! One folder per technique, with the same file names in each. This file is the only list of them.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use kurbo::{Affine, Rect};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -21,10 +24,37 @@ mod tests;
 pub mod timeline;
 pub mod waterfall;
 
+pub use folding::nodes::Handles;
+pub use folding::shapes::Shape;
 use technique::{Kind, Technique};
 
 /// The techniques: what `kind` can be in the document.
 pub static KINDS: &[&Kind] = &[&folding::KIND, &fill::KIND, &mesh::KIND, &waterfall::KIND];
+
+/// A shape of the scene, or something in it, under a map of the picture: as [`Technique::transformed`].
+///
+/// # Errors
+/// Why it cannot be.
+pub fn transformed_shape(path: &str, value: &Value, by: Affine) -> Option<Result<(Value, Rect), String>> {
+    folding::transform::transformed(path, value, by)
+}
+
+/// Nodes of a path as they are written, with the handles of some made anew; `None` if they are no nodes.
+pub fn handled(nodes: &[Value], closed: bool, chosen: &BTreeSet<usize>, handles: Handles) -> Option<Vec<Value>> {
+    let all = folding::nodes::handled(&folding::node::read(nodes)?, closed, chosen, handles);
+    // Those that stay are written as they were.
+    let each = nodes.iter().zip(&all).enumerate();
+    let written = |(i, (old, new)): (usize, (&Value, &_))| {
+        if chosen.contains(&i) { folding::node::written(new) } else { old.clone() }
+    };
+    Some(each.map(written).collect())
+}
+
+/// So many nodes evenly along the path of nodes as they are written; `None` if they are no nodes.
+pub fn resampled(nodes: &[Value], closed: bool, count: usize) -> Option<Vec<Value>> {
+    let all = folding::nodes::resampled(&folding::node::read(nodes)?, closed, count);
+    Some(all.iter().map(folding::node::written).collect())
+}
 
 /// One layer of a scene, told apart by `kind`. Layers are composed in list order, later over earlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,6 +78,29 @@ impl Layer {
             Layer::Fill(layer) => layer,
             Layer::Mesh(layer) => layer,
             Layer::Waterfall(layer) => layer,
+        }
+    }
+
+    /// Looks up the shapes of the scene that the layer names.
+    pub fn resolve(&mut self, shapes: &BTreeMap<String, Shape>) {
+        if let Layer::Picture(layer) = self {
+            folding::shared::resolve(layer, shapes);
+        }
+    }
+
+    /// Whether the thing at `path` in the layer can be left out by itself.
+    pub fn can_mute(&self, path: &str) -> bool {
+        matches!(self, Layer::Picture(_)) && folding::muted::can_be(path)
+    }
+
+    /// The layer as if the things at these paths were not there, with the others in their places; the layer itself is at the
+    /// empty path.
+    pub fn without(&self, paths: &[&str]) -> Layer {
+        match self {
+            _ if paths.is_empty() => self.clone(),
+            _ if paths.contains(&"") => Layer::Fill(fill::model::FillLayer::clear(self.technique().name())),
+            Layer::Picture(layer) => Layer::Picture(folding::muted::layer(layer, paths)),
+            Layer::Fill(_) | Layer::Mesh(_) | Layer::Waterfall(_) => self.clone(),
         }
     }
 

@@ -80,12 +80,19 @@ pub struct Starts {
     /// A new item for the list `list` of a `variant`, to go before item `index`, and the index it gets; `None` if items
     /// do not depend on their neighbors.
     pub item: fn(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)>,
+    /// Whether the last item of the list `list` of a `variant` comes before the first again, as the corners of a polygon.
+    pub closed: fn(variant: &str, list: &str) -> bool,
 }
 
 impl Starts {
     /// Everything by the schema alone.
-    pub const PLAIN: Starts =
-        Starts { start: |_, _, _| None, beyond: |_, _| None, ascending: |_, _| None, item: |_, _, _, _| None };
+    pub const PLAIN: Starts = Starts {
+        start: |_, _, _| None,
+        beyond: |_, _| None,
+        ascending: |_, _| None,
+        item: |_, _, _, _| None,
+        closed: |_, _| false,
+    };
 }
 
 /// A new item for a list that ascends from 0 to 1 in the numbers at `key`: half way between its neighbors, otherwise like

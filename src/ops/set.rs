@@ -240,7 +240,9 @@ impl<'a> Setting<'a> {
         let own = |path| address::resolve_all(document, path).is_ok();
         let sign = path.chars().last().filter(|sign| "+-*/".contains(*sign));
         let field = sign.map(|sign| (&path[..path.len() - sign.len_utf8()], sign));
-        Ok(match field.filter(|(field, _)| own(field) && !own(path)) {
+        // A `*` that is a step of its own, or a whole pointer, is no operator.
+        let field = field.filter(|(field, _)| !field.is_empty() && !field.ends_with(['.', '/']));
+        Ok(match field.filter(|_| !own(path)) {
             Some((path, sign)) => {
                 Setting { path, value, text, computed: Some(format!("{sign}={text}")), relative: true }
             }

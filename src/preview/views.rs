@@ -74,6 +74,8 @@ pub(super) struct Views {
     switches: Switches,
     /// The pass that is shown in place of the frame, as `NAME` or `NAME:LAYER`.
     pass: Option<String>,
+    /// What of the scene is not shown: JSON pointers.
+    muted: Vec<String>,
     /// How the picture was fitted last, if it was.
     fit: Option<&'static str>,
     /// Steps taken since then, or since the beginning, by the command that counts them up.
@@ -89,6 +91,9 @@ impl Views {
         }
         if let Some(pass) = pass_in(command) {
             self.pass = pass;
+        }
+        if let Some(muted) = muted_in(command) {
+            self.muted = muted;
         }
         if let Some(fit) = FITS.into_iter().find(|fit| *fit == command) {
             self.fit = Some(fit);
@@ -128,7 +133,8 @@ impl Views {
         let rows = KEYS.iter().filter_map(|row| switch(row.command));
         let differs = |name: &&str| self.switches.is_on(name) != before.switches.is_on(name);
         let pass = (self.pass != before.pass).then(|| show_pass(self.pass.as_deref()));
-        rows.filter(differs).map(|name| set(name, self.switches.is_on(name))).chain(pass).collect()
+        let muted = (self.muted != before.muted).then(|| show_muted(&self.muted));
+        rows.filter(differs).map(|name| set(name, self.switches.is_on(name))).chain(pass).chain(muted).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -141,7 +147,7 @@ impl Views {
             return self.list();
         }
         let changes = wanted.changes(self);
-        (self.switches, self.pass) = (wanted.switches, wanted.pass);
+        (self.switches, self.pass, self.muted) = (wanted.switches, wanted.pass, wanted.muted);
         changes
     }
 }
@@ -176,6 +182,16 @@ pub fn pass_in(command: &str) -> Option<Option<String>> {
     Some((pass != COLOR.name).then(|| pass.to_owned()))
 }
 
+/// The command that leaves out what is at these pointers of the scene.
+pub fn show_muted(pointers: &[String]) -> String {
+    format!("mute {}", serde_json::Value::from(pointers))
+}
+
+/// What a command leaves out; if it is such a command.
+pub fn muted_in(command: &str) -> Option<Vec<String>> {
+    serde_json::from_str(command.strip_prefix("mute ")?).ok()
+}
+
 /// Whether a command sets what all windows show alike, a switch or the pass, and does nothing else: any window may ask for
 /// it.
 pub(super) fn is_for_all(command: &str) -> bool {
@@ -201,9 +217,11 @@ mod tests {
 
     #[test]
     fn only_what_is_in_force_is_listed() {
-        let table: [(&[&str], &[&str]); 11] = [
+        let table: [(&[&str], &[&str]); 13] = [
             (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),
             (&["pass depth", "pass color"], &[]),
+            (&["mute [\"/layers/0\"]", "view-grid"], &["view-grid on", "mute [\"/layers/0\"]"]),
+            (&["mute [\"/layers/0\"]", "mute []"], &[]),
             (&["view-field", "view-grid", "view-field"], &["view-grid on"]),
             (&["view-field on", "view-field on"], &["view-field on"]),
             (&["view-checkerboard", "view-legends off", "view-legends"], &["view-checkerboard off"]),

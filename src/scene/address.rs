@@ -14,7 +14,7 @@ use crate::base::problem::{Problem, nearest, quoted};
 /// The JSON pointer of an address.
 ///
 /// # Errors
-/// If a part of it is unknown; the message names it, and the nearest known one.
+/// If a part of it is unknown, or stands for several; the message names it, and the nearest known one.
 pub fn resolve(document: &Document, address: &str) -> Result<String> {
     if address.is_empty() || address.starts_with('/') {
         let tokens = Pointer(address).tokens().map(|text| Token { text, quoted: false });
@@ -161,6 +161,9 @@ fn step<'a>(
     let laid = || field::laid(document, path).is_some_and(|names| names.contains(&token.text));
     let key = key(place, token).or_else(|| (!token.text.is_empty() && laid()).then(|| token.text.clone()));
     let below = key.and_then(|key| Some((Pointer(path).join(&key), place.step(&key)?)));
+    if below.is_none() && !token.quoted && token.text == "*" {
+        return Err(Error::at(address, "* stands for all of them, and here one is asked for").cure("only set takes *"));
+    }
     below.ok_or_else(|| unknown(document, address, path, place, &token.text))
 }
 

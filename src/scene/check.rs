@@ -70,7 +70,7 @@ pub fn read(json: &Value, rules: &Rules) -> Result<Read, Vec<Problem>> {
     }
     // The check above covers what the types demand, and more; if they ever differ, the types decide.
     let scene = Scene::deserialize(json).map_err(|e| vec![Problem::error("", e.to_string())])?;
-    check(scene, None, rules)
+    check(scene.resolved(), None, rules)
 }
 
 /// Like [`read`], if `change` is how `json` differs from what `before` was read from: only that is looked at. JSON that
@@ -78,12 +78,19 @@ pub fn read(json: &Value, rules: &Rules) -> Result<Read, Vec<Problem>> {
 pub fn reread(json: &Value, change: &Change, before: &Read, rules: &Rules) -> Result<Read, Vec<Problem>> {
     let fits = shape::still_fits(json, change);
     match if fits { before.scene.reread(json, change) } else { None } {
-        Some(scene) => check(scene, Some(before), rules),
+        Some(scene) => check(scene.resolved(), Some(before), rules),
         None => read(json, rules),
     }
 }
 
 impl Scene {
+    /// The same with the shapes looked up that its layers name.
+    fn resolved(mut self) -> Scene {
+        let Scene { shapes, layers, .. } = &mut self;
+        layers.iter_mut().for_each(|layer| layer.resolve(shapes));
+        self
+    }
+
     fn reread(&self, json: &Value, change: &Change) -> Option<Scene> {
         let bare = json.as_object()?.iter().filter(|(name, _)| *name != "layers");
         let bare = Scene::deserialize(Value::Object(bare.map(|(k, v)| (k.clone(), v.clone())).collect())).ok()?;

@@ -1,7 +1,9 @@
 //! Fields for people: what a form, a line of help and completion need to know about one place in a document. Made from
 //! the schema alone.
 
-use serde_json::{Value, json};
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value, json};
 
 use super::json_schema::range_text;
 use super::schema::{Body, Place, Shape};
@@ -98,6 +100,10 @@ pub fn field(document: &Document, pointer: &str) -> Option<Field> {
 /// The value at `pointer`, or its default; `null` for an optional thing that is not there. `None` if the schema knows
 /// no such place.
 pub fn value(document: &Document, pointer: &str) -> Option<Value> {
+    // What is written needs no schema.
+    if let Some(written) = document.json().pointer(pointer).filter(|value| !value.is_null()) {
+        return Some(written.clone());
+    }
     let place = Place::of(document.json(), pointer)?;
     place.value.cloned().or_else(|| place.shape.allows_null().then_some(Value::Null))
 }
@@ -120,6 +126,15 @@ pub fn formula(document: &Document, pointer: &str) -> Option<&'static str> {
 pub fn is_there(document: &Document, pointer: &str) -> bool {
     Place::of(document.json(), pointer).is_some_and(|place| place.value.is_some_and(|value| !value.is_null()))
         || in_force(document, pointer).is_some()
+}
+
+/// What is at `pointer`, as a form shows it: what is not written but in force is an object in which nothing is written.
+pub fn standing<'a>(document: &'a Document, pointer: &str) -> Option<Place<'a>> {
+    static NOTHING: LazyLock<Value> = LazyLock::new(|| Value::Object(Map::new()));
+    let place = Place::of(document.json(), pointer)?;
+    let missing = place.value.is_none_or(Value::is_null);
+    let stands = missing && in_force(document, pointer).is_some_and(|value| value.is_object());
+    Some(if stands { Place { value: Some(&NOTHING), ..place } } else { place })
 }
 
 /// The layer that a place belongs to, and the way from it to there.

@@ -25,6 +25,13 @@ pub fn misfit(document: &Document, path: &str, value: &Value) -> Option<Problem>
     }
 }
 
+/// Whether the last item of a list comes before its first again, as the corners of a polygon.
+pub fn is_closed(document: &Document, list: &str) -> bool {
+    let Some((holder, name)) = Pointer(list).split() else { return false };
+    let variant = Place::of(document.json(), holder).map_or("", variant_of);
+    (Fresh::starts(document, list).closed)(variant, &name)
+}
+
 impl Edit {
     /// Adds `items` to the list at `list`, before the one at `index`: names become unique, and in an ascending list
     /// each item goes to its place (if that is taken, a single item goes half way to the next, and several replace what

@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize};
 use crate::base::problem;
 use crate::layers::parts::materials::{List, Of, Use};
 use crate::layers::space::camera::Camera;
-use crate::layers::{Layer, timeline::Timeline};
+use crate::layers::{Layer, Shape, timeline::Timeline};
 
 pub mod address;
 pub mod build;
 pub mod check;
 mod clip;
+pub mod complete;
 mod document;
 pub mod edit;
 pub mod field;
@@ -25,6 +26,7 @@ pub mod json_schema;
 pub mod layout;
 pub mod merge;
 pub mod migrate;
+mod muted;
 pub mod presets;
 mod references;
 pub mod schema;
@@ -39,6 +41,7 @@ pub use clip::Clip;
 pub use document::Document;
 pub use edit::Edit;
 pub use history::History;
+pub use shape::expected;
 pub use start::Start;
 
 /// The version of the document that this program writes.
@@ -83,6 +86,10 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(extend("default" = {}))]
     pub clips: BTreeMap<String, Clip>,
+    /// The shapes, by name: paths that outlines and curves share.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(extend("default" = {}))]
+    pub shapes: BTreeMap<String, Shape>,
     /// The layers, composed in this order: later over earlier.
     #[serde(default)]
     pub layers: Vec<Layer>,
@@ -128,6 +135,7 @@ impl Default for Scene {
             images: BTreeMap::new(),
             meshes: BTreeMap::new(),
             clips: BTreeMap::new(),
+            shapes: BTreeMap::new(),
             layers: Vec::new(),
         }
     }

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Scene;
+use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, nearest, quoted};
 use crate::layers::parts::materials::{List, Of};
 
@@ -17,6 +18,7 @@ impl Scene {
             List::Images => self.images.keys().map(String::as_str).collect(),
             List::Meshes => self.meshes.keys().map(String::as_str).collect(),
             List::Clips => self.clips.keys().map(String::as_str).collect(),
+            List::Shapes => self.shapes.keys().map(String::as_str).collect(),
             List::Layers => self.layers.iter().map(|layer| layer.technique().name()).collect(),
         }
     }
@@ -28,7 +30,7 @@ impl Scene {
         let uses = self.layers.get(layer).map(|layer| layer.technique().uses()).unwrap_or_default();
         let shown = uses.into_iter().filter_map(|used| match used.of {
             Of::Name(List::Layers, name) => Some((index(name)?, used.at)),
-            Of::Name(List::Images | List::Meshes | List::Clips, _) | Of::Path(_) => None,
+            Of::Name(..) | Of::Path(_) => None,
         });
         shown.collect()
     }
@@ -60,7 +62,21 @@ pub fn problems(scene: &Scene) -> Vec<Problem> {
         problems.extend(unknown);
         problems.extend(circle(scene, i));
     }
+    problems.extend(unused_shapes(scene));
     problems
+}
+
+/// Warnings on shapes that nothing is made of.
+fn unused_shapes(scene: &Scene) -> impl Iterator<Item = Problem> {
+    let used = scene.uses().filter_map(|used| match used.of {
+        Of::Name(List::Shapes, name) => Some(name),
+        _ => None,
+    });
+    let used: BTreeSet<&str> = if scene.shapes.is_empty() { BTreeSet::new() } else { used.collect() };
+    scene.shapes.keys().filter(move |name| !used.contains(name.as_str())).map(|name| {
+        let problem = Problem::warning(Pointer("/shapes").join(name), "no outline and no curve is made of it");
+        problem.hint("in the editor :use NAME on one, or delete it")
+    })
 }
 
 /// The place where a layer names what, in the end, shows the layer itself.

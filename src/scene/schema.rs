@@ -70,6 +70,11 @@ impl Shape {
         }
     }
 
+    /// Distinguishes types: uses of the same type have the same.
+    pub fn id(self) -> usize {
+        std::ptr::from_ref(self.body).addr()
+    }
+
     /// Whether new objects have it, though it may be left out.
     pub fn begins(self) -> bool {
         self.site.get("begins") == Some(&Value::Bool(true))
@@ -171,6 +176,11 @@ impl Shape {
     /// What its text names: the key of one of the scene's lists ("images").
     pub fn reference(self) -> Option<&'static str> {
         self.text("reference")
+    }
+
+    /// Where a list may be named in its place: the key of one of the scene's lists ("shapes").
+    pub fn named(self) -> Option<&'static str> {
+        self.site.get("named").and_then(Value::as_str)
     }
 
     /// How something in this list or map is left out that stands there though it is not written, as what a style has: by

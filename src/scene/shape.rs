@@ -117,6 +117,7 @@ impl Walk {
                 }
             }
             (Body::List(item, min, max), Value::Array(items)) => self.list(item, items, min, max),
+            (Body::List(..), Value::String(_)) if shape.named().is_some() => {}
             (Body::Map(item), Value::Object(map)) => {
                 for (key, value) in map {
                     self.under(key, |walk| walk.value(item, value));

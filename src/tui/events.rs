@@ -122,6 +122,10 @@ pub enum Effect {
     Probe(Vec<String>),
     /// Run a subcommand of the command line with these arguments.
     Run(Vec<String>),
+    /// The same on what is shown of the scene, without what is muted.
+    RunSeen(Vec<String>),
+    /// What is muted has changed.
+    Mute,
     /// Send a table through a program of the person's.
     Pipe(String, String),
     /// Look for the files that a path could become.

@@ -35,7 +35,9 @@ pub(super) fn fields(scene: &Scene) -> Vec<Named<'_>> {
     let fields = scene.uses().filter_map(|Use { at, of, what }| match (of, what) {
         (Of::Path(path), What::Vectors) => Some(Named { key: path, path, at }),
         (Of::Name(..), _)
-        | (Of::Path(_), What::Picture | What::Mask { .. } | What::Mesh | What::Clip | What::Layer) => None,
+        | (Of::Path(_), What::Picture | What::Mask { .. } | What::Mesh | What::Clip | What::Shape | What::Layer) => {
+            None
+        }
     });
     fields.collect()
 }

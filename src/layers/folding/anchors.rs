@@ -5,7 +5,8 @@ use std::sync::Arc;
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
 
 use super::anchor::Anchor;
-use super::outline::{Node, Outline, bezier, point, vector};
+use super::node::Node;
+use super::outline::{Outline, bezier, point, vector};
 use super::tools::{CurveFrame, Distribution, JumpAlong, LassoVertex, Tool};
 use crate::base::geometry::Polygon;
 use crate::base::maths;
@@ -38,6 +39,8 @@ pub fn anchors(motion: &[Tool], outline: &Outline) -> Vec<Anchor> {
 pub fn given(tool: &Tool, outline: &Outline) -> Vec<(Point, Vec2)> {
     match tool {
         Tool::Point { at, jump } => vec![(point(*at), vector(*jump))],
+        // A shape that is not there.
+        Tool::Curve { nodes, .. } if nodes.is_empty() => Vec::new(),
         Tool::Curve { frame, samples, distribution, nodes, jumps } => {
             curve(nodes, *samples, |along| jump_at(jumps, *distribution, along), *frame)
         }

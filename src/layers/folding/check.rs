@@ -142,13 +142,18 @@ fn clock(zone: &Zone) -> Option<Problem> {
 
 /// An error if an outline encloses nothing, a warning if it crosses itself.
 fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
+    // A shape that is not there is told as such.
+    if matches!(outline, Outline::Shapes { nodes, .. } if nodes.is_empty()) {
+        return Vec::new();
+    }
     let polygon = outline.polygon();
-    let drawn = matches!(outline, Outline::Polygon { .. } | Outline::Path { .. });
+    let drawn = !matches!(outline, Outline::Rectangle { .. } | Outline::Ellipse { .. });
     if let Some(what) = emptiness(&polygon) {
         let what = if drawn { what } else { "has no area: it is too narrow" };
         return vec![Problem::error(path, format!("the outline {what}"))];
     }
-    let slack = if matches!(outline, Outline::Path { .. }) { FLATNESS_PX } else { 0.0 };
+    let curved = matches!(outline, Outline::Path { .. } | Outline::Shapes { .. });
+    let slack = if curved { FLATNESS_PX } else { 0.0 };
     let crossing = if drawn { self_crossing(&polygon, slack) } else { None };
     let message = |Point { x, y }| format!("the outline crosses itself near ({x:.1}, {y:.1})");
     let hint = "what it encloses twice is outside (even-odd)";

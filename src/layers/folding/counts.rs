@@ -4,7 +4,8 @@
 use kurbo::Vec2;
 
 use super::model::Zone;
-use super::outline::{Node, Outline, vector};
+use super::node::Node;
+use super::outline::{Outline, vector};
 use super::tools::{Gives, Tool};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::maths::{TAU, pow};
@@ -29,7 +30,9 @@ pub fn points(outline: &Outline) -> f64 {
         Outline::Rectangle { .. } => 4.0,
         Outline::Ellipse { radii: [x, y], .. } => 16.0 + TAU * (x.abs().max(y.abs()) / FLATNESS_PX).sqrt() / 4.0,
         Outline::Polygon { points } => points.len() as f64,
-        Outline::Path { nodes } => sides(nodes).map(|(a, b)| flattened_side(a, b)).sum(),
+        Outline::Path { nodes } | Outline::Shapes { nodes, .. } => {
+            sides(nodes).map(|(a, b)| flattened_side(a, b)).sum()
+        }
     }
 }
 
@@ -57,7 +60,9 @@ fn perimeter(outline: &Outline) -> f64 {
         Outline::Rectangle { width, height, .. } => 2.0 * (width.abs() + height.abs()),
         Outline::Ellipse { radii: [x, y], .. } => TAU * x.abs().max(y.abs()),
         Outline::Polygon { .. } => outline.polygon().perimeter(),
-        Outline::Path { nodes } => sides(nodes).map(|(a, b)| control_length(a, b)).sum(),
+        Outline::Path { nodes } | Outline::Shapes { nodes, .. } => {
+            sides(nodes).map(|(a, b)| control_length(a, b)).sum()
+        }
     }
 }
 

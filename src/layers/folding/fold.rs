@@ -58,6 +58,14 @@ impl Fold {
         }
     }
 
+    /// The same, to be changed.
+    pub fn regions_mut(&mut self) -> &mut [Outline] {
+        match self {
+            Fold::Cover { regions } | Fold::Return { regions } | Fold::FlyOver { regions } => regions,
+            Fold::Mask { .. } => &mut [],
+        }
+    }
+
     /// The fold regions; empty for a mask.
     pub fn regions(&self) -> &[Outline] {
         match self {

@@ -5,7 +5,8 @@ use kurbo::{Point, Vec2};
 use super::looks::{ANCHOR, ANCHORS, CURVE, CURVES, FOLD_REGION, HANDLE, JUMP, LABELS, LASSO, OUTLINES, REGIONS};
 use super::looks::{STILL, ZONE_OUTLINE};
 use super::model::{PictureLayer, Zone};
-use super::outline::{Node, bezier, point, vector};
+use super::node::Node;
+use super::outline::{bezier, point, vector};
 use super::tools::Tool;
 use crate::base::text::short;
 use crate::layers::parts::marks::{Look, Mark, Shape, View};
@@ -99,7 +100,7 @@ impl<'a> Drawing<'a> {
             Tool::Curve { nodes, .. } => {
                 let points = flattened(nodes);
                 self.add(&CURVE, at, Shape::Line { points, closed: false });
-                for node in nodes {
+                for node in nodes.iter() {
                     self.handles(node, at);
                 }
             }

@@ -16,7 +16,10 @@ pub mod kinds;
 pub mod looks;
 pub mod marks;
 pub mod model;
+pub mod muted;
 pub mod needs;
+pub mod node;
+pub mod nodes;
 pub mod outline;
 pub mod pick;
 pub mod pixel_marks;
@@ -28,6 +31,8 @@ pub mod reduce;
 pub mod regions;
 pub mod reread;
 pub mod seam;
+pub mod shapes;
+pub mod shared;
 pub mod starts;
 pub mod synth;
 pub mod texels;
@@ -70,7 +75,13 @@ pub static KIND: Kind = Kind {
     passes: &[],
     looks: looks::LOOKS,
     template: Some(Template { of: List::Images, layer: starts::template }),
-    starts: Starts { start: starts::start, beyond: starts::beyond, ascending: starts::ascending, item: starts::item },
+    starts: Starts {
+        start: starts::start,
+        beyond: starts::beyond,
+        ascending: starts::ascending,
+        item: starts::item,
+        closed: starts::closed,
+    },
     presets: &[],
     styles: None,
     example: include_str!("example.json"),

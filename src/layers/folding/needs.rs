@@ -2,6 +2,7 @@
 
 use super::counts;
 use super::model::{PictureLayer, Zone};
+use super::shared;
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::technique::Count;
 
@@ -25,6 +26,8 @@ pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
             }
         }
     }
+    let named = shared::uses(layer).map(|(at, name)| Use { at, of: Of::Name(List::Shapes, name), what: What::Shape });
+    uses.extend(named);
     uses
 }
 

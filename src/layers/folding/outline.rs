@@ -4,6 +4,8 @@ use kurbo::{BezPath, Point, Rect, Shape, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::node::Node;
+use super::shapes::Part;
 use crate::base::geometry::Polygon;
 use crate::base::geometry::Xy;
 
@@ -47,27 +49,15 @@ pub enum Outline {
         #[schemars(length(min = 2))]
         nodes: Vec<Node>,
     },
-}
-
-/// A node of a cubic Bezier path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Node {
-    /// Position.
-    #[schemars(extend("unit" = "px"))]
-    pub at: Xy,
-    /// Handle towards the node before, relative to the node.
-    #[serde(default, rename = "in", skip_serializing_if = "is_zero")]
-    #[schemars(extend("default" = [0, 0], "unit" = "px", "columns" = ["dx", "dy"]))]
-    pub handle_in: Xy,
-    /// Handle towards the next node, relative to the node.
-    #[serde(default, rename = "out", skip_serializing_if = "is_zero")]
-    #[schemars(extend("default" = [0, 0], "unit" = "px", "columns" = ["dx", "dy"]))]
-    pub handle_out: Xy,
-}
-
-fn is_zero(xy: &Xy) -> bool {
-    *xy == [0.0, 0.0]
+    /// A closed path of shapes of the scene, which others may be made of too.
+    Shapes {
+        /// The shapes, one after the other, closed by itself.
+        #[schemars(length(min = 1))]
+        parts: Vec<Part>,
+        /// The nodes of the path, once the shapes are looked up.
+        #[serde(skip)]
+        nodes: Vec<Node>,
+    },
 }
 
 impl Outline {
@@ -81,7 +71,7 @@ impl Outline {
             }
             Outline::Ellipse { center, radii } => Polygon::ellipse(point(*center), vector(*radii)),
             Outline::Polygon { points } => Polygon::new(points.iter().copied().map(point).collect()),
-            Outline::Path { nodes } => Polygon::flatten(&bezier(nodes, true)),
+            Outline::Path { nodes } | Outline::Shapes { nodes, .. } => Polygon::flatten(&bezier(nodes, true)),
         }
     }
 }

@@ -98,15 +98,18 @@ pub fn ascending(variant: &str, list: &str) -> Option<&'static str> {
     }
 }
 
+/// Whether the last item of the list `list` of a `variant` comes before the first again.
+pub fn closed(variant: &str, list: &str) -> bool {
+    matches!((variant, list), ("polygon" | "path" | "lasso", "points" | "nodes" | "vertices"))
+}
+
 /// A new item for the list `list` of a `variant`, to go before item `index`, and the index it gets; `None` if items do
 /// not depend on their neighbors.
 pub fn item(variant: &str, list: &str, items: &[Value], index: usize) -> Option<(usize, Value)> {
-    let closed = match (variant, list) {
-        ("polygon" | "path" | "lasso", "points" | "nodes" | "vertices") => true,
-        ("curve", "nodes") => false,
-        _ if ascending(variant, list).is_some() => false,
-        _ => return None,
-    };
+    let closed = closed(variant, list);
+    if !closed && (variant, list) != ("curve", "nodes") && ascending(variant, list).is_none() {
+        return None;
+    }
     let last = items.last()?;
     match ascending(variant, list) {
         None => {

@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::outline::Node;
+use super::node::Node;
+use super::shapes::Nodes;
 use crate::base::geometry::Xy;
 
 /// One tool of a zone's motion.
@@ -31,9 +32,9 @@ pub enum Tool {
         /// How vectors change between two places.
         #[serde(default)]
         distribution: Distribution,
-        /// The nodes, at least two.
-        #[schemars(length(min = 2))]
-        nodes: Vec<Node>,
+        /// The nodes, at least two; or the name of one of the scene's shapes.
+        #[schemars(with = "Vec<Node>", length(min = 2), extend("named" = "shapes"))]
+        nodes: Nodes,
         /// Jump vectors at places along the curve, ascending.
         #[schemars(length(min = 1))]
         jumps: Vec<JumpAlong>,

@@ -45,6 +45,9 @@ struct Map {
     seen: Option<Rect>,
 }
 
+/// Why what is made of shapes of the scene is not moved by itself.
+const SHARED: &str = "it is made of shared shapes: move those, or make it its own first (:unshare)";
+
 /// Two numbers that differ by less are equal.
 const NEAR: f64 = 1e-9;
 
@@ -112,6 +115,8 @@ impl Map {
             Value::Object(fields) => {
                 let word = |name: &str| fields.get(name).and_then(Value::as_str).unwrap_or_default().to_owned();
                 match (word("kind").as_str(), word("tool").as_str(), word("rule").as_str()) {
+                    ("shapes", ..) => Err(SHARED.into()),
+                    (_, "curve", _) if fields.get("nodes").is_some_and(Value::is_string) => Err(SHARED.into()),
                     ("rectangle" | "ellipse", ..) => self.box_shape(value),
                     (_, "curve", _) if word("frame") == "curve" => self.curve(value),
                     (_, "scale" | "rotate" | "shear" | "affine", _) => self.dense(value),
@@ -139,7 +144,7 @@ impl Map {
         let (to, rect) = match &outline {
             Outline::Rectangle { x, y, width, height } => ("polygon", Rect::new(*x, *y, x + width, y + height)),
             Outline::Ellipse { center: [x, y], radii: [w, h] } => ("path", Rect::new(x - w, y - h, x + w, y + h)),
-            Outline::Polygon { .. } | Outline::Path { .. } => return self.fields(value),
+            Outline::Polygon { .. } | Outline::Path { .. } | Outline::Shapes { .. } => return self.fields(value),
         };
         if !self.is_upright() {
             *value = kinds::outline_as(&outline, to).ok_or("this outline cannot be turned")?;
@@ -358,6 +363,8 @@ mod tests {
         for (path, value, part) in [
             ("/zones/0/motion/0", json!({ "tool": "field", "path": "a.flo" }), "stays where it is"),
             ("/zones/0/fold", json!({ "rule": "mask", "image": "a" }), "a mask is a picture"),
+            ("/zones/0/outline", json!({ "kind": "shapes", "parts": [{ "shape": "lid" }] }), "made of shared shapes"),
+            ("/zones/0/motion/0", json!({ "tool": "curve", "nodes": "lid", "jumps": [] }), "made of shared shapes"),
             (
                 "/zones/0/motion/0",
                 json!({ "tool": "curve", "frame": "curve", "nodes": [], "jumps": [] }),

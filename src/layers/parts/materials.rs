@@ -42,13 +42,20 @@ pub enum List {
     Meshes,
     /// Clips.
     Clips,
+    /// Shapes.
+    Shapes,
     /// The layers themselves.
     Layers,
 }
 
 impl List {
     /// Those whose items have names of their own.
-    pub const NAMED: [List; 3] = [List::Images, List::Meshes, List::Clips];
+    pub const NAMED: [List; 4] = [List::Images, List::Meshes, List::Clips, List::Shapes];
+
+    /// Whether its items come from files.
+    pub fn has_files(self) -> bool {
+        matches!(self, List::Images | List::Meshes | List::Clips)
+    }
 
     /// The list, and the name in it, that a pointer of the scene leads to; `None` for other places, and for layers, which
     /// are in a list by their order.
@@ -64,6 +71,7 @@ impl List {
             List::Images => ("images", "image"),
             List::Meshes => ("meshes", "mesh"),
             List::Clips => ("clips", "clip"),
+            List::Shapes => ("shapes", "shape"),
             List::Layers => ("layers", "layer"),
         }
     }
@@ -85,6 +93,8 @@ pub enum What<'a> {
     Mesh,
     /// A clip.
     Clip,
+    /// A path.
+    Shape,
     /// A layer as a picture, at its own time.
     Layer,
 }

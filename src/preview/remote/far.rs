@@ -14,6 +14,7 @@ use crate::preview::follow::client::Link;
 use crate::preview::follow::news::{News, Sink, window_sink};
 use crate::preview::follow::talk::{Heard, Outcome, Talk, WindowGone};
 use crate::preview::keys::{KEYS, PLAY, VIEW};
+use crate::preview::views;
 use crate::preview::wire::connection::{ALIVE, HangUp, Wire};
 use crate::preview::wire::message::{FromEditor, ToEditor};
 
@@ -207,6 +208,9 @@ impl Far {
 fn harmless(said: FromEditor) -> Option<FromEditor> {
     // A switch says what it is set to: `view-field on`.
     let is_view = |line: &String| {
+        if views::muted_in(line).is_some() {
+            return true;
+        }
         let name = line.strip_suffix(" on").or(line.strip_suffix(" off")).unwrap_or(line);
         let row = KEYS.iter().find(|row| row.command == name);
         row.is_some_and(|row| [PLAY, VIEW].contains(&row.context)) && name != "view-full-screen"

@@ -18,6 +18,8 @@ use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::fit::Ball;
 use crate::preview::follow::Update;
+use crate::preview::views::muted_in;
+use crate::preview::wire::message::FromEditor;
 use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::{self, Synth};
 use crate::scene::Scene;
@@ -127,6 +129,15 @@ impl Drop for Sending {
     }
 }
 
+/// A scene to be synthesised.
+#[derive(Clone)]
+struct Job {
+    scene: Arc<Scene>,
+    revision: u64,
+    /// What of it is not shown.
+    muted: Arc<[String]>,
+}
+
 /// The event loop is gone.
 struct Gone;
 
@@ -156,16 +167,24 @@ pub fn start(
     std::thread::spawn(move || drop(synthesise(&work, load, &send)));
 }
 
-fn listen(
-    updates: &Receiver<Update>,
-    cancel: &AtomicBool,
-    jobs: &Sender<(Arc<Scene>, u64)>,
-    send: &impl Fn(Event) -> bool,
-) {
+fn listen(updates: &Receiver<Update>, cancel: &AtomicBool, jobs: &Sender<Job>, send: &impl Fn(Event) -> bool) {
     let mut alive = true;
+    let (mut latest, mut muted) = (None, Arc::<[String]>::default());
     while alive {
         alive = match updates.recv_timeout(LOOK) {
-            Ok(Update::Scene { scene, revision }) => jobs.send((scene, revision)).is_ok(),
+            Ok(Update::Scene { scene, revision }) => {
+                let job = Job { scene, revision, muted: muted.clone() };
+                latest = Some(job.clone());
+                jobs.send(job).is_ok()
+            }
+            Ok(Update::Said(FromEditor::View(command))) if muted_in(&command).is_some() => {
+                muted = muted_in(&command).unwrap_or_default().into();
+                let job = latest.as_mut().map(|latest| {
+                    latest.muted = muted.clone();
+                    latest.clone()
+                });
+                job.is_none_or(|job| jobs.send(job).is_ok())
+            }
             Ok(other) => send(Event::Update(other)),
             Err(RecvTimeoutError::Timeout) => true,
             Err(RecvTimeoutError::Disconnected) => return,
@@ -178,23 +197,27 @@ fn listen(
 }
 
 fn synthesise(
-    work: &Receiver<(Arc<Scene>, u64)>,
+    work: &Receiver<Job>,
     mut load: Load,
     tell: &(impl Fn(Event) -> bool + Clone + Send + 'static),
 ) -> Result<(), Gone> {
     let send = |event| if tell(event) { Ok(()) } else { Err(Gone) };
     let mut previous: Option<Synth> = None;
     while let Ok(first) = work.recv() {
-        let (scene, revision) = work.try_iter().last().unwrap_or(first);
+        let Job { scene, revision, muted } = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
         send(Event::Work(Work { what: READING, percent: None }))?;
         let made = fault::caught(|| {
             let (mut materials, problems) = load(&scene, progress(READING, tell.clone()));
+            let scene = match muted.is_empty() {
+                true => scene.clone(),
+                false => Arc::new(scene.without(&muted, render::frame_size(&scene, &materials))),
+            };
             send(Event::Work(Work { what: SYNTHESISING, percent: None }))?;
             materials.progress = Some(Arc::new(progress(SYNTHESISING, tell.clone())));
-            Ok((render::synth(&scene, &materials, previous.as_ref()), problems))
+            Ok((render::synth(&scene, &materials, previous.as_ref()), problems, scene))
         });
-        let (synth, problems) = match made {
+        let (synth, problems, scene) = match made {
             Ok(made) => made?,
             Err(fault) => {
                 previous = None;

@@ -2,6 +2,7 @@
 
 use super::command::{Call, Command, Done, command};
 use crate::base::problem::{nearest, quoted};
+use crate::scene::field::Kind;
 use crate::tui::document::rows::same;
 use crate::tui::state::State;
 use crate::tui::text::said::words;
@@ -37,13 +38,21 @@ fn columns(state: &mut State, call: &Call) -> Done {
         }
         ["all"] => state.memory.columns.choose(&node, Vec::new()),
         ["freeze", count] => {
-            let count =
-                count.parse().map_err(|_| format!("freeze takes how many columns stay, not {}", quoted(count)))?;
+            let most = all.len().saturating_sub(1);
+            let count = count.parse().ok().filter(|count| *count <= most);
+            let count = count.ok_or_else(|| {
+                let not = quoted(plain[1]);
+                format!("freeze takes how many columns stay while the others move, 0 to {most}, not {not}")
+            })?;
             state.memory.columns.freeze(&node, count);
             return Ok(());
         }
         some if some.iter().all(|word| word.starts_with('-')) => {
             let out = some.iter().map(|word| head(&word[1..])).collect::<Result<Vec<_>, _>>()?;
+            let kind = row.cells.first().filter(|cell| matches!(cell.field.kind, Kind::Choice(_)));
+            if let Some(kind) = kind.filter(|kind| out.contains(&kind.head)) {
+                return Err(format!("{} says what a row is, so it always stays: leave out others", kind.head));
+            }
             let shown = state.memory.columns.of(&node);
             let shown = if shown.is_empty() { all.clone() } else { shown.to_vec() };
             let rest: Vec<String> = shown.into_iter().filter(|head| !out.contains(head)).collect();

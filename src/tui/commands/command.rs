@@ -146,7 +146,10 @@ impl Command {
             Counts::With(words) => words.contains(&first),
         };
         match said.count {
-            Some(_) if !counts => Err(format!("{} takes no count", format!("{} {first}", self.name).trim_end())),
+            Some(count) if !counts => Err(match format!("{} {first}", self.name).trim_end() {
+                "choice take" => format!("an answer takes no count: leave out the {count}"),
+                name => format!("{name} takes no count: leave out the {count}"),
+            }),
             _ => Ok(()),
         }
     }
@@ -313,7 +316,7 @@ impl Table {
             return Err(self.unknown(name));
         }
         if said.count.is_some() {
-            return Err(format!("{name} takes no count"));
+            return Err(format!("{name} takes no count: leave it out"));
         }
         let words = words(&format!("{name} {}", said.text))?;
         state.ask(Effect::Run(words));

@@ -1,7 +1,7 @@
-//! Pastes a table over the selected rows. Its columns are matched by its header, or start at the column under the cursor;
+//! Pastes a table over the selected rows, or over rows that are named. Its columns are matched by its header, or start at the column under the cursor;
 //! other columns stay as they are.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use kurbo::Vec2;
 use serde_json::Value;
@@ -10,17 +10,18 @@ use super::command::{Call, Command, Done, command};
 use super::yanking::{counted, too_many};
 use crate::base::number;
 use crate::base::problem::quoted;
-use crate::scene::{Document, Edit, field};
+use crate::scene::{Document, Edit, address, field};
 use crate::tui::document::csv;
 use crate::tui::document::rows::{self, follows};
-use crate::tui::document::sheet::{Cell, Part, Row};
+use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
 use crate::tui::state::State;
 use crate::tui::text::numbers;
+use crate::tui::text::said::words;
 
 pub const COMMANDS: &[Command] = &[command(
     "fill",
-    "JSON",
-    "Set the selected rows to a list of rows, or all to one row; a header may come first",
+    "[PATH ROWS] JSON",
+    "Set the selected rows, or rows of a list as 0,2-5, to a list of rows, or all to one row; a header may come first",
     fill,
 )
 .change()];
@@ -31,19 +32,26 @@ fn header(table: &[Vec<String>]) -> Option<&Vec<String>> {
 }
 
 fn fill(state: &mut State, call: &Call) -> Done {
-    let table: Vec<Vec<String>> = serde_json::from_str(call.text)
+    let (place, json) = match call.text.split_once(" [[") {
+        Some((place, _)) if !call.text.starts_with('[') => (Some(place), &call.text[place.len() + 1..]),
+        _ => (None, call.text),
+    };
+    let table: Vec<Vec<String>> = serde_json::from_str(json)
         .map_err(|_| "fill takes a JSON list of rows, each a list of texts: [[\"dx\", \"dy\"], [\"1\", \"2\"]]")?;
-    let selected: Vec<usize> = state.cursor.rows().into_iter().collect();
+    let (sheet, selected) = match place {
+        Some(place) => named(state, place)?,
+        None => (state.sheet(), state.cursor.rows()),
+    };
+    let selected: Vec<usize> = selected.into_iter().collect();
     let header = header(&table);
     let values = &table[usize::from(header.is_some())..];
     if values.len() != 1 && values.len() != selected.len() {
         return Err(too_many(values.len(), selected.len()));
     }
-    let (document, sheet) = (state.document(), state.sheet());
+    let document = state.document();
     let mut filled = Filled { document, values: BTreeMap::new() };
     let mut refused = Vec::new();
-    for (i, &at) in selected.iter().enumerate() {
-        let Some(row) = sheet.row(at) else { continue };
+    for (i, row) in selected.iter().filter_map(|&at| sheet.row(at)).enumerate() {
         let texts = if values.len() == 1 { &values[0] } else { &values[i] };
         let filled = filled.row(&row, (header, state.cursor.column), texts);
         refused.extend(filled.err().map(|why| format!("row {}{why}", row.label)));
@@ -64,6 +72,18 @@ fn fill(state: &mut State, call: &Call) -> Done {
     state.edit(edit, false)?;
     state.say(format!("pasted over {}", counted(count, "row")));
     Ok(())
+}
+
+/// The rows of `PATH ROWS`.
+fn named(state: &State, place: &str) -> Result<(Sheet, BTreeSet<usize>), String> {
+    let words = words(place)?;
+    let [path, rows] = words.as_slice() else { return Err("fill takes PATH ROWS before its rows, as 0,2-5".into()) };
+    let node = address::resolve(state.document(), path).map_err(|error| error.to_string())?;
+    let sheet = Sheet::of(state.document(), &node);
+    let selected = rows::of_ranges(rows, sheet.len());
+    let selected =
+        selected.ok_or_else(|| format!("{path} has {}, 0 the first: not {rows}", counted(sheet.len(), "row")))?;
+    Ok((sheet, selected))
 }
 
 /// At most so many refused rows are named.
@@ -108,7 +128,8 @@ impl Filled<'_> {
             own.any(|(_, other, text)| csv::number(text).is_none_or(|number| other.number(document) != Some(number)))
         };
         for (k, cell, text) in cells.iter().filter(|(_, cell, _)| !(follows(cell.part) && given(cell))) {
-            self.put(cell, text).map_err(|why| format!(", column {}: {why}", k + 1))?;
+            let head = if cell.head.is_empty() { k.to_string() } else { cell.head.clone() };
+            self.put(cell, text).map_err(|why| format!(", {head}: {why}"))?;
         }
         Ok(())
     }
@@ -124,7 +145,8 @@ impl Filled<'_> {
             self.values.insert(cell.pointer.clone(), read);
             return Ok(());
         };
-        if cell.number(document) == Some(number) {
+        let is_same = |old: f64| old == number || follows(cell.part) && csv::is_rounded(old, text);
+        if cell.number(document).is_some_and(is_same) {
             return Ok(());
         }
         let old = self.values.get(&cell.pointer).cloned().or_else(|| field::value(document, &cell.pointer));

@@ -26,8 +26,8 @@ pub const COMMANDS: &[Command] = &[
 ///
 /// # Errors
 /// It is none.
-pub fn letter(call: &Call, what: &str) -> Result<char, String> {
-    let mut letters = call.text.chars();
+pub fn letter(text: &str, what: &str) -> Result<char, String> {
+    let mut letters = text.chars();
     match (letters.next(), letters.next()) {
         (Some(letter), None) if letter.is_ascii_lowercase() => Ok(letter),
         _ => Err(format!("{what} is a letter from a to z")),
@@ -35,14 +35,14 @@ pub fn letter(call: &Call, what: &str) -> Result<char, String> {
 }
 
 fn mark(state: &mut State, call: &Call) -> Done {
-    let (letter, spot) = (letter(call, "a mark")?, state.spot());
+    let (letter, spot) = (letter(call.text, "a mark")?, state.spot());
     state.memory.finding.mark(letter, spot);
     state.say(format!("mark {letter} is set: '{letter} goes back to it"));
     Ok(())
 }
 
 fn jump_mark(state: &mut State, call: &Call) -> Done {
-    let letter = letter(call, "a mark")?;
+    let letter = letter(call.text, "a mark")?;
     let spot = state
         .memory
         .finding

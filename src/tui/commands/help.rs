@@ -154,7 +154,11 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
     if let Some(default) = &field.default {
         say("default", sheet::summary(field, default));
     }
-    let path = plain(&address::address(document, at));
+    let place = match cell.map(|cell| cell.part) {
+        Some(Part::Number(i)) => Pointer(at).join(i),
+        _ => at.to_owned(),
+    };
+    let path = plain(&address::address(document, &place));
     let is_object = matches!(field.kind, Kind::Object | Kind::Tagged { .. });
     let inside = if is_object { field::children(document, at) } else { Vec::new() };
     let inside: Vec<_> = inside.into_iter().filter(|child| !sheet::is_node(&child.field.kind)).collect();

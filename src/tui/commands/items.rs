@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::command::{Call, Command, Done, command};
-use crate::base::budget;
 use crate::base::error::Error;
 use crate::base::problem::quoted;
+use crate::base::{budget, number};
 use crate::files::{clips, models, paths, picture, sources};
 
 use crate::layers::parts::materials::List;
@@ -197,11 +197,13 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         }
         (Kind::Object, false) => add_object(state, &pointer),
         (Kind::List(_), _) => insert(state, &pointer.clone(), end(), times),
-        (Kind::Map(_), _) if List::entry(&Pointer(&pointer).join("")).is_some() => ask_for_path(state, &pointer),
+        (Kind::Map(_), _) if entry_of_file(&Pointer(&pointer).join("")) => ask_for_path(state, &pointer),
+        (Kind::Map(_), _) if pointer == SHAPES => add_shape(state),
         (Kind::Map(_), _) => insert_entry(state, &pointer, &field.name),
         _ => match item_of(state.document(), &pointer).map(owned) {
             Some((list, index)) => insert(state, &list, index + 1, times),
-            None if List::entry(&pointer).is_some() => ask_for_path(state, &pointer),
+            None if entry_of_file(&pointer) => ask_for_path(state, &pointer),
+            None if List::entry(&pointer).is_some() => add_shape(state),
             None if state.cursor.focus == Pane::Tree => {
                 Err("o adds to lists: go to a list or to one of its items".into())
             }
@@ -211,6 +213,28 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
             },
         },
     }
+}
+
+/// Where the shapes of the scene are.
+const SHAPES: &str = "/shapes";
+
+/// Adds a shape at the picture's cursor.
+fn add_shape(state: &mut State) -> Done {
+    const HALF_PX: f64 = 20.0;
+    let at = state.picture.cursor;
+    let node = |by: f64| value!({ "at": [number::json((at.x + by).round()), number::json(at.y.round())] });
+    let entry = [("shape".to_owned(), value!({ "nodes": [node(-HALF_PX), node(HALF_PX)] }))];
+    let added = Edit::insert_entries(state.document(), "/shapes", entry.into_iter().collect());
+    let (edit, pointer) = added.ok_or("nothing can be added here")?;
+    state.edit(edit, false)?;
+    go_to(state, &pointer);
+    let place = plain(&address::address(state.document(), &pointer));
+    state.say(format!("{place}: R renames it, :use on an outline or a curve makes that of it"));
+    Ok(())
+}
+
+fn entry_of_file(pointer: &str) -> bool {
+    List::entry(pointer).is_some_and(|(list, _)| list.has_files())
 }
 
 fn ask_for_path(state: &mut State, pointer: &str) -> Done {

@@ -3,6 +3,7 @@
 use super::state::State;
 use command::{Command, Done, Table};
 
+mod apart;
 mod camera;
 mod cells;
 mod columns;
@@ -33,8 +34,11 @@ mod placing;
 mod playing;
 mod profiles;
 mod replacing;
+mod rowing;
 mod scripts;
 mod selecting;
+mod sharing;
+mod snapping;
 mod styles;
 mod transforming;
 pub mod tutor;
@@ -52,11 +56,14 @@ pub static TABLE: Table = Table(&[
     cells::COMMANDS,
     items::COMMANDS,
     ordering::COMMANDS,
+    rowing::COMMANDS,
     naming::COMMANDS,
     selecting::COMMANDS,
+    apart::COMMANDS,
     columns::COMMANDS,
     values::COMMANDS,
     replacing::COMMANDS,
+    sharing::COMMANDS,
     undoing::COMMANDS,
     yanking::COMMANDS,
     filling::COMMANDS,
@@ -69,6 +76,7 @@ pub static TABLE: Table = Table(&[
     profiles::COMMANDS,
     styles::COMMANDS,
     placing::COMMANDS,
+    snapping::COMMANDS,
     transforming::COMMANDS,
     playing::COMMANDS,
     camera::COMMANDS,

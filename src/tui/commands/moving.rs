@@ -4,6 +4,7 @@ use super::command::{Call, Command, Done, command};
 use super::finding::leave as leave_place;
 use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
+use crate::scene::address;
 use crate::tui::document::tree;
 use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
@@ -21,7 +22,13 @@ pub const COMMANDS: &[Command] = &[
         state.cursor.enlarged = !state.cursor.enlarged;
         Ok(())
     }),
-    command("collapse", "", "Collapse the node of the tree, else go to its parent", collapse).counted(),
+    command(
+        "collapse",
+        "[PATH]",
+        "Collapse the node of the tree, else go to its parent; or the node at a path",
+        collapse,
+    )
+    .counted_with(&[""]),
     command("expand", "", "Expand the node of the tree, else edit it", expand).counted(),
     command("up", "", "Go to the parent node", up).counted(),
     command("back", "", "End the selection, else running work", back).counted(),
@@ -114,6 +121,11 @@ fn pane(state: &mut State, call: &Call) -> Done {
 }
 
 fn collapse(state: &mut State, call: &Call) -> Done {
+    if !call.text.is_empty() {
+        let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
+        state.cursor.collapsed.insert(pointer);
+        return Ok(());
+    }
     call.steps().for_each(|_| collapse_once(state));
     Ok(())
 }
@@ -155,9 +167,11 @@ fn up(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
-/// Ends one thing: a count, the selection, or running work.
+/// Ends one thing: a count, a program that the selection goes through, the selection, or other running work.
 fn back(state: &mut State, call: &Call) -> Done {
-    if call.count.is_none() && !state.cursor.unselect() && state.outside.work.is_some() {
+    if call.count.is_none() && state.outside.piping.is_some() {
+        state.ask(Effect::Cancel);
+    } else if call.count.is_none() && !state.cursor.unselect() && state.outside.work.is_some() {
         state.ask(Effect::Cancel);
     }
     Ok(())

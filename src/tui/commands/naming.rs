@@ -1,4 +1,4 @@
-//! Renames items that have a name; and images, meshes and clips, to which others refer by name, as they do to layers.
+//! Renames items that have a name; and images, meshes, clips and shapes, to which others refer by name, as they do to layers.
 
 use super::command::{Call, Command, Done, command};
 use super::items::{go_to, target};
@@ -13,7 +13,7 @@ use crate::tui::text::said::unquoted;
 pub const COMMANDS: &[Command] = &[command(
     "rename",
     "[NAME]",
-    "Rename the node or row; an image, a mesh, a clip or a layer is renamed everywhere",
+    "Rename the node or row; an image, a mesh, a clip, a shape or a layer is renamed everywhere",
     rename,
 )
 .change()];

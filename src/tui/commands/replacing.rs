@@ -6,6 +6,7 @@ use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
 use crate::base::number;
 use crate::base::pointer::Pointer;
+use crate::files::{clips, paths};
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit, address};
@@ -54,7 +55,7 @@ impl Found {
 
 fn preview(state: &mut State, call: &Call) -> Done {
     state.scene.writable()?;
-    let found = found(state.document(), &words(call.text)?)?;
+    let found = found(state, &words(call.text)?)?;
     let all = (ALL.to_owned(), format!("Replace in {}", counted(found.len(), "place")));
     let each = found.iter().map(|one| (one.address.clone(), one.told()));
     let options = std::iter::once(all).chain(each).collect();
@@ -75,7 +76,7 @@ pub fn taken(state: &mut State, call: &Call, asked: &str, word: &str) -> Done {
 
 fn replace(state: &mut State, call: &Call) -> Done {
     let document = state.document();
-    let found = found(document, &words(call.text)?)?;
+    let found = found(state, &words(call.text)?)?;
     let edit = |one: &Found| match &one.new {
         New::Value(value, _) => Edit::set(document, &one.pointer, value.clone()),
         New::Name(list, to) => Edit::rename(document, *list, &one.old, to),
@@ -89,7 +90,8 @@ fn replace(state: &mut State, call: &Call) -> Done {
 }
 
 /// The places, in order.
-fn found(document: &Document, words: &[String]) -> Result<Vec<Found>, String> {
+fn found(state: &State, words: &[String]) -> Result<Vec<Found>, String> {
+    let document = state.document();
     let (from, to, within) = match words {
         [from, to] => (from, to, String::new()),
         [from, to, path] => (from, to, address::resolve(document, path).map_err(|error| error.to_string())?),
@@ -100,7 +102,7 @@ fn found(document: &Document, words: &[String]) -> Result<Vec<Found>, String> {
     }
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
     let both = number(from).zip(number(to));
-    let mut all = Vec::new();
+    let (mut all, mut missing, mut words) = (Vec::new(), None, None);
     for place in places::list(document) {
         if !Pointer(&place.pointer).is_within(&within) {
             continue;
@@ -115,9 +117,17 @@ fn found(document: &Document, words: &[String]) -> Result<Vec<Found>, String> {
             add(name, New::Name(list, new));
         }
         match (value, both) {
-            (Value::String(text), _) if text.contains(from.as_str()) && is_text(document, pointer) => {
+            (Value::String(text), _) if text.contains(from.as_str()) => {
                 let new = text.replace(from.as_str(), to);
-                add(text.clone(), New::Value(new.clone().into(), new));
+                match kind_of(document, pointer) {
+                    // A path has to lead somewhere.
+                    Some(Kind::Text) if pointer.ends_with("/path") && !is_file(state, &new) => {
+                        missing = Some((address.clone(), new))
+                    }
+                    Some(Kind::Text) => add(text.clone(), New::Value(new.clone().into(), new)),
+                    Some(Kind::Choice(_)) => words = Some((address.clone(), text.clone())),
+                    _ => {}
+                }
             }
             (Value::Number(_) | Value::Array(_), Some(change)) if !place.node => {
                 let new = renumbered(value, change);
@@ -128,11 +138,26 @@ fn found(document: &Document, words: &[String]) -> Result<Vec<Found>, String> {
             _ => {}
         }
     }
-    if all.is_empty() { Err(format!("nothing here has {from} in it")) } else { Ok(all) }
+    match (missing, words) {
+        _ if !all.is_empty() => Ok(all),
+        (Some((address, path)), _) => {
+            Err(plain(&format!("{address} stays: there is no file {path} (rename it first)")))
+        }
+        (_, Some((address, word))) => Err(plain(&format!(
+            "{address} is {word}, one of several words, which :set and Enter change: only names, texts and numbers are replaced"
+        ))),
+        _ => Err(format!("nothing here has {from} in it")),
+    }
 }
 
-fn is_text(document: &Document, pointer: &str) -> bool {
-    field::field(document, pointer).is_some_and(|field| field.kind == Kind::Text)
+fn kind_of(document: &Document, pointer: &str) -> Option<Kind> {
+    field::field(document, pointer).map(|field| field.kind)
+}
+
+/// Whether a path of the scene leads to something; that of a clip has a pattern in it, that of a model a number after it.
+fn is_file(state: &State, path: &str) -> bool {
+    let place = paths::beside(state.scene.path(), path);
+    place.exists() || path.contains('%') && clips::find(&place).is_ok()
 }
 
 /// A number, or the numbers of a vector, with one of them replaced.

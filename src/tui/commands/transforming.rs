@@ -7,7 +7,9 @@ use super::items::targets;
 use super::yanking::counted;
 use crate::base::expression::{Variables, evaluate};
 use crate::base::maths;
+use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
+use crate::layers::transformed_shape;
 use crate::scene::field::{layer_of, value};
 use crate::scene::{Edit, address};
 use crate::tui::state::State;
@@ -49,37 +51,73 @@ pub const COMMANDS: &[Command] = &[
         .change(),
 ];
 
-/// What is selected and has a place: where it is, and the box around it.
-fn placed(state: &State, call: &Call) -> Result<Vec<(String, Rect)>, String> {
-    let all = targets(state, call)?.into_iter();
-    all.map(|pointer| transformed(state, &pointer, Affine::IDENTITY).map(|(_, rect)| (pointer, rect))).collect()
+/// What is selected and has a place: where each is, and the box around it.
+struct Placed {
+    things: Vec<(String, Rect)>,
+    /// How many more are selected, without a place.
+    others: usize,
 }
 
-/// What is at a place under a map of the picture, and the box around it before.
-fn transformed(state: &State, pointer: &str, by: Affine) -> Result<(serde_json::Value, Rect), String> {
+/// What is selected; of several those that have a place.
+fn placed(state: &State, call: &Call) -> Result<Placed, String> {
+    let all = targets(state, call)?;
+    let (mut things, mut none) = (Vec::with_capacity(all.len()), None);
+    let count = all.len();
+    for pointer in all {
+        match transformed(state, &pointer, Affine::IDENTITY)? {
+            Ok((_, rect)) => things.push((pointer, rect)),
+            Err(why) => drop(none.get_or_insert(why)),
+        }
+    }
+    match none {
+        Some(why) if things.is_empty() => Err(why),
+        _ => Ok(Placed { others: count - things.len(), things }),
+    }
+}
+
+/// A value under a map of the picture, and the box around it before; or why it has no place.
+type Transformed = Result<(serde_json::Value, Rect), String>;
+
+/// What is at a place under a map of the picture.
+///
+/// # Errors
+/// It has a place, but cannot be moved.
+fn transformed(state: &State, pointer: &str, by: Affine) -> Result<Transformed, String> {
     let document = state.document();
     let found = layer_of(document, pointer).zip(value(document, pointer));
-    let moved = found.and_then(|((layer, way), value)| layer.transformed(way, &value, by));
+    let moved = match Pointer(pointer).below("/shapes").filter(|way| !way.is_empty()) {
+        None => found.and_then(|((layer, way), value)| layer.transformed(way, &value, by)),
+        // The name is no field.
+        Some(way) => {
+            let way = way[1..].find('/').map_or("/outline", |end| &way[end + 1..]);
+            value(document, pointer).and_then(|value| transformed_shape(way, &value, by))
+        }
+    };
     let name = || match address::told(document, pointer) {
         name if name.is_empty() => "the scene".to_owned(),
         name => plain(&name),
     };
     match moved {
-        Some(Ok(moved)) => Ok(moved),
+        Some(Ok(moved)) => Ok(Ok(moved)),
         Some(Err(why)) => Err(format!("{}: {why}", name())),
-        None => Err(format!("{} has no place in a picture: go to a zone, a tool, an outline or points", name())),
+        None => Ok(Err(format!("{} has no place in a picture: go to a zone, a tool, an outline or points", name()))),
     }
 }
 
 /// Maps everything that is selected, each in its own way.
-fn apply(state: &mut State, all: &[(String, Rect)], done: &str, by: impl Fn(usize, Rect) -> Affine) -> Done {
-    let edits = all.iter().enumerate().map(|(i, (pointer, rect))| {
-        let (value, _) = transformed(state, pointer, by(i, *rect))?;
+fn apply(state: &mut State, all: &Placed, done: &str, by: impl Fn(usize, Rect) -> Affine) -> Done {
+    let edits = all.things.iter().enumerate().map(|(i, (pointer, rect))| {
+        let (value, _) = transformed(state, pointer, by(i, *rect))??;
         Ok(Edit::set(state.document(), pointer, value))
     });
     let edit = Edit::all(edits.collect::<Result<Vec<_>, String>>()?);
     state.edit(edit, false)?;
-    state.say(format!("{} {done}", counted(all.len(), "thing")));
+    let others = match all.others {
+        0 => String::new(),
+        1 => "; 1 row has no place".into(),
+        many => format!("; {many} rows have no place"),
+    };
+    state.say(format!("{} {done}{others}", counted(all.things.len(), "thing")));
     Ok(())
 }
 
@@ -94,8 +132,8 @@ fn numbers<'a>(state: &State, words: impl IntoIterator<Item = &'a str>) -> Resul
 }
 
 /// The numbers before `about`, and the point after it; else the middle of what is selected.
-fn about(state: &State, call: &Call, all: &[(String, Rect)]) -> Result<(Vec<f64>, Point), String> {
-    let middle = || all.iter().map(|(_, rect)| *rect).reduce(|a, b| a.union(b)).unwrap_or_default().center();
+fn about(state: &State, call: &Call, all: &Placed) -> Result<(Vec<f64>, Point), String> {
+    let middle = || all.things.iter().map(|(_, rect)| *rect).reduce(|a, b| a.union(b)).unwrap_or_default().center();
     let mut words = call.text.split([' ', ',']).filter(|word| !word.is_empty());
     let before: Vec<&str> = words.by_ref().take_while(|word| *word != "about").collect();
     let point = match words.collect::<Vec<_>>().as_slice() {
@@ -171,9 +209,9 @@ fn mirror(state: &mut State, call: &Call) -> Done {
 }
 
 /// Several things that are selected.
-fn several(state: &State, call: &Call, least: usize) -> Result<Vec<(String, Rect)>, String> {
+fn several(state: &State, call: &Call, least: usize) -> Result<Placed, String> {
     let all = placed(state, call)?;
-    if all.len() < least {
+    if all.things.len() < least {
         return Err(format!("{} things or more have to be selected (v, t, :select)", least));
     }
     Ok(all)
@@ -181,7 +219,7 @@ fn several(state: &State, call: &Call, least: usize) -> Result<Vec<(String, Rect
 
 fn align(state: &mut State, call: &Call) -> Done {
     let all = several(state, call, 2)?;
-    let whole = all.iter().map(|(_, rect)| *rect).reduce(|a, b| a.union(b)).unwrap_or_default();
+    let whole = all.things.iter().map(|(_, rect)| *rect).reduce(|a, b| a.union(b)).unwrap_or_default();
     let by = |rect: Rect| match call.text {
         "left" => Vec2::new(whole.x0 - rect.x0, 0.0),
         "right" => Vec2::new(whole.x1 - rect.x1, 0.0),
@@ -195,12 +233,15 @@ fn align(state: &mut State, call: &Call) -> Done {
 
 fn distribute(state: &mut State, call: &Call) -> Done {
     let all = several(state, call, 3)?;
+    let things = &all.things;
     let middle = |rect: Rect| if call.text == "x" { rect.center().x } else { rect.center().y };
-    let mut order: Vec<usize> = (0..all.len()).collect();
-    order.sort_by(|&a, &b| middle(all[a].1).total_cmp(&middle(all[b].1)));
-    let end = |i: Option<&usize>| i.map_or(0.0, |&i| middle(all[i].1));
+    let mut order: Vec<usize> = (0..things.len()).collect();
+    order.sort_by(|&a, &b| middle(things[a].1).total_cmp(&middle(things[b].1)));
+    let end = |i: Option<&usize>| i.map_or(0.0, |&i| middle(things[i].1));
     let (first, last) = (end(order.first()), end(order.last()));
-    let place = |i: usize| order.iter().position(|&one| one == i).unwrap_or(0) as f64 / (all.len() - 1) as f64;
+    let mut ranks = vec![0; things.len()];
+    order.iter().enumerate().for_each(|(rank, &i)| ranks[i] = rank);
+    let place = |i: usize| ranks[i] as f64 / (things.len() - 1) as f64;
     let by = |i: usize, rect: Rect| {
         let by = maths::lerp(first, last, place(i)) - middle(rect);
         Affine::translate(if call.text == "x" { (by, 0.0) } else { (0.0, by) })

@@ -128,7 +128,8 @@ fn told(document: &Document, problem: &Problem) -> String {
 
 /// Applies an edit that a script asks for.
 fn answer(state: &mut State, asked: Asked) {
-    match state.scene.apply(asked.edit.clone(), false) {
+    let allowed = state.unlocked(&asked.edit).map_err(|why| vec![Problem::error("", why)]);
+    match allowed.and_then(|()| state.scene.apply(asked.edit.clone(), false)) {
         Ok(change) => {
             change.into_iter().for_each(|change| state.changed(change));
             asked.answer(Vec::new());
@@ -145,8 +146,7 @@ fn report(state: &mut State, result: Result<String, String>) {
     let opens = lines.len() > 1 && matches!(state.typing.mode, Mode::Normal | Mode::Pages(_));
     match &result {
         Ok(_) if opens => {}
-        Ok(_) => state.say(text),
-        Err(_) => state.complain(text),
+        _ => state.tell_beside(result.as_ref().map(|_| text.to_owned()).map_err(|_| text.to_owned())),
     }
     if opens {
         let lines = lines.into_iter().map(plain).collect();
@@ -232,7 +232,7 @@ fn press(state: &mut State, key: &str) {
         Found::Prefix => state.typing.pressed = pressed,
         Found::Line(line) => {
             let count = state.typing.count.take();
-            state.message = None;
+            state.begin_key(matches!(line.as_str(), "back" | "leave" | "cancel"));
             commands::run(state, &line, count);
         }
         Found::Nothing => {

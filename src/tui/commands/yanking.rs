@@ -24,16 +24,19 @@ use crate::tui::text::numbers;
 
 pub const COMMANDS: &[Command] = &[
     command("yank", "[json|csv]", "Yank the row, the selection or the node", yank).counted(),
-    command("register", "a..z", "Let the next yank or paste be about this register", |state, call| {
-        state.memory.register = Some(letter(call, "a register")?);
-        Ok(())
-    }),
+    command(
+        "register",
+        "a..z [JSON]",
+        "Let the next yank or paste be about this register; with a value, have that in it",
+        register,
+    ),
     command("paste", "[JSON]", "Paste what was yanked, or a value, after the cursor or into the list", paste)
         .change()
         .counted(),
 ];
 
 fn yank(state: &mut State, call: &Call) -> Done {
+    let into = state.memory.register.map(|letter| format!(" into register {letter}")).unwrap_or_default();
     let (text, said) = match call.text {
         "csv" => {
             let (sheet, rows) = table(state, call)?;
@@ -56,12 +59,31 @@ fn yank(state: &mut State, call: &Call) -> Done {
         let size = text.len().div_ceil(1000);
         let most = MOST_BYTES / 1000;
         state.complain(format!(
-            "{said} yanked, but {size} kB are too much for the terminal's clipboard ({most} kB); p pastes it here"
+            "{said} yanked{into}, but {size} kB are too much for the terminal's clipboard ({most} kB); p pastes it here"
         ));
         return Ok(());
     }
     state.ask(Effect::Copy(text));
-    state.say(format!("{said} yanked"));
+    state.say(format!("{said} yanked{into}"));
+    Ok(())
+}
+
+/// Names a register, or fills it. What an earlier session has left in it comes into the log, which has to lead here alone.
+fn register(state: &mut State, call: &Call) -> Done {
+    let (name, value) = call.text.split_once(' ').unwrap_or((call.text, ""));
+    let name = letter(name, "a register")?;
+    if !value.is_empty() {
+        let yanked =
+            serde_json::from_str(value).map_err(|why| format!("register takes a letter and a value: {why}"))?;
+        state.memory.registers.insert(name, yanked);
+        return Ok(());
+    }
+    if let Some(yanked) = state.memory.recalled.remove(&name).filter(|_| !state.memory.registers.contains_key(&name)) {
+        let value = serde_json::to_string(&yanked).unwrap_or_default();
+        state.memory.recorder.note(format!("register {name} {value}"));
+        state.memory.registers.insert(name, yanked);
+    }
+    state.memory.register = Some(name);
     Ok(())
 }
 

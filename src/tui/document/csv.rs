@@ -18,6 +18,15 @@ pub fn number(text: &str) -> Option<f64> {
     plain.parse::<f64>().ok().filter(|value| looks && value.is_finite())
 }
 
+/// Whether a text is this number with fewer decimals, as programs write what they did not mean to change.
+pub fn is_rounded(value: f64, text: &str) -> bool {
+    const LEAST: usize = 3;
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let digits = text.bytes().filter(u8::is_ascii_digit).count();
+    let looks = digits >= LEAST + 2 && text.bytes().all(|b| b.is_ascii_digit() || b"-.".contains(&b));
+    looks && decimals > 0 && format!("{value:.decimals$}") == text
+}
+
 /// What separates the fields of a table: of tabs, semicolons and commas the first that its first record has outside quotes
 /// (RFC 4180); `None` if spaces do, as between numbers with decimal commas.
 fn delimiter(text: &str) -> Option<char> {
@@ -148,6 +157,21 @@ mod tests {
             ("x,y\n1,2,3", "line 2 has 3 values, the lines before have 2"),
         ] {
             assert_eq!(records(text).err().as_deref(), Some(why), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_rounded_is_the_same_number() {
+        for (value, text, is_same) in [
+            (5.830951895, "5.83095", true),
+            (5.830951895, "5.8309518950", true),
+            (-53.130102354, "-53.1301", true),
+            (5.830951895, "5.83096", false),
+            (5.830951895, "5.83", false),
+            (5.830951895, "6", false),
+            (12345.4, "12345", false),
+        ] {
+            assert_eq!(is_rounded(value, text), is_same, "{text}");
         }
     }
 

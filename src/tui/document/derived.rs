@@ -1,15 +1,12 @@
 //! What a layer makes of the fields of a document: the values of those that are not set, and columns that follow from
 //! others.
 
-use std::sync::LazyLock;
-
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use crate::base::pointer::Pointer;
 use crate::layers::parts::derived::Derived;
 use crate::scene::Document;
 use crate::scene::field::{self, Field, Kind, layer_of};
-use crate::scene::schema::Place;
 use crate::tui::text::numbers;
 
 /// The value at a place; if it is not set and the schema has no default, the one that its layer has for it.
@@ -21,15 +18,6 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
 /// The value that a layer has for a field that is not set.
 pub fn automatic(document: &Document, pointer: &str) -> Option<Value> {
     Some(numbers::mapped(field::in_force(document, pointer)?, numbers::tidy))
-}
-
-/// What is at `pointer`, as a form shows it: what is not written but in force is an object in which nothing is written.
-pub fn place<'a>(document: &'a Document, pointer: &str) -> Option<Place<'a>> {
-    static NOTHING: LazyLock<Value> = LazyLock::new(|| Value::Object(Map::new()));
-    let place = Place::of(document.json(), pointer)?;
-    let missing = place.value.is_none_or(Value::is_null);
-    let stands = missing && field::in_force(document, pointer).is_some_and(|value| value.is_object());
-    Some(if stands { Place { value: Some(&NOTHING), ..place } } else { place })
 }
 
 /// What is known of a column.

@@ -3,7 +3,6 @@
 
 use serde_json::Value;
 
-use super::derived;
 use crate::base::pointer::Pointer;
 use crate::scene::schema::{Body, Place};
 use crate::scene::{Document, address, field};
@@ -95,6 +94,6 @@ fn below(document: &Document, place: Place, (at, address): (&str, &str), all: &m
 /// The places directly below one, also those that stand there though they are not written.
 fn steps<'a>(document: &'a Document, place: Place<'a>, at: &str) -> Vec<(String, Place<'a>)> {
     let laid = place.shape.laid().and_then(|_| field::laid(document, at));
-    let step = |token: String| derived::place(document, &Pointer(at).join(&token)).map(|inner| (token, inner));
+    let step = |token: String| field::standing(document, &Pointer(at).join(&token)).map(|inner| (token, inner));
     laid.map_or_else(|| field::steps(place), |tokens| tokens.into_iter().filter_map(step).collect())
 }

@@ -51,6 +51,31 @@ pub fn write(document: &Document, sheet: &Sheet, rows: &BTreeSet<usize>) -> Stri
     String::from_utf8(out.into_inner().expect("memory is flushed")).expect("text was written")
 }
 
+/// Rows in a few characters: `0,2-5`.
+pub fn ranges(rows: &BTreeSet<usize>) -> String {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for &row in rows {
+        match runs.last_mut() {
+            Some((_, last)) if *last + 1 == row => *last = row,
+            _ => runs.push((row, row)),
+        }
+    }
+    let told =
+        |&(first, last): &(usize, usize)| if first == last { first.to_string() } else { format!("{first}-{last}") };
+    runs.iter().map(told).collect::<Vec<_>>().join(",")
+}
+
+/// Reverses [`ranges`], for a table of so many rows; `None` if that is not how rows are written, or there are no such rows.
+pub fn of_ranges(text: &str, count: usize) -> Option<BTreeSet<usize>> {
+    let mut rows = BTreeSet::new();
+    for run in text.split(',') {
+        let (first, last) = run.split_once('-').unwrap_or((run, run));
+        let (first, last) = (first.parse::<usize>().ok()?, last.parse::<usize>().ok().filter(|last| *last < count)?);
+        rows.extend(first..=last);
+    }
+    Some(rows)
+}
+
 /// What a cell says as text: a number with all its decimals.
 pub fn exact(document: &Document, cell: &Cell) -> String {
     match cell.number(document) {

@@ -163,7 +163,7 @@ impl Block {
 impl Sheet {
     /// The node at `node`; empty if there is none.
     pub fn of(document: &Document, node: &str) -> Sheet {
-        let place = derived::place(document, node);
+        let place = field::standing(document, node);
         let body = place.map(|place| place.shape.body());
         let laid = field::laid(document, node).map(|tokens| {
             let row = |token: String| Block { pointer: Pointer(node).join(token), items: None };
@@ -241,7 +241,7 @@ impl Sheet {
                 let place = parent.as_ref().and_then(|(parent, _)| Place::of(json, parent));
                 let (Some((parent, name)), Some(place)) = (parent, place) else { return };
                 let Some((child, _)) = field::child(place, parent, &name) else { return };
-                let Some(place) = derived::place(&self.document, &block.pointer) else { return };
+                let Some(place) = field::standing(&self.document, &block.pointer) else { return };
                 rows.push(match self.table {
                     true => self.chosen(item(&self.document, child, place)),
                     false => form_row(&self.document, child, place),

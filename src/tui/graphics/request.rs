@@ -11,6 +11,8 @@ use crate::scene::Scene;
 pub struct Request {
     /// The scene.
     pub scene: Arc<Scene>,
+    /// What of it is not shown.
+    pub muted: Arc<[String]>,
     /// The scene's file; its pictures are relative to it.
     pub path: PathBuf,
     /// Scene time.
@@ -27,6 +29,7 @@ impl PartialEq for Request {
     /// Whether both ask for the same; `fresh` does not count.
     fn eq(&self, other: &Request) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
+            && self.muted == other.muted
             && self.path == other.path
             && self.time == other.time
             && self.picture == other.picture

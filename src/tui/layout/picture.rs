@@ -17,7 +17,8 @@ use crate::tui::state::{Mode, State, looking, place};
 pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
     let path = state.scene.path().to_owned();
-    Request { scene, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
+    let muted = state.apart.hidden(state.document()).into();
+    Request { scene, muted, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
 }
 
 /// The pixel under the cursor, if its read-out is open.

@@ -15,6 +15,7 @@ use crate::files::materials::Watched;
 use crate::files::watch::Watch;
 use crate::preview::editor::{self, Preview};
 use crate::scene::{FRAME, Scene};
+use crate::tui::commands;
 use crate::tui::commands::update::update;
 use crate::tui::commands::waiting::awaits_pictures;
 use crate::tui::document::choice::{Choice, Then};
@@ -24,7 +25,7 @@ use crate::tui::graphics;
 use crate::tui::graphics::request::Request;
 use crate::tui::layout::picture;
 use crate::tui::state::tutor::Tutor;
-use crate::tui::state::{Message, Mode, State, USUAL};
+use crate::tui::state::{Message, Mode, State, USUAL, kept};
 use crate::tui::text::color::Depth;
 use crate::tui::text::plain;
 use std::path::Path;
@@ -131,11 +132,11 @@ impl Editor {
 
     /// What happens before the first key: keymap, what was kept, lessons, what was `typed` meanwhile, window and script.
     fn enter(&mut self, typed: &[input::Piece]) -> Result<()> {
-        self.begin();
-        self.load_keys();
         if self.screen.is_some() {
             self.state.memory.recall(files::kept::read());
         }
+        self.begin();
+        self.load_keys();
         self.begin_tutor();
         typed.iter().filter_map(input::event).for_each(|event| self.take(event));
         if self.options.window && self.screen.is_some() && editor::opens_by_itself() {
@@ -162,11 +163,40 @@ impl Editor {
     /// What is done once for each scene that is opened.
     pub fn begin(&mut self) {
         self.state.picture.size = picture_size(&self.state);
+        self.resume();
         let greeting = self.state.scene.greeting(editor::way_home(self.state.scene.path()));
         self.state.say(greeting);
         self.watch_files();
         // Tell windows the selection before the first key.
         self.perform(Effect::Show);
+    }
+
+    /// Goes to where an earlier session has left the scene. Scripts begin where a scene begins.
+    fn resume(&mut self) {
+        if self.screen.is_none() || self.options.script.is_some() {
+            return;
+        }
+        // A question that waits goes on waiting.
+        let mode = std::mem::replace(&mut self.state.typing.mode, Mode::Normal);
+        for line in kept::places(files::kept::read(), self.state.scene.path()) {
+            // A place that is gone is left out.
+            let _ = commands::obey(&mut self.state, &line, None);
+        }
+        self.state.typing.mode = mode;
+        self.state.memory.recorder.end_preface();
+    }
+
+    /// Keeps what the next session may have.
+    pub(super) fn keep(&mut self) {
+        if self.screen.is_none() {
+            return;
+        }
+        let mut kept = self.state.memory.keep(files::kept::read());
+        // Lessons have a new scene each time.
+        if self.state.tutor.is_none() {
+            kept = kept::keep_places(&self.state, kept, self.state.scene.path());
+        }
+        files::kept::write(&kept);
     }
 
     /// Watches the scene and all files that it names.
@@ -193,9 +223,7 @@ impl Editor {
         self.state.scene.tend();
         self.state.scene.flush();
         self.job.take().into_iter().for_each(Job::end);
-        if self.screen.is_some() {
-            files::kept::write(&self.state.memory.keep(files::kept::read()));
-        }
+        self.keep();
         self.log = None;
     }
 
@@ -248,7 +276,7 @@ impl Editor {
 
     pub fn refused(&self) -> std::result::Result<(), String> {
         match &self.state.message {
-            Some(Message { text, bad: true }) => Err(text.clone()),
+            Some(Message { text, bad: true, .. }) => Err(text.clone()),
             _ => Ok(()),
         }
     }

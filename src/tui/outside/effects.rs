@@ -12,6 +12,8 @@ use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
 use crate::files::{clips, lines, paths, picture, write};
 use crate::ops;
+use crate::preview::views;
+use crate::scene::Document;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
 use crate::tui::graphics::request::Request;
@@ -52,8 +54,10 @@ impl Editor {
                 self.open(&path, Mode::TakeOver);
             }
             Effect::Tutor => self.learn(),
-            Effect::Run(words) => self.start(&words),
-            Effect::Probe(words) if self.screen.is_none() => self.start(&words),
+            Effect::Run(words) => self.start(&words, false),
+            Effect::RunSeen(words) => self.start(&words, true),
+            Effect::Mute => self.preview.view(&views::show_muted(&self.state.apart.hidden(self.state.document()))),
+            Effect::Probe(words) if self.screen.is_none() => self.start(&words, false),
             Effect::Probe(_) => {}
             Effect::Pipe(program, table) => {
                 let most = self.options.files.limits.paste;
@@ -136,6 +140,7 @@ impl Editor {
             Ok(scene) => {
                 // The command has refused already if there were unsaved edits to be kept.
                 self.state.scene.give_up();
+                self.keep();
                 let window = self.preview.has_window();
                 // Close first: it may be the same scene, and a scene has only one editor.
                 self.preview.close();
@@ -148,6 +153,9 @@ impl Editor {
                 self.state.keymap = before.keymap;
                 self.state.memory.recorder = before.memory.recorder;
                 self.state.memory.lines = before.memory.lines;
+                self.state.memory.yanked = before.memory.yanked;
+                self.state.memory.registers = before.memory.registers;
+                self.state.memory.recalled = before.memory.recalled;
                 self.state.picture.graphics = before.picture.graphics;
                 self.begin();
                 true
@@ -172,8 +180,18 @@ impl Editor {
         }
     }
 
-    /// Starts a subcommand on the open scene as it is now.
-    fn start(&mut self, words: &[String]) {
+    /// The scene as it is now; or as it is shown, without what is muted.
+    fn document(&self, seen: bool) -> Document {
+        let document = self.state.document();
+        let hidden = self.state.apart.hidden(document);
+        let size = self.state.picture.synth.as_ref().map(|synth| synth.size).or(self.state.picture.size);
+        let shown = size.filter(|_| seen && !hidden.is_empty()).map(|size| document.scene().without(&hidden, size));
+        let shown = shown.and_then(|shown| Document::from_json(serde_json::to_value(shown).ok()?).ok());
+        shown.unwrap_or_else(|| document.clone())
+    }
+
+    /// Starts a subcommand on the open scene as it is now, or as it is shown.
+    fn start(&mut self, words: &[String], seen: bool) {
         if self.state.outside.work.is_some() {
             return self.state.complain("something is running already: Esc ends it");
         }
@@ -185,7 +203,7 @@ impl Editor {
         match command {
             Ok(command) => {
                 let name = words[0].clone();
-                let open = Some(ops::Open { path, document: self.state.document().clone() });
+                let open = Some(ops::Open { path, document: self.document(seen) });
                 self.state.outside.work = Some(name.clone());
                 self.job = Some(Job::start(command, name, open, self.sender.clone()));
             }

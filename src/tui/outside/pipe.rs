@@ -104,7 +104,7 @@ fn wait(
         }
         if told.elapsed() > TELL_EVERY {
             told = Instant::now();
-            tell(format!("pipe {} {} of {} s", clipped(program, 40), begun.elapsed().as_secs(), limit.as_secs()));
+            tell(format!("pipe {} {} of {} s", clipped(program, 24), begun.elapsed().as_secs(), limit.as_secs()));
         }
         std::thread::sleep(LOOK_EVERY);
     }

@@ -53,6 +53,8 @@ impl Editor {
         }
         let begun = Instant::now();
         screen.draw(|frame| view::draw(frame, state)).map_err(failed)?;
+        self.state.drawn();
+        let state = &self.state;
         match pace::is_behind() {
             true => self.drawn = Some(begun),
             false => self.throttle.wrote(state, begun.elapsed()),

@@ -94,6 +94,9 @@ fn reading(begun: Instant, events: mpsc::Sender<Event>) -> Progress {
 /// A scene and what was made of it.
 struct Made {
     scene: Arc<Scene>,
+    muted: Arc<[String]>,
+    /// What is shown of it.
+    shown: Arc<Scene>,
     synth: Arc<Synth>,
     materials: Materials,
 }
@@ -120,7 +123,8 @@ impl Studio {
     fn serve(&mut self, request: &Request, events: &mpsc::Sender<Event>) -> bool {
         #[cfg(test)]
         assert_ne!(request.path, std::path::Path::new("a fault"), "what a test asked for");
-        if request.fresh || !self.made.as_ref().is_some_and(|made| Arc::ptr_eq(&made.scene, &request.scene)) {
+        let is_made = |made: &Made| Arc::ptr_eq(&made.scene, &request.scene) && made.muted == request.muted;
+        if request.fresh || !self.made.as_ref().is_some_and(is_made) {
             if events.send(Event::Synthesising).is_err() {
                 return false;
             }
@@ -141,16 +145,16 @@ impl Studio {
                 return false;
             }
         }
-        let Some(Made { scene, synth, materials }) = &self.made else { return true };
+        let Some(Made { scene, shown, synth, materials, .. }) = &self.made else { return true };
         let begun = self.begins(scene);
-        let probed = request.probe.and_then(|asked| Probed::new(asked, scene, synth, materials));
+        let probed = request.probe.and_then(|asked| Probed::new(asked, shown, synth, materials));
         let probed = probed.filter(|_| !synth.is_stopped());
         if probed.is_some_and(|probed| events.send(Event::Probed(Arc::new(probed))).is_err()) {
             return false;
         }
         let picture = request.picture.clone();
         let before = self.picture.as_deref();
-        let picture = picture.map(|wanted| TerminalPicture::new(synth, scene, request.time, wanted, before));
+        let picture = picture.map(|wanted| TerminalPicture::new(synth, shown, request.time, wanted, before));
         // If it was stopped, a newer request is served next.
         let Some(picture) = picture.filter(|_| !self.ends()) else { return true };
         let ms = begun.elapsed().as_secs_f64() * 1000.0;
@@ -177,13 +181,21 @@ impl Studio {
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
         let previous = self.made.as_ref().map(|made| &*made.synth);
-        let synth = render::synth(&request.scene, &materials, previous).map_err(|problem| {
+        let shown = match request.muted.is_empty() {
+            true => request.scene.clone(),
+            false => {
+                let size = render::frame_size(&request.scene, &materials);
+                Arc::new(request.scene.without(&request.muted, size))
+            }
+        };
+        let synth = render::synth(&shown, &materials, previous).map_err(|problem| {
             // Why a picture could not be read says more than that it is missing.
             problems.first().unwrap_or(&problem).clone()
         })?;
         let synth = Arc::new(synth);
         materials.stop = None;
-        self.made = Some(Made { scene: request.scene.clone(), synth: synth.clone(), materials });
+        let (scene, muted) = (request.scene.clone(), request.muted.clone());
+        self.made = Some(Made { scene, muted, shown, synth: synth.clone(), materials });
         match problems.first() {
             Some(error) if error.severity == Severity::Error => Err(error.clone()),
             warning => Ok((synth, warning.cloned())),

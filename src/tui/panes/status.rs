@@ -19,7 +19,9 @@ use crate::tui::text::wrap::{clipped, width};
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let bar = Style::new().add_modifier(Modifier::REVERSED);
     buffer.set_style(area, bar);
-    let (mode, marks, right) = (mode(state), marks(state), right(state));
+    let (mode, marks) = (mode(state), marks(state));
+    let taken = width(&format!(" {mode}  {marks}   ")) + LEAST_NAME;
+    let right = right(state, area.width.saturating_sub(taken));
     // A long name is clipped, because the rest of the line matters more.
     let others = width(&format!(" {mode}  {marks}  {right} "));
     let room = area.width.saturating_sub(others).max(LEAST_NAME);
@@ -62,13 +64,16 @@ fn marks(state: &State) -> String {
         mark(!state.scene.is_saved(), "  *"),
         mark(!state.scene.is_synced(), " ~"),
         mark(state.scene.read_only(), "  RO"),
+        mark(!state.apart.solo.is_empty(), "  solo"),
+        mark(!state.apart.muted.is_empty(), "  muted"),
         &state.outside.file.map(|word| format!("  {word}")).unwrap_or_default(),
         failing.as_deref().unwrap_or_default(),
     ]
     .concat()
 }
 
-fn right(state: &State) -> String {
+/// What stands on the right; what work says of itself has so much room.
+fn right(state: &State, room: u16) -> String {
     let mut parts = Vec::new();
     if let Some(letter) = state.memory.recorder.recording() {
         parts.push(format!("recording {letter}"));
@@ -83,8 +88,12 @@ fn right(state: &State) -> String {
         parts.push(format!("{}-", state.typing.pressed));
     }
     if let Some(work) = &state.outside.work {
-        // Its progress matters more than what does not change meanwhile.
-        parts.push(format!("{}  Esc cancels", plain(work)));
+        // Its progress matters more than what does not change meanwhile, and how to end it more than that.
+        let first = if state.cursor.selects() && state.outside.piping.is_none() { "Esc Esc" } else { "Esc" };
+        let end = format!("{first} cancels");
+        let before = width(&parts.join("  ")) + width(&end) + 4;
+        parts.push(clipped(&plain(work), room.saturating_sub(before).max(8).into()));
+        parts.push(end);
         return parts.join("  ");
     }
     if let Some(aiming) = spatial::aiming(state).filter(|_| matches!(state.typing.mode, Mode::Aim)) {

@@ -28,11 +28,13 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
         let indent = (row.depth as i32 * 2).min(i32::from(area.width) / 2);
         let x = write(buffer, area, indent, y, mark, Style::new());
         // A count is always shown whole. It clips the name, and the name clips other notes.
-        let count = if row.note.starts_with('(') { i32::from(width(&row.note)) + 1 } else { 0 };
+        let apart = state.apart.told(&row.pointer);
+        let note = if apart.is_empty() { &row.note } else { &apart };
+        let count = if note.starts_with('(') || !apart.is_empty() { i32::from(width(note)) + 1 } else { 0 };
         let label = clipped(&row.label, (i32::from(area.width) - x - count).max(0) as usize);
         let end = write(buffer, area, x, y, &label, style);
-        let room = i32::from(area.width) - i32::from(width(&row.note));
-        write(buffer, area, (end + 1).max(room.min(end + 2)), y, &row.note, color::faint());
+        let room = i32::from(area.width) - i32::from(width(note));
+        write(buffer, area, (end + 1).max(room.min(end + 2)), y, note, color::faint());
         if i == at && state.cursor.focus == Pane::Tree {
             cursor = Some(Position::new(area.x + (x as u16).min(area.width.saturating_sub(1)), area.y + y));
         }

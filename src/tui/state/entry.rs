@@ -4,14 +4,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::expression;
-use crate::base::pointer::Pointer;
+use crate::base::pointer::{Pointer, index};
+use crate::tui::document::csv;
 use crate::tui::document::entry::Entry;
 use crate::tui::document::sheet::in_range;
 use kurbo::Point;
 use serde_json::Value;
 
 use super::{Mode, State, place};
-use crate::base::expression::Variables;
+use crate::base::expression::{Mistake, Variables};
 use crate::scene::field::{Field, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
@@ -118,12 +119,21 @@ pub fn each(
 ) -> Result<Edit, String> {
     let document = state.document();
     let cells = cells(state, &state.sheet());
-    let n = cells.len();
+    let (n, sheet) = (cells.len(), state.sheet());
     let turns = |cell: &Cell| cell.part != Part::Degrees || length(document, cell) > 0.0;
     let some = cells.iter().any(|(_, cell)| turns(cell));
     let each = cells.iter().enumerate().filter(|(_, (_, cell))| turns(cell) || !some);
-    let edits = each.map(|(i, (row, cell))| number(document, cell, value(*row, cell, (i, n))?));
+    let edits = each.map(|(i, (row, cell))| {
+        let edit = value(*row, cell, (i, n)).and_then(|value| number(document, cell, value));
+        edit.map_err(|why| if n > 1 { format!("{}: {why}", told_row(&sheet, *row)) } else { why })
+    });
     Ok(Edit::all(edits.collect::<Result<Vec<_>, _>>()?))
+}
+
+/// A row as its table calls it: by its number, a field by its name.
+pub fn told_row(sheet: &Sheet, row: usize) -> String {
+    let token = sheet.pointer(row).and_then(|pointer| Some(Pointer(&pointer).split()?.1)).unwrap_or_default();
+    if index(&token).is_some() { format!("row {token}") } else { token }
 }
 
 /// The values that the text being typed has in the first selected rows, or what is wrong with it. `None` if no number is
@@ -139,7 +149,7 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
     }
     let values = cells.iter().take(SHOWN).enumerate().map(|(i, (row, cell))| {
         let value = evaluate(state, &sheet, *row, cell, (i, n), text.value())?;
-        in_range(&cell.field, cell.part, value).map(|()| numbers::exact(numbers::tidy(value)))
+        in_range(&cell.field, cell.part, value).map(|()| numbers::exact(value))
     });
     let shown = values.collect::<Result<Vec<_>, _>>().map(|values| {
         let more = if n > SHOWN { " …" } else { "" };
@@ -154,7 +164,8 @@ pub fn hint(state: &State) -> Option<Result<String, String>> {
     Some(shown)
 }
 
-/// The value of `text` for one cell, the `i`th of `n`.
+/// The value of `text` for one cell, the `i`th of `n`: what is computed without the noise of floating point, what is written
+/// out to its last digit.
 fn evaluate(
     state: &State,
     sheet: &Sheet,
@@ -165,14 +176,15 @@ fn evaluate(
 ) -> Result<f64, String> {
     // Without letters no variable can occur, so the row is not needed.
     let row = text.contains(char::is_alphabetic).then(|| sheet.whole().row(row)).flatten();
-    variables(state, sheet, row.as_ref(), Some(cell), (i, n)).value(text)
+    let value = variables(state, sheet, row.as_ref(), Some(cell), (i, n)).value(text).map_err(|why| why.to_string())?;
+    Ok(if csv::number(text).is_some() { value } else { numbers::tidy(value) })
 }
 
 /// The value of `text` for each of these rows, whose column is that under the cursor; `None` for a row that lacks what it
 /// names.
 ///
 /// # Errors
-/// It has no value in any of them.
+/// It has no value in any of them, or one that is not finite in some.
 pub fn of_rows(state: &State, rows: &BTreeSet<usize>, text: &str) -> Result<Vec<Option<f64>>, String> {
     let sheet = state.sheet();
     let here = state.row();
@@ -180,14 +192,15 @@ pub fn of_rows(state: &State, rows: &BTreeSet<usize>, text: &str) -> Result<Vec<
     let like = |cell: &&Cell| model.is_some_and(|model| model.head == cell.head && model.part == cell.part);
     let whole = sheet.whole();
     let (mut values, mut why) = (Vec::with_capacity(rows.len()), None);
-    for (i, &row) in rows.iter().enumerate() {
-        let row = whole.row(row);
+    for (i, &at) in rows.iter().enumerate() {
+        let row = whole.row(at);
         let cell = row.as_ref().and_then(|row| row.cells.iter().find(like));
         let value = variables(state, &sheet, row.as_ref(), cell, (i, rows.len())).value(text);
         values.push(match value {
             Ok(value) => Some(value),
+            Err(own) if own.endless => return Err(format!("{}: {own}", told_row(&sheet, at))),
             Err(own) => {
-                why.get_or_insert(own);
+                why.get_or_insert(own.to_string());
                 None
             }
         });
@@ -206,11 +219,11 @@ struct Known {
 }
 
 impl Known {
-    fn value(&self, text: &str) -> Result<f64, String> {
+    fn value(&self, text: &str) -> Result<f64, Mistake> {
         let numbers: Vec<(&str, f64)> = self.numbers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let words: Vec<(&str, &str)> = self.words.iter().map(|(name, word)| (name.as_str(), word.as_str())).collect();
         let known = Variables { numbers: &numbers, words: &words };
-        expression::evaluate(text, &known).map_err(|mistake| mistake.to_string())
+        expression::evaluate(text, &known)
     }
 }
 

@@ -54,6 +54,11 @@ impl Finding {
         self.marks.insert(name, spot);
     }
 
+    /// All marks.
+    pub fn marks(&self) -> impl Iterator<Item = (char, &Spot)> {
+        self.marks.iter().map(|(letter, spot)| (*letter, spot))
+    }
+
     /// Where a mark was set.
     pub fn marked(&self, name: char) -> Option<&Spot> {
         self.marks.get(&name)

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::finding::Finding;
@@ -26,6 +27,8 @@ pub struct Memory {
     pub yanked: Option<Yanked>,
     /// What was yanked into registers, by their letters.
     pub registers: BTreeMap<char, Yanked>,
+    /// The registers of earlier sessions that were not used in this one.
+    pub recalled: BTreeMap<char, Yanked>,
     /// The register that the next yank or paste is about.
     pub register: Option<char>,
     /// What comes back when the help or the command line is closed that was opened over it: an entry, aiming, or pages; the
@@ -110,13 +113,25 @@ pub struct Message {
     pub text: String,
     /// Whether it says that something could not be done.
     pub bad: bool,
+    /// Whether keys that go on leave it: it tells how something ended that ran beside them.
+    pub stays: bool,
+    /// Whether it has been on the screen.
+    pub seen: bool,
+}
+
+impl Message {
+    /// A message about what was asked for just now.
+    pub fn new(text: impl Into<String>, bad: bool) -> Message {
+        Message { text: text.into(), bad, stays: false, seen: false }
+    }
 }
 
 /// What `p` pastes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Yanked {
     /// A value, or several as a list.
     pub value: Value,
     /// Its name, if it was an entry of a map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
 }

@@ -1,10 +1,11 @@
 //! The editor's state: a value that `update` (commands/update.rs) changes and the panes draw. Each of its parts has a file
 //! here. Tests drive it without a terminal.
 
+pub mod apart;
 pub mod cursor;
 pub mod entry;
 pub mod finding;
-mod kept;
+pub mod kept;
 pub mod looking;
 pub mod memory;
 pub mod outside;
@@ -19,6 +20,7 @@ pub mod typing;
 
 use std::collections::VecDeque;
 
+use self::apart::Apart;
 use self::cursor::Cursor;
 pub use self::cursor::Pane;
 use self::memory::Memory;
@@ -64,6 +66,8 @@ pub struct State {
     pub keymap: Keymap,
     /// Where the cursor is, and which rows are selected.
     pub cursor: Cursor,
+    /// What is muted, solo or locked.
+    pub apart: Apart,
     /// What the next key means.
     pub typing: Typing,
     /// Which part of the picture shows, and what the threads have made of the scene.
@@ -90,6 +94,7 @@ impl State {
             depth,
             keymap: Keymap::default(),
             cursor: Cursor::new(tree::first(scene.document())),
+            apart: Apart::default(),
             typing: Typing::default(),
             picture: Picture::new(tree::picture_centre(scene.document())),
             play: Play::default(),
@@ -126,18 +131,38 @@ impl State {
 
     /// Shows a message.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.tell(Message { text: text.into(), bad: false });
+        self.tell(Message::new(text, false));
     }
 
     /// Shows a message that something could not be done.
     pub fn complain(&mut self, text: impl Into<String>) {
-        self.tell(Message { text: text.into(), bad: true });
+        self.tell(Message::new(text, true));
     }
 
-    /// Shows a message, and remembers it for `:messages`.
+    /// Shows how something ended that ran beside the keys. They may be going on, so it stays until Esc or the next message.
+    pub fn tell_beside(&mut self, result: Result<String, String>) {
+        let bad = result.is_err();
+        let text = result.unwrap_or_else(|why| why);
+        self.tell(Message { stays: true, ..Message::new(text, bad) });
+    }
+
+    /// Shows a message, and remembers it for `:messages`. What went wrong beside the keys gives way once it has been seen.
     fn tell(&mut self, message: Message) {
         self.memory.hear(message.clone());
-        self.message = Some(message);
+        let waits = self.message.as_ref().is_some_and(|old| old.stays && old.bad && !old.seen);
+        if !waits || message.bad {
+            self.message = Some(message);
+        }
+    }
+
+    /// A key or a line begins: what was said before goes, unless it stays.
+    pub fn begin_key(&mut self, ends: bool) {
+        self.message.take_if(|message| ends || !message.stays);
+    }
+
+    /// What is shown has been drawn.
+    pub fn drawn(&mut self) {
+        self.message.iter_mut().for_each(|message| message.seen = true);
     }
 
     /// Asks the waiting question, once nothing else is going on.
@@ -157,6 +182,7 @@ impl State {
         if edit.is_empty() {
             return Ok(());
         }
+        self.unlocked(&edit)?;
         if let Some(change) = self.scene.apply(edit, held).map_err(|problems| self.refusal(problems))? {
             self.changed(change);
         }
@@ -171,6 +197,7 @@ impl State {
     /// Adapts to a change of the document, and passes it on.
     pub fn changed(&mut self, change: Change) {
         self.memory.finding.follow(&change);
+        self.follow_apart(&change);
         self.settle();
         self.ask(Effect::Publish(Box::new(change)));
     }

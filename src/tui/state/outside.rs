@@ -2,6 +2,7 @@
 //! and about somebody else who is editing the scene.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use crate::base::problem::Problem;
 use crate::layers::space::camera::Camera;
@@ -42,8 +43,14 @@ pub struct Piping {
     pub revision: u64,
     /// The node whose rows they are.
     pub node: String,
+    /// The columns that were shown.
+    pub columns: Arc<[String]>,
+    /// The head of the column under the cursor.
+    pub head: String,
     /// The rows.
     pub rows: BTreeSet<usize>,
+    /// The table that was sent.
+    pub sent: String,
 }
 
 impl Outside {

@@ -43,6 +43,11 @@ fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
     Some((Place::Apart(pointer.into()), Point::new(number("x")?, number("y")?)))
 }
 
+/// Where what is at `pointer` is; `None` if it has no place.
+pub fn of(document: &Document, pointer: &str) -> Option<Point> {
+    place(document, pointer).map(|(_, at)| at)
+}
+
 fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
     let (x, y) = (number::json(tidy(to.x)), number::json(tidy(to.y)));
     match place {

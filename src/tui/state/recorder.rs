@@ -3,6 +3,7 @@
 //! change. Typing, choosing and the help are not recorded, but their result is: `put *1.1`.
 
 use crate::tui::text::plain;
+use crate::tui::text::wrap::clipped;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +13,9 @@ use crate::scene::{Document, json};
 const DEEPEST: usize = 50;
 /// The most lines that one key may play, so that keys never wait for long.
 const MOST_PLAYED: usize = if cfg!(test) { 300 } else { 10_000 };
+
+/// The most characters of a refused line that the log keeps: a table may have come with it.
+const LONGEST_REFUSED: usize = 400;
 
 /// The most bytes of scenes that the lines of one key may change, in total: on a large scene each line takes longer.
 const MOST_CHANGED: u64 = 16 << 30;
@@ -74,6 +78,8 @@ pub struct Recorder {
     log: Vec<String>,
     /// How many of its lines were handed out to be written.
     written: usize,
+    /// So many lines at its beginning are only worth writing once others follow.
+    preface: usize,
     /// The file that the log is written to.
     place: Option<PathBuf>,
     /// The line that opened an entry or a list, until it is answered.
@@ -121,7 +127,7 @@ impl Recorder {
         }
         let Ended { line, recorded, refused, asks, changed } = ended;
         if let Some(why) = refused {
-            self.log.push(format!("# {}", plain(&format!("{line}: {why}"))));
+            self.log.push(format!("# {}", plain(&format!("{}: {why}", clipped(&line, LONGEST_REFUSED)))));
             return;
         }
         match recorded {
@@ -211,6 +217,16 @@ impl Recorder {
         self.log.push(format!("# {}", plain(text)));
     }
 
+    /// Adds a line to the log that the line after it needs.
+    pub fn note(&mut self, line: String) {
+        self.log.push(line);
+    }
+
+    /// All lines so far only lead to where the session begins.
+    pub fn end_preface(&mut self) {
+        self.preface = self.log.len();
+    }
+
     /// The log of the session.
     pub fn log(&self) -> &[String] {
         &self.log
@@ -218,6 +234,9 @@ impl Recorder {
 
     /// The lines that were added since the last call.
     pub fn unwritten(&mut self) -> &[String] {
+        if self.log.len() <= self.preface {
+            return &[];
+        }
         let from = std::mem::replace(&mut self.written, self.log.len());
         &self.log[from..]
     }

@@ -65,7 +65,7 @@ fn yanked_rows_go_to_the_clipboard_as_json_and_csv() {
         ("/ \"points\" Enter Enter y", "[10, 10]"),
         ("/ \"points\" Enter Enter v j Y", "x,y\n10,10\n50,10\n"),
         (&motion("Y"), "tool,x,y,dx,dy,|J|,°\npoint,20,20,0,-18,18,90\n"),
-        ("/ \"points\" Enter Enter i \"1/3\" Enter Y", "x,y\n0.3333333333333333,10\n"),
+        ("/ \"points\" Enter Enter i \"1/3\" Enter Y", "x,y\n0.333333333,10\n"),
     ] {
         let mut state = state();
         let effects = press(&mut state, keys);

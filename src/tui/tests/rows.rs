@@ -1,13 +1,10 @@
-//! Rows are selected one by one and by what holds for them, sorted, sent through programs; values are set and replaced in
-//! many places.
+//! Rows are selected one by one and by what holds for them, and sorted; values are set and replaced in many places.
 
 use serde_json::json;
 
-use super::support::{at, press, replayed, said_last, state};
-use super::{MOTION, check, motion, zone};
-use crate::tui::commands::update::update;
-use crate::tui::events::{Effect, Event};
-use crate::tui::state::{Mode, State};
+use super::support::{press, said_last, state};
+use super::{check, motion, zone};
+use crate::tui::state::Mode;
 
 #[test]
 pub fn rows_are_selected_one_by_one_and_by_what_holds() {
@@ -35,6 +32,8 @@ pub fn rows_are_selected_one_by_one_and_by_what_holds() {
         (": \"select x>25\" Enter", "3 of 4 rows selected"),
         ("t j t J", "only rows next to each other"),
         ("t ~", "3 of 4 rows selected"),
+        (": \"select 1/(x-30)\" Enter", "row 1: column 1: the result is not a finite number"),
+        (": \"select x>1 && x<9\" Enter", "both is `and`"),
     ] {
         let mut state = state();
         press(&mut state, &motion(keys));
@@ -63,6 +62,12 @@ pub fn rows_are_sorted() {
         (motion(": \"sort colour\" Enter"), "`colour` is not known here"),
         ("/ \"radius\" Enter : \"sort\" Enter".into(), "only rows of a list are sorted"),
         (motion("l g S"), "4 rows sorted by x, the largest first"),
+        (motion(": \"sort 1/(x-30)\" Enter"), "row 1: column 1: the result is not a finite number"),
+        (motion("V 2 l i \"1/(y-20)\" Enter"), "row 0: column 1: the result is not a finite number"),
+        (
+            ": \"go layers.face.zones\" Enter : \"columns feather\" Enter V : \"put i-1\" Enter".into(),
+            "row 0: -1 is out of range",
+        ),
     ] {
         let mut state = state();
         press(&mut state, &keys);
@@ -92,6 +97,10 @@ fn values_are_set_in_many_places_and_computed() {
         ("set layers.*.zones.*.speeed=2", "did you mean \"speed\""),
         ("set title+=2", "title: is not a number"),
         ("set timeline.fps=v/0", "not a finite number"),
+        ("set layers.face.zonez.eye.feather*=2", "layers.face.zonez.eye.feather: there is no field \"zonez\""),
+        ("set layers.face.zones.*.colour*=2", "layers.face.zones.*.colour: there is no field \"colour\""),
+        ("get layers.*.name", "* stands for all of them, and here one is asked for (only set takes *)"),
+        ("go layers.face.zones.*", "* stands for all of them"),
         ("set timeline.fps=w", "`w` is not known here"),
         ("set layers.face.zones.*.speed=2", "2 places are set"),
     ] {
@@ -105,11 +114,13 @@ fn values_are_set_in_many_places_and_computed() {
 pub fn names_texts_and_numbers_are_replaced() {
     check(&[
         (": \"replace eye ear\" Enter Enter", &zone("/name"), json!("left ear")),
-        (": \"replace cat dog\" Enter Enter", "/images", json!({ "dog": { "path": "dog.png" } })),
+        // A path without a file stays.
+        (": \"replace cat dog\" Enter Enter", "/images", json!({ "dog": { "path": "cat.png" } })),
+        (": \"replace cat a.0\" Enter Enter", "/images", json!({ "a.0": { "path": "a.0.png" } })),
         (": \"replace cat dog\" Enter Enter", "/layers/0/image", json!("dog")),
         (": \"replace cat dog\" Enter Enter u", "/images", json!({ "cat": { "path": "cat.png" } })),
         (": \"replace cat dog\" Enter Esc", "/layers/0/image", json!("cat")),
-        (": \"replace cat dog\" Enter 2 j Enter", "/images/cat/path", json!("dog.png")),
+        (": \"replace cat a.0\" Enter 2 j Enter", "/images/cat/path", json!("a.0.png")),
         (": \"replace 25 26.5\" Enter Enter", &zone("/motion/3/center"), json!([30, 26.5])),
         (": \"replace 25 26.5\" Enter j Enter", &zone("/motion/1/at"), json!([30, 26.5])),
         (": \"replace 25 26.5\" Enter j Enter", &zone("/motion/3/center"), json!([30, 25])),
@@ -121,58 +132,14 @@ pub fn names_texts_and_numbers_are_replaced() {
     let Mode::Choice(choice) = &state.typing.mode else { panic!("no list: {:?}", said_last(&state)) };
     assert_eq!(choice.options[0], ("all".into(), "Replace in 2 places".into()));
     assert_eq!(choice.options[1].1, "30, 25 → 30, 26");
-    for (line, part) in [("replace x", "takes FROM and TO"), ("replace zzz a", "nothing here has zzz in it")] {
+    for (line, part) in [
+        ("replace x", "takes FROM and TO"),
+        ("replace zzz a", "nothing here has zzz in it"),
+        ("replace cat dog images.cat.path", "images.cat.path stays: there is no file dog.png"),
+        ("replace sine line", "function is sine, one of several words"),
+    ] {
         let mut state = self::state();
         press(&mut state, &format!(": \"{line}\" Enter"));
         assert!(said_last(&state).1.contains(part), "{line}: {:?}", said_last(&state));
     }
-}
-
-#[test]
-pub fn rows_go_through_a_program_or_nothing_changes() {
-    let sent = |state: &mut State, keys: &str| -> Option<String> {
-        press(state, MOTION);
-        press(state, keys).into_iter().find_map(|effect| match effect {
-            Effect::Pipe(program, table) => Some(format!("{program}: {table}")),
-            _ => None,
-        })
-    };
-    let pipe = "t j t | \"awk\" Enter";
-    for (back, said, expected) in [
-        (Ok("x,y\n1,2\n3,4\n"), "2 rows came back from awk", json!([[1, 2], [30, 25], [3, 4]])),
-        (Ok("1,2\n3,4\n"), "2 rows came back", json!([[20, 20], [30, 25], [40, 30]])),
-        (Ok("x,y\n1,2\n"), "2 rows went out and 1 came back", json!([[20, 20], [30, 25], [40, 30]])),
-        (Ok(""), "2 rows went out and 0 came back", json!([[20, 20], [30, 25], [40, 30]])),
-        (Ok("x,y\n1,a\nb,2\n"), "2 rows refused, and nothing changed: row 0", json!([[20, 20], [30, 25], [40, 30]])),
-        (Ok("x,y\n1,a\n3,2\n"), "row 0, column 2: \"a\" is not a number", json!([[20, 20], [30, 25], [40, 30]])),
-        (Err("awk took too long"), "pipe: awk took too long", json!([[20, 20], [30, 25], [40, 30]])),
-    ] {
-        let mut state = state();
-        // Without a header values begin at the column of the cursor.
-        let column = if back == Ok("1,2\n3,4\n") { "3 l " } else { "" };
-        let table = sent(&mut state, &format!("{column}{pipe}")).unwrap();
-        assert_eq!(table, "awk: tool,x,y,dx,dy,|J|,°\npoint,20,20,0,-18,18,90\npoint,40,30,0,0,0,0\n");
-        assert_eq!(state.outside.work.as_deref(), Some("pipe awk"));
-        update(&mut state, Event::Piped(back.map(str::to_owned).map_err(str::to_owned)));
-        assert!(said_last(&state).1.contains(said), "{back:?}: {:?}", said_last(&state));
-        let places: Vec<_> = (0..3).map(|i| at(&state, &zone(&format!("/motion/{i}/at")))).collect();
-        assert_eq!(json!(places), expected, "{back:?}");
-        assert!(state.outside.work.is_none());
-        assert_eq!(replayed(&state).document().json(), state.document().json(), "{back:?}");
-    }
-    let mut state = state();
-    sent(&mut state, pipe).unwrap();
-    press(&mut state, "l +");
-    update(&mut state, Event::Piped(Ok("x\n1\n2\n".into())));
-    assert!(said_last(&state).1.contains("changed meanwhile: nothing was taken"), "{:?}", said_last(&state));
-    assert!(sent(&mut self::state(), "g t : \"pipe cat\" Enter").unwrap().contains("point,30,25,3,4"), "all rows");
-    assert_eq!(sent(&mut self::state(), ": \"pipe\" Enter"), None);
-}
-
-#[test]
-fn a_changed_column_of_a_table_that_comes_back_counts() {
-    let mut state = state();
-    press(&mut state, &motion("v : \"pipe turn\" Enter"));
-    update(&mut state, Event::Piped(Ok("tool,x,y,dx,dy,|J|,°\npoint,20,20,0,-18,9,90\n".into())));
-    assert_eq!(at(&state, &zone("/motion/0/jump")), json!([0, -9]), "{:?}", said_last(&state));
 }

@@ -64,6 +64,10 @@ pub fn what_is_selected_is_transformed_in_one_step() {
         ("/ \"radius\" Enter : \"mirror x\" Enter".into(), "has no place in a picture"),
         ("/ \"timeline\" Enter : \"move 1 1\" Enter".into(), "timeline has no place in a picture"),
         (motion(": \"move sideways\" Enter"), "move takes a way"),
+        (
+            motion(": \"set layers.0.zones.0.motion.3.tool=still-border\" Enter V : \"move 1 1\" Enter"),
+            "3 things moved by 1, 1; 1 row has no place",
+        ),
     ] {
         let mut state = state();
         press(&mut state, &keys);

@@ -13,7 +13,7 @@ pub fn edits_apply_to_the_selection_which_stays() {
         (&motion("l V i \"7\" Enter"), &zone("/motion/2/at"), json!([7, 30])),
         (&motion("l % + +"), &zone("/motion/2/at"), json!([42, 30])),
         (&motion("l v j + + + u"), &zone("/motion/1/at"), json!([30, 25])),
-        (&motion("l v 2 j i \"100+10*i/n\" Enter"), &zone("/motion/1/at"), json!([100.0 + 10.0 / 3.0, 25])),
+        (&motion("l v 2 j i \"100+10*i/n\" Enter"), &zone("/motion/1/at"), json!([103.333333333, 25])),
         (&motion("l v j Esc j g v +"), &zone("/motion/0/at"), json!([21, 20])),
         (&motion("v j J"), &zone("/motion/0/at"), json!([40, 30])),
         (&motion("v j J J"), &zone("/motion/3/at"), json!([30, 25])),

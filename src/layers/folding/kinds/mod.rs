@@ -25,10 +25,22 @@ pub fn turned(layer: &PictureLayer, path: &str, old: &Value, to: &str) -> Option
     let zone = layer.zones.get(zone)?;
     let tokens: Vec<String> = Pointer(way).tokens().collect();
     match tokens.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        ["outline"] | ["fold", "regions", _] => outlines::turned(&read(old)?, to),
+        ["outline"] => outlines::turned(&found(read(old)?, &zone.outline), to),
+        ["fold", "regions", region] => {
+            let region = zone.fold.as_ref().and_then(|fold| fold.regions().get(region.parse::<usize>().ok()?));
+            outlines::turned(&region.map_or_else(|| read(old), |known| Some(found(read(old)?, known)))?, to)
+        }
         ["motion", _] => tools::turned(zone, &read(old)?, to),
         ["position"] | ["position", .., "ease"] => positions::turned(&read(old)?, to),
         _ => None,
+    }
+}
+
+/// An outline as it is written, with the shapes looked up that it is made of.
+fn found(written: Outline, known: &Outline) -> Outline {
+    match written {
+        Outline::Shapes { .. } => known.clone(),
+        own => own,
     }
 }
 

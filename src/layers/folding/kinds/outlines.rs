@@ -10,6 +10,7 @@ use crate::base::geometry::Xy;
 use crate::base::geometry::{FLATNESS_PX, Polygon};
 use crate::base::maths::{self, TAU};
 use crate::base::number;
+use crate::layers::folding::node::written;
 use crate::layers::folding::outline::{Outline, bezier, point};
 
 /// How far the straight sides may be from the curve that they replace.
@@ -41,7 +42,8 @@ pub fn turned(old: &Outline, to: &str) -> Option<Turned> {
         (Outline::Ellipse { center, radii }, "polygon") => straightened(&ring(*center, *radii), there),
         (Outline::Ellipse { center, radii }, "path") => path(nodes_of_ellipse(*center, *radii).to_vec()),
         (Outline::Polygon { points }, "path") => path(points.iter().map(|&at| json!({ "at": exact(at) })).collect()),
-        (Outline::Path { nodes }, "polygon") => {
+        (Outline::Shapes { nodes, .. }, "path") => path(nodes.iter().map(written).collect()),
+        (Outline::Path { nodes } | Outline::Shapes { nodes, .. }, "polygon") => {
             let curved = nodes.iter().any(|node| node.handle_in != [0.0; 2] || node.handle_out != [0.0; 2]);
             match curved {
                 false => polygon_of(nodes.iter().map(|node| exact(node.at)).collect()),
@@ -58,6 +60,7 @@ fn kind(outline: &Outline) -> &'static str {
         Outline::Ellipse { .. } => "ellipse",
         Outline::Polygon { .. } => "polygon",
         Outline::Path { .. } => "path",
+        Outline::Shapes { .. } => "shapes",
     }
 }
 
@@ -70,7 +73,7 @@ fn exact([x, y]: Xy) -> Value {
 fn bounds(outline: &Outline) -> Rect {
     match outline {
         Outline::Ellipse { center: [x, y], radii: [w, h] } => Rect::new(x - w, y - h, x + w, y + h),
-        Outline::Path { nodes } => bezier(nodes, true).bounding_box(),
+        Outline::Path { nodes } | Outline::Shapes { nodes, .. } => bezier(nodes, true).bounding_box(),
         other => other.polygon().bounds(),
     }
 }
@@ -125,7 +128,7 @@ fn nodes_of_ellipse([x, y]: Xy, [w, h]: Xy) -> [Value; 4] {
 }
 
 fn flattened(outline: &Outline) -> Vec<Point> {
-    let Outline::Path { nodes } = outline else { return Vec::new() };
+    let (Outline::Path { nodes } | Outline::Shapes { nodes, .. }) = outline else { return Vec::new() };
     let mut points: Vec<Point> = Vec::new();
     kurbo::flatten(bezier(nodes, true), WITHIN_PX, |part| match part {
         PathEl::MoveTo(p) | PathEl::LineTo(p) if points.last() != Some(&p) => points.push(p),
@@ -140,13 +143,13 @@ fn flattened(outline: &Outline) -> Vec<Point> {
 /// A message that only `kept` is left, unless the outline enclosed exactly the area `new`.
 fn area_lost(old: &Outline, new: f64, kept: &str) -> Option<String> {
     let polygon = old.polygon();
-    let drawn = matches!(old, Outline::Polygon { .. } | Outline::Path { .. });
+    let drawn = !matches!(old, Outline::Rectangle { .. } | Outline::Ellipse { .. });
     if drawn && self_crossing(&polygon, FLATNESS_PX).is_some() {
         return Some(format!("only {kept}"));
     }
     let area = match old {
         Outline::Ellipse { radii: [w, h], .. } => std::f64::consts::PI * w * h,
-        Outline::Rectangle { .. } | Outline::Polygon { .. } | Outline::Path { .. } => area(&polygon),
+        _ => area(&polygon),
     };
     let differs = (new - area).abs() > 1e-6 * area.max(1.0);
     differs.then(|| format!("only {kept}: {} px² became {}", told(area), told(new)))

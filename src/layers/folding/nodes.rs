@@ -1,0 +1,172 @@
+//! Nodes of paths made anew: handles that make them smooth, and nodes evenly along a path.
+
+use std::collections::BTreeSet;
+
+use kurbo::{ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
+
+use super::node::Node;
+use super::outline::{bezier, point, vector};
+use crate::base::geometry::Xy;
+use crate::base::number;
+
+/// Lengths along a path are exact to this many pixels.
+const ACCURACY_PX: f64 = 1e-6;
+/// Handles this share as long as the way to the next node follow a circle closely.
+const THIRD: f64 = 1.0 / 3.0;
+
+/// What becomes of the handles of a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handles {
+    /// The path goes through smoothly, parallel to the line between its neighbors.
+    Smooth,
+    /// The shorter handle is the longer one turned about the node.
+    Mirrored,
+    /// None: the node is a corner between straight sides.
+    None,
+}
+
+fn xy(v: Vec2) -> Xy {
+    [number::tidy(v.x), number::tidy(v.y)]
+}
+
+/// The path with these nodes' handles made anew.
+pub fn handled(nodes: &[Node], closed: bool, chosen: &BTreeSet<usize>, handles: Handles) -> Vec<Node> {
+    let last = nodes.len().saturating_sub(1);
+    let neighbor = |i: usize, forward: bool| match (i, forward) {
+        (0, false) => closed.then_some(last),
+        (i, true) if i == last => closed.then_some(0),
+        (i, true) => Some(i + 1),
+        (i, false) => Some(i - 1),
+    };
+    let at = |i: Option<usize>| i.and_then(|i| nodes.get(i)).map(|node| point(node.at));
+    let made = |(i, node): (usize, &Node)| {
+        if !chosen.contains(&i) {
+            return node.clone();
+        }
+        let here = point(node.at);
+        let (before, after) = (at(neighbor(i, false)), at(neighbor(i, true)));
+        let (back, on) = match handles {
+            Handles::None => (Vec2::ZERO, Vec2::ZERO),
+            Handles::Smooth => smooth(here, before, after),
+            Handles::Mirrored => {
+                let (back, on) = (vector(node.handle_in), vector(node.handle_out));
+                if back.hypot2() > on.hypot2() { (back, -back) } else { (-on, on) }
+            }
+        };
+        Node { at: node.at, handle_in: xy(back), handle_out: xy(on) }
+    };
+    nodes.iter().enumerate().map(made).collect()
+}
+
+/// The handles of a smooth node; at an end only the one that there is a side for.
+fn smooth(here: Point, before: Option<Point>, after: Option<Point>) -> (Vec2, Vec2) {
+    match (before, after) {
+        (Some(before), Some(after)) if before != after => {
+            let along = (after - before).normalize();
+            (along * -(here - before).hypot() * THIRD, along * (after - here).hypot() * THIRD)
+        }
+        (Some(before), None) => ((before - here) * THIRD, Vec2::ZERO),
+        (None, Some(after)) => (Vec2::ZERO, (after - here) * THIRD),
+        _ => (Vec2::ZERO, Vec2::ZERO),
+    }
+}
+
+/// So many nodes evenly along a path, which it goes through in the directions that it had there; straight sides stay straight.
+pub fn resampled(nodes: &[Node], closed: bool, count: usize) -> Vec<Node> {
+    let path = bezier(nodes, closed);
+    let sides: Vec<(PathSeg, f64)> = path.segments().map(|side| (side, side.arclen(ACCURACY_PX))).collect();
+    let whole: f64 = sides.iter().map(|(_, length)| length).sum();
+    let gaps = if closed { count } else { count.saturating_sub(1) }.max(1);
+    let step = whole / gaps as f64;
+    let straight = nodes.iter().all(|node| node.handle_in == [0.0; 2] && node.handle_out == [0.0; 2]);
+    let made = |k: usize| {
+        let (at, along) = place(&sides, step * k as f64);
+        let handle = if straight { Vec2::ZERO } else { along * step * THIRD };
+        let (back, on) = match k {
+            0 if !closed => (Vec2::ZERO, handle),
+            _ if !closed && k == gaps => (-handle, Vec2::ZERO),
+            _ => (-handle, handle),
+        };
+        Node { at: xy(at.to_vec2()), handle_in: xy(back), handle_out: xy(on) }
+    };
+    (0..count).map(made).collect()
+}
+
+/// The point so far along the sides, and the direction there.
+fn place(sides: &[(PathSeg, f64)], mut along: f64) -> (Point, Vec2) {
+    let last = sides.len().saturating_sub(1);
+    for (i, (side, length)) in sides.iter().enumerate() {
+        if along > *length && i < last {
+            along -= length;
+            continue;
+        }
+        let t = side.inv_arclen(along.clamp(0.0, *length), ACCURACY_PX).clamp(0.0, 1.0);
+        // A side without handles stands still at its ends, so the direction is taken between two places.
+        const NEAR: f64 = 1e-4;
+        let (a, b) = (side.eval((t - NEAR).max(0.0)), side.eval((t + NEAR).min(1.0)));
+        let way = if a == b { Vec2::ZERO } else { (b - a).normalize() };
+        return (side.eval(t), way);
+    }
+    (Point::ZERO, Vec2::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Node {
+        Node { at: [x, y], handle_in: [0.0; 2], handle_out: [0.0; 2] }
+    }
+
+    #[test]
+    fn handles_are_smooth_mirrored_or_none() {
+        let nodes = [at(0.0, 0.0), at(30.0, 30.0), at(60.0, 0.0)];
+        let made =
+            |closed, handles, chosen: &[usize]| handled(&nodes, closed, &chosen.iter().copied().collect(), handles);
+        let smooth = made(false, Handles::Smooth, &[0, 1, 2]);
+        let third = 30.0_f64.hypot(30.0) / 3.0;
+        assert_eq!(
+            (smooth[1].handle_in, smooth[1].handle_out),
+            (xy(Vec2::new(-third, 0.0)), xy(Vec2::new(third, 0.0)))
+        );
+        assert_eq!(
+            (smooth[0].handle_in, smooth[0].handle_out),
+            ([0.0; 2], [10.0, 10.0]),
+            "an end points at its neighbor"
+        );
+        assert_eq!((smooth[2].handle_in, smooth[2].handle_out), ([-10.0, 10.0], [0.0; 2]));
+        let closed = made(true, Handles::Smooth, &[0]);
+        assert_eq!(closed[0].handle_out, xy(Vec2::new(-1.0, 1.0).normalize() * third));
+        assert_eq!(closed[1..], nodes[1..], "only those that are chosen");
+        let mut one_sided = nodes.clone();
+        one_sided[1].handle_in = [-4.0, 2.0];
+        let mirrored = handled(&one_sided, false, &[1].into(), Handles::Mirrored);
+        assert_eq!(mirrored[1].handle_out, [4.0, -2.0]);
+        assert_eq!(handled(&mirrored, false, &[1].into(), Handles::None)[1], nodes[1]);
+    }
+
+    #[test]
+    fn nodes_are_even_and_the_path_stays() {
+        let line = resampled(&[at(0.0, 0.0), at(10.0, 0.0), at(40.0, 0.0)], false, 5);
+        assert_eq!(line.iter().map(|node| node.at[0]).collect::<Vec<_>>(), [0.0, 10.0, 20.0, 30.0, 40.0]);
+        assert!(line.iter().all(|node| node.handle_out == [0.0; 2]), "straight stays straight");
+        let square = resampled(&[at(0.0, 0.0), at(8.0, 0.0), at(8.0, 8.0), at(0.0, 8.0)], true, 8);
+        assert_eq!((square[1].at, square[7].at), ([4.0, 0.0], [0.0, 4.0]));
+        // A circle of four nodes, made of twelve, stays a circle.
+        let k = 55.228_474_983_079_36;
+        let node = |x: f64, y: f64, [a, b]: Xy| Node { at: [x, y], handle_in: [-a, -b], handle_out: [a, b] };
+        let circle = [
+            node(100.0, 0.0, [0.0, k]),
+            node(0.0, 100.0, [-k, 0.0]),
+            node(-100.0, 0.0, [0.0, -k]),
+            node(0.0, -100.0, [k, 0.0]),
+        ];
+        let twelve = bezier(&resampled(&circle, true, 12), true);
+        for side in twelve.segments() {
+            for t in [0.0, 0.3, 0.5, 0.9] {
+                let radius = side.eval(t).to_vec2().hypot();
+                assert!((radius - 100.0).abs() < 0.2, "{radius}");
+            }
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Completion of addresses, for people who type them.
+
+use super::{Document, address, field};
+use crate::base::pointer::Pointer;
+
+/// The paths of the scene that continue `typed` by one name.
+pub fn paths(document: &Document, typed: &str) -> Vec<String> {
+    if typed.contains('=') {
+        return Vec::new();
+    }
+    let (parent, last) = typed.split_at(last_step(typed));
+    let pointer = match parent.trim_end_matches('.') {
+        "" => Some(String::new()),
+        // With a `*`, the first place that it means stands for all.
+        parent => address::resolve_all(document, parent).ok().and_then(|all| all.into_iter().next()),
+    };
+    let holder = pointer.as_deref().map(|pointer| address::address(document, pointer)).unwrap_or_default();
+    let children = pointer.map(|pointer| below(document, &pointer)).unwrap_or_default();
+    // The name as an address spells it, with quotes if it has spaces.
+    let name = |child: String| {
+        let whole = address::address(document, &child);
+        whole.strip_prefix(holder.as_str()).unwrap_or(&whole).trim_start_matches('.').to_owned()
+    };
+    let begins = |name: &String| name.trim_start_matches('"').starts_with(last.trim_start_matches('"'));
+    children.into_iter().map(name).filter(begins).map(|name| format!("{parent}{name}")).collect()
+}
+
+/// The places directly below a place, also those that stand there though they are not written.
+fn below(document: &Document, pointer: &str) -> Vec<String> {
+    let children = || match field::standing(document, pointer) {
+        Some(place) => field::below(place, pointer).into_iter().map(|(child, _)| child.pointer).collect(),
+        None => Vec::new(),
+    };
+    let laid = field::laid(document, pointer);
+    laid.map_or_else(children, |tokens| tokens.iter().map(|token| Pointer(pointer).join(token)).collect())
+}
+
+/// Where the last step of an address begins: after the last dot outside quotes.
+fn last_step(typed: &str) -> usize {
+    let mut inside = false;
+    let dots = typed.char_indices().filter(|&(_, c)| {
+        inside ^= c == '"';
+        c == '.' && !inside
+    });
+    dots.last().map_or(0, |(at, _)| at + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_go_on_by_one_name() {
+        let text = r#"{ "plica": 1, "layers": [{ "kind": "fill", "name": "dark ground" }, { "kind": "fill", "name": "light" }] }"#;
+        let document = Document::parse(text).unwrap();
+        for (typed, expected) in [
+            ("lay", vec!["layers"]),
+            ("layers.", vec!["layers.\"dark ground\"", "layers.light"]),
+            ("layers.l", vec!["layers.light"]),
+            ("layers.*.co", vec!["layers.*.color"]),
+            ("layers.light.color=", vec![]),
+            ("nowhere.", vec![]),
+        ] {
+            assert_eq!(paths(&document, typed), expected, "{typed}");
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Shapes of the scene that outlines, fold regions and curves are made of: made from what is there, used, and copied back.
+
+use serde_json::{Map, Value, json};
+
+use super::command::{Call, Command, Done, command};
+use super::items::go_to;
+use super::yanking::here;
+use crate::base::pointer::Pointer;
+use crate::base::problem::{nearest, quoted};
+use crate::layers::parts::materials::List;
+use crate::scene::schema::{Body, Place};
+use crate::scene::{Document, Edit};
+use crate::tui::state::{Pane, State, first};
+use crate::tui::text::plain;
+use crate::tui::text::said::{unquoted, words};
+
+pub const COMMANDS: &[Command] = &[
+    command(
+        "share",
+        "NAME",
+        "Make a shape of the outline, the curve, or the selected nodes here, that others can be made of too",
+        share,
+    )
+    .change(),
+    command(
+        "use",
+        "NAME [reverse]",
+        "Make the outline or the curve here of a shape; an outline of shapes gets one more part",
+        take,
+    )
+    .change(),
+    command("unshare", "", "Copy the shapes of the outline or the curve here back into it", unshare).change(),
+];
+
+/// Something that can be made of shapes.
+enum Line {
+    /// An outline or a region.
+    Closed(String),
+    /// The nodes of a curve.
+    Open(String),
+}
+
+/// The word of outlines that are made of shapes.
+const SHAPES: &str = "shapes";
+
+/// The innermost place around the cursor that can be made of shapes.
+fn line(state: &State) -> Result<Line, String> {
+    let json = state.document().json();
+    let around = |pointer: &str| {
+        let place = Place::of(json, pointer)?;
+        if matches!(place.shape.body(), Body::Tagged(_)) && place.shape.variant(SHAPES).is_some() {
+            return Some(Line::Closed(pointer.to_owned()));
+        }
+        let nodes = place.shape.property(place.value, "nodes")?;
+        nodes.named().is_some().then(|| Line::Open(Pointer(pointer).join("nodes")))
+    };
+    let found = Pointer(&here(state)).upward().find_map(around);
+    let outline = || Pointer(&here(state)).upward().find_map(|at| around(&Pointer(at).join("outline")));
+    found.or_else(outline).ok_or_else(|| "go to an outline, a fold region or a curve first".into())
+}
+
+/// The nodes of a line, as they are written.
+fn nodes(document: &Document, line: &Line) -> Result<Vec<Value>, String> {
+    let of = |document: &Document, pointer: &str| {
+        document.json().pointer(pointer).and_then(Value::as_array).cloned().unwrap_or_default()
+    };
+    match line {
+        Line::Open(pointer) => Ok(of(document, pointer)),
+        Line::Closed(pointer) => {
+            let path = document.apply(&Edit::set(document, &Pointer(pointer).join("kind"), "path".into()));
+            Ok(of(&path.map_err(|problems| first(&problems))?, &Pointer(pointer).join("nodes")))
+        }
+    }
+}
+
+fn is_shared(document: &Document, line: &Line) -> bool {
+    let value = |pointer: &str| document.json().pointer(pointer).and_then(Value::as_str).map(str::to_owned);
+    match line {
+        Line::Open(pointer) => value(pointer).is_some(),
+        Line::Closed(pointer) => value(&Pointer(pointer).join("kind")).as_deref() == Some(SHAPES),
+    }
+}
+
+/// The edit that makes a line of shapes, one after the other.
+fn made_of(document: &Document, line: &Line, names: &[&str]) -> Edit {
+    match line {
+        Line::Open(pointer) => Edit::set(document, pointer, names.first().copied().unwrap_or_default().into()),
+        Line::Closed(pointer) => {
+            let parts: Vec<Value> = names.iter().map(|name| json!({ "shape": name })).collect();
+            Edit::set(document, pointer, json!({ "kind": SHAPES, "parts": parts }))
+        }
+    }
+}
+
+/// The selected nodes of a closed path, if rows of its list are selected and not all of them: the first, and how many.
+fn selected(state: &State, line: &Line, count: usize) -> Result<Option<(usize, usize)>, String> {
+    let Line::Closed(pointer) = line else { return Ok(None) };
+    let list = Pointer(pointer).join("nodes");
+    let sheet = state.sheet();
+    let item = |row: usize| Some(Pointer(&sheet.pointer(row)?).item_of(&list)?.0);
+    if state.cursor.focus != Pane::Table || !state.cursor.selects() {
+        return Ok(None);
+    }
+    let Some(rows) = state.cursor.rows().into_iter().map(item).collect::<Option<Vec<usize>>>() else { return Ok(None) };
+    let (first, many) = (rows.first().copied().unwrap_or(0), rows.len());
+    if rows.last().is_none_or(|last| last + 1 - first != many) || many < 2 {
+        return Err("a shape is made of two nodes or more that are next to each other".into());
+    }
+    Ok((many < count).then_some((first, many)))
+}
+
+fn share(state: &mut State, call: &Call) -> Done {
+    let name = unquoted(call.text);
+    let document = state.document();
+    if name.is_empty() {
+        return Err("share takes a name for the shape: :share lid".into());
+    }
+    if document.scene().names(List::Shapes).contains(name.as_str()) {
+        return Err(format!("there is already a shape {}: :use makes this of it", quoted(&name)));
+    }
+    let line = line(state)?;
+    if is_shared(document, &line) {
+        return Err("this is made of shapes already: :unshare copies them back".into());
+    }
+    let nodes = nodes(document, &line)?;
+    let shape = |nodes: Vec<Value>| json!({ "nodes": nodes });
+    let (shapes, told) = match selected(state, &line, nodes.len())? {
+        None => (vec![(name.clone(), shape(nodes))], String::new()),
+        Some((from, many)) => {
+            // The rest goes from the last of these nodes around to the first.
+            let rest = (from + many - 1..=from + nodes.len()).map(|i| nodes[i % nodes.len()].clone()).collect();
+            let other = format!("{name} rest");
+            let told = format!(", and what is left of the outline, {}", quoted(&other));
+            (vec![(name.clone(), shape(nodes[from..from + many].to_vec())), (other, shape(rest))], told)
+        }
+    };
+    let names: Vec<&str> = shapes.iter().map(|(name, _)| name.as_str()).collect();
+    let made = made_of(document, &line, &names);
+    let entries: Map<String, Value> = shapes.clone().into_iter().collect();
+    let (added, _) = Edit::insert_entries(document, "/shapes", entries).ok_or("there is no list of shapes")?;
+    state.edit(Edit::all([added, made]), false)?;
+    leave_rows(state, &line);
+    state.say(plain(&format!("{} is a shape now{told}: :use makes others of it", quoted(&name))));
+    Ok(())
+}
+
+/// The list of nodes is not there any more.
+fn leave_rows(state: &mut State, line: &Line) {
+    let (Line::Closed(pointer) | Line::Open(pointer)) = line;
+    state.cursor.unselect();
+    go_to(state, pointer);
+}
+
+fn take(state: &mut State, call: &Call) -> Done {
+    let words = words(call.text)?;
+    let (name, reverse) = match words.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        [name] => (*name, false),
+        [name, "reverse"] => (*name, true),
+        _ => return Err("use takes the name of a shape, one with spaces in double quotes, and reverse".into()),
+    };
+    let document = state.document();
+    let known = document.scene().names(List::Shapes);
+    if !known.contains(name) {
+        let near = nearest(name, known.iter().copied()).unwrap_or("share makes one".into());
+        return Err(format!("there is no shape {} ({near})", quoted(name)));
+    }
+    let line = line(state)?;
+    let part = if reverse { json!({ "shape": name, "reverse": true }) } else { json!({ "shape": name }) };
+    let edit = match &line {
+        Line::Open(_) if reverse => return Err("a curve follows its shape from the beginning to the end".into()),
+        Line::Closed(pointer) if is_shared(document, &line) => {
+            let list = Pointer(pointer).join("parts");
+            let count = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
+            Edit::insert(document, &list, count, part)
+        }
+        Line::Closed(pointer) => Edit::set(document, pointer, json!({ "kind": SHAPES, "parts": [part] })),
+        Line::Open(_) => made_of(document, &line, &[name]),
+    };
+    state.edit(edit, false)?;
+    leave_rows(state, &line);
+    state.say(plain(&format!("made of {}", quoted(name))));
+    Ok(())
+}
+
+fn unshare(state: &mut State, _: &Call) -> Done {
+    let line = line(state)?;
+    let document = state.document();
+    if !is_shared(document, &line) {
+        return Err("this is not made of shapes: :use makes it of one".into());
+    }
+    let edit = match &line {
+        Line::Closed(pointer) => Edit::set(document, &Pointer(pointer).join("kind"), "path".into()),
+        Line::Open(pointer) => {
+            let name = document.json().pointer(pointer).and_then(Value::as_str).unwrap_or_default();
+            let nodes = document.json().pointer(&Pointer(&Pointer("/shapes").join(name)).join("nodes"));
+            Edit::set(document, pointer, nodes.cloned().unwrap_or_default())
+        }
+    };
+    state.edit(edit, false)?;
+    leave_rows(state, &line);
+    state.say("it has nodes of its own now");
+    Ok(())
+}

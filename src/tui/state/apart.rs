@@ -1,0 +1,98 @@
+//! What is looked at alone, not looked at, or kept from edits for now. The scene and its exports know nothing of it.
+
+use std::collections::BTreeSet;
+
+use super::State;
+use crate::base::pointer::Pointer;
+use crate::scene::{Document, Edit, address};
+use crate::tui::events::{Change, Effect};
+use crate::tui::text::plain;
+
+/// Layers and zones by their pointers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Apart {
+    /// They are not shown.
+    pub muted: BTreeSet<String>,
+    /// If there are any, only they are shown.
+    pub solo: BTreeSet<String>,
+    /// They are not changed.
+    pub locked: BTreeSet<String>,
+}
+
+impl Apart {
+    /// What is not shown.
+    pub fn hidden(&self, document: &Document) -> Vec<String> {
+        let mut hidden = self.muted.clone();
+        if !self.solo.is_empty() {
+            for (i, layer) in document.scene().layers.iter().enumerate() {
+                let own = format!("/layers/{i}");
+                let zones: Vec<&String> = self.solo.iter().filter(|one| one.starts_with(&format!("{own}/"))).collect();
+                match self.solo.contains(&own) {
+                    true => {}
+                    false if zones.is_empty() => drop(hidden.insert(own)),
+                    // Its own picture stays below them.
+                    false => hidden.extend(siblings(document, &zones).filter(|one| layer.can_mute(&one[own.len()..]))),
+                }
+            }
+        }
+        hidden.into_iter().collect()
+    }
+
+    /// Words for the thing at a place: muted, solo, locked.
+    pub fn told(&self, pointer: &str) -> String {
+        let words = [(&self.muted, "muted"), (&self.solo, "solo"), (&self.locked, "locked")];
+        let words = words.into_iter().filter(|(set, _)| set.contains(pointer)).map(|(_, word)| word);
+        words.collect::<Vec<_>>().join(" ")
+    }
+
+    fn follow(&mut self, change: &Change) {
+        for set in [&mut self.muted, &mut self.solo, &mut self.locked] {
+            *set = set.iter().filter_map(|pointer| change.edit.follow(&change.document, pointer)).collect();
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        *self == Apart::default()
+    }
+}
+
+/// The other items of the lists that these are in.
+fn siblings<'a>(document: &'a Document, items: &'a [&'a String]) -> impl Iterator<Item = String> + 'a {
+    let lists: BTreeSet<&str> = items.iter().filter_map(|item| Pointer(item).parent()).collect();
+    let all = lists.into_iter().flat_map(|list| {
+        let count = document.json().pointer(list).and_then(serde_json::Value::as_array).map_or(0, Vec::len);
+        (0..count).map(|i| Pointer(list).join(i)).collect::<Vec<_>>()
+    });
+    all.filter(|one| !items.contains(&one))
+}
+
+impl State {
+    /// Refuses an edit of what is locked.
+    ///
+    /// # Errors
+    /// What that is, and how it is unlocked.
+    pub fn unlocked(&self, edit: &Edit) -> Result<(), String> {
+        if self.apart.locked.is_empty() {
+            return Ok(());
+        }
+        let before = self.document();
+        // What is wrong with an edit is told when it is applied.
+        let Ok(after) = before.apply(edit) else { return Ok(()) };
+        let is_touched = |pointer: &&String| {
+            let now = edit.follow(&after, pointer);
+            now.and_then(|now| after.json().pointer(&now)) != before.json().pointer(pointer)
+        };
+        self.apart.locked.iter().find(is_touched).map_or(Ok(()), |pointer| {
+            let place = plain(&address::address(before, pointer));
+            Err(format!("{place} is locked: :lock {place} (L on it) unlocks it"))
+        })
+    }
+
+    /// After an edit, what is apart goes along.
+    pub(super) fn follow_apart(&mut self, change: &Change) {
+        if !self.apart.is_empty() {
+            self.apart.follow(change);
+            self.ask(Effect::Mute);
+        }
+    }
+}

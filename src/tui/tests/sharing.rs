@@ -1,0 +1,101 @@
+//! Outlines, regions and curves are made of shapes that they share.
+
+use kurbo::Rect;
+use serde_json::json;
+
+use super::support::{at, press, said_last, state};
+use super::{check, zone};
+use crate::tui::state::State;
+
+const EYE: &str = ": \"go layers.0.zones.0.outline\" Enter";
+const MOUTH: &str = ": \"go layers.face.zones.mouth.outline\" Enter";
+const CURVE: &str = ": \"set layers.0.zones.0.motion.0.tool=curve\" Enter : \"go layers.0.zones.0.motion.0\" Enter";
+
+#[test]
+pub fn outlines_and_curves_are_made_of_shapes_and_get_them_back() {
+    let eye = |keys: &str| format!("{EYE} {keys}");
+    let share = eye(": \"share lid\" Enter");
+    let after = |keys: &str| format!("{share} {keys}");
+    let corners = json!([{ "at": [10, 10] }, { "at": [50, 10] }, { "at": [50, 40] }, { "at": [10, 40] }]);
+    let of_lid = json!({ "kind": "shapes", "parts": [{ "shape": "lid" }] });
+    let both = json!({ "kind": "shapes", "parts": [{ "shape": "lid" }, { "shape": "lid rest" }] });
+    let select =
+        ": \"set layers.0.zones.0.outline.kind=path\" Enter : \"go layers.0.zones.0.outline.nodes\" Enter j v j";
+    check(&[
+        (&share, "/shapes/lid/nodes", corners.clone()),
+        (&share, &zone("/outline"), of_lid.clone()),
+        (&after("u"), "/shapes", json!(null)),
+        (&after("u"), &zone("/outline/kind"), json!("polygon")),
+        (&after(": \"unshare\" Enter"), &zone("/outline"), json!({ "kind": "path", "nodes": corners })),
+        (&after(&format!("{MOUTH} : \"use lid\" Enter")), "/layers/0/zones/1/outline", of_lid),
+        (
+            &after(&format!("{MOUTH} : \"share low\" Enter {EYE} : \"use low reverse\" Enter")),
+            &zone("/outline/parts"),
+            json!([{ "shape": "lid" }, { "shape": "low", "reverse": true }]),
+        ),
+        (&after(": \"go shapes.lid\" Enter : \"move 1 0\" Enter"), "/shapes/lid/nodes/2", json!({ "at": [51, 40] })),
+        (&after(": \"go shapes.lid.nodes\" Enter + +"), "/shapes/lid/nodes/0", json!({ "at": [12, 10] })),
+        (&after(": \"go shapes.lid\" Enter : \"rename top\" Enter"), &zone("/outline/parts/0/shape"), json!("top")),
+        (&after(": \"go shapes.lid\" Enter d"), "/shapes/lid/nodes", corners.clone()),
+        (
+            &eye(&format!("{select} : \"share lid\" Enter")),
+            "/shapes/lid/nodes",
+            json!([{ "at": [50, 10] }, { "at": [50, 40] }]),
+        ),
+        (
+            &eye(&format!("{select} : \"share lid\" Enter")),
+            "/shapes/lid rest/nodes",
+            json!([{ "at": [50, 40] }, { "at": [10, 40] }, { "at": [10, 10] }, { "at": [50, 10] }]),
+        ),
+        (&eye(&format!("{select} : \"share lid\" Enter")), &zone("/outline"), both),
+        (&format!("{CURVE} : \"share line\" Enter"), &zone("/motion/0/nodes"), json!("line")),
+        (&format!("{share} {CURVE} : \"use lid\" Enter"), &zone("/motion/0/nodes"), json!("lid")),
+        (&format!("{share} {CURVE} : \"use lid\" Enter : \"unshare\" Enter"), &zone("/motion/0/nodes"), corners),
+        (": \"go shapes\" Enter g t o", "/shapes/shape/nodes", json!([{ "at": [11, 26] }, { "at": [51, 26] }])),
+    ]);
+}
+
+#[test]
+fn what_is_no_line_or_no_shape_says_so() {
+    for (keys, part) in [
+        (": \"share a\" Enter".to_owned(), "\"a\" is a shape now"),
+        (": \"go timeline\" Enter : \"share a\" Enter".into(), "go to an outline, a fold region or a curve first"),
+        (format!("{EYE} : \"share\" Enter"), "share takes a name"),
+        (format!("{EYE} : \"use lid\" Enter"), "there is no shape \"lid\" (share makes one)"),
+        (format!("{EYE} : \"share lid\" Enter : \"use lidd\" Enter"), "did you mean \"lid\""),
+        (format!("{EYE} : \"share lid\" Enter : \"share a\" Enter"), "made of shapes already: :unshare"),
+        (format!("{EYE} : \"share lid\" Enter {MOUTH} : \"share lid\" Enter"), "there is already a shape \"lid\""),
+        (format!("{EYE} : \"unshare\" Enter"), "not made of shapes: :use"),
+        (format!("{EYE} : \"share lid\" Enter {CURVE} : \"use lid reverse\" Enter"), "from the beginning to the end"),
+        (format!("{EYE} : \"share lid\" Enter : \"go shapes.lid\" Enter d"), "lid is used by layers.face.zones"),
+        (format!("{EYE} : \"share lid\" Enter : \"move 1 1\" Enter"), "made of shared shapes: move those"),
+        (
+            format!("{EYE} : \"share lid\" Enter : \"set layers.0.zones.0.outline.parts.0.shape=lidd\" Enter"),
+            "did you mean \"lid\"",
+        ),
+    ] {
+        let mut state = state();
+        press(&mut state, &keys);
+        assert!(said_last(&state).1.contains(part), "{keys}: {:?}", said_last(&state));
+    }
+}
+
+#[test]
+fn an_edit_of_a_shape_moves_all_that_is_made_of_it() {
+    let mut state = state();
+    let bounds = |state: &State, path: &str| state.document().scene().layers[0].technique().bounds(path);
+    press(&mut state, &format!("{EYE} : \"share lid\" Enter {MOUTH} : \"use lid\" Enter"));
+    assert_eq!(bounds(&state, "/zones/1"), Rect::new(10.0, 10.0, 50.0, 40.0), "{:?}", said_last(&state));
+    press(&mut state, ": \"set shapes.lid.nodes.1.at.x=60\" Enter");
+    for zone in ["/zones/0", "/zones/1"] {
+        assert_eq!(bounds(&state, zone), Rect::new(10.0, 10.0, 60.0, 40.0), "{zone}");
+    }
+    let of_shapes =
+        |state: &State| state.document().warnings().iter().any(|problem| problem.path.starts_with("/shapes"));
+    assert!(!of_shapes(&state), "{:?}", state.document().warnings());
+    press(&mut state, "u u");
+    assert_eq!(bounds(&state, "/zones/1"), Rect::new(20.0, 45.0, 50.0, 55.0));
+    press(&mut state, ": \"go layers.0.zones.0.outline\" Enter : \"unshare\" Enter");
+    assert!(of_shapes(&state), "{:?}", state.document().warnings());
+    assert_eq!(at(&state, "/shapes/lid/nodes/0/at"), json!([10, 10]));
+}
