@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use glam::{DVec2, Vec4};
+use glam::DVec2;
 use plica::base::maths::{TAU, cos, powi, sin};
 use plica::base::pixels::{Frame, Rgba, encode};
 use plica::files::{Options, materials};
@@ -111,7 +111,7 @@ fn w7_keys_left_out_are_made_again_no_worse_than_by_a_fade() {
                 let mix = mix(&between, &even, (i, 0.5), |_| DVec2::Y);
                 texels((&own.pictures, &own.residues), &mix, 0, 0..side, &mut out);
                 let left_out = &own.pictures.key((track, 2 * i + 1)).levels[0].1;
-                let far = |(a, b): (&Vec4, &Rgba)| (0..4).map(|c| powi(f64::from(a[c] - b[c]), 2)).sum::<f64>();
+                let far = |(a, b): (&Rgba, &Rgba)| (0..4).map(|c| powi(f64::from(a[c] - b[c]), 2)).sum::<f64>();
                 sum += out.iter().zip(left_out).map(far).sum::<f64>();
             }
         }

@@ -1,8 +1,80 @@
 //! Plain loops for the widest vectors that the processor has.
 
+use std::ops::{Add, Mul, Sub};
+
 /// Runs `work`, compiled for AVX2 where the processor has it. The bits are those that it gives elsewhere: the compiler
 /// never fuses a product and a sum. What `work` calls is compiled for the same vectors only if it is inlined.
 #[inline(always)]
 pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
+}
+
+/// Eight numbers. In code without branches they become one vector where the processor has such wide ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lanes(pub [f32; LANES]);
+
+/// How many numbers there are in [`Lanes`].
+pub const LANES: usize = 8;
+
+impl Lanes {
+    /// The same number in each lane.
+    #[inline(always)]
+    pub fn all(number: f32) -> Lanes {
+        Lanes([number; LANES])
+    }
+
+    /// The lesser number in each lane; `other`'s where one is not a number.
+    #[inline(always)]
+    pub fn min(self, other: Lanes) -> Lanes {
+        self.with(
+            other,
+            #[inline(always)]
+            |a, b| if a < b { a } else { b },
+        )
+    }
+
+    /// The larger number in each lane; `other`'s where one is not a number.
+    #[inline(always)]
+    pub fn max(self, other: Lanes) -> Lanes {
+        self.with(
+            other,
+            #[inline(always)]
+            |a, b| if a > b { a } else { b },
+        )
+    }
+
+    #[inline(always)]
+    fn with(mut self, other: Lanes, of: impl Fn(f32, f32) -> f32) -> Lanes {
+        for (own, other) in self.0.iter_mut().zip(other.0) {
+            *own = of(*own, other);
+        }
+        self
+    }
+}
+
+impl Add for Lanes {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn add(self, other: Lanes) -> Lanes {
+        self.with(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn sub(self, other: Lanes) -> Lanes {
+        self.with(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn mul(self, other: Lanes) -> Lanes {
+        self.with(other, |a, b| a * b)
+    }
 }

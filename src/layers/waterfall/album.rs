@@ -66,7 +66,7 @@ fn shown(synth: &Synth, track: usize, key: usize, u: f64) -> Linear {
     let mut own = Vec::new();
     let side = synth.pictures.side;
     texels((&synth.pictures, &synth.residues), &mix, 0, 0..side, &mut own);
-    Linear::from_cells(side, side, own.into_iter().map(|texel| shaded(texel, Vec4::ONE).to_array()).collect())
+    Linear::from_cells(side, side, own.into_iter().map(|texel| shaded(texel.into(), Vec4::ONE).to_array()).collect())
 }
 
 /// All keys, a row for each track.

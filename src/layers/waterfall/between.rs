@@ -7,6 +7,7 @@ use glam::Vec4;
 use super::sprites::residue::Residues;
 use super::sprites::{Pictures, Place};
 use crate::base::pixels::Rgba;
+use crate::base::simd::vectorised;
 
 /// The most keys that a picture is made of.
 const MOST: usize = 4;
@@ -77,109 +78,147 @@ pub fn residue(u: f64) -> f64 {
 }
 
 /// Writes rows of the texels of a level, not clamped, to `out`.
-pub fn texels(
-    (pictures, residues): (&Pictures, &Residues),
-    mix: &Mix,
-    level: usize,
-    rows: Range<usize>,
-    out: &mut Vec<Vec4>,
-) {
-    let side = pictures.side >> level;
-    let key = |(place, weight): (Place, f32)| Key { texels: &pictures.key(place).levels[level].1, side, weight };
-    let residue = mix.residue.map(|(track, interval, weight)| (&residues.0[track][interval].levels[level].1, weight));
-    // Central differences, in texels of the largest level.
-    let slopes = mix.slopes.map(|slope| slope.map(|v| v / (2 << level) as f32));
+pub fn texels(from: (&Pictures, &Residues), mix: &Mix, level: usize, rows: Range<usize>, out: &mut Vec<Rgba>) {
+    let mixed = Mixed::new(from, mix, level);
     // What is there is overwritten.
-    out.resize(rows.len() * side, Vec4::ZERO);
-    for (y, out) in rows.zip(out.chunks_exact_mut(side)) {
-        match mix.keys() {
-            [a, b] if slopes != [[0.0; 2]; 2] => {
-                advected(&key(*a).around(y, slopes[0]), &key(*b).around(y, slopes[1]), out);
+    out.resize(rows.len() * mixed.side, [0.0; 4]);
+    vectorised(
+        #[inline(always)]
+        || mixed.rows(rows, out),
+    );
+}
+
+/// Keys at a level, and how they are mixed.
+pub struct Mixed<'a> {
+    /// Texels of a side.
+    pub side: usize,
+    count: usize,
+    keys: [(&'a [Rgba], f32); MOST],
+    /// What differences to the right and down add, of the first two keys; `None` if nothing.
+    slopes: Option<[[f32; 2]; 2]>,
+    residue: Option<(&'a [[f32; 1]], f32)>,
+}
+
+impl<'a> Mixed<'a> {
+    /// A mix of these keys and residues at a level.
+    #[inline(always)]
+    pub fn new((pictures, residues): (&'a Pictures, &'a Residues), mix: &Mix, level: usize) -> Self {
+        let mut keys: [(&[Rgba], f32); MOST] = [(&[], 0.0); MOST];
+        for (key, (place, weight)) in keys.iter_mut().zip(mix.keys()) {
+            *key = (&pictures.key(*place).levels[level].1, *weight);
+        }
+        let residue = mix.residue.map(|(track, interval, weight)| {
+            let random: &[[f32; 1]] = &residues.0[track][interval].levels[level].1;
+            (random, weight)
+        });
+        let mut slopes = mix.slopes;
+        // Central differences, in texels of the largest level.
+        for slope in slopes.as_flattened_mut() {
+            *slope /= (2 << level) as f32;
+        }
+        let slopes = (mix.count == 2 && slopes != [[0.0; 2]; 2]).then_some(slopes);
+        Mixed { side: pictures.side >> level, count: mix.count, keys, slopes, residue }
+    }
+
+    /// Writes rows of texels.
+    #[inline(always)]
+    pub fn rows(&self, rows: Range<usize>, out: &mut [Rgba]) {
+        match self.slopes {
+            Some(slopes) => self.advected(slopes, rows.clone(), out),
+            None => self.weighted(rows.clone(), out),
+        }
+        if let Some((random, weight)) = self.residue {
+            add_residue(&random[rows.start * self.side..rows.end * self.side], weight, out);
+        }
+    }
+
+    /// Keys by their weights.
+    #[inline(always)]
+    fn weighted(&self, rows: Range<usize>, out: &mut [Rgba]) {
+        out.fill([0.0; 4]);
+        for (key, weight) in &self.keys[..self.count] {
+            let key = key[rows.start * self.side..rows.end * self.side].as_flattened();
+            for (out, number) in out.as_flattened_mut().iter_mut().zip(key) {
+                *out += number * weight;
             }
-            keys => weighted(keys.iter().map(|of| (key(*of).row(y), of.1)), out),
         }
-        if let Some((random, weight)) = residue {
-            add_residue(&random[y * side..][..side], weight, out);
+    }
+
+    /// Two keys with their slopes: all at once, since most of the time goes into fetching and storing texels.
+    #[inline(always)]
+    fn advected(&self, [s, t]: [[f32; 2]; 2], rows: Range<usize>, out: &mut [Rgba]) {
+        let side = self.side;
+        let [(a, weight_a), (b, weight_b)] = [self.keys[0], self.keys[1]];
+        // The rows at the top and at the bottom have none above and below; all others are one long row.
+        let inner = rows.start.max(1)..rows.end.min(side - 1);
+        let runs =
+            [(rows.start..inner.start, [0, side]), (inner.clone(), [side, side]), (inner.end..rows.end, [side, 0])];
+        for (run, steps) in runs {
+            // The first and the last texel of a picture have none to the left and to the right.
+            let run = (run.start * side).max(1)..(run.end * side).min(side * side - 1);
+            if run.is_empty() {
+                continue;
+            }
+            let (a, b) = (Around::new(a, run.clone(), steps), Around::new(b, run.clone(), steps));
+            let out = out[run.start - rows.start * side..run.end - rows.start * side].as_flattened_mut();
+            for (i, out) in out.iter_mut().enumerate() {
+                let faded = a.own[i] * weight_a + b.own[i] * weight_b;
+                let sloped = faded + (a.right[i] - a.left[i]) * s[0] + (a.below[i] - a.above[i]) * s[1];
+                *out = sloped + (b.right[i] - b.left[i]) * t[0] + (b.below[i] - b.above[i]) * t[1];
+            }
+        }
+        // The first and the last texel of each row have other neighbors than these.
+        let last = side - 1;
+        for (y, out) in rows.zip(out.chunks_exact_mut(side)) {
+            let (up, down) = (y.saturating_sub(1) * side, (y + 1).min(last) * side);
+            let y = y * side;
+            for (x, left, right) in [(0, 0, 1), (last, last - 1, last)] {
+                let at = |key: &[Rgba], i: usize| Vec4::from(key[i]);
+                let add = |key: &[Rgba], [across, down_]: [f32; 2]| {
+                    (at(key, y + right) - at(key, y + left)) * across + (at(key, down + x) - at(key, up + x)) * down_
+                };
+                let faded = at(a, y + x) * weight_a + at(b, y + x) * weight_b;
+                out[x] = (faded + add(a, s) + add(b, t)).to_array();
+            }
         }
     }
 }
 
-/// A key at a level.
-#[derive(Clone, Copy)]
-struct Key<'a> {
-    texels: &'a [Rgba],
-    side: usize,
-    weight: f32,
-}
-
-/// A row of a key with those above and below it, its weight, and what a difference to the right and down adds.
-#[derive(Clone, Copy)]
+/// Texels of a key and those next to them, number by number.
 struct Around<'a> {
-    above: &'a [Rgba],
-    own: &'a [Rgba],
-    below: &'a [Rgba],
-    weight: f32,
-    slope: [f32; 2],
+    above: &'a [f32],
+    left: &'a [f32],
+    own: &'a [f32],
+    right: &'a [f32],
+    below: &'a [f32],
 }
 
-impl<'a> Key<'a> {
-    fn row(self, y: usize) -> &'a [Rgba] {
-        &self.texels[y * self.side..][..self.side]
-    }
-
-    /// Edges repeat.
-    fn around(self, y: usize, slope: [f32; 2]) -> Around<'a> {
-        let (above, below) = (self.row(y.saturating_sub(1)), self.row((y + 1).min(self.side - 1)));
-        Around { above, own: self.row(y), below, weight: self.weight, slope }
-    }
-}
-
-impl Around<'_> {
-    /// The same, of this length as far as the compiler sees.
+impl<'a> Around<'a> {
+    /// Texels with those so far above and below them.
     #[inline(always)]
-    fn of(self, len: usize) -> Self {
-        Around { above: &self.above[..len], own: &self.own[..len], below: &self.below[..len], ..self }
-    }
-
-    /// What a texel's neighbors add to a color.
-    #[inline(always)]
-    fn add(&self, color: Vec4, [left, x, right]: [usize; 3]) -> Vec4 {
-        let [across, down] = self.slope;
-        let color = color + across * (Vec4::from(self.own[right]) - Vec4::from(self.own[left]));
-        color + down * (Vec4::from(self.below[x]) - Vec4::from(self.above[x]))
+    fn new(key: &'a [Rgba], texels: Range<usize>, [up, down]: [usize; 2]) -> Self {
+        Around {
+            above: part(key, texels.start - up, texels.len()),
+            left: part(key, texels.start - 1, texels.len()),
+            own: part(key, texels.start, texels.len()),
+            right: part(key, texels.start + 1, texels.len()),
+            below: part(key, texels.start + down, texels.len()),
+        }
     }
 }
 
-/// A row of two keys with their slopes: all at once, since most of the time goes into fetching and storing texels.
-fn advected(a: &Around, b: &Around, out: &mut [Vec4]) {
-    let last = out.len() - 1;
-    let (a, b) = (a.of(out.len()), b.of(out.len()));
-    out[0] = faded(&a, &b, [0, 0, 1.min(last)]);
-    for (left, out) in out[1..last].iter_mut().enumerate() {
-        *out = faded(&a, &b, [left, left + 1, left + 2]);
-    }
-    out[last] = faded(&a, &b, [last.saturating_sub(1), last, last]);
-}
-
-/// A texel between two keys.
+/// So many texels, number by number.
 #[inline(always)]
-fn faded(a: &Around, b: &Around, at: [usize; 3]) -> Vec4 {
-    let faded = Vec4::from(a.own[at[1]]) * a.weight + Vec4::from(b.own[at[1]]) * b.weight;
-    b.add(a.add(faded, at), at)
-}
-
-/// A row of keys by their weights.
-fn weighted<'a>(keys: impl Iterator<Item = (&'a [Rgba], f32)>, out: &mut [Vec4]) {
-    out.fill(Vec4::ZERO);
-    for (key, weight) in keys {
-        out.iter_mut().zip(key).for_each(|(out, texel)| *out += Vec4::from(*texel) * weight);
-    }
+fn part(key: &[Rgba], from: usize, count: usize) -> &[f32] {
+    key[from..][..count].as_flattened()
 }
 
 /// Adds random numbers to the colors, as far as these cover.
-fn add_residue(random: &[[f32; 1]], weight: f32, out: &mut [Vec4]) {
+#[inline(always)]
+fn add_residue(random: &[[f32; 1]], weight: f32, out: &mut [Rgba]) {
+    let colors = Vec4::new(weight, weight, weight, 0.0);
     for (texel, [random]) in out.iter_mut().zip(random) {
-        *texel += Vec4::new(1.0, 1.0, 1.0, 0.0) * (weight * random * texel.w);
+        *texel = (Vec4::from(*texel) + colors * (texel[3] * random)).to_array();
     }
 }
 
@@ -229,7 +268,7 @@ mod tests {
         let mut out = Vec::new();
         let residues = pictures.residues(Random(1), 3);
         texels((&pictures, &residues), &mix(u, kind), level, 0..SIDE >> level, &mut out);
-        out.into_iter().map(Rgba::from).collect()
+        out
     }
 
     #[test]
@@ -264,7 +303,6 @@ mod tests {
             let (pictures, mut rows) = (pictures(4), Vec::new());
             let residues = pictures.residues(Random(1), 3);
             texels((&pictures, &residues), &mix(0.3, kind), 0, 5..9, &mut rows);
-            let rows: Vec<Rgba> = rows.into_iter().map(Rgba::from).collect();
             assert_eq!(rows, shown(0.3, kind, 0)[5 * SIDE..9 * SIDE], "{kind}");
         }
     }

@@ -31,7 +31,7 @@ pub fn covered(splat: &Splat, places: &[Vec<f64>; 2]) -> Option<[Range<usize>; 2
 }
 
 /// Where in a sprite a place of the frame is: from -1/2 to 1/2 if it is inside.
-#[inline]
+#[inline(always)]
 pub fn inside(splat: &Splat, x: f64, y: f64) -> Option<[f64; 2]> {
     let (dx, dy) = (x - splat.middle.x, y - splat.middle.y);
     let across = (splat.turn.x * dx + splat.turn.y * dy) / splat.size_px.x;

@@ -1,9 +1,11 @@
-//! Colors of sprites: read between texels, kept within bounds, tinted and blended. Four numbers at a time are one for the
-//! processor.
+//! Colors of sprites one at a time: read between texels, kept within bounds and tinted.
 
 use glam::Vec4;
 
+use crate::base::pixels::Rgba;
+
 /// How much of a sprite is before the surface behind it.
+#[inline(always)]
 pub fn before(surface: f64, depth: f64, soft: f64) -> f64 {
     if soft > 0.0 { ((surface - depth) / soft).clamp(0.0, 1.0) } else { f64::from(u8::from(depth < surface)) }
 }
@@ -18,11 +20,12 @@ pub fn shaded(color: Vec4, tint: Vec4) -> Vec4 {
 
 /// The bilinear read of texels at a place from -1/2 to 1/2.
 #[inline(always)]
-pub fn read(texels: &[Vec4], side: usize, [across, along]: [f64; 2]) -> Vec4 {
+pub fn read(texels: &[Rgba], side: usize, [across, along]: [f64; 2]) -> Vec4 {
     let ([left, right], u) = neighbors((across + 0.5) * side as f64, side);
     let ([above, below], v) = neighbors((along + 0.5) * side as f64, side);
-    let before = mean(texels[above * side + left], texels[below * side + left], v);
-    let after = mean(texels[above * side + right], texels[below * side + right], v);
+    let texel = |x: usize, y: usize| Vec4::from(texels[y * side + x]);
+    let before = mean(texel(left, above), texel(left, below), v);
+    let after = mean(texel(right, above), texel(right, below), v);
     mean(before, after, u)
 }
 
@@ -39,18 +42,4 @@ pub fn neighbors(place: f64, side: usize) -> ([usize; 2], f32) {
 #[inline(always)]
 pub fn mean(a: Vec4, b: Vec4, share: f32) -> Vec4 {
     a + (b - a) * share
-}
-
-/// Light added to what is there.
-#[inline(always)]
-pub fn screen(there: Vec4, color: Vec4, opacity: f32) -> Vec4 {
-    let own = color * opacity;
-    own + there * (Vec4::ONE - own)
-}
-
-/// A color over what is there.
-#[inline(always)]
-pub fn over(there: Vec4, color: Vec4, opacity: f32) -> Vec4 {
-    let own = color * opacity;
-    own + there * (1.0 - own.w)
 }

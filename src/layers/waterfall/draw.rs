@@ -9,6 +9,7 @@ use super::splat::Splat;
 use super::strip::{Scratch, Strip};
 use super::synth::Synth;
 use crate::base::pixels::Rgba;
+use crate::base::simd::vectorised;
 
 /// Rows of a strip: few enough that what is drawn on stays close to the processor, and that all threads have work.
 const ROWS: usize = 64;
@@ -63,7 +64,115 @@ pub fn draw(synth: &Synth, splats: &[Splat], canvas: Canvas) {
     let cells = ROWS * width;
     let strips = out.par_chunks_mut(cells).zip(depth.par_chunks(cells)).zip(bins).enumerate().with_max_len(1);
     strips.for_each_init(Scratch::default, |scratch, (i, ((out, depth), bin))| {
-        let mut strip = Strip::new(synth, &places, i * ROWS, (depth, out), scratch);
-        bin.iter().for_each(|&i| strip.lay(&drawn[i as usize]));
+        if bin.is_empty() {
+            return;
+        }
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut strip = Strip::new(synth, &places, i * ROWS, (depth, out), scratch);
+                for i in bin {
+                    strip.lay(&drawn[i as usize]);
+                }
+                strip.finish(out);
+            },
+        );
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::picture::Picture;
+    use crate::layers::parts::materials::Materials;
+    use crate::layers::ready::Making;
+    use crate::layers::timeline::Wrap;
+    use crate::layers::waterfall::between::{Mix, texels};
+    use crate::layers::waterfall::births::Alive;
+    use crate::layers::waterfall::cells::inside;
+    use crate::layers::waterfall::color::{before, read, shaded};
+    use crate::layers::waterfall::hash::Random;
+    use glam::{DVec2, DVec3, Vec4};
+    use std::sync::Arc;
+
+    const SIDE: usize = 16;
+    const SIZE: (usize, usize) = (70, 67);
+
+    /// Sprites of two keys with edges that cover.
+    fn synth() -> Synth {
+        let texel = |i: u32| Random(7).of(i, 0, 0).map(|v| v as f32);
+        let cells =
+            (0..2 * SIDE as u32 * SIDE as u32).map(texel).map(|[r, g, b, a]| [r * a, g * a, b * a, a]).collect();
+        let image = Arc::new(Picture::from_cells(2 * SIDE, SIDE, cells));
+        let materials = Materials { pictures: [("s".to_owned(), image)].into(), ..Materials::default() };
+        let layer = r#"{"name": "f", "sprites": {"size": 16, "sheets": [{"image": "s", "columns": 2}]}}"#;
+        Synth::new(&serde_json::from_str(layer).unwrap(), &Making::plain(Wrap::Repeat, &materials), None).unwrap()
+    }
+
+    fn splat(i: u32) -> Splat {
+        let ([x, y, wide, long], [angle, depth, u, mirrored]) = (Random(2).of(i, 0, 0), Random(2).of(i, 1, 0));
+        let angle = if i % 3 == 0 { 0.0 } else { 360.0 * angle - 180.0 };
+        let mut mix = Mix::of(&[((0, 0), 1.0 - u as f32), ((0, 1), u as f32)]);
+        if i % 4 > 0 {
+            (mix.slopes, mix.residue) = ([[0.7, -0.4], [-0.2, 0.9]], Some((0, 0, 0.1)));
+        }
+        Splat {
+            line: 0,
+            foam: false,
+            alive: Alive { birth: i, born: 0.0, age: 0.0, own: [0.0; 4] },
+            life: 1.0,
+            at: DVec3::ZERO,
+            middle: DVec2::new(80.0 * x - 5.0, 80.0 * y - 5.0),
+            depth: 4.0 + 2.0 * depth,
+            size_px: DVec2::new(2.0 + 28.0 * wide, 2.0 + 40.0 * long),
+            angle,
+            turn: if angle == 0.0 { DVec2::X } else { DVec2::from_angle(angle.to_radians()) },
+            mirrored: mirrored < 0.5,
+            opacity: 0.1 + 0.5 * wide,
+            tint: Vec4::new(0.5, 1.0, 3.0, 1.0),
+            level: if i.is_multiple_of(2) { 0 } else { 1 },
+            key: (0, u),
+            mix,
+        }
+    }
+
+    /// Pixel by pixel, each with all sprites.
+    fn plainly(synth: &Synth, splats: &[Splat], canvas: Canvas) {
+        let Canvas { places: [columns, rows], depth, out } = canvas;
+        for splat in in_order(synth.blend, splats) {
+            let (side, mut own) = (SIDE >> splat.level, Vec::new());
+            texels((&synth.pictures, &synth.residues), &splat.mix, splat.level, 0..side, &mut own);
+            for (i, out) in out.iter_mut().enumerate() {
+                let at = inside(splat, columns[i % columns.len()], rows[i / columns.len()]);
+                let Some(place) = at else { continue };
+                let share = splat.opacity * before(depth[i], splat.depth, synth.values.soft);
+                let own = shaded(read(&own, side, place), splat.tint) * share as f32;
+                let hidden = if synth.blend == Mixing::Over { Vec4::splat(own.w) } else { own };
+                *out = (own + Vec4::from(*out) * (Vec4::ONE - hidden)).to_array();
+            }
+        }
+    }
+
+    #[test]
+    fn sprites_are_drawn_as_pixel_by_pixel() {
+        let (mut synth, splats) = (synth(), (0..60).map(splat).collect::<Vec<_>>());
+        let every = |step: usize, size: usize| (0..size).step_by(step).map(|i| i as f64 + 0.5).collect::<Vec<_>>();
+        for (blend, soft, step) in
+            [(Mixing::Screen, 0.5, 1), (Mixing::Over, 0.5, 1), (Mixing::Screen, 0.0, 3), (Mixing::Over, 0.0, 1)]
+        {
+            (synth.blend, synth.values.soft) = (blend, soft);
+            let places = [every(step, SIZE.0), every(1, SIZE.1)];
+            let count = places[0].len() * places[1].len();
+            // A surface in the middle of the sprites on the right, and none on the left.
+            let depth: Vec<f64> = (0..count).map(|i| if i % 61 < 30 { f64::INFINITY } else { 5.0 }).collect();
+            let [fast, plain] = [draw, plainly].map(|draw| {
+                let mut out = vec![[0.2, 0.1, 0.0, 1.0]; count];
+                draw(&synth, &splats, Canvas { places: places.clone(), depth: &depth, out: &mut out });
+                out
+            });
+            let far = fast.as_flattened().iter().zip(plain.as_flattened()).map(|(a, b)| (a - b).abs());
+            let far = far.fold(0.0, f32::max);
+            assert!(far < 1e-5, "{blend:?}, soft {soft}, every {step}: {far}");
+        }
+    }
 }

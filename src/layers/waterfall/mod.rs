@@ -6,6 +6,7 @@ pub mod album;
 pub mod automatic;
 pub mod between;
 pub mod births;
+pub mod blend;
 pub mod cells;
 pub mod check;
 pub mod color;
@@ -31,6 +32,7 @@ pub mod splat;
 pub mod sprites;
 pub mod strip;
 pub mod synth;
+pub mod turned;
 pub mod upload;
 
 use std::borrow::Cow;

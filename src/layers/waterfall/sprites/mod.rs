@@ -21,6 +21,8 @@ use crate::base::pixels::Rgba;
 
 /// Sides of keys are multiples of this, in texels.
 pub const SIDE_STEP: u32 = 16;
+/// The most that they are, in texels.
+pub const LARGEST: u32 = 256;
 /// Bytes that a texel of a key takes with its smaller levels, and one of a residue.
 const TEXEL_BYTES: [u64; 2] = [22, 6];
 
