@@ -137,7 +137,7 @@ impl<'a> Mixed<'a> {
     fn weighted(&self, rows: Range<usize>, out: &mut [Rgba]) {
         out.fill([0.0; 4]);
         for (key, weight) in &self.keys[..self.count] {
-            let key = key[rows.start * self.side..rows.end * self.side].as_flattened();
+            let key = part(key, rows.start * self.side, rows.len() * self.side);
             for (out, number) in out.as_flattened_mut().iter_mut().zip(key) {
                 *out += number * weight;
             }
@@ -174,8 +174,9 @@ impl<'a> Mixed<'a> {
             let y = y * side;
             for (x, left, right) in [(0, 0, 1), (last, last - 1, last)] {
                 let at = |key: &[Rgba], i: usize| Vec4::from(key[i]);
-                let add = |key: &[Rgba], [across, down_]: [f32; 2]| {
-                    (at(key, y + right) - at(key, y + left)) * across + (at(key, down + x) - at(key, up + x)) * down_
+                let add = |key: &[Rgba], slope: [f32; 2]| {
+                    let across = at(key, y + right) - at(key, y + left);
+                    across * slope[0] + (at(key, down + x) - at(key, up + x)) * slope[1]
                 };
                 let faded = at(a, y + x) * weight_a + at(b, y + x) * weight_b;
                 out[x] = (faded + add(a, s) + add(b, t)).to_array();

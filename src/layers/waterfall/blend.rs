@@ -29,13 +29,13 @@ pub fn block(color: impl Fn(usize) -> Vec4) -> Block {
 
 /// Rows of colors, the channels of each one after the other.
 #[derive(Default)]
-pub struct Canvas {
+pub struct Planes {
     /// Numbers of a channel of a row: blocks that begin in the last column fit in.
     pitch: usize,
     numbers: Vec<f32>,
 }
 
-impl Canvas {
+impl Planes {
     /// Takes rows of this width from what is shown.
     #[inline(always)]
     pub fn take(&mut self, width: usize, shown: &[Rgba]) {

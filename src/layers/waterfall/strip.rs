@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec4;
 
 use super::between::Mixed;
-use super::blend::{Blend, Block, Canvas, block};
+use super::blend::{Blend, Block, Planes, block};
 use super::cells::Drawn;
 use super::color::{before, neighbors};
 use super::splat::Splat;
@@ -28,10 +28,10 @@ const WINDOW: usize = (LARGEST * LARGEST) as usize + 1;
 #[derive(Default)]
 pub struct Scratch {
     /// What is shown.
-    canvas: Canvas,
+    canvas: Planes,
     /// The nearest surface of each block of columns, in meters.
     nearest: Vec<f64>,
-    /// Rows of texels of a turned sprite; a single one of another, with its ends twice and twice nothing.
+    /// Rows of texels of a sprite, and after them whatever was there.
     texels: Vec<Rgba>,
     /// What each column of a sprite that is not turned reads.
     reads: Vec<Read>,
@@ -39,7 +39,7 @@ pub struct Scratch {
     aside: Vec<f32>,
     /// What each column of a turned sprite reads in a row.
     corners: Vec<Corners>,
-    /// What columns read in each row of texels of a sprite that is not turned, or in a row of the frame of a turned one.
+    /// What columns read in each row of texels of a sprite that is not turned.
     colors: Vec<Block>,
 }
 

@@ -136,7 +136,11 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         far: &[Source<C>],
         places: &[[f64; NODES]; 2],
     ) -> Vec<Nodes> {
-        let mut nodes: Vec<Nodes> = above.iter().map(|nodes| self.chebyshev.quarter(nodes, right, lower)).collect();
+        // Not by a closure, which would be compiled for shorter vectors.
+        let mut nodes: Vec<Nodes> = Vec::with_capacity(C);
+        for above in above {
+            nodes.push(self.chebyshev.quarter(above, right, lower));
+        }
         for (row, y) in places[1].iter().enumerate() {
             let sums = self.sum_far(far, &places[0], *y);
             for (nodes, sums) in nodes.iter_mut().zip(sums) {
@@ -250,8 +254,11 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         let [first, row] = [0, 1].map(|k| f64::from(pixel[k]) + self.place[k]);
         for source in near.iter().rev() {
             let dy = row - source.at[1];
+            if dy.abs() >= AT_ANCHOR_PX {
+                continue;
+            }
             let k = (source.at[0] - first).round();
-            if dy.abs() < AT_ANCHOR_PX && k >= 0.0 && k < S as f64 {
+            if k >= 0.0 && k < S as f64 {
                 let dx = first + k - source.at[0];
                 if dx * dx + dy * dy < AT_ANCHOR_PX * AT_ANCHOR_PX {
                     [x[k as usize], y[k as usize]] = source.jump;
