@@ -128,24 +128,41 @@ fn explain(place: &str, path: &Path, error: io::Error) -> Error {
         io::ErrorKind::CrossesDevices => Error::at(place, "leads out of the scene's folder")
             .cure("copy the file beside the scene, or give --allow-outside"),
         io::ErrorKind::NotFound => {
-            no_layer(place, path).unwrap_or_else(|| Error::at(place, "there is no such file").cure(how_to_find(path)))
+            let missing = || Error::at(place, "there is no such file").cure(how_to_find(path));
+            no_layer(place, path).or_else(|| dangling(place, path)).unwrap_or_else(missing)
         }
         _ => Error::at(place, format!("cannot be opened: {error}")),
     }
 }
 
+/// That it is a link, if it is one to what is not there.
+fn dangling(place: &str, path: &Path) -> Option<Error> {
+    let to = std::fs::read_link(path).ok()?;
+    Some(Error::at(place, format!("is a link to {}, which is not there", to.display())).cure("mend the link"))
+}
+
 /// What to do about a file that is not there: its folder may be missing, or another be meant.
 fn how_to_find(path: &Path) -> String {
     let folder = disk::folder_of(path);
-    let Ok(entries) = std::fs::read_dir(folder) else { return format!("there is no folder {}", folder.display()) };
-    let names: Vec<String> = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return format!("there is no folder {}: put the file there, or mend the name", folder.display());
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // A model may be what names the file.
+    let meant = |other: &str| extension(other) != "gltf" || extension(&name) == "gltf";
+    let names = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok());
+    let names: Vec<String> = names.filter(|other| meant(other)).collect();
     // Names may differ in their ends.
     let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase();
-    let wanted = stem(&path.file_name().unwrap_or_default().to_string_lossy());
+    let wanted = stem(&name);
     let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
     let like = problem::like(&wanted, stems.iter().map(String::as_str));
     let name = like.and_then(|like| names.get(stems.iter().position(|stem| stem == like)?));
     name.map_or("put it there, or mend the name".to_owned(), |name| format!("did you mean {name}?"))
+}
+
+fn extension(name: &str) -> String {
+    name.rsplit_once('.').map_or_else(String::new, |(_, end)| end.to_lowercase())
 }
 
 /// A path as typed by a person: a leading `~` is the home folder, as in a shell.
@@ -194,6 +211,8 @@ mod tests {
         symlink("../dog.png", root.join("link.png")).unwrap();
         rustix::fs::mknodat(rustix::fs::CWD, root.join("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RUSR, 0)
             .unwrap();
+        std::os::unix::fs::symlink("away.png", root.join("nowhere.png")).unwrap();
+        std::fs::write(root.join("model.gltf"), "{}").unwrap();
         let outside = outer.path().join("dog.png");
         let scene = root.join("scene.plica.json");
         // Path; part of the message without --allow-outside, and with it.
@@ -209,6 +228,8 @@ mod tests {
             ("sub/Cat.jpg", Some("no such file (did you mean cat.png?)"), Some("no such file (did you mean cat.png?)")),
             ("gone/a.png", Some("no such file (there is no folder "), Some("no such file (there is no folder ")),
             ("no.exr#layer", Some("no such file"), Some("no such file")),
+            ("nowhere.png", Some("a link to away.png, which is not there"), Some("(mend the link)")),
+            ("model.bin", Some("no such file (put it there"), Some("no such file (put it there")),
             ("sub/b.GLB#12", None, None),
             ("sub/b.GLB#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),
             ("sub/cat.png#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),

@@ -118,7 +118,8 @@ fn pixel_at([x, y]: [f64; 2], (width, height): (usize, usize)) -> Result<(usize,
     let within = |v: f64, n: usize| (v >= 0.0 && v < n as f64).then_some(v as usize);
     match (within(x, width), within(y, height)) {
         (Some(column), Some(row)) => Ok((column, row)),
-        _ => Err(Error::at(format!("--at {x},{y}"), format!("outside the picture of {width} x {height} pixels"))),
+        _ => Err(Error::at(format!("--at {x},{y}"), format!("outside the picture of {width} x {height} pixels"))
+            .cure(format!("from 0,0 to less than {width},{height}"))),
     }
 }
 

@@ -124,7 +124,7 @@ mod tests {
         let made =
             |closed, handles, chosen: &[usize]| handled(&nodes, closed, &chosen.iter().copied().collect(), handles);
         let smooth = made(false, Handles::Smooth, &[0, 1, 2]);
-        let third = 30.0_f64.hypot(30.0) / 3.0;
+        let third = Vec2::new(30.0, 30.0).hypot() / 3.0;
         assert_eq!(
             (smooth[1].handle_in, smooth[1].handle_out),
             (xy(Vec2::new(-third, 0.0)), xy(Vec2::new(third, 0.0)))

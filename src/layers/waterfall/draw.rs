@@ -111,9 +111,9 @@ mod tests {
 
     fn splat(i: u32) -> Splat {
         let ([x, y, wide, long], [angle, depth, u, mirrored]) = (Random(2).of(i, 0, 0), Random(2).of(i, 1, 0));
-        let angle = if i % 3 == 0 { 0.0 } else { 360.0 * angle - 180.0 };
+        let angle = if i.is_multiple_of(3) { 0.0 } else { 360.0 * angle - 180.0 };
         let mut mix = Mix::of(&[((0, 0), 1.0 - u as f32), ((0, 1), u as f32)]);
-        if i % 4 > 0 {
+        if !i.is_multiple_of(4) {
             (mix.slopes, mix.residue) = ([[0.7, -0.4], [-0.2, 0.9]], Some((0, 0, 0.1)));
         }
         Splat {

@@ -169,9 +169,11 @@ fn up(state: &mut State, call: &Call) -> Done {
 
 /// Ends one thing: a count, a program that the selection goes through, the selection, or other running work.
 fn back(state: &mut State, call: &Call) -> Done {
-    if call.count.is_none() && state.outside.piping.is_some() {
-        state.ask(Effect::Cancel);
-    } else if call.count.is_none() && !state.cursor.unselect() && state.outside.work.is_some() {
+    if call.count.is_some() {
+        return Ok(());
+    }
+    let piping = state.outside.piping.is_some();
+    if piping || !state.cursor.unselect() && state.outside.work.is_some() {
         state.ask(Effect::Cancel);
     }
     Ok(())
