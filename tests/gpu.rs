@@ -219,7 +219,7 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
         let uses = scene.layers.iter().flat_map(|layer| layer.technique().uses());
         for (seed, Use { of, what, .. }) in uses.enumerate() {
             match of {
-                Of::Name(List::Layers, _) => {}
+                Of::Name(List::Layers | List::Shapes, _) => {}
                 Of::Name(List::Meshes, name) => drop(materials.meshes.insert(name.to_owned(), Arc::new(ring()))),
                 Of::Name(List::Clips, name) => {
                     let frames = (0..5).map(|frame| waves(96, 64, seed + 7 * frame, true)).collect();
@@ -367,7 +367,7 @@ fn the_gpu_shows_view_maps_as_the_cpu_does() {
     let scenes = [
         ("views up to one another", viewed(none.clone(), &none, &both)),
         ("no view", viewed(none.clone(), &json!({"missing": "#4080c0"}), &[])),
-        ("one view, the rest missing", viewed(none.clone(), &none, &[near.clone()])),
+        ("one view, the rest missing", viewed(none.clone(), &none, std::slice::from_ref(&near))),
         ("cones over a coat", viewed(none.clone(), &none, &[coat.clone(), cone, linear, coat.clone()])),
         ("places over a coat", viewed(none.clone(), &none, &[points.clone(), coat, points])),
         ("near and far", viewed(none.clone(), &json!({"levels": 5}), &[near, far, json!({})])),

@@ -211,7 +211,7 @@ mod tests {
         symlink("../dog.png", root.join("link.png")).unwrap();
         rustix::fs::mknodat(rustix::fs::CWD, root.join("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RUSR, 0)
             .unwrap();
-        std::os::unix::fs::symlink("away.png", root.join("nowhere.png")).unwrap();
+        symlink("away.png", root.join("nowhere.png")).unwrap();
         std::fs::write(root.join("model.gltf"), "{}").unwrap();
         let outside = outer.path().join("dog.png");
         let scene = root.join("scene.plica.json");
