@@ -70,7 +70,11 @@ fn what_is_no_clip_is_refused_with_the_cure() {
         (["new", "none"], "none: holds no numbered pictures (name them as 0001.png", false),
         (["new", "none/%04d.png"], "there is no such file", false),
         (["new", "broken"], "broken: 0001.png", false),
-        (["new", "gap"], "gap: it ends before number 12, which is missing", true),
+        (
+            ["new", "gap"],
+            "gap: ends at 0011.png, but 0020.png is there (put 0012.png there, or set the clip's count to 12)",
+            true,
+        ),
     ] {
         let (_, messages) = plica(folder.path(), &args, succeeds);
         assert!(messages.contains(told), "{args:?}: {messages}");
@@ -183,7 +187,8 @@ fn a_script_waits_for_the_clip_and_its_log_replays() {
 fn a_check_finds_a_clip_in_which_nothing_moves() {
     let folder = tempfile::tempdir().unwrap();
     clip(&folder.path().join("ice"), 0..12, 0);
-    plica(folder.path(), &["new", "ice"], true);
+    let (_, messages) = plica(folder.path(), &["new", "ice"], true);
+    assert!(messages.contains("ice: nothing moves in the clip \"ice\": pick sprites by hand"), "{messages}");
     let (out, _) = plica(folder.path(), &["check", "ice.plica.json"], false);
     let told = "layers.ice.clip: nothing moves in the clip \"ice\": pick sprites by hand (sprites.picks)";
     assert!(out.contains(told), "{out}");

@@ -2,6 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+/// No number has more digits.
+const MOST_DIGITS: usize = 20;
+
 /// A file name, in which the place of a number may be left open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
@@ -15,7 +18,7 @@ impl Pattern {
     /// The pattern in a file's `name`: `%d`, or `%04d` for at least four digits; `%%` is a `%`.
     ///
     /// # Errors
-    /// What is wrong with it, in words: more than one number, or something else after a `%`.
+    /// What is wrong with it, in words: more than one number, one that is too wide, or something else after a `%`.
     pub fn of(name: &str) -> Result<Pattern, String> {
         let (mut texts, mut digits) = ([String::new(), String::new()], None);
         let mut rest = name.chars();
@@ -35,7 +38,11 @@ impl Pattern {
             match spec.strip_suffix('d') {
                 _ if spec == "%" => text.push('%'),
                 Some(_) if digits.is_some() => return Err("the name holds two frame numbers".into()),
-                Some(width) => digits = Some(width.parse().unwrap_or(0).clamp(1, 20)),
+                Some("") => digits = Some(1),
+                Some(width) => match width.parse::<usize>() {
+                    Ok(width) if width <= MOST_DIGITS => digits = Some(width.max(1)),
+                    _ => return Err(format!("\"%{spec}\" asks for more than {MOST_DIGITS} digits")),
+                },
                 None => return Err(format!("\"%{spec}\" is no frame number")),
             }
         }

@@ -21,8 +21,6 @@ pub struct Found {
     pub first: u64,
     /// Their names, in order.
     pub files: Vec<String>,
-    /// What was left out, in words.
-    pub note: Option<String>,
 }
 
 /// Whether a file of this name is a video, or a pattern of numbered files.
@@ -57,7 +55,7 @@ pub fn find(path: &Path) -> Result<Found> {
     })?;
     if !pattern.is_numbered() {
         let (folder, name) = (folder.to_owned(), name.into_owned());
-        return Ok(Found { folder, first: 0, files: vec![name.clone()], name, note: None });
+        return Ok(Found { folder, first: 0, files: vec![name.clone()], name });
     }
     let mut numbers: Vec<u64> = names(folder)?.iter().filter_map(|name| pattern.number(name)).collect();
     numbers.sort_unstable();
@@ -119,9 +117,7 @@ fn found(folder: &Path, all: Series) -> Found {
     let first = all.numbers.first().copied().unwrap_or(0);
     let together = all.numbers.iter().zip(first..).take_while(|(found, wanted)| **found == *wanted).count();
     let files = (0..together).filter_map(|i| all.file(i)).collect();
-    let end = first + together as u64;
-    let note = (together < all.numbers.len()).then(|| format!("it ends before number {end}, which is missing"));
-    Found { folder: folder.to_owned(), name: all.pattern, first, files, note }
+    Found { folder: folder.to_owned(), name: all.pattern, first, files }
 }
 
 fn names(folder: &Path) -> Result<Vec<String>> {
@@ -155,7 +151,6 @@ mod tests {
         assert_eq!(find(&folder.path().join("a/%04d.png")).unwrap(), by_folder);
         assert_eq!((by_folder.name.as_str(), by_folder.first), ("%04d.png", 7));
         assert_eq!(by_folder.files, ["0007.png", "0008.png"]);
-        assert_eq!(by_folder.note.as_deref(), Some("it ends before number 9, which is missing"));
     }
 
     #[test]
@@ -173,6 +168,8 @@ mod tests {
             ("two", "two: holds several clips: a%d.png, b%d.png (name one of them, as "),
             ("two/%04d.png", "two/%04d.png: there is no such file (the first frame would be 0000.png or 0001.png)"),
             ("two/%x.png", "\"%x\" is no frame number (%04d stands for"),
+            ("two/%0999999999d.png", "\"%0999999999d\" asks for more than 20 digits (%04d stands for"),
+            ("two/%99999999999999999999999d.png", "asks for more than 20 digits (%04d stands for"),
         ] {
             let error = find(&folder.path().join(name)).unwrap_err().to_string();
             assert!(error.contains(told), "{error}");

@@ -4,7 +4,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
@@ -30,8 +30,26 @@ const MOST_BYTES: u64 = 16 << 20;
 /// # Errors
 /// If there is no such file, it is no text, or it is far too long for a script.
 pub fn read(path: &Path) -> Result<String> {
+    whole(paths::open_named(path)?, path)
+}
+
+/// As [`read`], also from a pipe, as `<(...)` of a shell is one: waits until whoever writes into it has ended.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_piped(path: &Path) -> Result<String> {
+    let is_pipe = path.metadata().is_ok_and(|found| found.file_type().is_fifo());
+    let opened = if is_pipe {
+        File::open(path).map_err(|error| Error::at(path.display(), error))
+    } else {
+        paths::open_named(path)
+    };
+    whole(opened?, path)
+}
+
+fn whole(file: File, path: &Path) -> Result<String> {
     let mut bytes = Vec::new();
-    let read = paths::open_named(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes);
+    let read = file.take(MOST_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|error| Error::at(path.display(), error))?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(Error::at(path.display(), "is longer than 16 MiB").cure("name a file of lines"));
@@ -199,6 +217,14 @@ mod tests {
         assert_eq!(read(&path).unwrap(), "move down\n");
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("UTF-8"));
-        assert!(read(&folder.path().join("no")).is_err());
+        assert!(read(&folder.path().join("no")).is_err() && read_piped(&folder.path().join("no")).is_err());
+        let pipe = folder.path().join("pipe");
+        let mode = rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR;
+        rustix::fs::mknodat(rustix::fs::CWD, &pipe, rustix::fs::FileType::Fifo, mode, 0).unwrap();
+        assert!(read(&pipe).unwrap_err().to_string().contains("is a FIFO"));
+        let to = pipe.clone();
+        let writer = std::thread::spawn(move || std::fs::write(to, "move up\n").unwrap());
+        assert_eq!(read_piped(&pipe).unwrap(), "move up\n");
+        writer.join().unwrap();
     }
 }

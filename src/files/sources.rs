@@ -1,9 +1,14 @@
 //! What a person means by a path that a scene is to show: a picture, a model or a clip. The content of the file decides, and its
 //! name where it is not there or does not tell.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-use super::{clips, models, paths};
+use super::picture::kinds;
+use super::{clips, mesh, models, paths};
+use crate::base::error::{Error, Result};
+use crate::base::numbered;
 use crate::layers::parts::materials::List;
 
 /// The list of a scene that the file, the pattern of files or the folder at `path` goes to.
@@ -14,6 +19,35 @@ pub fn list_of(path: &Path) -> List {
         () if clips::is_one(path) => List::Clips,
         () if models::is_one(path) => List::Meshes,
         () => List::Images,
+    }
+}
+
+/// How many first bytes tell a video from another file: an animated PNG says that it is one before its pixels, perhaps after a
+/// color profile.
+const LOOKED_AT: u64 = 1 << 20;
+
+/// Refuses an open file that is a picture or a mesh, where a video is meant; `place` is its path as written.
+///
+/// # Errors
+/// What it is, and what to do; that it cannot be read.
+pub(super) fn expect_video(file: &File, place: &str) -> Result<()> {
+    let mut start = Vec::new();
+    file.take(LOOKED_AT).read_to_end(&mut start).map_err(|error| Error::at(place, error))?;
+    let is = |what: &str, cure: &str| Err(Error::at(place, format!("is {what}")).cure(cure));
+    match kinds::still(&start) {
+        _ if start.is_empty() => is("empty", "copy it again from where it came"),
+        Some(picture) => is(&format!("{picture}, not a video"), &pattern_for(place)),
+        None if mesh::begins(&start, place) => is("a mesh, not a video", "list it among the scene's meshes"),
+        None => Ok(()),
+    }
+}
+
+/// How to name the numbered pictures of which the one at `place` is perhaps the first.
+fn pattern_for(place: &str) -> String {
+    let (folder, name) = place.split_at(place.rfind('/').map_or(0, |slash| slash + 1));
+    match numbered::series([name].into_iter()).first() {
+        Some(series) => format!("write {folder}{}", series.pattern),
+        None => "a clip is made of numbered pictures, as falls/%04d.jpg".to_owned(),
     }
 }
 
@@ -46,6 +80,31 @@ mod tests {
             ("no.png", List::Images),
         ] {
             assert_eq!(list_of(&at(name)), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_picture_or_a_mesh_is_no_video() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        for (place, bytes, expected) in [
+            ("cl/0000.png", &b"\x89PNG\r\n\x1a\n...."[..], "is a PNG picture, not a video (write cl/%04d.png)"),
+            ("cat.mp4", b"\xff\xd8\xff", "is a JPEG picture, not a video (a clip is made of numbered pictures, as"),
+            ("cow.mp4", b"glTF", "is a mesh, not a video (list it among the scene's meshes)"),
+            ("cow.mp4", b"v 0 0 0\n", "is a mesh, not a video"),
+            ("a.mp4", b"", "is empty (copy it again from where it came)"),
+            ("a.png", b"\x89PNG\r\n\x1a\n....acTL", ""),
+            ("a.gif", b"GIF89a", ""),
+            ("a.m4v", b"\0\0\x01\0", ""),
+            ("a.mp4", b"\0\0\0\x18ftypisom", ""),
+            ("a.mp4", b"no video", ""),
+            ("a.y4m", b"YUV4MPEG2 W8 H8 F25:1\n", ""),
+        ] {
+            std::fs::write(&path, bytes).unwrap();
+            let told = expect_video(&File::open(&path).unwrap(), place).err().map(|error| error.to_string());
+            let expected = if expected.is_empty() { String::new() } else { format!("{place}: {expected}") };
+            assert_eq!(told.is_none(), expected.is_empty(), "{place}: {told:?}");
+            assert!(told.unwrap_or_default().starts_with(&expected), "{expected}");
         }
     }
 }

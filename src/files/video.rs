@@ -15,7 +15,7 @@ use std::time::SystemTime;
 use super::cache::Cache;
 use super::limits::within;
 use super::write::Atomic;
-use super::{Limits, hash, paths};
+use super::{Limits, hash, paths, sources};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::picture::{Channels, Picture, SRGB_8, Samples};
@@ -63,9 +63,11 @@ pub fn program() -> Option<PathBuf> {
 /// The frames of the video in an open file, and the memory that they take; `place` is its name in messages.
 ///
 /// # Errors
-/// If there is no ffmpeg, it cannot read the file, there are fewer frames than wanted, or more than the limits allow.
+/// If it is a picture or a mesh; if there is no ffmpeg, or it cannot read the file; if there are fewer frames than wanted, or
+/// more than the limits allow.
 pub fn decode(mut file: File, place: &str, wanted: Wanted, allowed: Allowed) -> Result<(Vec<Arc<Picture>>, Share)> {
     let failed = |error| Error::at(place, error);
+    sources::expect_video(&file, place)?;
     let content = hash::contents(&mut file).map_err(failed)?.hash;
     let name = hash::of(format!("{content} {} {:?}", wanted.first, wanted.count).as_bytes());
     // Without a cache it is decoded each time.
@@ -235,7 +237,7 @@ impl Ffmpeg {
     fn end(&mut self) -> std::result::Result<String, String> {
         let ended = self.child.wait().map_err(|error| error.to_string())?;
         let said = self.said.take().and_then(|said| said.join().ok()).unwrap_or_default();
-        let mut lines = said.lines().map(|line| line.trim().trim_start_matches("file:/dev/fd/0: "));
+        let mut lines = said.lines().map(in_words);
         let first = lines.find(|line| !line.is_empty()).map(str::to_owned);
         if ended.success() {
             Ok(first.unwrap_or_default())
@@ -243,6 +245,15 @@ impl Ffmpeg {
             Err(first.unwrap_or_else(|| "it ended without a word".into()))
         }
     }
+}
+
+/// A line of what it said, without the parts and the addresses of the program.
+fn in_words(line: &str) -> &str {
+    let line = line.trim();
+    let parts = line.strip_prefix('[').and_then(|rest| rest.split_once("] "));
+    let rest = parts.filter(|(part, _)| part.contains(" @ 0x")).map(|(_, rest)| rest);
+    let line = rest.map_or(line, in_words).trim_start_matches("file:/dev/fd/0: ");
+    if line.starts_with("Format not on whitelist") { "it is no video that is in one file" } else { line }
 }
 
 /// The beginning of the program's standard error.

@@ -7,8 +7,9 @@ use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
+use crate::layers::parts::materials::Materials;
 use crate::render;
-use crate::scene::{Document, address};
+use crate::scene::{Document, Scene, address};
 
 /// Find every problem in a scene
 #[derive(clap::Args)]
@@ -54,6 +55,16 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     Ok(())
 }
 
+/// What is wrong with layers that only shows once they are made from what they read.
+pub fn made(scene: &Scene, materials: &Materials) -> Vec<Problem> {
+    let making = render::making(scene, materials);
+    let layers = scene.layers.iter().enumerate().flat_map(|(i, layer)| {
+        let made = layer.technique().check_made(&making).into_iter();
+        made.map(move |problem| problem.under(&format!("/layers/{i}")))
+    });
+    layers.collect()
+}
+
 /// The problems, the warnings about loops that snap, and the document if it is one.
 fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem>, Option<Document>)> {
     let options = args.reading.options()?;
@@ -71,11 +82,7 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     problems.extend(found);
     let is_broken = |problems: &[Problem]| problems.iter().any(|problem| problem.severity == Severity::Error);
     if !is_broken(&problems) {
-        let making = render::making(scene, &materials);
-        problems.extend(scene.layers.iter().enumerate().flat_map(|(i, layer)| {
-            let made = layer.technique().check_made(&making).into_iter();
-            made.map(move |problem| problem.under(&format!("/layers/{i}")))
-        }));
+        problems.extend(made(scene, &materials));
         context.check_cancelled()?;
     }
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));

@@ -17,7 +17,8 @@ pub struct Args {
     /// Open without changing anything: no lock, no journal
     #[arg(long)]
     pub read_only: bool,
-    /// First run the lines of a file, as `:source` does; if the output is not a terminal or TERM is dumb, do nothing else
+    /// First run the lines of a file or of a pipe, as `:source` does; if the output is not a terminal or TERM is dumb, do
+    /// nothing else
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
     /// How the picture is shown in the terminal: auto asks the terminal

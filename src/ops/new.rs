@@ -5,6 +5,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::Context;
+use super::check::made;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
@@ -160,8 +161,9 @@ impl Making<'_> {
         let found = clips::find(source)?;
         let (name, place) = (clip_called(source), source.display());
         let (known, problems) = self.measure(source, &found)?;
-        let told = problems.iter().map(|problem| problem.message.as_str()).chain(found.note.as_deref());
-        self.notes.extend(told.map(|note| format!("{place}: {note}")));
+        self.notes.extend(problems.into_iter().map(|Problem { message, hint, .. }| {
+            hint.into_iter().fold(Error::at(&place, message), Error::cure).to_string()
+        }));
         let (path, copied) = match below(&found.folder, self.path) {
             Some(folder) => (folder.join(&found.name), false),
             None if found.files == [found.name.clone()] => (found.name.clone().into(), true),
@@ -184,7 +186,8 @@ impl Making<'_> {
         Ok(())
     }
 
-    /// Width and height of a clip that was read completely, how many frames it has, and the warnings.
+    /// Width and height of a clip that was read completely, how many frames it has, and what a check
+    /// would tell of it.
     ///
     /// # Errors
     /// It cannot be read, or no layer fits it.
@@ -204,7 +207,12 @@ impl Making<'_> {
         let fitted = alone(Some(known)).map_err(refused)?;
         problems.extend(check::check_materials(fitted.scene(), &materials));
         let failed = problems.iter().any(|problem| problem.severity == Severity::Error);
-        if failed { Err(refused(problems)) } else { Ok((known, problems)) }
+        if failed {
+            return Err(refused(problems));
+        }
+        // What a person has to do by hand is no reason to make no scene.
+        problems.extend(made(fitted.scene(), &materials));
+        Ok((known, problems))
     }
 
     /// Notes what a source is called in the scene, which no other one may be.

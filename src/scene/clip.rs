@@ -61,6 +61,11 @@ impl Frames<'_> {
         !self.name.is_numbered()
     }
 
+    /// The index of the frame in a file of this name, if it is one of them.
+    pub fn index(&self, name: &str) -> Option<u64> {
+        self.name.number(name)?.checked_sub(self.first)
+    }
+
     /// The path of frame `index`, from 0.
     pub fn path(&self, index: u64) -> String {
         format!("{}{}", self.folder, self.name.name(self.first + index))
@@ -80,6 +85,8 @@ mod tests {
         ] {
             let clip = Clip { path: path.into(), first, count: None, fps: 25.0 };
             assert_eq!(clip.frames().unwrap().path(index), frame);
+            let name = frame.rsplit('/').next().unwrap();
+            assert_eq!(clip.frames().unwrap().index(name), Some(index));
         }
     }
 }

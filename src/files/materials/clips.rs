@@ -18,7 +18,7 @@ use crate::base::picture::Picture;
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::files::limits::within;
-use crate::files::{mesh, paths, picture, video};
+use crate::files::{self, disk, mesh, paths, picture, video};
 use crate::scene::{self, Scene};
 
 /// The clips that were loaded before, and their frames.
@@ -60,7 +60,7 @@ impl Sources<'_> {
                         Some(made)
                     }
                     Err(error) => {
-                        problems.push(problem(&named, error));
+                        problems.push(problem(&named, self.no_folder(error, clip)));
                         old.cloned()
                     }
                 };
@@ -71,6 +71,7 @@ impl Sources<'_> {
             let whole: std::result::Result<Vec<_>, _> = loaded.iter().map(|(_, frame)| frame.as_ref()).collect();
             let made = match whole {
                 Ok(frames) => {
+                    problems.extend(self.gap(clip, frames.len() as u64, &named));
                     let pictures: Vec<_> = frames.iter().map(|frame| frame.value.clone()).collect();
                     Some(made(clip.fps, &pictures, frames.iter().map(|frame| frame.share.clone()).collect(), old))
                 }
@@ -124,6 +125,35 @@ impl Sources<'_> {
         all.par_extend(rest.par_iter().enumerate().map(|(i, path)| (self.key(path), load((i, path)))));
         notes(named, paths.iter().zip(all.iter().map(|(_, frame)| frame)), problems);
         all
+    }
+
+    /// That a clip of so many frames ends before one that is missing, while later ones are there.
+    fn gap(&self, clip: &scene::Clip, count: u64, named: &Named) -> Option<Problem> {
+        let Place::Beside(scene_path) = self.place else { return None };
+        let frames = clip.frames().ok().filter(|_| clip.count.is_none())?;
+        let first = paths::beside(scene_path, &frames.path(0));
+        let names = std::fs::read_dir(disk::folder_of(&first)).ok()?.flatten().map(|entry| entry.file_name());
+        let later = names.filter_map(|name| frames.index(name.to_str()?)).filter(|index| *index > count).min()?;
+        let (last, missing) = (frames.path(count.checked_sub(1)?), frames.path(count));
+        let told = Problem::warning(&named.at, format!("ends at {last}, but {} is there", frames.path(later)));
+        Some(told.hint(format!("put {missing} there, or set the clip's count to {count}")))
+    }
+
+    /// What to do if the path of a clip is that of a folder.
+    fn no_folder(&self, error: Error, clip: &scene::Clip) -> Error {
+        match error {
+            Error::Failed { place, what, .. } if what.ends_with("is a folder, not a file") => {
+                let found = match self.place {
+                    Place::Beside(scene_path) => files::clips::find(&paths::beside(scene_path, &clip.path)).ok(),
+                    Place::Copies(_) => None,
+                };
+                let (name, first) = found.map_or(("%04d.png".into(), 0), |found| (found.name, found.first));
+                let from = if first > 0 { format!(", and \"first\": {first}") } else { String::new() };
+                let cure = format!("write {}/{name}{from}", clip.path.trim_end_matches('/'));
+                Error::Failed { place, what, cure: Some(cure) }
+            }
+            other => other,
+        }
     }
 
     fn is_there(&self, path: &str) -> bool {

@@ -47,6 +47,11 @@ const FOREIGN: &[(&str, &[&[u8]], &str)] = &[
     (".gz", &[b"\x1f\x8b"], "compressed by gzip"),
 ];
 
+/// Whether a file called `place` that begins with `start` is a mesh that is read.
+pub(super) fn begins(start: &[u8], place: &str) -> bool {
+    kind(start, place).is_ok()
+}
+
 /// Whether a file called `name`, in lower case, is a mesh or a scene of a kind that is not read.
 pub fn is_foreign(name: &str) -> bool {
     let archive = [".zip", ".gz"].iter().any(|end| name.ends_with(end));

@@ -97,6 +97,9 @@ const BRANDS: &[(&[u8], Foreign)] =
 
 /// The kind of the file that begins with `start`.
 pub(super) fn kind(start: &[u8], file: &mut File, place: &str) -> Result<Kind> {
+    if start.is_empty() {
+        return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it anew"));
+    }
     if let Some(found) = unread(start) {
         return Err(convert(place, found));
     }
@@ -112,6 +115,18 @@ pub(super) fn kind(start: &[u8], file: &mut File, place: &str) -> Result<Kind> {
 /// What a picture is that begins with `start`, as "a PNG picture".
 pub(in crate::files) fn name(start: &[u8]) -> Option<&'static str> {
     unread(start).map(|found| found.name).or_else(|| read(start).map(|(_, name)| name))
+}
+
+/// What a picture is that begins with `start`, if no film is a file of that kind: an animation is one.
+pub(in crate::files) fn still(start: &[u8]) -> Option<&'static str> {
+    let (kind, name) = read(start)?;
+    let is_animated = match kind {
+        Kind::Png => start.windows(4).any(|four| four == b"acTL"),
+        // Streams of MPEG-4 begin as an icon does.
+        Kind::Plain(format) => matches!(format, ImageFormat::Gif | ImageFormat::Ico),
+        Kind::Jpeg | Kind::Tiff | Kind::Exr => false,
+    };
+    (!is_animated).then_some(name)
 }
 
 /// The kind that begins with `start`, if it is not read.

@@ -115,7 +115,6 @@ fn add_file(state: &mut State, path: &str) -> Done {
             }
             entry["path"] =
                 if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) }.into();
-            notes.extend(found.note);
             let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
             clips::called(&found.name, last).to_owned()
         }

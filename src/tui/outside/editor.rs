@@ -145,8 +145,8 @@ impl Editor {
         if let (Some(keep), true) = (self.options.keep_recovery, self.state.scene.offered().is_some()) {
             self.take(Event::Line(format!("recovery {}", if keep { "keep" } else { "drop" })));
         }
-        if let Some(script) = self.options.script.clone() {
-            self.source(&script)?;
+        if let Some((path, text)) = self.options.script.clone() {
+            self.scripts.begin(&path.display().to_string(), &text)?;
         }
         Ok(())
     }

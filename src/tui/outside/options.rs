@@ -2,8 +2,8 @@
 
 use super::terminal;
 use crate::base::error::{Error, Result};
-use crate::files::profiles;
 use crate::files::session::Mode;
+use crate::files::{lines, profiles};
 use crate::tui::graphics::Protocol;
 use crate::{files, ops};
 use std::path::PathBuf;
@@ -18,8 +18,8 @@ pub struct Options {
     pub read_only: bool,
     /// Whether to take unsaved edits that a session left behind; `None` to ask.
     pub keep_recovery: Option<bool>,
-    /// The script that is run first.
-    pub script: Option<PathBuf>,
+    /// The script that is run first: its file, and its text.
+    pub script: Option<(PathBuf, String)>,
     /// The folder of the tutor, if it is to begin.
     pub tutor: Option<PathBuf>,
     /// The graphics protocol; `None` to ask the terminal.
@@ -63,10 +63,12 @@ impl Options {
     /// Applies the options of the command line.
     ///
     /// # Errors
-    /// A wrong limit.
+    /// A wrong limit, or a script that cannot be read.
     pub fn of(args: &ops::edit::Args) -> Result<Options> {
         let files = args.scene.options()?;
-        let (path, script) = (args.path.clone(), args.script.clone());
+        // Before there is a screen: a pipe may be long in coming.
+        let read = |path: &PathBuf| Ok((path.clone(), lines::read_piped(path)?));
+        let (path, script) = (args.path.clone(), args.script.as_ref().map(read).transpose()?);
         let graphics = Protocol::named(&args.graphics);
         let (window, read_only, keep_recovery) = (!args.no_view, args.read_only, args.recovery.keep());
         Ok(Options { path, window, read_only, keep_recovery, script, graphics, tutor: None, files })

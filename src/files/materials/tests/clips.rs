@@ -27,19 +27,25 @@ fn look(path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Op
 
 #[test]
 fn frames_follow_one_another_from_the_first() {
-    // Frames 2, 3, 4, 6 are there.
-    for (clip, count, fps) in [
-        (serde_json::json!({ "path": "falls/%04d.png", "first": 2 }), 3, 25.0),
-        (serde_json::json!({ "path": "falls/%04d.png", "first": 3, "fps": 12.5 }), 2, 12.5),
-        (serde_json::json!({ "path": "falls/%04d.png", "first": 2, "count": 2 }), 2, 25.0),
-        (serde_json::json!({ "path": "falls/000%d.png", "first": 6 }), 1, 25.0),
+    // Frames 2, 3, 4, 6 are there; whether it is told that later ones are.
+    for (clip, count, fps, gap) in [
+        (serde_json::json!({ "path": "falls/%04d.png", "first": 2 }), 3, 25.0, true),
+        (serde_json::json!({ "path": "falls/%04d.png", "first": 3, "fps": 12.5 }), 2, 12.5, true),
+        (serde_json::json!({ "path": "falls/%04d.png", "first": 2, "count": 2 }), 2, 25.0, false),
+        (serde_json::json!({ "path": "falls/000%d.png", "first": 6 }), 1, 25.0, false),
     ] {
         let (folder, path, scene) = start(clip.clone());
         [2, 3, 4, 6].into_iter().for_each(|number| frame(folder.path(), number, 2));
         let mut cache = Cache::default();
         let (materials, problems) = load(&path, &scene, &Options::default(), &mut cache).unwrap();
         let found = materials.clip("falls", "").unwrap();
-        assert_eq!((found.frames.len(), found.fps, found.size_px(), problems.len()), (count, fps, (2, 1), 0), "{clip}");
+        assert_eq!((found.frames.len(), found.fps, found.size_px()), (count, fps, (2, 1)), "{clip}");
+        let told: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        let expected = format!(
+            "clips.falls.path: warning: ends at falls/0004.png, but falls/0006.png is there (put falls/0005.png there, or \
+             set the clip's count to {count})"
+        );
+        assert_eq!(told, if gap { vec![expected] } else { vec![] }, "{clip}");
         assert_eq!(materials.budget.taken(), count as u64 * found.frames[0].bytes());
         assert_eq!(paths(&path, &scene).len(), count);
         let watched = Watched::default().files(&path, &scene, &Options::default()).len();
@@ -92,6 +98,24 @@ fn what_is_wrong_names_the_frame_and_the_cure() {
         ),
         (vec![2, 2, 3], none.clone(), None, "falls/0002.png: is 3 x 1, and the clip's first frame 2 x 1 (make all"),
         (vec![2, 0, 2], none.clone(), None, "falls/0001.png: "),
+        (
+            vec![2, 2],
+            serde_json::json!({ "path": "falls" }),
+            None,
+            "falls: is a folder, not a file (write falls/%04d.png)",
+        ),
+        (
+            vec![2],
+            serde_json::json!({ "path": "falls/" }),
+            None,
+            "falls/: is a folder, not a file (write falls/%04d.png)",
+        ),
+        (
+            vec![2],
+            serde_json::json!({ "path": "falls/0000.png" }),
+            None,
+            "falls/0000.png: is a PNG picture, not a video (write falls/%04d.png)",
+        ),
         (vec![2, 2, 2], none.clone(), Some("frames=2"), "falls/%04d.png: it has 3 frames, at most 2"),
         (vec![2, 2, 2], none.clone(), Some("clip=5"), "falls/%04d.png: its frames have 6 pixels together, at most 5"),
         (vec![2, 2, 2], none, Some("pixels=1"), "falls/0000.png: "),

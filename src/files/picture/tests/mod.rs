@@ -191,7 +191,7 @@ fn what_is_no_picture_says_so() {
     let mut whole = Vec::new();
     image.write_to(&mut std::io::Cursor::new(&mut whole), image::ImageFormat::Png).unwrap();
     for (bytes, part) in [
-        (&b""[..], "not a picture"),
+        (&b""[..], "is empty (copy it again"),
         (b"hello, world", "not a picture"),
         (b"BM6\0\0\0\0\0\0\0", "cat.png"),
         (b"qoif\0\0\0\x01", "cat.png"),
