@@ -108,9 +108,11 @@ impl Short {
     }
 
     fn cure(self) -> String {
+        const MIB: u64 = 1 << 20;
         const GIB: u64 = 1 << 30;
-        let enough = self.wanted.saturating_add(self.taken).div_ceil(GIB);
-        format!("make it smaller, or give --limit memory={enough}G")
+        let enough = self.wanted.saturating_add(self.taken);
+        let (unit, letter) = if enough < 4 * GIB { (MIB, 'M') } else { (GIB, 'G') };
+        format!("make it smaller, or give --limit memory={}{letter}", enough.div_ceil(unit))
     }
 }
 
@@ -138,7 +140,7 @@ mod tests {
         assert_eq!(
             refused,
             "b.png: needs 41 bytes of memory besides 60 bytes in use, and at most 100 bytes are allowed \
-             (make it smaller, or give --limit memory=1G)"
+             (make it smaller, or give --limit memory=1M)"
         );
         let mut second = budget.take(40, "b").unwrap();
         drop(first);
@@ -151,9 +153,13 @@ mod tests {
         assert_eq!(budget.taken(), 30);
         drop(both);
         assert_eq!(budget.taken(), 0);
-        let problem = budget.try_take(5 << 30).unwrap_err().problem("/layers/0");
-        assert_eq!(problem.path, "/layers/0");
-        assert!(problem.hint.unwrap().contains("memory=5G"));
+        for (bytes, enough) in
+            [(1 << 20, "memory=1M"), (18_900_000, "memory=19M"), (3 << 30, "=3072M"), (5 << 30, "=5G")]
+        {
+            let problem = budget.try_take(bytes).unwrap_err().problem("/layers/0");
+            assert_eq!(problem.path, "/layers/0");
+            assert!(problem.hint.unwrap().ends_with(enough), "{enough}");
+        }
     }
 
     #[test]

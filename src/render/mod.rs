@@ -192,5 +192,10 @@ fn textures(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> R
 /// How far all layers in space reach along each of these ways of the world, at so many times of the timeline.
 pub fn reach(layers: &[Arc<dyn Ready>], times: u32, ways: &[DVec3]) -> Option<Vec<f64>> {
     let times = (0..times).map(|k| f64::from(k) / f64::from(times));
-    times.flat_map(|t| layers.iter().filter_map(move |layer| layer.reach(t, ways))).reduce(farther)
+    times.filter_map(|t| reach_at(layers, t, ways)).reduce(farther)
+}
+
+/// The same at one scene time.
+pub fn reach_at(layers: &[Arc<dyn Ready>], t: f64, ways: &[DVec3]) -> Option<Vec<f64>> {
+    layers.iter().filter_map(|layer| layer.reach(t, ways)).reduce(farther)
 }

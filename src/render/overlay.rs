@@ -116,8 +116,9 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
 fn is_selected(mark: &str, selection: &str) -> bool {
     // `/layers/0/zones/2` and deeper.
     let is_item = Pointer(selection).tokens().count() >= 4;
-    // What belongs to nothing in the document, as the ground, is never selected.
-    !mark.is_empty() && (Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection)))
+    // What belongs to nothing in the document, as the ground, or to all of a layer, as its edges, is never selected.
+    let is_part = !matches!(Pointer(mark).tokens().count(), 0 | 2);
+    is_part && (Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection)))
 }
 
 #[cfg(test)]
@@ -135,6 +136,8 @@ mod tests {
             ("/layers/0/zones/2", "/layers/0", false),
             ("/layers/0/zones/2", "", false),
             ("", "/layers/0/kind", false),
+            ("/layers/0", "/layers/0/pose", false),
+            ("/camera", "/camera/fov", true),
         ] {
             assert_eq!(is_selected(mark, selection), selected, "{mark} {selection}");
         }

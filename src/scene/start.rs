@@ -11,7 +11,6 @@ use super::build::unique_name;
 use super::check::Rules;
 use super::{Document, FRAME, VERSION};
 use crate::base::geometry::farther;
-use crate::base::maths;
 use crate::base::mesh::Mesh;
 use crate::base::number;
 use crate::base::problem::Problem;
@@ -19,7 +18,7 @@ use crate::layers::KINDS;
 use crate::layers::parts::materials::{List, Materials};
 use crate::layers::parts::moment::Space;
 use crate::layers::space::camera::Camera;
-use crate::layers::space::fit::fit;
+use crate::layers::space::fit::{fit, short};
 use crate::layers::starts::Shown;
 use crate::layers::technique::Kind;
 
@@ -144,11 +143,9 @@ impl Start {
 fn camera(meshes: &BTreeMap<String, Arc<Mesh>>, frame: (usize, usize)) -> Value {
     let reach = |ways: &[DVec3]| meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
     let fitted = fit(&reach, [BACK, DVec3::Y], Camera::default().fov, frame);
-    let Some([position, target]) = fitted else { return json!({}) };
-    let distance = position.distance(target);
-    let fine = (0..10).map(maths::ten_to).find(|parts| distance * parts >= 1e4).unwrap_or(1e9);
-    let short = |point: DVec3| point.to_array().map(|v| number::json((v * fine).round() / fine));
-    json!({ "position": short(position), "target": short(target) })
+    let Some(fitted) = fitted else { return json!({}) };
+    let [position, target] = short(fitted).map(|point| point.to_array().map(number::json));
+    json!({ "position": position, "target": target })
 }
 
 #[cfg(test)]

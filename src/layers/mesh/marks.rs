@@ -44,7 +44,7 @@ pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &W
 /// At most so many strokes, or cells, of one overlay of one layer.
 const MOST: usize = 60_000;
 /// The length of a normal, as a share of the size of the mesh.
-const LENGTH: f64 = 0.03;
+const LENGTH: f64 = 0.015;
 
 /// The marks of a layer at one time.
 pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {

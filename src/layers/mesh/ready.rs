@@ -83,6 +83,10 @@ impl Ready for Synth {
 
     fn reach(&self, t: f64, ways: &[DVec3]) -> Option<Vec<f64>> {
         let placed = self.pose.at(if self.still { 0.0 } else { t });
+        // A mesh without a size is nowhere.
+        if placed.scale == 0.0 {
+            return None;
+        }
         if placed.bend_radians != 0.0 {
             let world = self.mesh.vertices.par_iter().map(|vertex| placed.point(vertex.position, DVec3::ZERO).0);
             return geometry::reach(world, ways);
@@ -126,6 +130,8 @@ mod tests {
             let expected = (0..3).flat_map(|axis| [high[axis], -low[axis]]);
             let far = found.iter().zip(expected).map(|(a, b): (&f64, f64)| (a - b).abs()).fold(0.0, f64::max);
             assert!(far < 1e-12, "{pose}: {found:?}");
+            let flat = Synth { pose: crate::layers::mesh::pose::Pose { scale: 0.0, ..synth.pose.clone() }, ..synth };
+            assert_eq!(flat.reach(t, &ways), None, "{pose}");
         }
     }
 }

@@ -3,13 +3,19 @@
 use glam::DVec3;
 
 use super::eye::{Eye, NEAR_M};
-use crate::base::maths::lerp;
+use crate::base::maths::{lerp, ten_to};
 
 /// What is to be seen reaches to at most this share of the frame.
 const SHARE: f64 = 0.9;
 
 /// The camera stands before it by at least this share of its depth.
 const LEAST_BEFORE: f64 = 0.125;
+
+/// The distance from the target has at least so many units of the last digit of a place.
+const UNITS: f64 = 1e4;
+
+/// A camera that was fitted and rounded is fitted anew to within so many of them.
+const SAME_UNITS: f64 = 3.0;
 
 /// On the side of the frame that has room to spare, the middle is sought in so many steps.
 const STEPS: usize = 8;
@@ -67,6 +73,23 @@ pub fn fit(reach: Reach, [back, up]: [DVec3; 2], fov: f64, size: (usize, usize))
     let beside = right * across.middle(distance) + up * upward.middle(distance);
     // It looks at what is half way between the nearest and the deepest.
     Some([distance, (nearest - deepest) / 2.0].map(|along| beside + back * along))
+}
+
+/// How many units of the last digit that matters a meter has, at this distance.
+fn fine(distance: f64) -> f64 {
+    (0..10).map(ten_to).find(|parts| distance * parts >= UNITS).unwrap_or(1e9)
+}
+
+/// Position and target in numbers as short as may be.
+pub fn short([position, target]: [DVec3; 2]) -> [DVec3; 2] {
+    let fine = fine(position.distance(target));
+    [position, target].map(|at| (at * fine).round() / fine)
+}
+
+/// Whether two positions with their targets differ by no more than what [`short`] takes away.
+pub fn is_same(a: [DVec3; 2], b: [DVec3; 2]) -> bool {
+    let far = [0, 1].map(|i| (a[i] - b[i]).abs().max_element());
+    far[0].max(far[1]) * fine(a[0].distance(a[1])) < SAME_UNITS + 0.5
 }
 
 /// How far something reaches beside lines of several slopes, on both sides of an axis of the frame.
@@ -172,6 +195,17 @@ mod tests {
         assert_eq!(target, DVec3::ONE);
         assert!(position.z > 1.0 + NEAR_M && position.truncate() == target.truncate());
         assert_eq!(fit(&|_| None, [DVec3::Z, DVec3::Y], 40.0, (4, 4)), None);
+    }
+
+    #[test]
+    fn what_was_fitted_in_short_numbers_is_not_fitted_anew() {
+        for (scale, up) in [(1.0, 0.3), (0.0137, 0.3), (1e5, 0.3), (2.9, -4.0), (0.11, 1.7)] {
+            let points = [[-1.0, 0.0, -2.0], [1.0, 3.0, 0.5], [4.0, 0.1, 0.3]].map(|at| DVec3::from(at) * scale);
+            let first = short(fitted(&points, [DVec3::new(0.2, up, 1.0), DVec3::Y], 40.0, (1280, 720)));
+            let again = short(fitted(&points, [first[0] - first[1], DVec3::Y], 40.0, (1280, 720)));
+            assert!(is_same(first, again), "{first:?} {again:?}");
+            assert!(!is_same(first, [first[0] + DVec3::X * scale * 0.01, first[1]]));
+        }
     }
 
     #[test]

@@ -89,8 +89,10 @@ fn said(state: &State) -> (String, Color) {
         Some("drawing the frame".to_owned())
     } else if let Some(why) = &state.no_pass {
         Some(why.clone())
+    } else if words.told.is_some() {
+        words.told.clone()
     } else if let Some(pass) = &state.pass {
-        Some(format!("pass {pass}, D shows the next, Backspace the one before"))
+        Some(format!("pass {pass}"))
     } else if state.shows("view-seam") {
         let last = state.timeline.frames() - 1;
         Some(format!("seam: frame {last} against 0, differences x 8"))
@@ -236,7 +238,12 @@ mod tests {
         let mut state = State { selected: Some("face/eye".into()), ..state() };
         state.words.notice = Some("joined".into());
         assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
+        state.passes = vec!["shade"];
+        state.run("next-pass");
+        assert_eq!(said(&state).0, "pass shade, D shows the next, Backspace the one before");
         state.run("view-seam");
+        assert_eq!(said(&state).0, "pass shade", "how to go on is said once");
+        state.run("pass color");
         assert!(said(&state).0.contains("frame 59 against 0"));
         state.words.reduced = Some("shown reduced".into());
         assert_eq!(said(&state), ("shown reduced".into(), WARNING));

@@ -75,6 +75,7 @@ impl App {
         let (width, height) = ready.synth.size;
         self.state.load(Size::new(width as f64, height as f64), &ready.scene.timeline);
         self.state.take_camera(ready.synth.stage.seen_by(), ready.around);
+        self.state.layers.clone_from(&ready.synth.layers);
         self.state.passes = passes::shown(&ready.scene);
     }
 

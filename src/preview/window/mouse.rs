@@ -125,6 +125,7 @@ impl Mouse {
 
     /// A button goes down.
     pub fn pressed(&mut self, state: &mut State, button: Button) -> Asked {
+        state.words.told = None;
         let Some(at) = state.pointer else { return Asked::Nothing };
         if at.y < state.area().height {
             self.drag = match button {
@@ -166,6 +167,7 @@ impl Mouse {
     /// The wheel or a touchpad turned by `steps`: whole steps zoom about the pointer, with Alt they move the camera; fractions are kept until they add up to
     /// one.
     pub fn turned(&mut self, state: &mut State, steps: f64) {
+        state.words.told = None;
         if steps * self.turned < 0.0 {
             self.turned = 0.0;
         }

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use crate::base::maths::pow;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::eye::{Eye, NEAR_M};
-use crate::layers::space::fit::{Ball, fit};
+use crate::layers::space::fit::{Ball, Reach, fit};
 
 /// The angle between the line of sight and the poles is at least this, in degrees.
 const POLE_DEGREES: f64 = 1.0;
@@ -88,9 +88,9 @@ impl OwnView {
     }
 
     /// Goes to where it sees all of it in the same direction, in frames of this width and height.
-    pub fn see(&mut self, around: &Ball, size: (usize, usize)) {
+    pub fn see(&mut self, reach: Reach, size: (usize, usize)) {
         let view = [self.position - self.target, self.up];
-        if let Some([position, target]) = fit(&|ways| around.reach(ways), view, self.fov, size) {
+        if let Some([position, target]) = fit(reach, view, self.fov, size) {
             (self.position, self.target) = (position, target);
         }
     }
@@ -177,7 +177,7 @@ mod tests {
     fn all_is_seen_in_the_same_direction() {
         let (mut own, ball) = (view(), Ball { middle: DVec3::new(9.0, 0.0, 0.0), radius: 2.0 });
         own.walk(500.0, -300.0);
-        own.see(&ball, (200, 100));
+        own.see(&|ways| ball.reach(ways), (200, 100));
         let seen = own.camera().at(0.0, (200, 100));
         let middle = seen.project(seen.seen(ball.middle));
         assert!((middle - seen.middle_px).length() < 1e-6 && (way(&own) - way(&view())).length() < 1e-9, "{own:?}");

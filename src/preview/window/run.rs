@@ -34,13 +34,17 @@ impl State {
         if command != "view-menu" && self.panel == Panel::Menu {
             self.panel = Panel::None;
         }
+        if let Some(pass) = views::pass_in(command) {
+            // The editor repeats what a key has done.
+            if pass != self.pass {
+                self.show_pass(pass);
+            }
+            return Outcome::Redraw;
+        }
+        self.words.told = None;
         let (name, wanted) = views::wanted(command);
         if self.switches.set(name, wanted).is_some() {
             self.transport.whole_frames = self.shows("view-whole-frames");
-            return Outcome::Redraw;
-        }
-        if let Some(pass) = views::pass_in(command) {
-            self.pass = pass;
             return Outcome::Redraw;
         }
         if self.steer(name) && wanted.is_none() {
@@ -95,10 +99,17 @@ impl State {
     /// Shows the pass so many places on, of those in which the scene has something.
     fn step_pass(&mut self, by: isize) {
         let pass = passes::step(&self.passes, self.pass.as_deref(), by);
-        self.pass = views::pass_in(&views::show_pass(Some(pass))).flatten();
+        self.show_pass(views::pass_in(&views::show_pass(Some(pass))).flatten());
         if self.passes.is_empty() {
-            self.words.notice = Some("no passes: nothing in the scene is in space".to_owned());
+            self.words.told = Some("no passes: nothing in the scene is in space".to_owned());
         }
+    }
+
+    /// Shows a pass, and says how to go on from there.
+    fn show_pass(&mut self, pass: Option<String>) {
+        let how = |pass| format!("pass {pass}, D shows the next, Backspace the one before");
+        self.words.told = pass.as_ref().map(how);
+        self.pass = pass;
     }
 
     fn move_wipe(&mut self, by: f64) {
@@ -165,6 +176,20 @@ mod tests {
         ] {
             state.run(command);
             assert_eq!(state.pass.as_deref(), pass, "{command}");
+        }
+    }
+
+    #[test]
+    fn what_a_key_says_goes_with_the_next_key_and_not_with_its_echo() {
+        for (passes, echo) in [(vec!["shade"], "pass shade"), (Vec::new(), "pass color")] {
+            let mut state = State { passes, ..State::for_tests() };
+            for next in ["orbit-left", "zoom-in", "view-outlines"] {
+                assert_eq!((state.run("next-pass"), state.run(echo)), (Outcome::Redraw, Outcome::Redraw));
+                assert!(state.words.told.is_some(), "{echo}");
+                state.run(next);
+                assert_eq!(state.words.told, None, "{next}");
+                state.run("pass color");
+            }
         }
     }
 

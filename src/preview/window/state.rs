@@ -1,5 +1,7 @@
 //! What the window shows, as a value: nothing here draws, waits or reads a clock. `run.rs` has the commands that change it.
 
+use std::sync::Arc;
+
 use kurbo::{Point, Size, Vec2};
 
 use super::own_view::OwnView;
@@ -7,6 +9,7 @@ use super::thin::Thin;
 use super::transport::Transport;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
+use crate::layers::ready::Ready;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::Ball;
 use crate::layers::timeline::Timeline;
@@ -28,6 +31,8 @@ pub struct State {
     pub camera: Option<Camera>,
     /// What is around all that is in space, as far as that is known.
     pub around: Option<Ball>,
+    /// All layers, as they are ready.
+    pub layers: Vec<Arc<dyn Ready>>,
     /// Where the window looks from, if that is not where the scene's camera does.
     pub own: Option<OwnView>,
     /// Zoom and place.
@@ -102,6 +107,7 @@ impl Default for State {
             picture: Size::ZERO,
             camera: None,
             around: None,
+            layers: Vec::new(),
             own: None,
             viewport: Viewport::default(),
             transport: Transport::default(),

@@ -6,6 +6,7 @@ use super::own_view::OwnView;
 use super::state::State;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::Ball;
+use crate::render;
 
 /// A key turns by this, in degrees.
 const TURN_DEGREES: f64 = 5.0;
@@ -49,9 +50,10 @@ impl State {
             return true;
         }
         if command == "own-view-all" {
-            if let Some(around) = self.around {
+            if self.around.is_some() {
                 let size = (self.picture.width as usize, self.picture.height as usize);
-                self.change_view(|own| own.see(&around, size));
+                let (layers, t) = (self.layers.clone(), self.transport.scene_time(&self.timeline));
+                self.change_view(|own| own.see(&|ways| render::reach_at(&layers, t, ways), size));
             }
             return true;
         }
@@ -142,8 +144,13 @@ mod tests {
         assert!((steps[1] - steps[0] * LEAST_SEEN).abs() < 1e-9, "right before it still a tenth of that: {steps:?}");
         assert!(state.steer("own-view-all"), "of what is not known");
         state.take_camera(Some(&Camera::default()), Some(Ball { middle: DVec3::X, radius: 1.0 }));
+        state.layers = render::samples::two_squares().1.layers;
         state.steer("own-view-all");
-        assert!((DVec3::from(state.own_camera().unwrap().target) - DVec3::X).length() < 1e-9);
+        let eye = state.own_camera().unwrap().at(0.0, (320, 200));
+        let corners = [[-1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [1.5, 1.0, -1.0], [1.5, -1.0, -1.0]].map(DVec3::from);
+        let places = corners.map(|at| (eye.project(eye.seen(at)) - eye.middle_px) / eye.middle_px);
+        let widest = places.iter().map(|at| at.abs().max_element()).fold(0.0, f64::max);
+        assert!((widest - 0.9).abs() < 1e-3, "as :camera fit does: {places:?}");
         let other = Camera { position: [1.0, 2.0, 3.0], ..Camera::default() };
         state.look_from(Some(&other));
         assert_eq!(state.own_camera(), Some(other.clone()), "the editor says from where");

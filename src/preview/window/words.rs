@@ -27,6 +27,8 @@ impl fmt::Display for Work {
 pub struct Words {
     /// How the scene is followed.
     pub notice: Option<String>,
+    /// What a key has to say, until the next key or button.
+    pub told: Option<String>,
     /// Progress of something that takes long.
     pub progress: Option<String>,
     /// That the picture is not shown as it is.

@@ -1,18 +1,19 @@
 //! The scene's camera: from what a window shows, and so that all that is in space is seen.
 
 use glam::{DMat3, DVec3};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
-use crate::base::geometry::farther;
+use crate::base::geometry::{Xyz, farther};
+use crate::base::number;
 use crate::files::materials::{self, Cache};
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Space;
 use crate::layers::ready::Making;
 use crate::layers::space::camera::{self, Camera};
-use crate::layers::space::fit::{Reach, fit};
+use crate::layers::space::fit::{self, Reach, fit};
 use crate::render::{frame_size, reach};
 use crate::scene::Scene;
 use crate::tui::events::Effect;
@@ -27,6 +28,8 @@ pub const COMMANDS: &[Command] = &[command(
 )
 .inside()];
 
+/// Why no camera sees anything of layers whose files are there.
+const NOTHING: &str = "nothing is in space: all of it is without a size (make pose.scale 1, or give it points)";
 /// Where a new camera stands.
 const FIRST_BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
 /// What moves is looked at at so many times.
@@ -48,7 +51,7 @@ fn take(state: &mut State, call: &Call) -> Done {
         true => "there is no window to take the camera from: :view opens one, and plica view elsewhere joins",
         false => "the window moved last shows the scene's camera: move it first (drag with the middle button)",
     })?;
-    write(state, call, &own, "the window's camera is the scene's now")
+    write(state, call, rounded(standing(&own)), "the window's camera is the scene's now")
 }
 
 /// Sets the window's view, or that of the scene, as a key at the present time.
@@ -94,16 +97,37 @@ fn see_all(state: &mut State, call: &Call) -> Done {
     let fitted = |reach: Reach, size| fit(reach, [back, up], fov, size);
     let made = state.picture.synth.as_ref();
     let seen = made.and_then(|synth| fitted(&|ways| reach(&synth.layers, TIMES, ways), synth.size));
-    let [position, target] = match (seen.map_or_else(|| unmade(state, &fitted), Ok), &before) {
-        (Ok(seen), _) => seen.map(Into::into),
+    let seen = match (seen.map_or_else(|| unmade(state, &fitted), Ok), &before) {
+        (Ok(seen), _) => fit::short(seen),
         (Err(why), Some(_)) => return Err(why),
         // A layer in space asks for a camera before there is anything to see.
         (Err(why), None) => {
             let said = format!("the scene has a camera, but {why}");
-            return write(state, call, &Camera::default(), &said);
+            return write(state, call, standing(&Camera::default()), &said);
         }
     };
-    write(state, call, &Camera { position, target, up: up.into(), fov, ..of }, "the camera sees all that is in space")
+    let stands = before.is_some() && of.keys.is_empty() && of.turn == 0.0;
+    if stands && fit::is_same([position, target], seen) {
+        state.ask(Effect::Look(None));
+        state.say("nothing changes: the camera sees all that is in space already");
+        return Ok(());
+    }
+    let [position, target] = seen.map(Into::into);
+    let fitted = Camera { position, target, up: up.into(), fov, ..Camera::default() };
+    write(state, call, standing(&fitted), "the camera sees all that is in space")
+}
+
+/// A camera that stands still, without what is so anyway.
+fn standing(camera: &Camera) -> Value {
+    let (plain, numbers) = (Camera::default(), |all: Xyz| all.map(number::json));
+    let mut value = json!({ "position": numbers(camera.position), "target": numbers(camera.target) });
+    if camera.up != plain.up {
+        value["up"] = json!(numbers(camera.up));
+    }
+    if camera.fov != plain.fov {
+        value["fov"] = number::json(camera.fov);
+    }
+    value
 }
 
 /// Where a camera sees all of something in frames of this size.
@@ -127,7 +151,7 @@ fn unmade(state: &State, fitted: Fitted) -> Result<[DVec3; 2], String> {
     let layers: Vec<_> = in_space.filter_map(|layer| layer.technique().synth(&making, None).ok()).collect();
     let meshes = |ways: &[DVec3]| materials.meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
     let all = |ways: &[DVec3]| if layers.is_empty() { meshes(ways) } else { reach(&layers, TIMES, ways) };
-    let why = || problems.first().map_or("nothing is in space".to_owned(), |problem| problem.message.clone());
+    let why = || problems.first().map_or(NOTHING.to_owned(), |problem| problem.message.clone());
     fitted(&all, frame_size(scene, &materials)).ok_or_else(why)
 }
 
@@ -143,12 +167,9 @@ fn told(scene: &Scene, ways: &[DVec3]) -> Option<Vec<f64>> {
 }
 
 /// Makes a camera that stands still the scene's; says so, and what is lost by it.
-fn write(state: &mut State, call: &Call, camera: &Camera, said: &str) -> Done {
+fn write(state: &mut State, call: &Call, camera: Value, said: &str) -> Done {
     let before = state.document().scene().camera.clone().unwrap_or_default();
-    let value = json!({
-        "position": camera.position, "target": camera.target, "up": camera.up, "fov": camera.fov,
-    });
-    call.obey(state, &format!("set camera={}", rounded(value)))?;
+    call.obey(state, &format!("set camera={camera}"))?;
     // Windows that look from elsewhere would not show it.
     state.ask(Effect::Look(None));
     let keys = (!before.keys.is_empty()).then(|| counted(before.keys.len(), "key"));

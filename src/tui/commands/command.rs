@@ -133,9 +133,10 @@ impl Command {
             && !words.contains(&said.text)
             && !(optional && said.text.is_empty())
         {
-            let found = if said.text.is_empty() { "nothing".into() } else { problem::quoted(said.text) };
+            let found = problem::quoted(said.text);
             return Err(match words.as_slice() {
                 [] => format!("{} takes no argument, not {found}", self.name),
+                words if said.text.is_empty() => format!("{} wants {}", self.name, one_of(words)),
                 words => format!("{} is followed by {}, not {found}", self.name, one_of(words)),
             });
         }

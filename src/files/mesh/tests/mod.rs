@@ -94,12 +94,12 @@ fn limits_hold_before_memory_is_taken() {
         ),
         (
             Limits { memory: 39, ..Limits::default() },
-            "needs 40 bytes of memory, and at most 39 bytes are allowed (make it smaller, or give --limit memory=1G)",
+            "needs 40 bytes of memory, and at most 39 bytes are allowed (make it smaller, or give --limit memory=1M)",
         ),
         (
             Limits { memory: 100, ..Limits::default() },
             "needs 204 bytes of memory besides 40 bytes in use, and at most 100 bytes are allowed \
-             (make it smaller, or give --limit memory=1G)",
+             (make it smaller, or give --limit memory=1M)",
         ),
     ] {
         assert_eq!(read_with("a.obj", text, &[], &limits).unwrap_err(), format!("a.obj: {expected}"));
