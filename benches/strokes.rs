@@ -26,7 +26,7 @@ fn noise(bencher: Bencher, (overlap, spacing, regularity): (f64, f64, f64)) {
     let synth = scene(wall(50), &strokes, (1920, 1080));
     let asked = Asked::parse("noise", &Scene::default()).expect("there is such a pass");
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be had");
-    // Each of another time: what was drawn last is kept.
+    // Each frame is of another time, since the last one drawn is kept.
     let mut time = 0.0;
     bencher.bench_local(|| {
         time = (time + 0.01) % 1.0;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// No number has more digits.
+/// Numbers with more digits are refused.
 const MOST_DIGITS: usize = 20;
 
 /// A file name, in which the place of a number may be left open.

@@ -77,7 +77,7 @@ complete -c plica -a '(plica completions --of (commandline -opc)[2..] (commandli
     }
 }
 
-/// The names that the last of these words may become, the subcommand first; none where the shell knows as much.
+/// The names that the last of these words may become, the subcommand first; empty if the shell knows them itself.
 fn names(words: &[String]) -> Vec<String> {
     let [sub, .., last] = words else { return Vec::new() };
     let before = &words[words.len() - 2];

@@ -22,7 +22,7 @@ struct Mesh {
 @group(0) @binding(3) var picture: texture_2d<f32>;
 
 struct Corner {
-    // As near in whatever draw, to the bit.
+    // Invariant: the same depth, to the bit, in every draw.
     @builtin(position) @invariant position: vec4f,
     @location(0) normal: vec3f,
     @location(1) uv: vec2f,

@@ -77,7 +77,7 @@ impl<'a> Scene<'a> {
         self.aimed(wanted, |anchor, aim| self.points(wanted, anchor, aim))
     }
 
-    /// What it is fixed to.
+    /// What a noise is fixed to: its own anchor, otherwise that of the strokes.
     pub fn anchor(&self, wanted: &Wanted) -> Anchor {
         wanted.anchor.unwrap_or(self.ready.strokes.anchor)
     }

@@ -105,7 +105,7 @@ pub fn plan(ready: &Ready, given: &Given, ambient: f64) -> (Vec<Scratch>, Vec<Dr
     (scratch, draws)
 }
 
-/// An array; one of nothing has something that is not read.
+/// An array. A buffer cannot be empty: an empty array gets one item that is never read.
 fn list<T: Pod + Zeroable>(all: &[T]) -> Bind {
     Bind::List(if all.is_empty() { bytes_of(&T::zeroed()).to_vec() } else { cast_slice(all).to_vec() })
 }
