@@ -391,6 +391,7 @@ fn a_scene_that_has_nothing_to_write_says_so() {
         ("field s.plica.json -o a.svg --zone x", "the scene has no zones"),
         ("synth s.plica.json -o out", "no layer has textures"),
         ("synth s.plica.json -o out", "out, 1 file"),
+        ("synth s.plica.json -o out --bake 64", "--bake: no layer shows a view map (leave it out)"),
     ] {
         let stderr = String::from_utf8(run(dir, line).stderr).unwrap();
         assert!(stderr.contains(said) && !stderr.contains("1 files"), "{line}: {stderr}");

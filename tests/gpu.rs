@@ -270,7 +270,7 @@ fn every_technique_with_textures_bundles_its_example() {
         let folder = tempfile::tempdir().unwrap();
         let place = Guard::new(false).folder(&folder.path().join("textures"), &|_| true, BTreeSet::new()).unwrap();
         let synth = render::synth(&scene, &materials, None).unwrap();
-        let written = textures::write(&scene, &synth, Depth::Float, &place, &mut |_, _| Ok(())).unwrap();
+        let written = textures::write(&scene, &synth, Depth::Float.into(), &place, &mut |_, _| Ok(())).unwrap();
         let textures = written.names.iter().filter(|name| *name != "manifest.json").count();
         assert_eq!(textures > 0, bundles, "{kind}: {:?}", written.names);
         for name in &written.names {

@@ -248,7 +248,7 @@ fn far(case: &scenes::Case, depth: Depth, by_origin: bool, ks: &[f64], bound: u8
     let synth = render::synth(&case.scene, &case.materials, None).unwrap();
     let out = dir.path().join("out");
     let place = plica::files::outputs::Guard::new(false).folder(&out, &|_| true, Default::default()).unwrap();
-    write(&case.scene, &synth, depth, &place, &mut |_, _| Ok(())).unwrap();
+    write(&case.scene, &synth, depth.into(), &place, &mut |_, _| Ok(())).unwrap();
     let player = Player::open(&out, by_origin);
     let differ = |&k: &f64| {
         let n = case.scene.timeline.frames() as f64;

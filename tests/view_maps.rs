@@ -2,15 +2,20 @@
 //! what must not change a frame. Photographs beside the repository are looked at where they are there.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
 
+#[path = "view_maps/player.rs"]
+mod player;
+
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use plica::base::maths::{TAU, cos, sin};
+use plica::base::maths::{TAU, cos, sin, tan};
 use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
-use plica::base::pixels::{Frame, Linear, Rgba, encode};
+use plica::base::pixels::{Frame, Linear, Rgba, decode, encode};
+use plica::export::textures::{self, Forms};
+use plica::files::outputs::Guard;
 use plica::layers::parts::materials::Materials;
 use plica::layers::parts::readout::Value as Told;
 use plica::render::bands::Bands;
@@ -248,4 +253,76 @@ fn photographs_come_back_from_their_own_cameras() {
     let told = synth.layers[0].lying(true).unwrap();
     let found: Vec<f64> = told.iter().filter_map(|view| view.get("psnr")?.as_f64()).collect();
     assert!(found.len() == 2 && found.iter().all(|near| *near >= 36.0), "{found:?}");
+}
+
+/// A scene with another surface.
+fn changed(scene: &Scene, surface: &Value) -> Scene {
+    let mut scene = serde_json::to_value(scene).unwrap();
+    scene["layers"][0]["surface"].as_object_mut().unwrap().extend(surface.as_object().unwrap().clone());
+    serde_json::from_value(scene).unwrap()
+}
+
+/// Writes the textures of a scene to a folder.
+fn textures(scene: &Scene, forms: Forms) -> Result<tempfile::TempDir, plica::base::error::Error> {
+    let folder = tempfile::tempdir().unwrap();
+    let place = Guard::new(false).folder(folder.path(), &|_| true, Default::default())?;
+    textures::write(scene, &synth(scene), forms, &place, &mut |_, _| Ok(()))?;
+    Ok(folder)
+}
+
+#[test]
+fn frames_can_be_found_from_what_synth_writes() {
+    let near =
+        json!({ "points": [{ "position": [0, 0.6, 3.5], "base": 0.6 }, { "position": [3, 1, 0], "base": 0.2 }] });
+    for (degrees, surface) in [
+        (10.0, json!({ "levels": 2, "directions": 6 })),
+        (40.0, json!({ "levels": 2, "directions": 4, "atlas": "box", "blend": near })),
+    ] {
+        let scene = changed(&scene(degrees, &json!({})), &surface);
+        let frame = cpu::frame(&synth(&scene), 0.0);
+        let folder = textures(&scene, Forms::default()).unwrap();
+        let player = player::Player::read(folder.path());
+        let angle = f64::to_radians(degrees);
+        let place = DVec3::new(4.0 * sin(angle), 0.6, 4.0 * cos(angle));
+        let forward = -place.normalize();
+        let right = forward.cross(DVec3::Y).normalize();
+        let focal = f64::from(frame.height() as u32) / 2.0 / tan(f64::to_radians(18.0));
+        let camera = player::Camera {
+            place,
+            ways: [right / focal, -right.cross(forward) / focal, forward],
+            middle: DVec2::new(frame.width() as f64, frame.height() as f64) / 2.0,
+        };
+        let (mut seen, mut off) = (0, Vec::new());
+        for i in 0..frame.width() * frame.height() {
+            let (x, y) = (i % frame.width(), i / frame.width());
+            let [r, g, b, a] = *frame.get(x, y);
+            let found = player.pixel(&camera, x, y);
+            seen += usize::from(found.is_some());
+            let far = found.map(|found| found.iter().zip([r, g, b]).map(|(a, b)| a.abs_diff(b)).max().unwrap());
+            if far.is_some() != (a > 0) || far > Some(1) {
+                off.push((x, y, found, [r, g, b]));
+            }
+        }
+        assert!(seen > 500 && off.is_empty(), "{seen} seen, {} of them off: {:?}", off.len(), off.first());
+    }
+}
+
+#[test]
+fn a_baked_base_coat_is_what_the_mesh_shows_with_it() {
+    let scene = changed(&scene(25.0, &json!({})), &json!({ "levels": 2, "directions": 4 }));
+    let folder = textures(&scene, Forms { baked_px: Some(64), ..Forms::default() }).unwrap();
+    let baked = image::open(folder.path().join("vase-baked.png")).unwrap().to_rgba8();
+    assert_eq!((baked.width(), baked.height()), (64, 64));
+    let mut with = materials();
+    let cells = baked.pixels().map(|texel| decode(texel.0)).collect();
+    with.pictures.insert("plain".into(), Arc::new(Picture::from_cells(64, 64, cells)));
+    let mut shown = serde_json::to_value(&scene).unwrap();
+    shown["layers"][0]["surface"] = json!({ "kind": "texture", "image": "plain" });
+    shown["layers"][0]["light"] = json!({ "ambient": 1 });
+    let found = render::synth(&serde_json::from_value(shown).unwrap(), &with, None).unwrap();
+    let expected = Asked::parse("independent", &scene).unwrap().picture(&synth(&scene), 0.0);
+    let pairs = cpu::frame(&found, 0.0).into_cells().into_iter().zip(expected.cells());
+    let far = pairs.map(|(a, b)| a.iter().zip(encode(*b)).map(|(a, b)| a.abs_diff(b)).max().unwrap());
+    let far: Vec<u8> = far.collect();
+    assert!(far.iter().filter(|far| **far > 6).count() * 100 < far.len(), "{far:?}");
 }

@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod number;
 pub mod numbered;
 pub mod oklab;
+pub mod packing;
 pub mod picture;
 pub mod pixels;
 pub mod pointer;

@@ -26,7 +26,8 @@ const DOORS: &[(&[&str], &[&str])] = &[
     (&["std::net", "std::os::unix::net"], &["preview/wire/"]),
     (&["rustix", "signal_hook"], &["base/system"]),
     (&["image", "png", "gif", "webp"], &["files/", "export/"]),
-    (&["moxcms", "exr", "tiff", "zune_core", "zune_jpeg"], &["files/picture"]),
+    (&["moxcms", "tiff", "zune_core", "zune_jpeg"], &["files/picture"]),
+    (&["exr"], &["files/picture", "export/floats"]),
     (&["tiny_skia"], &["export/field"]),
     (&["glob"], &["ops/"]),
 ];

@@ -12,7 +12,7 @@ use crate::export::{floats, still};
 use crate::files::draft::DraftFolder;
 use crate::files::outputs::FolderPlace;
 use crate::layers::KINDS;
-use crate::layers::parts::bundle::{FloatNote, PictureNote, Sink, Texture, TextureNote};
+use crate::layers::parts::bundle::{FileNote, FloatNote, Halves, HalvesNote, PictureNote, Sink, Texture, TextureNote};
 use crate::layers::technique::Bundled;
 use crate::layers::timeline::Timeline;
 use crate::render::{Synth, cpu};
@@ -26,10 +26,25 @@ mod tests;
 pub use data::Depth;
 pub use names::{Names, earlier};
 
-use names::{MANIFEST, PICTURES, of_kind};
+use names::{MANIFEST, MESHES, PICTURES, of_kind};
 
 /// The version of the format of manifests; a player refuses a larger one.
 const VERSION: u32 = 1;
+
+/// How textures are written.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Forms {
+    /// How many bits a number takes.
+    pub depth: Depth,
+    /// The side of pictures that surfaces are baked into, if they are.
+    pub baked_px: Option<usize>,
+}
+
+impl From<Depth> for Forms {
+    fn from(depth: Depth) -> Self {
+        Forms { depth, baked_px: None }
+    }
+}
 
 /// What was written.
 pub struct Written {
@@ -65,14 +80,14 @@ struct Manifest {
 pub fn write(
     scene: &Scene,
     synth: &Synth,
-    depth: Depth,
+    forms: Forms,
     place: &FolderPlace,
     step: &mut dyn FnMut(u64, u64) -> Result<()>,
 ) -> Result<Written> {
     let mut techniques = Map::new();
     let draft = DraftFolder::create(place)?;
-    let may = Names::of(scene, depth);
-    let mut folder = Folder { draft, may, names: Vec::new(), depth, error_px: 0.0, step, done: (0, 0) };
+    let may = Names::of(scene, forms.depth);
+    let mut folder = Folder { draft, may, names: Vec::new(), forms, error_px: 0.0, step, done: (0, 0) };
     for kind in KINDS {
         let Some(bundle) = &kind.bundle else { continue };
         let layers = of_kind(scene, kind).filter_map(|(i, layer)| Some((layer, &**synth.layers.get(i)?)));
@@ -102,7 +117,7 @@ struct Folder<'a> {
     draft: DraftFolder,
     may: Names,
     names: Vec<String>,
-    depth: Depth,
+    forms: Forms,
     /// The largest error of a place or a jump vector so far.
     error_px: f64,
     step: &'a mut dyn FnMut(u64, u64) -> Result<()>,
@@ -134,8 +149,12 @@ impl Folder<'_> {
 }
 
 impl Sink for Folder<'_> {
+    fn baked_px(&self) -> Option<usize> {
+        self.forms.baked_px
+    }
+
     fn largest_code(&self) -> Option<u16> {
-        self.depth.largest()
+        self.forms.depth.largest()
     }
 
     fn step(&mut self, done: u64, all: u64) -> Result<()> {
@@ -146,13 +165,14 @@ impl Sink for Folder<'_> {
     fn stem(&self, layer: Option<&str>, item: &str, end: &str) -> String {
         let stem = names::stem(layer, item);
         let taken: HashSet<String> = self.names.iter().map(|name| names::folded(name)).collect();
-        let file = |stem: &String| names::folded(&format!("{stem}{end}.{}", self.depth.extension()));
+        let file = |stem: &String| names::folded(&format!("{stem}{end}.{}", self.forms.depth.extension()));
         let numbered = (2..).map(|n| format!("{stem}{n}-"));
         std::iter::once(stem.clone()).chain(numbered).find(|stem| !taken.contains(&file(stem))).unwrap_or(stem)
     }
 
     fn texture(&mut self, name: &str, texture: &Texture) -> Result<TextureNote> {
-        let (bytes, note) = texture.encode(format!("{name}.{}", self.depth.extension()), self.depth)?;
+        let Forms { depth, .. } = self.forms;
+        let (bytes, note) = texture.encode(format!("{name}.{}", depth.extension()), depth)?;
         self.put(note.file.clone(), &bytes)?;
         self.error_px = note.channels.iter().filter_map(|channel| channel.error_px).fold(self.error_px, f64::max);
         Ok(note)
@@ -165,5 +185,17 @@ impl Sink for Folder<'_> {
         let bytes = still::frame(&codes).map_err(|e| Error::at(&file, e))?;
         self.put(file.clone(), &bytes)?;
         Ok(PictureNote { file, float: self.float(name, colors)? })
+    }
+    fn halves(&mut self, name: &str, size: (usize, usize), texel: Halves) -> Result<HalvesNote> {
+        let file = format!("{name}.{}", PICTURES[1]);
+        let bytes = floats::halves(size, texel).map_err(|e| Error::at(&file, e))?;
+        self.put(file.clone(), &bytes)?;
+        Ok(HalvesNote { file, width: size.0, height: size.1 })
+    }
+
+    fn mesh(&mut self, name: &str, text: &str) -> Result<FileNote> {
+        let file = format!("{name}.{}", MESHES[0]);
+        self.put(file.clone(), text.as_bytes())?;
+        Ok(FileNote { file })
     }
 }

@@ -10,7 +10,7 @@ use super::Depth;
 use crate::files::hash;
 use crate::files::lines;
 use crate::layers::KINDS;
-use crate::layers::parts::bundle;
+use crate::layers::parts::bundle::{self, Form};
 use crate::layers::technique::{Kind, Technique};
 use crate::scene::Scene;
 
@@ -18,6 +18,8 @@ use crate::scene::Scene;
 pub const MANIFEST: &str = "manifest.json";
 /// The extensions of a picture: in codes and in floats.
 pub const PICTURES: [&str; 2] = ["png", "exr"];
+/// The extension of a mesh.
+pub const MESHES: [&str; 1] = ["obj"];
 
 /// The names that the textures of a scene may have.
 pub struct Names {
@@ -47,18 +49,35 @@ impl Names {
 
     fn is_of(&self, bundle: &bundle::Names, stems: &[String], name: &str) -> bool {
         let Some((name, extension)) = name.rsplit_once('.') else { return false };
-        let picture = PICTURES.contains(&extension) && bundle.pictures.iter().any(|picture| picture == name);
-        let texture = |stem: &String| {
-            let rest = name.strip_prefix(stem.as_str())?;
+        let is = |form: Form| self.extensions(form).contains(&extension);
+        let own = |form: Form, names: &[String]| is(form) && names.iter().any(|own| own == name);
+        // The file that is called as its item is has no - behind that.
+        let whole = if is(Form::Mesh) { format!("{name}-") } else { name.to_owned() };
+        let of_item = |stem: &String| {
+            let rest = whole.strip_prefix(stem.as_str())?;
             // Things of the same name are numbered.
             let part = rest.trim_start_matches(|c: char| c.is_ascii_digit());
             let part = if part.len() < rest.len() { part.strip_prefix('-')? } else { part };
-            bundle.ends.contains(&part).then_some(())
+            bundle.ends.iter().any(|(form, end)| is(*form) && end == part).then_some(())
         };
-        let texture = |name: &str| {
-            bundle.textures.iter().any(|own| own == name) || stems.iter().any(|stem| texture(stem).is_some())
-        };
-        picture || (extension == self.extension && texture(name))
+        own(Form::Picture, &bundle.pictures)
+            || own(Form::Texture, &bundle.textures)
+            || stems.iter().any(|stem| of_item(stem).is_some())
+    }
+
+    /// The extensions that a file may have.
+    fn extensions(&self, form: Form) -> &[&str] {
+        match form {
+            Form::Texture => std::slice::from_ref(&self.extension),
+            Form::Picture => &PICTURES,
+            Form::Halves => &PICTURES[1..],
+            Form::Mesh => &MESHES,
+        }
+    }
+
+    /// Whether something is baked if that is asked for.
+    pub fn bakes(&self) -> bool {
+        self.bundles.iter().any(|(bundle, _)| bundle.bakes)
     }
 }
 
@@ -112,7 +131,7 @@ pub fn earlier(dir: &Path) -> BTreeSet<String> {
 /// The names of files in a manifest; only those that a run writes.
 fn collect(value: &Value, names: &mut BTreeSet<String>) {
     let is_ours = |name: &&String| {
-        let ours = [".png", ".exr"].iter().any(|end| name.ends_with(end));
+        let ours = [".png", ".exr", ".obj"].iter().any(|end| name.ends_with(end));
         ours && !name.contains('/') && !name.starts_with('.')
     };
     match value {
@@ -158,6 +177,20 @@ mod tests {
     }
 
     #[test]
+    fn files_of_items_are_called_by_them() {
+        let ends =
+            vec![(Form::Mesh, String::new()), (Form::Picture, "base-0".into()), (Form::Texture, "turns-0".into())];
+        let bundle = bundle::Names { items: vec![(None, "body".into())], ends, ..bundle::Names::default() };
+        let names = Names { bundles: vec![(bundle, vec!["body-".into()])], extension: "png" };
+        for name in ["body.obj", "body-2.obj", "body-base-0.png", "body-base-0.exr", "body-2-turns-0.png"] {
+            assert!(names.may_be(name), "{name}");
+        }
+        for name in ["body.png", "body-.obj", "bodyx.obj", "body-base-1.png", "body-turns-0.exr", "body-base-0.obj"] {
+            assert!(!names.may_be(name), "{name}");
+        }
+    }
+
+    #[test]
     fn a_manifest_names_what_a_run_wrote_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
         let names = |text: &str| {
@@ -166,8 +199,8 @@ mod tests {
         };
         let text = r#"{"plica_textures": 1, "colour": {"file": "colour.png"}, "layers": [{"zones": [
             {"init": {"file": "a-init.exr"}, "name": "x.png", "jump": {"file": "../b.png"}},
-            {"init": {"file": ".hidden.png"}, "jump": {"file": "photo.jpg"}}]}]}"#;
-        assert_eq!(names(text), ["a-init.exr", "colour.png", MANIFEST]);
+            {"init": {"file": ".hidden.png"}, "jump": {"file": "photo.jpg"}}]}], "meshes": [{"file": "a.obj"}]}"#;
+        assert_eq!(names(text), ["a-init.exr", "a.obj", "colour.png", MANIFEST]);
         assert!(names(r#"{"colour": {"file": "colour.png"}}"#).is_empty());
         assert!(names("no JSON").is_empty());
         assert!(earlier(&folder.path().join("none")).is_empty());

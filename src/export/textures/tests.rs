@@ -54,7 +54,7 @@ fn place(dir: &Path) -> FolderPlace {
 fn written(scene: &Scene, materials: &Materials, depth: Depth) -> (tempfile::TempDir, Synth) {
     let dir = tempfile::tempdir().unwrap();
     let synth = render::synth(scene, materials, None).unwrap();
-    write(scene, &synth, depth, &place(&dir.path().join("out")), &mut |_, _| Ok(())).unwrap();
+    write(scene, &synth, depth.into(), &place(&dir.path().join("out")), &mut |_, _| Ok(())).unwrap();
     (dir, synth)
 }
 
@@ -68,7 +68,7 @@ fn a_clip_is_refused_with_its_place() {
     let synth = render::synth(&scene, &Materials { clips, ..materials() }, None).unwrap();
     let dir = tempfile::tempdir().unwrap();
     let place = place(&dir.path().join("out"));
-    let told = write(&scene, &synth, Depth::Float, &place, &mut |_, _| Ok(())).err().unwrap().to_string();
+    let told = write(&scene, &synth, Depth::Float.into(), &place, &mut |_, _| Ok(())).err().unwrap().to_string();
     assert!(told.starts_with("layer \"face\", zone \"water\": reads the clip \"falls\", and textures"), "{told}");
     assert!(!dir.path().join("out").exists(), "nothing is written");
 }
@@ -101,7 +101,7 @@ fn an_interrupt_leaves_nothing() {
     let scene = &two();
     let synth = render::synth(scene, &materials(), None).unwrap();
     let mut step = |done, _| if done == 1 { Err(Error::Interrupted) } else { Ok(()) };
-    assert!(write(scene, &synth, Depth::Float, &place(&dir.path().join("out")), &mut step).is_err());
+    assert!(write(scene, &synth, Depth::Float.into(), &place(&dir.path().join("out")), &mut step).is_err());
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
 }
 

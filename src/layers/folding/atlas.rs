@@ -6,6 +6,7 @@ use std::sync::Arc;
 use kurbo::{Point, Rect, Vec2};
 
 use super::synth::ZoneSynth;
+use crate::base::packing::{Packed, pack};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Beyond, Frame, Grid, Linear, Rgba};
 
@@ -118,7 +119,7 @@ impl Atlas {
     pub fn new(needs: Vec<Need>) -> (Atlas, Vec<usize>) {
         let (merged, piece_of) = merge(needs);
         let gutter = usize::from(merged.len() > 1);
-        let (places, width, height) = pack(&merged, gutter);
+        let Packed { places, width, height } = packed(&merged, gutter);
         let place = |(need, (x, y)): (Need, (usize, usize))| Piece { need, x: x + gutter, y: y + gutter };
         let pieces: Vec<Piece> = merged.into_iter().zip(places).map(place).collect();
         let mut colors = Grid::filled(width, height, [0.0; 4]);
@@ -196,34 +197,10 @@ fn joinable(needs: &[Need]) -> Option<(usize, usize)> {
     (0..needs.len()).flat_map(|a| (a + 1..needs.len()).map(move |b| (a, b))).find(|&(a, b)| fits(&needs[a], &needs[b]))
 }
 
-/// Places for the areas with a border of `gutter` each, and the total size: the smallest result over a few widths.
-fn pack(needs: &[Need], gutter: usize) -> (Vec<(usize, usize)>, usize, usize) {
+/// Places for the areas with a border of `gutter` each.
+fn packed(needs: &[Need], gutter: usize) -> Packed {
     let size = |need: &Need| (need.area.width() as usize + 2 * gutter, need.area.height() as usize + 2 * gutter);
-    let sizes: Vec<_> = needs.iter().map(size).collect();
-    let total: usize = sizes.iter().map(|(w, h)| w * h).sum();
-    let least = sizes.iter().map(|s| s.0).max().unwrap_or(1).max(total.isqrt());
-    let packed = (0..8).map(|k| shelves(&sizes, least + least * k / 8));
-    packed.min_by_key(|(_, width, height)| width * height).unwrap_or_default()
-}
-
-/// Places on shelves at most `most` wide, tallest first; and the width and height that this takes. Offline and exact;
-/// the crates for this are made for atlases that change, and allow at most 65535 texels per side.
-fn shelves(sizes: &[(usize, usize)], most: usize) -> (Vec<(usize, usize)>, usize, usize) {
-    let mut order: Vec<usize> = (0..sizes.len()).collect();
-    order.sort_by_key(|&i| (std::cmp::Reverse(sizes[i].1), std::cmp::Reverse(sizes[i].0), i));
-    let mut places = vec![(0, 0); sizes.len()];
-    let (mut x, mut y, mut shelf, mut widest) = (0, 0, 0, 0);
-    for i in order {
-        let (width, height) = sizes[i];
-        if x + width > most {
-            (x, y, shelf) = (0, y + shelf, 0);
-        }
-        places[i] = (x, y);
-        x += width;
-        shelf = shelf.max(height);
-        widest = widest.max(x);
-    }
-    (places, widest, y + shelf)
+    pack(&needs.iter().map(size).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A mesh in space, seen by the scene's camera. What its surface shows is a slot of its own (`surface/`).
 
 pub mod around;
+pub mod bundle;
 #[cfg(test)]
 mod checks;
 pub mod frame;
@@ -32,7 +33,7 @@ use super::parts::readout::ReadOut;
 use super::parts::shots::{Laid, Laying, Lying};
 use super::ready::{Making, Ready};
 use super::starts::{Shown, Starts, Template};
-use super::technique::{Checked, Kind, Technique};
+use super::technique::{Bundle, Checked, Kind, Technique};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -49,7 +50,7 @@ pub static KIND: Kind = Kind {
         strokes::plan::PROGRAMS[3],
         strokes::plan::PROGRAMS[4],
     ],
-    bundle: None,
+    bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[],
     overlays: marks::OVERLAYS,
     passes: &[

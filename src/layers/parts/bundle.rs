@@ -90,8 +90,32 @@ pub struct FloatNote {
     pub file: String,
 }
 
+/// A file that was written, in the manifest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileNote {
+    /// The file.
+    pub file: String,
+}
+
+/// A written texture of half floats in the manifest: as they are, whatever the bits of other numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HalvesNote {
+    /// The file.
+    pub file: String,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+/// The bits of the half floats of a texel, by its column and row.
+pub type Halves<'a> = &'a (dyn Fn(usize, usize) -> [u16; 4] + Sync);
+
 /// Where the textures of a bundle go. Names are without the extension.
 pub trait Sink {
+    /// The side of pictures that surfaces are baked into; `None` if they are not.
+    fn baked_px(&self) -> Option<usize>;
+
     /// The largest code of a number; `None` if numbers are floats.
     fn largest_code(&self) -> Option<u16>;
 
@@ -116,6 +140,31 @@ pub trait Sink {
     /// # Errors
     /// As [`Sink::texture`].
     fn picture(&mut self, name: &str, colors: &Linear, finish: &dyn Fn(&mut Frame)) -> Result<PictureNote>;
+
+    /// Writes a texture of half floats, of this width and height.
+    ///
+    /// # Errors
+    /// As [`Sink::texture`].
+    fn halves(&mut self, name: &str, size: (usize, usize), texel: Halves) -> Result<HalvesNote>;
+
+    /// Writes a mesh, which is the text of an OBJ.
+    ///
+    /// # Errors
+    /// As [`Sink::texture`].
+    fn mesh(&mut self, name: &str, text: &str) -> Result<FileNote>;
+}
+
+/// What a file of a bundle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// See [`Sink::texture`].
+    Texture,
+    /// See [`Sink::picture`].
+    Picture,
+    /// See [`Sink::halves`].
+    Halves,
+    /// See [`Sink::mesh`].
+    Mesh,
 }
 
 /// The names that the files of a bundle may have, declared before anything is made.
@@ -125,8 +174,10 @@ pub struct Names {
     pub pictures: Vec<String>,
     /// Textures, without the extension.
     pub textures: Vec<String>,
-    /// What has textures of its own: the name of its layer, if there are several, and its own.
+    /// What has files of its own: the name of its layer, if there are several, and its own.
     pub items: Vec<(Option<String>, String)>,
-    /// What the names of those textures end in.
-    pub ends: &'static [&'static str],
+    /// What those files are, and what their names end in; those that are called as the item is end in nothing.
+    pub ends: Vec<(Form, String)>,
+    /// Whether something is baked if that is asked for.
+    pub bakes: bool,
 }

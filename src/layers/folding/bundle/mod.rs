@@ -12,7 +12,7 @@ use super::synth::{Synth, ZoneSynth};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Beyond, Grid};
 use crate::base::problem::quoted;
-use crate::layers::parts::bundle::{Channel, Names, Sink, Texture};
+use crate::layers::parts::bundle::{Channel, Form, Names, Sink, Texture};
 use crate::layers::technique::{Bundled, Technique};
 
 mod folds;
@@ -45,7 +45,13 @@ pub fn names(layers: &[&dyn Technique]) -> Names {
         .iter()
         .filter_map(|layer| model(*layer))
         .flat_map(|layer| layer.zones.iter().map(move |zone| (several.then(|| layer.name.clone()), zone.name.clone())));
-    Names { pictures: vec![COLOUR.into()], textures: vec![FUNCTION.into()], items: items.collect(), ends: &ENDS }
+    Names {
+        pictures: vec![COLOUR.into()],
+        textures: vec![FUNCTION.into()],
+        items: items.collect(),
+        ends: ENDS.map(|end| (Form::Texture, end.to_owned())).to_vec(),
+        bakes: false,
+    }
 }
 
 /// Writes the textures of these layers, and gives what the manifest says about them.

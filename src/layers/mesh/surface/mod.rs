@@ -14,11 +14,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::base::error::Error;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
+use crate::layers::parts::bundle::{Form, Sink};
 use crate::layers::parts::materials::{Materials, Use};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
@@ -100,6 +102,11 @@ pub trait Slot {
         false
     }
 
+    /// Its files for other engines, and what their names end in.
+    fn files(&self) -> Vec<(Form, String)> {
+        Vec::new()
+    }
+
     /// Whether it tells something of each of its places ([`StillSurface::told`]) and has passes.
     fn explains(&self) -> bool {
         false
@@ -161,6 +168,15 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     /// See `Ready::balanced`; paths are relative to the surface.
     fn balanced(&self) -> Option<Vec<(String, Value)>> {
         None
+    }
+
+    /// Writes its files for other engines, as the surface of a layer of this name, and gives what the manifest says about
+    /// them; `None` if it has none.
+    ///
+    /// # Errors
+    /// Those of `to`, or why there can be none.
+    fn bundle(&self, _layer: &str, _to: &mut dyn Sink) -> Result<Option<Value>, Error> {
+        Ok(None)
     }
 
     /// The same with nothing that moves.

@@ -27,22 +27,7 @@ impl Arrays {
     /// The arrays of a map, so many directions along a side. `None` if it was stopped.
     pub fn new(map: &Map, side: usize, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Arrays> {
         let frames = frames::all(map);
-        let of_layer = |(layer, frames): (usize, &Vec<Frame>)| {
-            let mut elements = vec![[0; 4]; frames.len() * side * side];
-            let cells = elements.par_chunks_mut(side * side).zip(frames).enumerate();
-            cells.for_each_init(
-                || Mixer::new(map),
-                |mixer, (cell, (elements, frame))| {
-                    for (i, element) in elements.iter_mut().enumerate().filter(|_| !stopped()) {
-                        let at = |i: usize| 2.0 * (i as f64 + 0.5) / side as f64 - 1.0;
-                        mixer.look(frame.at, frame.way(DVec2::new(at(i % side), at(i / side))));
-                        let found = mixer.at(layer, cell as u32, |_, _| ());
-                        *element = found.map(|value| half_of_value(value as f32));
-                    }
-                },
-            );
-            elements
-        };
+        let of_layer = |(layer, frames): (usize, &Vec<Frame>)| elements(map, (layer, 0), frames, side, stopped);
         let elements = frames.iter().enumerate().map(of_layer).collect();
         (!stopped()).then_some(Arrays { side, frames, elements })
     }
@@ -79,4 +64,28 @@ impl Arrays {
         }
         sum
     }
+}
+
+/// The elements of cells of a layer from the `first` on, which are turned so; nothing in particular if it was stopped.
+pub fn elements(
+    map: &Map,
+    (layer, first): (usize, usize),
+    frames: &[Frame],
+    side: usize,
+    stopped: &(dyn Fn() -> bool + Sync),
+) -> Vec<[u16; 4]> {
+    let mut elements = vec![[0; 4]; frames.len() * side * side];
+    let cells = elements.par_chunks_mut(side * side).zip(frames).enumerate();
+    cells.for_each_init(
+        || Mixer::new(map),
+        |mixer, (cell, (elements, frame))| {
+            for (i, element) in elements.iter_mut().enumerate().filter(|_| !stopped()) {
+                let at = |i: usize| 2.0 * (i as f64 + 0.5) / side as f64 - 1.0;
+                mixer.look(frame.at, frame.way(DVec2::new(at(i % side), at(i / side))));
+                let found = mixer.at(layer, (first + cell) as u32, |_, _| ());
+                *element = found.map(|value| half_of_value(value as f32));
+            }
+        },
+    );
+    elements
 }

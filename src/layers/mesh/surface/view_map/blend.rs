@@ -19,9 +19,11 @@ const MOST_COSINE: f64 = 0.99;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
     /// Where one stands, where one looks, and how much of the base coat is seen from there.
-    points: Vec<(DVec3, DVec3, f64)>,
-    cosine: f64,
-    distance: f64,
+    pub points: Vec<(DVec3, DVec3, f64)>,
+    /// The cosine of the angle that they reach.
+    pub cosine: f64,
+    /// How far they reach, in meters.
+    pub distance: f64,
 }
 
 impl Points {

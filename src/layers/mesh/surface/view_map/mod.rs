@@ -6,6 +6,7 @@ pub mod arrays;
 pub mod atlas;
 pub mod balance;
 pub mod blend;
+pub mod bundle;
 pub mod camera;
 pub mod cells;
 pub mod check;

@@ -9,12 +9,14 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked, base};
 use super::map::{Map, Wanted};
-use super::{again, passes, plan, probe, told, upload};
+use super::{again, bundle, passes, plan, probe, told, upload};
 use crate::base::budget::Share;
+use crate::base::error::Result;
 use crate::base::number;
 use crate::base::pixels::Linear;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
+use crate::layers::parts::bundle::Sink;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::readout::Entry;
@@ -69,6 +71,10 @@ impl ReadySurface for Ready {
             (format!("/views/{view}/gain"), gain.map(number::json).into_iter().collect())
         };
         Some(gains.map(set).collect())
+    }
+
+    fn bundle(&self, layer: &str, to: &mut dyn Sink) -> Result<Option<Value>> {
+        bundle::write(self.filled(), &self.points, layer, to).map(Some)
     }
 
     fn by_cpu(&self) -> bool {

@@ -92,6 +92,20 @@ impl<'a> Reader<'a> {
         found
     }
 
+    /// The base coat of a place, however it is looked at.
+    pub fn coated(&self, spot: &Spot) -> [f64; 3] {
+        let cells = self.cells(spot);
+        if cells.iter().all(|(.., weight)| *weight <= 0.0) {
+            return self.map.wanted.missing.map(f64::from);
+        }
+        let mut sum = [0.0; 3];
+        for (layer, cell, weight) in cells.into_iter().filter(|(.., weight)| *weight > 0.0) {
+            let color = self.map.coats[layer].colors[cell as usize];
+            sum.iter_mut().zip(color).for_each(|(sum, light)| *sum += weight * f64::from(light));
+        }
+        sum
+    }
+
     /// What a place shows that has no cells at all.
     fn missing(&self) -> Sample {
         let missing = self.map.wanted.missing.map(f64::from);

@@ -12,10 +12,11 @@ use super::ready::Ready;
 use super::report;
 use super::view::View;
 use super::wanted::{laid_flat, misfits, wanted};
-use super::{atlas, check, lay, warnings};
+use super::{atlas, bundle, check, lay, warnings};
 use crate::base::budget::Short;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
+use crate::layers::parts::bundle::Form;
 use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::parts::shots::Lying;
 use crate::layers::ready::Making;
@@ -63,6 +64,10 @@ impl Slot for ViewMap {
 
     fn needs_uv(&self) -> bool {
         self.atlas == Some(Atlas::Uv)
+    }
+
+    fn files(&self) -> Vec<(Form, String)> {
+        bundle::ends()
     }
 
     fn explains(&self) -> bool {
