@@ -156,19 +156,19 @@ impl Builder {
         self.share.shrink(self.bytes());
         let computed = self.chain.iter().any(|link| link.normal == NONE);
         let vertices = size_of::<Vertex>() * self.chain.len();
-        let group = size_of::<(f64, u32)>() + size_of::<u32>() + size_of::<DVec3>();
-        let groups = if computed { group * self.positions.len() } else { 0 };
-        let more = self.budget.take((vertices + groups) as u64, &self.place)?;
-        let normals = computed.then(|| self.computed_normals());
+        let group = size_of::<(f64, u32)>() + 2 * size_of::<u32>();
+        let grouping = if computed { group * self.positions.len() } else { 0 };
+        let more = self.budget.take((vertices + grouping) as u64, &self.place)?;
+        let groups = computed.then(|| groups(&self.positions));
         let vertex = |link: &Link| Vertex {
             position: self.positions[link.position as usize],
-            normal: match &normals {
-                Some((groups, sums)) if link.normal == NONE => sums[groups[link.position as usize] as usize],
-                _ => self.normals[link.normal as usize],
-            },
+            normal: self.normals.get(link.normal as usize).copied().unwrap_or_default(),
             uv: self.uvs.get(link.uv as usize).copied().unwrap_or_default(),
         };
-        let vertices: Vec<Vertex> = self.chain.iter().map(vertex).collect();
+        let mut vertices: Vec<Vertex> = self.chain.iter().map(vertex).collect();
+        if let Some(groups) = groups {
+            self.compute_normals(groups, &mut vertices);
+        }
         let without_uv = |corners: &[u32; 3]| corners.iter().any(|&at| self.chain[at as usize].uv == NONE);
         let without_uv = self.triangles.iter().position(without_uv);
         let degenerate = self.triangles.iter().filter(|corners| facing(self.places(corners)).is_none()).count();
@@ -185,20 +185,29 @@ impl Builder {
         (lists + size_of_val(&self.chain[..]) + size_of_val(&self.triangles[..])) as u64
     }
 
-    /// The group of each position, and the normal of each group. Sums are in the order of the file, so that the bits are
-    /// the same everywhere.
-    fn computed_normals(&self) -> (Vec<u32>, Vec<DVec3>) {
-        let (groups, count) = groups(&self.positions);
-        let mut sums = vec![DVec3::ZERO; count];
+    /// Gives vertices the normals that they lack; of each position the group is known, and how many there are. Sums are in the
+    /// order of the file, so that the bits are the same everywhere.
+    fn compute_normals(&self, (groups, count): (Vec<u32>, usize), vertices: &mut [Vertex]) {
+        let group = |vertex: usize| groups[self.chain[vertex].position as usize] as usize;
+        let lack = || self.chain.iter().enumerate().filter(|(_, link)| link.normal == NONE).map(|(at, _)| at);
+        // The first of each group that lacks one is where its sum is made: no list of them is needed.
+        let mut first = vec![NONE; count];
+        lack().for_each(|at| first[group(at)] = first[group(at)].min(at as u32));
         for corners in &self.triangles {
             let places = self.places(corners);
             let Some(normal) = facing(places) else { continue };
             for (corner, angle) in corners.iter().zip(angles(places)) {
-                sums[groups[self.chain[*corner as usize].position as usize] as usize] += normal * angle;
+                if let Some(sum) = vertices.get_mut(first[group(*corner as usize)] as usize) {
+                    sum.normal += normal * angle;
+                }
             }
         }
-        sums.iter_mut().for_each(|sum| *sum = sum.try_normalize().unwrap_or(DVec3::Y));
-        (groups, sums)
+        for at in lack() {
+            let first = first[group(at)] as usize;
+            // The first is the first to come here.
+            let sum = vertices[first].normal;
+            vertices[at].normal = if at == first { sum.try_normalize().unwrap_or(DVec3::Y) } else { sum };
+        }
     }
 
     fn places(&self, corners: &[u32; 3]) -> [DVec3; 3] {

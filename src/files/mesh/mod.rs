@@ -76,12 +76,12 @@ pub fn decode(
         Kind::Obj => obj::read(&bytes, place, limits, budget).map(|(builder, notes)| (builder, notes, None))?,
         Kind::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling, outside: *outside })?,
     };
-    // The file is not kept beside the mesh.
+    let (mesh, of_mesh) = builder.finish()?;
+    // Not before: once a large piece of memory was freed, the allocator keeps smaller ones, and the mesh would lie among holes.
     drop((bytes, share));
-    let (mesh, share) = builder.finish()?;
     let mesh = Mesh { picture, ..mesh };
     notes.extend(unseen(&mesh));
-    Ok((mesh, notes, share))
+    Ok((mesh, notes, of_mesh))
 }
 
 /// The pictures that the surfaces of a model show, as a scene names them that names the model by `place`: files of their

@@ -8,7 +8,6 @@
 //! than the near plane is skipped pixel by pixel.
 
 use std::cmp::Ordering;
-use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 use kurbo::Vec2;
@@ -130,36 +129,34 @@ impl<'a> Raster<'a> {
         let along = |x: usize| eye.ray(DVec2::new(x as f64 + place.x, 0.0)).x;
         let down = |y: usize| eye.ray(DVec2::new(0.0, y as f64 + place.y)).y;
         let rays = ((0..width).map(along).collect(), (0..height).map(down).collect());
-        let found: Vec<(Span, Range<usize>)> = triangles
-            .par_iter()
-            .map(|triangle| {
-                let corners = triangle.map(|i| seen[i as usize]);
-                let order = order(corners);
-                Sides::new(corners, order, both)?;
-                let [low, high] = bounds(eye, corners)?;
-                let columns = pixels(low.x, high.x, place.x, width);
-                let rows = pixels(low.y, high.y, place.y, height);
-                let span = Span { columns: [columns.start as u32, columns.end as u32], order };
-                Some((span, rows)).filter(|(_, rows)| !columns.is_empty() && !rows.is_empty())
-            })
-            .map(|found| found.unwrap_or((Span::default(), 0..0)))
-            .collect();
+        // Kept apart: the rows are not needed beyond this, and there may be ten million of both.
+        let (mut spans, mut rows) = (Vec::new(), Vec::new());
+        let found = triangles.par_iter().map(|triangle| {
+            let corners = triangle.map(|i| seen[i as usize]);
+            let order = order(corners);
+            Sides::new(corners, order, both)?;
+            let [low, high] = bounds(eye, corners)?;
+            let columns = pixels(low.x, high.x, place.x, width);
+            let rows = pixels(low.y, high.y, place.y, height);
+            (columns[0] < columns[1] && rows[0] < rows[1]).then_some((Span { columns, order }, rows))
+        });
+        found.map(Option::unwrap_or_default).unzip_into_vecs(&mut spans, &mut rows);
+        let of = |rows: &[u32; 2]| rows[0] as usize..rows[1] as usize;
         let mut starts = vec![0; height + 1];
-        for (_, rows) in &found {
-            starts[rows.start + 1..rows.end + 1].iter_mut().for_each(|count| *count += 1);
+        for rows in &rows {
+            starts[1..][of(rows)].iter_mut().for_each(|count| *count += 1);
         }
         for y in 0..height {
             starts[y + 1] += starts[y];
         }
         let mut next = starts.clone();
         let mut of_rows = vec![0; starts[height]];
-        for (i, (_, rows)) in found.iter().enumerate() {
-            for next in &mut next[rows.clone()] {
+        for (i, rows) in rows.iter().enumerate() {
+            for next in &mut next[of(rows)] {
                 of_rows[*next] = i as u32;
                 *next += 1;
             }
         }
-        let spans = found.into_iter().map(|(span, _)| span).collect();
         Raster { triangles, seen, both, rays, spans, starts, of_rows }
     }
 
@@ -262,12 +259,12 @@ fn bounds(eye: &Eye, corners: [DVec3; 3]) -> Option<[DVec2; 2]> {
     found
 }
 
-/// The pixels whose places lie between two coordinates.
-fn pixels(low: f64, high: f64, place: f64, size: usize) -> Range<usize> {
+/// The pixels whose places lie between two coordinates: the first, and the one after the last.
+fn pixels(low: f64, high: f64, place: f64, size: usize) -> [u32; 2] {
     let slack = SLACK_PX + (low.abs().max(high.abs())) * 1e-12;
     let from = (low - place - slack).ceil().clamp(0.0, size as f64);
     let to = ((high - place + slack).floor() + 1.0).clamp(0.0, size as f64);
-    from as usize..to as usize
+    [from as u32, to as u32]
 }
 
 #[cfg(test)]
