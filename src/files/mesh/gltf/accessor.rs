@@ -96,11 +96,7 @@ impl Source<'_> {
         let Accessor { count, byte_offset, component_type, normalized, buffer_view, ref sparse, .. } =
             *self.accessor::<N>(index)?;
         let sparse = sparse.as_ref().filter(|sparse| sparse.count > 0);
-        // They would all be zero: a few bytes that take as much memory as they say.
-        if buffer_view.is_none() && sparse.is_none() {
-            return Err(self.wrong(format!("accessor {index} has no data: it names no buffer view")));
-        }
-        // With a few that are not zero, a few bytes are a mesh still: no more than a mesh may have triangles.
+        // Zeros that are not stored make a large mesh of a few bytes: no more of them than a mesh may have triangles.
         if buffer_view.is_none() {
             let (place, most) = (self.with.place, self.with.limits.triangles);
             let what = format!("accessor {index} has");
