@@ -304,7 +304,7 @@ fn every_technique_answers_everything() {
         for time in [0.13, 0.77] {
             let frame = cpu::frame(&synth, time);
             assert_eq!(cpu::frame(&again, time), frame, "{kind} at {time}: made from the one before");
-            assert_eq!(bands.frame(time).unwrap(), frame, "{kind} at {time}: in bands");
+            assert_eq!(bands.frame(time, &|_| ()).unwrap(), frame, "{kind} at {time}: in bands");
             let rows: Vec<usize> = (0..synth.size.1).step_by(7).collect();
             let columns: Vec<usize> = (3..synth.size.0).step_by(5).collect();
             let some = cpu::lattice(&synth, time, &columns, &rows);

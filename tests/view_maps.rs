@@ -135,7 +135,7 @@ fn the_bits_do_not_depend_on_threads_and_parts_are_those_of_the_whole() {
     let materials = materials();
     let bands = Bands::new(&scene, &materials, 2).unwrap();
     let frame = cpu::frames(&render::samples(&scene, &materials, 2).unwrap(), 0.3);
-    assert!(bands.frame(0.3).unwrap() == frame);
+    assert!(bands.frame(0.3, &|_| ()).unwrap() == frame);
 }
 
 #[test]

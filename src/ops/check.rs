@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::Context;
+use super::render::room;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
@@ -85,10 +86,15 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
         problems.extend(made(scene, &materials));
         context.check_cancelled()?;
     }
-    problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
-    let broken = is_broken(&problems);
+    // What is made for a frame is beside the frame.
+    let room = if is_broken(&problems) { None } else { Some(room(scene, &materials)) };
+    problems.extend(room.iter().filter_map(|room| room.as_ref().err()).cloned());
+    let (broken, mut failed) = (is_broken(&problems), None);
     let loops = render::seams::warnings(scene, &materials, || {
-        if broken { None } else { render::synth(scene, &materials, None).ok() }
+        let made = (!broken).then(|| render::synth(scene, &materials, None));
+        made?.map_err(|problem| failed = Some(problem)).ok()
     });
+    problems.extend(failed);
+    problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     Ok((problems, loops, Some(document)))
 }

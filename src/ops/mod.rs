@@ -40,6 +40,7 @@ pub mod tutor;
 #[cfg(feature = "window")]
 pub mod view;
 pub mod views;
+mod watched;
 mod writing;
 
 /// What `plica` can be asked to do.

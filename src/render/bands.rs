@@ -84,18 +84,23 @@ impl<'a> Bands<'a> {
         if self.materials.stopped() { Err(Problem::error("", "stopped")) } else { made }
     }
 
-    /// The finished frame at `time`.
+    /// How many rows [`Bands::frame`] tells of in all.
+    pub fn steps(&self) -> usize {
+        self.size.1 * self.samples.len()
+    }
+
+    /// The finished frame at `time`; `done` hears of the rows of its samples as they are made.
     ///
     /// # Errors
     /// If it is cancelled.
-    pub fn frame(&self, time: f64) -> Result<Frame, Problem> {
+    pub fn frame(&self, time: f64, done: cpu::Done) -> Result<Frame, Problem> {
         let (width, height) = self.size;
         let mut cells = vec![[0; 4]; width * height];
         let most = (Self::PIXELS / width.max(1)).max(1);
         let wholes = Wholes::new(&self.part(0..width, 0..0)?, time);
         for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
             let rows = i * most..((i + 1) * most).min(height);
-            cpu::finish_rows(&self.part(0..width, rows.clone())?, (time, &wholes), rows, out);
+            cpu::finish_rows(&self.part(0..width, rows.clone())?, (time, &wholes), rows, out, done);
         }
         if self.materials.stopped() {
             return Err(Problem::error("", "stopped"));
@@ -127,6 +132,8 @@ impl<'a> Bands<'a> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
     use crate::base::picture::Picture;
 
@@ -152,7 +159,12 @@ mod tests {
                 crate::render::samples(&scene, &materials, n).unwrap()
             };
             let whole = cpu::finish(&cpu::mean(&samples, 0.7));
-            assert!(bands.frame(0.7).unwrap() == whole, "{n} x {n}");
+            let done = AtomicUsize::new(0);
+            let count = |rows| {
+                done.fetch_add(rows, Ordering::Relaxed);
+            };
+            assert!(bands.frame(0.7, &count).unwrap() == whole, "{n} x {n}");
+            assert_eq!(done.into_inner(), bands.steps(), "{n} x {n}");
             assert!(cpu::frames(&samples, 0.7) == whole);
             for at in [(150, 2), (255, 4), (5, 6)] {
                 assert_eq!(bands.pixel(0.7, at).unwrap(), *whole.get(at.0, at.1), "{n} x {n} {at:?}");

@@ -114,6 +114,9 @@ pub const BAND: usize = 1 << 22;
 /// A scene time, with what is made whole then.
 type At<'a> = (f64, &'a Wholes);
 
+/// Hears how many rows more are done, each once for every sample of its pixels.
+pub type Done<'a> = &'a (dyn Fn(usize) + Sync);
+
 /// The finished frame from several samples per pixel: sRGB, straight alpha, 8 bits per channel.
 pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {
     let (width, height) = samples.first().map_or((0, 0), |synth| synth.size);
@@ -121,13 +124,13 @@ pub fn frames(samples: &[Synth], scene_time: f64) -> Frame {
     let most = (BAND / width.max(1)).max(1);
     let wholes = Wholes::new(samples, scene_time);
     for (i, out) in cells.chunks_mut(most * width.max(1)).enumerate() {
-        finish_rows(samples, (scene_time, &wholes), i * most..((i + 1) * most).min(height), out);
+        finish_rows(samples, (scene_time, &wholes), i * most..((i + 1) * most).min(height), out, &|_| ());
     }
     Grid::from_cells(width, height, cells)
 }
 
-/// Finishes these rows into `out`.
-pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8; 4]]) {
+/// Finishes these rows into `out`; `done` hears of rows that one more sample is made of.
+pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8; 4]], done: Done) {
     let Some(width) = samples.first().map(|synth| synth.size.0.max(1)) else { return };
     let in_strips = |(sample, synth): (usize, &Synth)| {
         let mut groups = synth.stage.groups.iter().enumerate();
@@ -135,7 +138,7 @@ pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8
     };
     let rows: Vec<usize> = band.collect();
     if !samples.iter().enumerate().all(in_strips) {
-        let linear = mean_lines(samples, at, Columns::All, &rows);
+        let linear = mean_lines(samples, at, Columns::All, &rows, done);
         return encode_in(linear.cells(), out);
     }
     let moments: Vec<Moment> = samples.iter().map(|synth| synth.moment(at.0)).collect();
@@ -143,7 +146,10 @@ pub fn finish_rows(samples: &[Synth], at: At, band: Range<usize>, out: &mut [[u8
     let samples: Vec<(&Stage, &[Box<dyn Still + '_>])> =
         samples.iter().zip(&layers).map(|(synth, layers)| (&*synth.stage, &layers[..])).collect();
     let strips = out.par_chunks_mut(STRIP * width).zip(rows.par_chunks(STRIP));
-    strips.for_each_init(<[Vec<Rgba>; 3]>::default, |memory, (out, rows)| finish_strip(&samples, rows, memory, out));
+    strips.for_each_init(<[Vec<Rgba>; 3]>::default, |memory, (out, rows)| {
+        finish_strip(&samples, rows, memory, out);
+        done(samples.len() * rows.len());
+    });
 }
 
 /// Finishes rows of which no layer needs more than these.
@@ -199,23 +205,27 @@ fn encode_in(light: &[Rgba], out: &mut [[u8; 4]]) {
 /// computed, but of layers that are made whole, so that a small view of a large picture is cheap.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
     let at = (scene_time, &*Kept::frame(synth, scene_time));
-    mean_lines(std::slice::from_ref(synth), at, Columns::Some(columns), rows)
+    mean_lines(std::slice::from_ref(synth), at, Columns::Some(columns), rows, &|_| ())
 }
 
 /// The same for several samples per pixel.
 pub fn mean_lattice(samples: &[Synth], scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
-    mean_lines(samples, (scene_time, &Wholes::new(samples, scene_time)), Columns::Some(columns), rows)
+    mean_lines(samples, (scene_time, &Wholes::new(samples, scene_time)), Columns::Some(columns), rows, &|_| ())
 }
 
 /// The mean of the frames for several samples per pixel, in linear light.
 pub fn mean(samples: &[Synth], scene_time: f64) -> Linear {
     let height = samples.first().map_or(0, |synth| synth.size.1);
     let at = (scene_time, &Wholes::new(samples, scene_time));
-    mean_lines(samples, at, Columns::All, &(0..height).collect::<Vec<_>>())
+    mean_lines(samples, at, Columns::All, &(0..height).collect::<Vec<_>>(), &|_| ())
 }
 
-fn mean_lines(samples: &[Synth], at: At, columns: Columns, rows: &[usize]) -> Linear {
-    mean_of(samples.iter().enumerate().map(|(sample, synth)| lines((synth, sample), at, columns, rows)))
+fn mean_lines(samples: &[Synth], at: At, columns: Columns, rows: &[usize], done: Done) -> Linear {
+    mean_of(samples.iter().enumerate().map(|sample| {
+        let made = lines((sample.1, sample.0), at, columns, rows);
+        done(rows.len());
+        made
+    }))
 }
 
 fn add(sum: &mut Rgba, more: &Rgba) {

@@ -8,23 +8,26 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use super::demo::quoted;
+use super::watched::watched;
 use super::writing::{Counting, Replacing};
 use super::{
-    Context,
+    Context, Progress,
     opened::{Opened, Unloaded},
     scene_options::SceneOptions,
 };
 use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear, Rgba};
+use crate::base::problem::Problem;
 use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::{Show, Target, range, rate::Rate, scale};
 use crate::files::outputs::{self, Place};
+use crate::layers::parts::materials::Materials;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
-use crate::scene::address;
+use crate::scene::{Scene, address};
 
 /// Render frames to numbered files, an animation or a stream
 #[derive(clap::Args)]
@@ -150,7 +153,7 @@ fn write(
     for &(frame, number) in todo {
         context.check_cancelled()?;
         context.messages.step("frame", *done, total);
-        let drawn = renderer.frame(timeline.time_of(frame))?;
+        let drawn = renderer.frame(timeline.time_of(frame), &mut *context.messages)?;
         // What is drawn then may be incomplete.
         context.check_cancelled()?;
         sink.frame(number, drawn)?;
@@ -268,6 +271,13 @@ fn frame_bytes(own: (usize, usize), size: (usize, usize), samples: usize, band: 
     pixels(own) * (copies + 1) * LIGHT + pixels(size) * (2 * LIGHT + COLORS)
 }
 
+/// That there is not the memory for a frame of a scene beside its `materials`; or the memory, as it is taken for every frame.
+pub fn room(scene: &Scene, materials: &Materials) -> std::result::Result<Share, Problem> {
+    let size = crate::render::frame_size(scene, materials);
+    let taken = materials.budget.try_take(frame_bytes(size, size, 1, cpu::BAND));
+    taken.map_err(|short| short.problem("/size"))
+}
+
 /// Turns a time into a finished frame.
 struct Renderer<'a> {
     opened: &'a Opened,
@@ -324,8 +334,8 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    fn frame(&mut self, time: f64) -> Result<Frame> {
-        let mut frame = self.drawn(time)?;
+    fn frame(&mut self, time: f64, messages: &mut dyn Progress) -> Result<Frame> {
+        let mut frame = self.drawn(time, messages)?;
         match (&self.bands, self.samples.first()) {
             (Some(bands), _) => cpu::keep_clear_colors(&bands.pictures(), &mut frame),
             (None, Some(synth)) if synth.size == self.size => cpu::keep_clear_colors(synth, &mut frame),
@@ -334,7 +344,7 @@ impl<'a> Renderer<'a> {
         Ok(frame)
     }
 
-    fn drawn(&mut self, time: f64) -> Result<Frame> {
+    fn drawn(&mut self, time: f64, messages: &mut dyn Progress) -> Result<Frame> {
         #[cfg(feature = "window")]
         if let Some(gpu) = &mut self.gpu {
             let frames = self.samples.iter().map(|synth| gpu.frame(synth, time)).collect::<Result<Vec<_>>>()?;
@@ -344,7 +354,9 @@ impl<'a> Renderer<'a> {
             });
         }
         if let Some(bands) = &self.bands {
-            return bands.frame(time).map_err(|problem| self.opened.failed(problem));
+            // A single frame of many samples takes as long as many frames.
+            let drawn = watched(messages, "row", bands.steps(), |done| bands.frame(time, done));
+            return drawn.map_err(|problem| self.opened.failed(problem));
         }
         let own = self.samples.first().map(|synth| synth.size);
         if own == Some(self.size) {

@@ -1,0 +1,74 @@
+//! Work that takes long in one piece, with its progress shown meanwhile.
+
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use super::Progress;
+
+/// How often is looked how far the work is.
+const EVERY: Duration = Duration::from_millis(200);
+
+/// What `work` makes on a thread of its own; it tells what it is handed how many steps more, of `total`, are done, and
+/// `messages` shows that as steps of `what`. That the last is done shows in what follows.
+pub fn watched<T: Send>(
+    messages: &mut dyn Progress,
+    what: &str,
+    total: usize,
+    work: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T + Send,
+) -> T {
+    let done = AtomicUsize::new(0);
+    thread::scope(|scope| {
+        let (working, end) = mpsc::channel::<()>();
+        let done = &done;
+        let worker = scope.spawn(move || {
+            // Dropped with the end of the work.
+            let _working = working;
+            work(&|steps| {
+                done.fetch_add(steps, Ordering::Relaxed);
+            })
+        });
+        while end.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+            let done = done.load(Ordering::Relaxed);
+            if done < total {
+                messages.step(what, done as u64, total as u64);
+            }
+        }
+        worker.join().unwrap_or_else(|panic| resume_unwind(panic))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    struct Heard(Vec<(u64, u64)>);
+
+    impl Progress for Heard {
+        fn say(&mut self, _line: &str) {}
+
+        fn step(&mut self, _what: &str, done: u64, total: u64) {
+            self.0.push((done, total));
+        }
+    }
+
+    #[test]
+    fn what_takes_long_is_shown_and_what_does_not_is_not() {
+        let mut heard = Heard(Vec::new());
+        assert_eq!(watched(&mut heard, "row", 9, |done| done(9)), ());
+        assert_eq!(heard.0, []);
+        let slow = |done: &(dyn Fn(usize) + Sync)| {
+            done(4);
+            thread::sleep(EVERY * 2);
+            7
+        };
+        assert_eq!(watched(&mut heard, "row", 9, slow), 7);
+        assert_eq!(heard.0.first(), Some(&(4, 9)));
+        let failing = || watched(&mut heard, "row", 9, |_| panic!("as it must"));
+        assert!(catch_unwind(AssertUnwindSafe(failing)).is_err());
+    }
+}
