@@ -171,11 +171,8 @@ impl<'a> Strip<'a> {
             blend.lay(
                 #[inline(always)]
                 |i| {
-                    let mut color = above[i];
-                    for (color, below) in color.iter_mut().zip(below[i]) {
-                        *color = *color + (below - *color) * share;
-                    }
-                    color
+                    let channel = |c: usize| above[i][c] + (below[i][c] - above[i][c]) * share;
+                    [channel(0), channel(1), channel(2), channel(3)]
                 },
                 depth,
                 out,
