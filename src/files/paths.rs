@@ -14,6 +14,14 @@ pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
     folder_of_scene(scene_path).join(file_of(path))
 }
 
+/// The folder of the scene at `scene_path`, unless that of the file at `path` is the same or below it.
+pub fn folder_beside(scene_path: &Path, path: &Path) -> Option<PathBuf> {
+    let folder = folder_of_scene(scene_path);
+    let [own, other] = [&folder, disk::folder_of(path)].map(|folder| folder.canonicalize().ok());
+    let is_below = own.zip(other).is_none_or(|(own, other)| other.starts_with(own));
+    (!is_below).then_some(folder)
+}
+
 /// The path in a scene of what the file at `path` names relative to itself.
 pub fn sibling(path: &str, name: &str) -> String {
     let folder = Path::new(file_of(path)).parent().unwrap_or(Path::new(""));

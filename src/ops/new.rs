@@ -57,7 +57,7 @@ pub fn called(picture: &Path) -> String {
 }
 
 /// What a clip is called in a scene: as its files, or their folder.
-fn clip_called(clip: &Path) -> String {
+pub fn clip_called(clip: &Path) -> String {
     let folder = if clip.is_dir() { clip } else { disk::folder_of(clip) };
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let folder = folder.file_name().map_or("clip".into(), |name| name.to_string_lossy());
@@ -110,7 +110,7 @@ struct Making<'a> {
     /// The names of its sources as they stand in it.
     named: Vec<String>,
     /// Files of other folders, and their names beside the scene.
-    copies: Vec<(PathBuf, String)>,
+    copies: Copies,
     notes: Vec<String>,
 }
 
@@ -142,12 +142,7 @@ impl Making<'_> {
             return Err(error.cure("choose another name for the scene with -o"));
         }
         if !same_folder(source, self.path) {
-            let folder = disk::folder_of(source);
-            if let Some(outside) = files.iter().find(|file| !write::is_below(file)) {
-                let what = format!("names {outside}, which is not in its folder and cannot be copied with it");
-                return Err(Error::at(source.display(), what).cure("make the scene beside it"));
-            }
-            self.copies.extend(files.into_iter().map(|file| (folder.join(&file), file)));
+            self.copies.extend(copies(source, files)?);
         } else if files.iter().any(|file| !write::is_below(file)) {
             self.notes.push(format!(
                 "{place}: names files outside its folder: the scene needs --allow-outside wherever it is opened"
@@ -164,16 +159,14 @@ impl Making<'_> {
         self.notes.extend(problems.into_iter().map(|Problem { message, hint, .. }| {
             hint.into_iter().fold(Error::at(&place, message), Error::cure).to_string()
         }));
-        let (path, copied) = match below(&found.folder, self.path) {
-            Some(folder) => (folder.join(&found.name), false),
-            None if found.files == [found.name.clone()] => (found.name.clone().into(), true),
-            None => (Path::new(&name).join(&found.name), true),
+        let path = match below(&found.folder, self.path) {
+            Some(folder) => folder.join(&found.name),
+            None => {
+                let (path, copies) = clip_copies(&found, &name);
+                self.copies.extend(copies);
+                path
+            }
         };
-        let folder = path.parent().unwrap_or(Path::new(""));
-        if copied {
-            let copy = |file: &String| (found.folder.join(file), folder.join(file).to_string_lossy().into_owned());
-            self.copies.extend(found.files.iter().map(copy));
-        }
         let path =
             path.to_str().ok_or_else(|| Error::at(source.display(), "has a name that is no text").cure("rename it"))?;
         self.name(source, path.to_owned())?;
@@ -224,6 +217,30 @@ impl Making<'_> {
         self.named.push(named);
         Ok(())
     }
+}
+
+/// Files, each with the name that a copy of it has beside a scene.
+pub type Copies = Vec<(PathBuf, String)>;
+
+/// The copies that a scene of another folder needs of a picture or a model at `source`: it is in these files of its folder.
+///
+/// # Errors
+/// If one of them is not there or below.
+pub fn copies(source: &Path, files: Vec<String>) -> Result<Copies> {
+    if let Some(outside) = files.iter().find(|file| !write::is_below(file)) {
+        let what = format!("names {outside}, which is not in its folder and cannot be copied with it");
+        return Err(Error::at(source.display(), what).cure("make the scene beside it"));
+    }
+    let folder = disk::folder_of(source);
+    Ok(files.into_iter().map(|file| (folder.join(&file), file)).collect())
+}
+
+/// What a scene of another folder calls a clip, and the copies that it needs: numbered pictures get a folder of their own, with
+/// this name.
+pub fn clip_copies(found: &Found, name: &str) -> (PathBuf, Copies) {
+    let folder = if found.files == [found.name.clone()] { Path::new("") } else { Path::new(name) };
+    let copy = |file: &String| (found.folder.join(file), folder.join(file).to_string_lossy().into_owned());
+    (folder.join(&found.name), found.files.iter().map(copy).collect())
 }
 
 /// The name of a picture's file as it stands in a scene.

@@ -70,8 +70,8 @@ impl Asked {
     pub fn parse(text: &str, scene: &Scene) -> Result<Asked, String> {
         let (name, rest) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
         let pass = all().find(|pass| pass.name == name);
-        let names: Vec<&str> = all().map(|pass| pass.name).collect();
-        let known = || nearest(name, names.iter().copied()).unwrap_or_default();
+        let shown: Vec<&str> = all().filter(|pass| is_shown(pass, None, scene)).map(|pass| pass.name).collect();
+        let known = || nearest(name, shown.iter().copied()).unwrap_or_default();
         let pass = pass.ok_or_else(|| format!("there is no pass {} ({})", quoted(name), known()))?;
         let known: BTreeSet<&str> = scene.layers.iter().flat_map(|layer| layer.technique().pass_names(pass)).collect();
         let of = rest.map(|rest| rest.split_once(':').map_or((rest, None), |(of, layer)| (of, Some(layer))));

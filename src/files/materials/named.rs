@@ -74,7 +74,7 @@ fn is_there(scene_path: &Path, path: &str) -> bool {
 /// What tells which files to watch. A model is read only where it has changed.
 #[derive(Debug, Default)]
 pub struct Watched {
-    /// The files that models are made from besides their own, by the path of the model.
+    /// The files that models are made from besides their own, and those of their pictures, by the path of the model.
     models: BTreeMap<String, (Stamp, Vec<String>)>,
 }
 
@@ -92,17 +92,24 @@ impl Watched {
     }
 }
 
-/// What a model is made from besides its own file; what is wrong with it shows when it is loaded.
+/// What a model is made from and shows besides its own file; what is wrong with it shows when it is loaded.
 fn model(
     scene_path: &Path,
     path: &str,
     options: &Options,
     before: &BTreeMap<String, (Stamp, Vec<String>)>,
 ) -> Option<(Stamp, Vec<String>)> {
-    let file = files::paths::open(scene_path, path, options).ok()?;
+    let open = || files::paths::open(scene_path, path, options);
+    let file = open().ok()?;
     let stamp = Stamp::of(&file).ok()?;
-    let known = before.get(path).filter(|(old, _)| *old == stamp).cloned();
-    Some(known.unwrap_or_else(|| (stamp, mesh::parts(file, path, options).unwrap_or_default())))
+    if let Some(known) = before.get(path).filter(|(old, _)| *old == stamp) {
+        return Some(known.clone());
+    }
+    let mut named = mesh::parts(file, path, options).unwrap_or_default();
+    // A picture may come later, or change: what is said of the model then changes too.
+    let pictures = open().and_then(|file| mesh::pictures(file, path, options)).unwrap_or_default();
+    named.extend(pictures.into_iter().filter(|picture| files::paths::image_of(picture).is_none()));
+    Some((stamp, named))
 }
 
 /// The files that `scene` names, as the paths written in it, without those that are not there yet.

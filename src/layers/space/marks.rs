@@ -35,7 +35,7 @@ pub static FRUSTUM: Look = Look::new("camera", 24, [240, 228, 66, 255], 1.4).dot
 /// The grid has so many lines to each side of the origin.
 const LINES: i32 = 10;
 /// The y axis is as long as so many of its cells.
-const TALL: f64 = 4.0;
+const TALL: i32 = 4;
 
 /// The line between two places of the world as far as it is in the frame; `None` if all of it is behind the eye or beside the
 /// frame.
@@ -133,9 +133,16 @@ impl Drawn<'_> {
         }
     }
 
-    fn label(&mut self, look: &'static Look, at: DVec3, text: String) {
-        if let Some([point, _]) = line(self.moment, &self.eye, [at; 2]) {
-            self.marks.push(Mark::new(look, "", Shape::Label(point, text)));
+    /// The name of an axis, at the first of so many cells along it that is seen.
+    fn label(&mut self, look: &'static Look, name: &str, axis: DVec3, (cell, cells): (f64, i32)) {
+        let seen = (1..=cells).find_map(|k| {
+            let at = f64::from(k) * cell;
+            let found = deep_line(self.moment, &self.eye, [axis * at; 2])?;
+            let hidden = self.nearest.is_some_and(|nearest| nearest.shown(found).is_empty());
+            (!hidden).then_some((found[0].0, at))
+        });
+        if let Some((point, at)) = seen {
+            self.marks.push(Mark::new(look, "", Shape::Label(point, format!("{name} {at} m"))));
         }
     }
 
@@ -149,11 +156,11 @@ impl Drawn<'_> {
         }
         let [x, y, z] = [&AXES[0], &AXES[1], &AXES[2]];
         self.ground_line(x, [DVec3::X * -far, DVec3::X * far]);
-        self.ground_line(y, [DVec3::ZERO, DVec3::Y * cell * TALL]);
+        self.ground_line(y, [DVec3::ZERO, DVec3::Y * cell * f64::from(TALL)]);
         self.ground_line(z, [DVec3::Z * -far, DVec3::Z * far]);
-        self.label(x, DVec3::X * cell, format!("x {cell} m"));
-        self.label(y, DVec3::Y * cell, format!("y {cell} m"));
-        self.label(z, DVec3::Z * cell, format!("z {cell} m"));
+        self.label(x, "x", DVec3::X, (cell, LINES));
+        self.label(y, "y", DVec3::Y, (cell, TALL));
+        self.label(z, "z", DVec3::Z, (cell, LINES));
     }
 
     fn camera(&mut self, camera: &Camera) {
@@ -229,16 +236,25 @@ mod tests {
     }
 
     #[test]
-    fn the_ground_has_axes_with_their_lengths() {
-        let found = marks(&View::of(&[GROUND]), &moment(), None);
-        let labels: Vec<&str> = found
-            .iter()
-            .filter_map(|mark| match &mark.shape {
-                Shape::Label(_, text) => Some(text.as_str()),
+    fn the_ground_has_axes_with_their_lengths_where_they_are_seen() {
+        let labels = |found: &[Mark]| {
+            let text = |mark: &Mark| match &mark.shape {
+                Shape::Label(_, text) => Some(text.clone()),
                 _ => None,
-            })
-            .collect();
-        assert_eq!(labels, ["x 1 m", "y 1 m", "z 1 m"]);
+            };
+            found.iter().filter_map(text).collect::<Vec<_>>()
+        };
+        let found = marks(&View::of(&[GROUND]), &moment(), None);
+        assert_eq!(labels(&found), ["x 1 m", "y 1 m", "z 1 m"]);
+        // Something before all that is not far to the right, or low.
+        let hides = |x: usize, y: usize| x < 140 && y < 85;
+        let near = |y: usize, columns: Columns, depths: &mut [f64]| {
+            let Columns::Some(columns) = columns else { return };
+            depths.iter_mut().zip(columns).filter(|(_, x)| hides(**x, y)).for_each(|(depth, _)| *depth = 0.1);
+        };
+        let nearest = Some(Arc::new(Depths::new((200, 100), near)));
+        let hidden = marks(&View { nearest, ..View::of(&[GROUND]) }, &moment(), None);
+        assert_eq!(labels(&hidden), ["x 2 m", "z 2 m"], "the y axis is hidden");
         assert!(found.len() > 30 && found.len() < 60, "{}", found.len());
         assert_eq!(marks(&View::default(), &moment(), None), []);
     }

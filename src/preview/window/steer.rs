@@ -4,7 +4,9 @@ use kurbo::Vec2;
 
 use super::own_view::OwnView;
 use super::state::State;
+use crate::layers::parts::moment::Moment;
 use crate::layers::space::camera::Camera;
+use crate::layers::space::eye::NEAR_M;
 use crate::layers::space::fit::Ball;
 use crate::render;
 
@@ -37,8 +39,7 @@ impl State {
 
     /// Changes the window's own view, which begins as the scene's.
     fn change_view(&mut self, change: impl FnOnce(&mut OwnView)) {
-        let Some(camera) = &self.camera else { return };
-        let mut own = self.own.unwrap_or_else(|| OwnView::of(camera, self.transport.scene_time(&self.timeline)));
+        let Some(mut own) = self.looking() else { return };
         change(&mut own);
         self.own = Some(own);
     }
@@ -58,7 +59,6 @@ impl State {
             return true;
         }
         let Some((way, to)) = command.split_once('-') else { return false };
-        let around = self.around;
         let (right, up) = match to {
             "left" => (-1.0, 0.0),
             "right" => (1.0, 0.0),
@@ -75,7 +75,7 @@ impl State {
                     own.walk(right * step, up * step);
                 });
             }
-            "dolly" => self.change_view(|own| own.dolly(up, around.as_ref())),
+            "dolly" => self.nearer(up),
             _ => return false,
         }
         true
@@ -98,8 +98,36 @@ impl State {
 
     /// The wheel goes nearer by steps.
     pub fn wheel_nearer(&mut self, steps: i32) {
-        let around = self.around;
-        self.change_view(|own| own.dolly(f64::from(steps), around.as_ref()));
+        self.nearer(f64::from(steps));
+    }
+
+    /// Goes nearer to the target by steps, and says so where that goes through a surface or no further.
+    fn nearer(&mut self, steps: f64) {
+        let (before, around) = (self.looking(), self.around);
+        self.change_view(|own| own.dolly(steps, around.as_ref()));
+        let Some((before, now)) = before.zip(self.looking()).filter(|_| steps > 0.0) else { return };
+        let went = before.distance() - now.distance();
+        self.words.told = match self.ahead(&before) {
+            _ if went <= 0.0 => Some("as near as it goes: k walks on, 5 shows everything".to_owned()),
+            Some(depth) if depth <= went + NEAR_M => {
+                Some("through a surface, whose back is not shown: 3 goes back, 5 shows everything".to_owned())
+            }
+            _ => None,
+        };
+    }
+
+    /// Where it looks from.
+    fn looking(&self) -> Option<OwnView> {
+        let scene = self.camera.as_ref()?;
+        Some(self.own.unwrap_or_else(|| OwnView::of(scene, self.transport.scene_time(&self.timeline))))
+    }
+
+    /// How far away the surface in the middle of the picture is, in meters, seen from there.
+    fn ahead(&self, from: &OwnView) -> Option<f64> {
+        let (t, size_px) = (self.transport.scene_time(&self.timeline), (1, 1));
+        let moment = Moment { t, size_px, eye: Some(from.camera().at(t, size_px)), left_out: 0, magnified: 1 };
+        let depths = self.layers.iter().filter_map(|layer| layer.under((0, 0), &moment));
+        depths.map(|under| under.depth_m).min_by(f64::total_cmp)
     }
 }
 
@@ -108,6 +136,26 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::*;
+
+    #[test]
+    fn going_through_a_surface_and_no_further_is_told() {
+        let mut state = State::for_tests();
+        let camera = Camera { position: [0.2, 0.2, 2.0], target: [0.2, 0.2, -0.5], ..Camera::default() };
+        state.take_camera(Some(&camera), None);
+        state.layers = render::samples::two_squares().1.layers;
+        let mut told = Vec::new();
+        for _ in 0..40 {
+            state.run("dolly-nearer");
+            let at = state.own_camera().unwrap().position[2];
+            let new = state.words.told.clone();
+            told.extend(new.map(|new| (new.split([' ', ':']).next().unwrap().to_owned(), at)));
+        }
+        let (through, end): (Vec<_>, Vec<_>) = told.into_iter().partition(|(what, _)| what == "through");
+        assert!(matches!(&through[..], [(_, at)] if (-0.25..0.01).contains(at)), "{through:?}");
+        assert!(end.len() > 2 && end.iter().all(|(what, at)| what == "as" && *at < -0.4), "{end:?}");
+        state.run("dolly-farther");
+        assert_eq!(state.words.told, None);
+    }
 
     #[test]
     fn the_scene_is_steered_only_where_it_has_a_camera() {

@@ -7,6 +7,7 @@ use super::command::{Call, Command, Done, command};
 use super::yanking::counted;
 use crate::base::geometry::{Xyz, farther};
 use crate::base::number;
+use crate::base::problem::{Problem, Severity};
 use crate::files::materials::{self, Cache};
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
@@ -151,7 +152,9 @@ fn unmade(state: &State, fitted: Fitted) -> Result<[DVec3; 2], String> {
     let layers: Vec<_> = in_space.filter_map(|layer| layer.technique().synth(&making, None).ok()).collect();
     let meshes = |ways: &[DVec3]| materials.meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
     let all = |ways: &[DVec3]| if layers.is_empty() { meshes(ways) } else { reach(&layers, TIMES, ways) };
-    let why = || problems.first().map_or(NOTHING.to_owned(), |problem| problem.message.clone());
+    let told =
+        |problem: &Problem| Problem { severity: Severity::Error, path: String::new(), ..problem.clone() }.to_string();
+    let why = || problems.first().map_or(NOTHING.to_owned(), told);
     fitted(&all, frame_size(scene, &materials)).ok_or_else(why)
 }
 

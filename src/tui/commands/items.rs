@@ -13,9 +13,9 @@ use super::command::{Call, Command, Done, command};
 use crate::base::error::Error;
 use crate::base::problem::quoted;
 use crate::base::{budget, number};
-use crate::files::{clips, models, paths, picture, sources};
-
+use crate::files::{clips, models, paths, picture, sources, write};
 use crate::layers::parts::materials::List;
+use crate::ops::new;
 use crate::scene::field::{self, Kind};
 use crate::scene::schema::Place;
 use crate::scene::{Edit, json};
@@ -99,12 +99,13 @@ fn add(state: &mut State, call: &Call) -> Done {
 }
 
 /// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name. What is there is read first, so
-/// that nothing broken is added; a picture or a mesh may come later.
+/// that nothing broken is added; a picture or a mesh may come later. What the scene may not read where it is is copied beside it.
 fn add_file(state: &mut State, path: &str) -> Done {
     let place = beside(state, path);
     let (list, options) = (sources::list_of(&place), state.scene.options());
+    let outside = |file: &Path| paths::folder_beside(state.scene.path(), file).filter(|_| !options.allow_outside);
     let mut entry = value!({ "path": path });
-    let mut notes = Vec::new();
+    let (mut notes, mut copies) = (Vec::new(), None);
     let refused = |error: Error| error.to_string();
     let name = match list {
         List::Clips => {
@@ -116,25 +117,61 @@ fn add_file(state: &mut State, path: &str) -> Done {
             entry["path"] =
                 if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) }.into();
             let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
-            clips::called(&found.name, last).to_owned()
+            let name = clips::called(&found.name, last).to_owned();
+            if let Some(folder) = outside(&found.folder.join(&found.name)) {
+                let name = new::clip_called(&place);
+                let (path, files) = new::clip_copies(&found, &name);
+                entry["path"] = path.to_string_lossy().into();
+                copies = Some((folder, files));
+            }
+            name
         }
         List::Meshes if place.exists() => {
-            notes = models::read(&place, options).map_err(refused)?.notes;
+            let model = models::read(&place, options).map_err(refused)?;
+            copies = bring(&place, outside(&place), model.beside, &mut entry)?;
+            notes = model.notes;
             stem(path).to_owned()
         }
         List::Images if files_of(&place).exists() => {
             notes = picture::read(&place, &options.limits).map_err(refused)?.notes;
+            copies = bring(&place, outside(&place), Vec::new(), &mut entry)?;
             stem(path).to_owned()
         }
         _ => stem(path).to_owned(),
     };
+    let path = entry["path"].as_str().unwrap_or(path).to_owned();
+    if let Some((folder, files)) = copies {
+        if state.scene.read_only() {
+            return Err(format!(
+                "{path} is not in the scene's folder, and nothing is copied there in a read-only session"
+            ));
+        }
+        files.iter().try_for_each(|(file, name)| write::copy_into(file, &folder, name)).map_err(refused)?;
+        notes.push("copied beside the scene".to_owned());
+    }
     let map = format!("/{}", list.words().0);
     let added = Edit::insert_entries(state.document(), &map, [(name.clone(), entry)].into_iter().collect());
     let (edit, pointer) = added.ok_or("there is no list for it")?;
     state.edit(edit, false)?;
     go_to(state, &pointer);
-    tell_added(state, list, (&name, path), &notes);
+    tell_added(state, list, (&name, &path), &notes);
     Ok(())
+}
+
+/// What is copied into a folder, if there is one: a picture or a model with the files that it names; `entry` then names the copy.
+fn bring(
+    place: &Path,
+    folder: Option<PathBuf>,
+    named: Vec<String>,
+    entry: &mut Value,
+) -> Result<Option<(PathBuf, new::Copies)>, String> {
+    let Some(folder) = folder else { return Ok(None) };
+    let copied = || {
+        let own = new::file_name(place)?;
+        entry["path"] = own.as_str().into();
+        new::copies(place, [paths::file_of(&own).to_owned()].into_iter().chain(named).collect())
+    };
+    Ok(Some((folder, copied().map_err(|error: Error| error.to_string())?)))
 }
 
 /// Where a path as typed is, as a picture, a model or a clip is named: with the part of the file that it means.

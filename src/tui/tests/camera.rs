@@ -121,7 +121,7 @@ fn meshes_are_seen_before_anything_is_shown() {
     for (own, layers, expected) in [
         ("", String::new(), fitted),
         (r#""camera": {},"#, layer(2), fitted),
-        (r#""camera": {},"#, layer(0), "nothing of the mesh \"m\" is seen: its scale is 0"),
+        (r#""camera": {},"#, layer(0), "nothing of the mesh \"m\" is seen: its scale is 0 (make scale 1)"),
     ] {
         let scene =
             format!(r#"{{ "plica": 1, {own} "meshes": {{ "m": {{ "path": "m.obj" }} }}, "layers": [{layers}] }}"#);

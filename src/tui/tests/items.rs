@@ -90,6 +90,37 @@ fn what_is_broken_is_not_added_and_what_a_file_is_its_content_tells() {
 }
 
 #[test]
+fn what_is_in_another_folder_is_copied_as_new_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    ["in", "out", "out/falls"].iter().for_each(|name| std::fs::create_dir(at(name)).unwrap());
+    std::fs::write(at("in/s.plica.json"), r#"{ "plica": 1, "layers": [] }"#).unwrap();
+    std::fs::write(at("in/dog.png"), "another").unwrap();
+    image::RgbaImage::new(2, 2).save(at("out/cat.png")).unwrap();
+    for name in ["dog.png", "falls/3.png", "falls/4.png"] {
+        std::fs::copy(at("out/cat.png"), at("out").join(name)).unwrap();
+    }
+    std::fs::write(at("out/tri.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let mut state = State::new(OpenScene::in_memory(&at("in/s.plica.json")), (80, 24), Depth::None);
+    let far = at("out/cat.png");
+    for (path, pointer, expected, copy) in [
+        ("../out/tri.obj", "/meshes/tri", json!({ "path": "tri.obj" }), "in/tri.obj"),
+        ("../out/falls", "/clips/falls", json!({ "path": "falls/%d.png", "first": 3 }), "in/falls/4.png"),
+        (far.to_str().unwrap(), "/images/cat", json!({ "path": "cat.png" }), "in/cat.png"),
+    ] {
+        press(&mut state, &format!(": \"add {path}\" Enter"));
+        let (is_bad, told) = said_last(&state);
+        assert!(!is_bad && told.ends_with("; copied beside the scene"), "{path}: {told}");
+        assert_eq!(super::support::at(&state, pointer), expected, "{path}");
+        assert!(at(copy).exists(), "{copy}");
+    }
+    press(&mut state, ": \"add ../out/dog.png\" Enter");
+    assert!(said_last(&state).0 && said_last(&state).1.contains("is there already"), "{:?}", said_last(&state));
+    assert_eq!(super::support::at(&state, "/images/dog"), Value::Null);
+    assert_eq!(std::fs::read(at("in/dog.png")).unwrap(), b"another");
+}
+
+#[test]
 fn paths_are_asked_for_and_completed() {
     let beside = |state: &State| state.scene.path().parent().map(std::path::Path::to_owned);
     for (keys, name, path, relative) in [

@@ -157,6 +157,11 @@ fn the_parts_of_a_model_are_watched() {
         std::fs::write(folder.path().join("in/m.gltf"), text).unwrap();
         assert_eq!(found(), expected);
     }
+    let shown = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "images": [{"uri": "cow.png"}],
+        "meshes": [{"primitives": [{"attributes": {}, "material": 0}]}], "textures": [{"source": 0}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]}"#;
+    std::fs::write(folder.path().join("in/m.gltf"), shown).unwrap();
+    assert_eq!(found(), "in/cow.png in/m.gltf", "its picture, which is not there yet");
     std::fs::write(folder.path().join("in/m.gltf"), "{").unwrap();
     assert_eq!(found(), "in/m.gltf");
 }
