@@ -113,7 +113,9 @@ fn the_bits_do_not_depend_on_threads_and_parts_are_those_of_the_whole() {
     for samples in [1, 2] {
         let bands = Bands::new(&scene, &materials, samples).unwrap();
         let frame = cpu::frames(&render::samples(&scene, &materials, samples).unwrap(), 0.3);
-        assert!(bands.frame(0.3, &|_| ()).unwrap() == frame && bands.pixel(0.3, (20, 18)).unwrap() == *frame.get(20, 18));
+        assert!(
+            bands.frame(0.3, &|_| ()).unwrap() == frame && bands.pixel(0.3, (20, 18)).unwrap() == *frame.get(20, 18)
+        );
     }
 }
 
