@@ -542,7 +542,8 @@ fn what_is_too_large_is_refused_with_the_way_out() {
 fn every_shader_is_valid() {
     use wgpu::naga::{front::wgsl, valid};
     let programs = KINDS.iter().flat_map(|kind| kind.programs).chain(render::gpu::PROGRAMS);
-    let programs = programs.map(|program| (program.name, program.text()));
+    let routines = KINDS.iter().flat_map(|kind| kind.routines).map(|routine| (routine.name, routine.text()));
+    let programs = programs.map(|program| (program.name, program.text())).chain(routines);
     let window = [plica::layers::parts::plan::COMMON, include_str!("../src/preview/window/screen.wgsl")].concat();
     let window = ("screen.wgsl", window);
     for (name, source) in programs.chain([window]) {

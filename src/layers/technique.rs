@@ -17,7 +17,7 @@ use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::picking::Picks;
-use super::parts::plan::Program;
+use super::parts::plan::{Program, Routine};
 use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
 use super::parts::shots::{Laid, Laying, Lying};
@@ -276,6 +276,8 @@ pub struct Kind {
     pub space: Space,
     /// All programs that its layers are drawn with.
     pub programs: &'static [&'static Program],
+    /// All routines that compute for that.
+    pub routines: &'static [&'static Routine],
     /// What becomes of its layers for other engines; `None` if it has no textures for them.
     pub bundle: Option<Bundle>,
     /// The things whose number in a scene is limited.

@@ -22,6 +22,7 @@ pub static KIND: Kind = Kind {
     name: "fill",
     space: Space::Plane,
     programs: &[&synth::PROGRAM],
+    routines: &[],
     bundle: None,
     counted: &[],
     overlays: &[],

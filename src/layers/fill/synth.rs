@@ -69,7 +69,7 @@ impl Ready for Synth {
         let pair = |v: Vec2| [v.x as f32, v.y as f32];
         let line = Line { origin: pair(self.from), axis: pair(self.axis), place: pair(self.place), count, padding: 0 };
         let bytes = [bytemuck::cast_slice(&stops), bytemuck::bytes_of(&line)].concat();
-        Plan { draws: vec![Draw::frame(&PROGRAM, vec![Bind::Bytes(bytes)])], ..Plan::default() }
+        Plan::of([Draw::frame(&PROGRAM, vec![Bind::Bytes(bytes)])])
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {

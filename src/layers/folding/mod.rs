@@ -66,6 +66,7 @@ pub static KIND: Kind = Kind {
     name: "picture",
     space: Space::Plane,
     programs: plan::PROGRAMS,
+    routines: &[],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },

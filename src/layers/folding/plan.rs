@@ -36,10 +36,7 @@ struct ZoneUniform {
 /// The plan for the layer at scene time `t`.
 pub fn plan(synth: &Synth, t: f64) -> Plan {
     let still = Draw::frame(&STILL, vec![Bind::Upload(synth.picture.clone(), 0)]);
-    Plan {
-        draws: std::iter::once(still).chain(synth.zones.iter().map(|one| zone(one, t))).collect(),
-        ..Plan::default()
-    }
+    Plan::of(std::iter::once(still).chain(synth.zones.iter().map(|one| zone(one, t))))
 }
 
 fn zone(zone: &ZoneSynth, t: f64) -> Draw {

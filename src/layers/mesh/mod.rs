@@ -50,6 +50,7 @@ pub static KIND: Kind = Kind {
         strokes::plan::PROGRAMS[3],
         strokes::plan::PROGRAMS[4],
     ],
+    routines: strokes::emit::ROUTINES,
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[],
     overlays: marks::OVERLAYS,

@@ -1,8 +1,7 @@
 //! What the GPU draws for a mesh layer: all triangles, the nearest in front; and strokes on them.
 
-use glam::{DMat3, DVec3, Mat4};
+use glam::DVec3;
 
-use super::frame::world;
 use super::model::Sides;
 use super::pose::Placed;
 use super::strokes::{self, Given};
@@ -10,11 +9,11 @@ use super::surface::Look;
 use super::synth::Synth;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::plan::{Bind, COMMON, Draw, Plan, Program, Scratch};
+use crate::layers::parts::plan::{Bind, COMMON, Draw, Plan, Program, Step};
 use crate::layers::space::eye::{Eye, NEAR_M};
-use crate::layers::space::upload::{TRIANGLES, VERTICES};
+use crate::layers::space::upload::{TRIANGLES, VERTICES, matrix};
 
-const SOURCE: &[&str] = &[COMMON, include_str!("frame.wgsl")];
+const SOURCE: &[&str] = &[COMMON, include_str!("posed.wgsl"), include_str!("frame.wgsl")];
 
 /// The mesh in one color.
 pub static PLAIN: Program = Program { name: "mesh/frame.wgsl", source: SOURCE, vertex: "corner", fragment: "plain" };
@@ -56,25 +55,26 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         Look::Own(program, binds) => (program, [0.0; 4], binds),
     };
     let uniform = uniform(synth, moment, (&eye, &placed), color);
+    let posed = || {
+        let parts = [VERTICES, TRIANGLES].map(|part| Bind::Upload(synth.mesh.clone(), part));
+        [Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec())].into_iter().chain(parts).collect()
+    };
     let draw = |program, read: Vec<Bind>| {
-        let mut binds = vec![
-            Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
-            Bind::Upload(synth.mesh.clone(), VERTICES),
-            Bind::Upload(synth.mesh.clone(), TRIANGLES),
-        ];
+        let mut binds: Vec<Bind> = posed();
         binds.extend(read);
         let vertices = 3 * synth.mesh.triangles.len() as u32;
         Draw { vertices, depth: true, ..Draw::frame(program, binds) }
     };
     let Some(ready) = synth.strokes.as_deref() else {
-        return Plan { draws: vec![draw(program, read)], ..Plan::default() };
+        return Plan::of([draw(program, read)]);
     };
     // Strokes hide all of its color: only its depths count. They are not drawn on surfaces with programs of their own.
     let surface = draw(&PLAIN, Vec::new());
     let program = if read.is_empty() { &PLAIN_FACTS } else { &PICTURED_FACTS };
     let facts = Draw { into: Some(strokes::plan::shown()), ..draw(program, read) };
-    let (scratch, draws) = on_it(synth, moment, (eye, &placed), ready);
-    Plan { scratch, draws: [surface, facts].into_iter().chain(draws).collect() }
+    let mut plan = on_it(synth, moment, (eye, &placed), (ready, &posed));
+    plan.steps.splice(..0, [surface, facts].map(Step::Draw));
+    plan
 }
 
 /// The strokes on it.
@@ -82,11 +82,11 @@ fn on_it(
     synth: &Synth,
     moment: &Moment,
     (eye, placed): (Eye, &Placed),
-    ready: &strokes::Ready,
-) -> (Vec<Scratch>, Vec<Draw>) {
+    (ready, posed): (&strokes::Ready, &dyn Fn() -> Vec<Bind>),
+) -> Plan {
     let given = Given {
         mesh: &synth.mesh,
-        world: &world(&synth.mesh, placed),
+        world: &[],
         placed,
         both: synth.sides == Sides::Both,
         toward: synth.light.toward(),
@@ -100,7 +100,7 @@ fn on_it(
         shaded: Vec::new(),
         light: Vec::new(),
     };
-    strokes::plan::plan(ready, &given, synth.light.ambient)
+    strokes::plan::plan(ready, &given, synth.light.ambient, posed)
 }
 
 fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color: Rgba) -> Uniform {
@@ -110,7 +110,7 @@ fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color
     let shift = [(1.0 - 2.0 * synth.place.x) / width, (2.0 * synth.place.y - 1.0) / height];
     Uniform {
         eye_from_model: eye_from_model(eye, placed),
-        world_from_normal: columns(placed.turn, DVec3::ZERO),
+        world_from_normal: matrix(placed.turn, DVec3::ZERO),
         along: placed.along.as_vec3().to_array(),
         from: placed.from as f32,
         light: synth.light.toward().as_vec3().to_array(),
@@ -126,12 +126,5 @@ fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color
 }
 
 fn eye_from_model(eye: &Eye, placed: &Placed) -> [f32; 16] {
-    columns(eye.turn * placed.turn * placed.scale, eye.turn * (placed.position - eye.position))
-}
-
-/// A turn and a shift as WGSL has a matrix.
-fn columns(turn: DMat3, shift: DVec3) -> [f32; 16] {
-    let column = |v: DVec3, w: f32| v.as_vec3().extend(w);
-    Mat4::from_cols(column(turn.x_axis, 0.0), column(turn.y_axis, 0.0), column(turn.z_axis, 0.0), column(shift, 1.0))
-        .to_cols_array()
+    matrix(eye.turn * placed.turn * placed.scale, eye.turn * (placed.position - eye.position))
 }

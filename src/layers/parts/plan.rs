@@ -1,4 +1,4 @@
-//! What the GPU draws for a layer, as data: a technique describes it, and only `render/gpu` executes it.
+//! What the GPU computes and draws for a layer, as data: a technique describes it, and only `render/gpu` executes it.
 
 use std::any::Any;
 use std::fmt;
@@ -31,18 +31,45 @@ impl Program {
     }
 }
 
-/// A whole layer at one time: draws, in order, into a picture of the frame's size that is transparent at first. With other
-/// layers of a group, the draws into the picture that read no depths come first, then those of layers with textures of their
-/// own, then all others.
-#[derive(Debug, Default)]
-pub struct Plan {
-    /// Textures of its own, of the frame's size, by their numbers in [`Canvas`] and [`Bind::Scratch`].
-    pub scratch: Vec<Scratch>,
-    /// The draws.
-    pub draws: Vec<Draw>,
+/// A compute shader. Its bindings are those of group 0, in the order of [`Compute::binds`].
+#[derive(Debug)]
+pub struct Routine {
+    /// Its name in error messages.
+    pub name: &'static str,
+    /// The parts of its WGSL.
+    pub source: &'static [&'static str],
+    /// The entry point.
+    pub entry: &'static str,
 }
 
-/// A texture of the frame's size that is drawn by some draws of a plan and read by later ones.
+impl Routine {
+    /// Its WGSL in one piece.
+    pub fn text(&self) -> String {
+        self.source.concat()
+    }
+}
+
+/// A whole layer at one time: steps, in order, that draw into a picture of the frame's size that is transparent at first. With
+/// other layers of a group, the draws into the picture that read no depths come first, then the steps of layers with scratch
+/// of their own, then all others.
+#[derive(Debug, Default)]
+pub struct Plan {
+    /// What its steps leave for later ones, by their numbers in [`Canvas`] and [`Bind::Scratch`].
+    pub scratch: Vec<Scratch>,
+    /// The steps.
+    pub steps: Vec<Step>,
+}
+
+/// One step of a plan.
+#[derive(Debug)]
+pub enum Step {
+    /// Draws.
+    Draw(Draw),
+    /// Computes.
+    Compute(Compute),
+}
+
+/// What some steps of a plan write and later ones read. Textures have the frame's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scratch {
     /// One texture.
@@ -51,19 +78,91 @@ pub enum Scratch {
     Layers(Format, u32),
     /// Depths.
     Depths,
+    /// An array of so many bytes.
+    Bytes(u64),
+    /// An array that has room for all that the [`Scratch::Tally`] asks for.
+    Growing,
+    /// What computes find out to be done, as a [`Tally`] that is all 0 at first.
+    Tally,
+}
+
+/// How much there is to be done, in the memory layout of WGSL.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Tally {
+    /// How much room the growing array has to have, in lumps of [`LUMP_BYTES`]. Where it has less, all of the frame is drawn
+    /// again with more.
+    pub room: u32,
+    /// What [`Groups::Found`] runs.
+    pub groups: [u32; 3],
+    /// What a [`Draw::found`] draws: vertices, instances, and the first of both, 0.
+    pub draw: [u32; 4],
+}
+
+/// The size of what the room of a [`Tally`] is counted in.
+pub const LUMP_BYTES: u64 = 16;
+
+impl Step {
+    /// What its program reads and writes.
+    pub fn binds(&self) -> &[Bind] {
+        match self {
+            Step::Draw(draw) => &draw.binds,
+            Step::Compute(compute) => &compute.binds,
+        }
+    }
+
+    /// The draw, if it is one.
+    pub fn draw(&self) -> Option<&Draw> {
+        match self {
+            Step::Draw(draw) => Some(draw),
+            Step::Compute(_) => None,
+        }
+    }
 }
 
 impl Plan {
+    /// Only draws.
+    pub fn of(draws: impl IntoIterator<Item = Draw>) -> Plan {
+        Plan { scratch: Vec::new(), steps: draws.into_iter().map(Step::Draw).collect() }
+    }
+
     /// Everything that is packed for it.
     pub fn uploads(self) -> Vec<Arc<dyn Upload>> {
-        let binds = self.draws.into_iter().flat_map(|draw| draw.binds);
+        let binds = self.steps.into_iter().flat_map(|step| match step {
+            Step::Draw(draw) => draw.binds,
+            Step::Compute(compute) => compute.binds,
+        });
         let uploads = binds.flat_map(|bind| match bind {
             Bind::Upload(of, _) => vec![of],
             Bind::Drawn(drawn) => drawn.plan.uploads(),
-            Bind::Bytes(_) | Bind::List(_) | Bind::Scratch(_) | Bind::Depth | Bind::Linear => Vec::new(),
+            Bind::Bytes(_) | Bind::List(_) | Bind::Scratch(_) | Bind::Written(_) | Bind::Depth | Bind::Linear => {
+                Vec::new()
+            }
         });
         uploads.collect()
     }
+}
+
+/// Work on arrays of the plan.
+#[derive(Debug)]
+pub struct Compute {
+    /// The routine to run.
+    pub routine: &'static Routine,
+    /// As those of a [`Draw`].
+    pub constants: Vec<(&'static str, f64)>,
+    /// The resources that the routine reads and writes, by binding number.
+    pub binds: Vec<Bind>,
+    /// How many groups of threads run.
+    pub groups: Groups,
+}
+
+/// A number of groups of threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Groups {
+    /// So many.
+    Count(u32),
+    /// As many as the [`Scratch::Tally`] of this number says.
+    Found(usize),
 }
 
 /// One draw.
@@ -83,6 +182,8 @@ pub struct Draw {
     pub vertices: u32,
     /// How often they are drawn, one time after the other.
     pub instances: u32,
+    /// The number of the [`Scratch::Tally`] that says both in place of these, if one does.
+    pub found: Option<usize>,
     /// Whether a pixel is drawn only where it is nearer than all before, and hides what is farther then.
     pub depth: bool,
     /// The pixels to draw: left, top, width, height, clipped to the frame; `None` for all.
@@ -100,6 +201,7 @@ impl Draw {
             blend: Blend::Replace,
             vertices: 3,
             instances: 1,
+            found: None,
             depth: false,
             scissor_px: None,
         }
@@ -147,8 +249,10 @@ pub enum Bind {
     Upload(Arc<dyn Upload>, usize),
     /// A texture that is drawn first.
     Drawn(Box<Drawn>),
-    /// One of the plan's own textures, by its number.
+    /// One of the plan's own textures or arrays, by its number, to be read.
     Scratch(usize),
+    /// One of the plan's own arrays, by its number, that a routine also writes.
+    Written(usize),
     /// The depths of the surfaces that are drawn with the layer, near / depth, 0 where there is none: the draw comes after
     /// them.
     Depth,
@@ -173,6 +277,7 @@ impl fmt::Debug for Bind {
             Bind::Upload(_, part) => f.debug_tuple("Upload").field(part).finish(),
             Bind::Drawn(drawn) => drawn.fmt(f),
             Bind::Scratch(number) => f.debug_tuple("Scratch").field(number).finish(),
+            Bind::Written(number) => f.debug_tuple("Written").field(number).finish(),
             Bind::Depth => f.write_str("Depth"),
             Bind::Linear => f.write_str("Linear"),
         }

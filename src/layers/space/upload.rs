@@ -3,6 +3,8 @@
 
 use std::ops::Range;
 
+use glam::{DMat3, DVec3, Mat4};
+
 use crate::base::mesh::{Mesh, Vertex};
 use crate::layers::parts::plan::{Format, Packed, Rows, Upload};
 
@@ -29,6 +31,13 @@ impl Upload for Mesh {
             packed(triangles, self.triangles.len(), Format::Rgba32Uint),
         ]
     }
+}
+
+/// A turn and a shift as WGSL has a matrix.
+pub fn matrix(turn: DMat3, shift: DVec3) -> [f32; 16] {
+    let column = |v: DVec3, w: f32| v.as_vec3().extend(w);
+    Mat4::from_cols(column(turn.x_axis, 0.0), column(turn.y_axis, 0.0), column(turn.z_axis, 0.0), column(shift, 1.0))
+        .to_cols_array()
 }
 
 /// So many texels in rows of [`WIDTH`].

@@ -60,6 +60,7 @@ pub static KIND: Kind = Kind {
     name: "waterfall",
     space: Space::World,
     programs: &[&plan::PROGRAM],
+    routines: &[],
     bundle: None,
     counted: &[],
     overlays: marks::OVERLAYS,

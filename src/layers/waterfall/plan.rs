@@ -75,7 +75,7 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         Mixing::Over => Blend::Over,
     };
     let draw = Draw { blend, vertices: 6, instances: sprites.len() as u32, ..Draw::frame(&PROGRAM, binds) };
-    Plan { draws: vec![draw], ..Plan::default() }
+    Plan::of([draw])
 }
 
 fn sprite(synth: &Synth, atlas: &Atlas, splat: &Splat) -> Sprite {

@@ -2,7 +2,7 @@
 //! errors are captured and returned to the caller that asked for the work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 use crate::base::error::{Error, Result};
 
@@ -35,8 +35,12 @@ impl Device {
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|e| failed(format!("no adapter was found: {}", one_line(&e))))?;
         let own = adapter.limits();
-        let limits = wgpu::Limits { max_buffer_size: own.max_buffer_size, ..wgpu::Limits::downlevel_defaults() }
-            .using_resolution(own);
+        let limits = wgpu::Limits {
+            max_buffer_size: own.max_buffer_size,
+            max_storage_buffer_binding_size: own.max_storage_buffer_binding_size,
+            ..wgpu::Limits::downlevel_defaults()
+        };
+        let limits = limits.using_resolution(own.clone()).or_worse_values_from(&own);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("plica"),
             required_features: adapter.features() & wgpu::Features::FLOAT32_BLENDABLE,
@@ -89,6 +93,26 @@ impl Device {
         self.raw.features().contains(wgpu::Features::FLOAT32_BLENDABLE)
     }
 
+    /// Whether it computes what is drawn.
+    pub fn computes(&self) -> bool {
+        let wanted = wgpu::DownlevelFlags::COMPUTE_SHADERS
+            | wgpu::DownlevelFlags::INDIRECT_EXECUTION
+            | wgpu::DownlevelFlags::VERTEX_STORAGE;
+        self.adapter.get_downlevel_capabilities().flags.contains(wanted)
+    }
+
+    /// Waits for a buffer that everything needed was submitted for, and hands out what is in it.
+    pub fn read<T>(&self, buffer: &wgpu::Buffer, take: impl FnOnce(&[u8]) -> T) -> Result<T> {
+        let (done, mapped) = mpsc::channel();
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            let _ = done.send(result); // the receiver is gone only if the wait failed
+        });
+        self.wait()?;
+        mapped.try_recv().map_err(failed)?.map_err(failed)?;
+        let bytes = buffer.slice(..).get_mapped_range().map_err(failed)?;
+        Ok(take(&bytes))
+    }
+
     /// Runs `work`; an error that it causes on the device becomes the result.
     pub fn checked<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -129,6 +153,14 @@ pub fn instance(display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wg
     descriptor.flags = wgpu::InstanceFlags::empty();
     descriptor.display = display;
     wgpu::Instance::new(descriptor)
+}
+
+/// A buffer of so many bytes to copy something into that is read back.
+pub fn readable(device: &Device, size: u64) -> Result<wgpu::Buffer> {
+    let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+    device.checked(|| {
+        device.raw.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+    })
 }
 
 /// An error of the GPU.

@@ -5,7 +5,7 @@ use super::device::Device;
 use super::kept::{Kept, check_size, texture};
 use super::run::{FRAME, Runner};
 use crate::base::error::Result;
-use crate::layers::parts::plan::{Blend, COMMON, Plan, Program};
+use crate::layers::parts::plan::{Blend, COMMON, Plan, Program, Step};
 use crate::render::Synth;
 
 /// The format of layers that are blended from much.
@@ -39,27 +39,36 @@ impl Painter {
         (synth, scene_time): (&Synth, f64),
     ) -> Result<wgpu::Texture> {
         let frame = self.frames[number].get(device, synth.size, FRAME)?;
+        loop {
+            self.draw(device, &frame, (synth, scene_time))?;
+            if self.runner.had_room(device)? {
+                return Ok(frame);
+            }
+        }
+    }
+
+    /// Draws the frame once, though there may not be room for all that it is drawn from.
+    fn draw(&mut self, device: &Device, frame: &wgpu::Texture, (synth, scene_time): (&Synth, f64)) -> Result<()> {
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         let moment = synth.moment(scene_time);
         let stage = &synth.stage;
-        self.runner.clear(&mut encoder, &frame, stage.background);
+        self.runner.clear(&mut encoder, frame, stage.background);
         for (i, group) in stage.groups.iter().enumerate() {
             let plans: Vec<Plan> = group.layers().iter().map(|&layer| synth.layers[layer].plan(&moment)).collect();
             // Halves lose too much where much is blended.
-            let mut draws = plans.iter().flat_map(|plan| &plan.draws);
+            let mut draws = plans.iter().flat_map(|plan| &plan.steps).filter_map(Step::draw);
             let fine = device.blends_floats() && draws.any(|draw| draw.into.is_none() && draw.instances > 1);
             // Beneath the first layer there is often nothing.
             if i == 0 && stage.background == [0.0; 4] && !fine {
-                self.runner.run(device, &mut encoder, &frame, &plans)?;
+                self.runner.run(device, &mut encoder, frame, &plans)?;
                 continue;
             }
             let (target, format) = if fine { (&mut self.fine, FINE) } else { (&mut self.layer, FRAME) };
             let into = target.get(device, synth.size, format)?;
             self.runner.run(device, &mut encoder, &into, &plans)?;
-            self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, &frame))?;
+            self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, frame))?;
         }
-        device.checked(|| device.queue.submit([encoder.finish()]))?;
-        Ok(frame)
+        device.checked(|| device.queue.submit([encoder.finish()])).map(|_| ())
     }
 
     /// What is kept on the device.

@@ -1,8 +1,8 @@
 //! Frames drawn by the GPU: the same pictures as from `render::cpu`, at display rate. The only module besides the
 //! window that uses wgpu; it owns the device and replaces it if it is lost.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, mpsc};
 
 use crate::base::error::Result;
 use crate::base::pixels::{Frame, Grid};
@@ -18,7 +18,7 @@ mod pipeline;
 mod run;
 mod target;
 
-use device::{Device, failed};
+use device::{Device, readable};
 pub use draw::PROGRAMS;
 pub use kept::Uploaded;
 pub use run::FRAME;
@@ -150,27 +150,16 @@ impl Gpu {
 fn read_back(device: &Device, texture: &wgpu::Texture) -> Result<Frame> {
     let (width, height) = (texture.width() as usize, texture.height() as usize);
     let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
-    let buffer = device.checked(|| {
-        let buffer = device.raw.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: (stride * height) as u64,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+    let buffer = readable(device, (stride * height) as u64)?;
+    device.checked(|| {
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(stride as u32), ..Default::default() };
         let into = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
         device.queue.submit([encoder.finish()]);
-        buffer
     })?;
-    let (done, mapped) = mpsc::channel();
-    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        let _ = done.send(result); // the receiver is gone only if the wait failed
-    });
-    device.wait()?;
-    mapped.try_recv().map_err(failed)?.map_err(failed)?;
-    let bytes = buffer.slice(..).get_mapped_range().map_err(failed)?;
-    let rows = bytes.chunks_exact(stride).flat_map(|row| bytemuck::cast_slice::<u8, [u8; 4]>(&row[..width * 4]));
-    Ok(Grid::from_cells(width, height, rows.copied().collect()))
+    device.read(&buffer, |bytes| {
+        let rows = bytes.chunks_exact(stride).flat_map(|row| bytemuck::cast_slice::<u8, [u8; 4]>(&row[..width * 4]));
+        Grid::from_cells(width, height, rows.copied().collect())
+    })
 }

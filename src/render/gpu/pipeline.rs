@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::device::{Device, failed};
 use super::kept::Texture;
 use crate::base::error::Result;
-use crate::layers::parts::plan::{Blend, Format, Program};
+use crate::layers::parts::plan::{Blend, Format, Program, Routine};
 
 /// The format of depths.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -21,17 +21,19 @@ const ADD: wgpu::BlendComponent =
 
 /// Everything that was compiled.
 #[derive(Default)]
-pub struct Pipelines(HashMap<Key, Pipeline>);
+pub struct Pipelines {
+    drawing: HashMap<(Used, Way), Pipeline<wgpu::RenderPipeline>>,
+    computing: HashMap<Used, Pipeline<wgpu::ComputePipeline>>,
+}
 
-/// Everything that is compiled into a pipeline.
+/// Code as it is used: everything that is compiled into a pipeline, besides how pixels are drawn.
 #[derive(Clone, PartialEq, Eq, Hash)]
-struct Key {
-    /// The program's address.
-    program: usize,
+struct Used {
+    /// The address of the program or the routine.
+    code: usize,
     /// Names and bits of the constants.
     constants: Vec<(&'static str, u64)>,
     binds: Vec<Kind>,
-    way: Way,
 }
 
 /// How what is drawn gets to what is there.
@@ -50,6 +52,7 @@ pub struct Way {
 enum Kind {
     Uniform,
     List,
+    Written,
     Floats,
     FloatLayers,
     Filtered,
@@ -59,17 +62,19 @@ enum Kind {
 }
 
 #[derive(Clone)]
-struct Pipeline {
-    raw: wgpu::RenderPipeline,
+struct Pipeline<T> {
+    raw: T,
     bindings: wgpu::BindGroupLayout,
 }
 
-/// A resource on the device that a program reads.
+/// A resource on the device that code reads.
 pub enum Bound {
     /// A uniform.
     Uniform(wgpu::Buffer),
     /// An array.
     List(wgpu::Buffer),
+    /// An array that is also written.
+    Written(wgpu::Buffer),
     /// A texture.
     Texture(Texture),
     /// Textures of floats on top of one another.
@@ -81,7 +86,7 @@ pub enum Bound {
 }
 
 impl Pipelines {
-    /// A pipeline, compiled if it is new, and its bind group.
+    /// A pipeline that draws, compiled if it is new, and its bind group.
     pub fn get(
         &mut self,
         device: &Device,
@@ -89,33 +94,60 @@ impl Pipelines {
         bound: &[Bound],
         way: Way,
     ) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup)> {
-        let key = Key {
-            program: std::ptr::from_ref(program).addr(),
-            constants: constants.iter().map(|&(name, value)| (name, value.to_bits())).collect(),
-            binds: bound.iter().map(Bound::kind).collect(),
-            way,
-        };
-        let pipeline = match self.0.get(&key) {
+        let key = (Used::new(std::ptr::from_ref(program).addr(), constants, bound), way);
+        let pipeline = match self.drawing.get(&key) {
             Some(pipeline) => pipeline.clone(),
             None => {
                 let made = device.checked(|| compile(&device.raw, program, constants, &key));
                 let made = made.map_err(|error| failed(format!("{}: {error}", program.name)))?;
-                self.0.insert(key, made.clone());
+                self.drawing.insert(key, made.clone());
                 made
             }
         };
-        let resources = bound.iter().map(Bound::resource).enumerate();
-        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource };
-        let entries: Vec<_> = resources.map(entry).collect();
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &pipeline.bindings, entries: &entries };
-        Ok((pipeline.raw, device.raw.create_bind_group(&descriptor)))
+        let group = group(device, &pipeline.bindings, bound);
+        Ok((pipeline.raw, group))
     }
+
+    /// A pipeline that computes, compiled if it is new, and its bind group.
+    pub fn computing(
+        &mut self,
+        device: &Device,
+        (routine, constants): (&'static Routine, &[(&'static str, f64)]),
+        bound: &[Bound],
+    ) -> Result<(wgpu::ComputePipeline, wgpu::BindGroup)> {
+        let key = Used::new(std::ptr::from_ref(routine).addr(), constants, bound);
+        let pipeline = match self.computing.get(&key) {
+            Some(pipeline) => pipeline.clone(),
+            None => {
+                let made = device.checked(|| compile_routine(&device.raw, routine, constants, &key));
+                let made = made.map_err(|error| failed(format!("{}: {error}", routine.name)))?;
+                self.computing.insert(key, made.clone());
+                made
+            }
+        };
+        let group = group(device, &pipeline.bindings, bound);
+        Ok((pipeline.raw, group))
+    }
+}
+
+impl Used {
+    fn new(code: usize, constants: &[(&'static str, f64)], bound: &[Bound]) -> Used {
+        let constants = constants.iter().map(|&(name, value)| (name, value.to_bits())).collect();
+        Used { code, constants, binds: bound.iter().map(Bound::kind).collect() }
+    }
+}
+
+fn group(device: &Device, layout: &wgpu::BindGroupLayout, bound: &[Bound]) -> wgpu::BindGroup {
+    let resources = bound.iter().map(Bound::resource).enumerate();
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource };
+    let entries: Vec<_> = resources.map(entry).collect();
+    device.raw.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
 impl Bound {
     fn resource(&self) -> wgpu::BindingResource<'_> {
         match self {
-            Bound::Uniform(buffer) | Bound::List(buffer) => buffer.as_entire_binding(),
+            Bound::Uniform(buffer) | Bound::List(buffer) | Bound::Written(buffer) => buffer.as_entire_binding(),
             Bound::Texture(Texture { view, .. }) | Bound::Layers(view) | Bound::Depth(view) => {
                 wgpu::BindingResource::TextureView(view)
             }
@@ -127,6 +159,7 @@ impl Bound {
         match self {
             Bound::Uniform(_) => Kind::Uniform,
             Bound::List(_) => Kind::List,
+            Bound::Written(_) => Kind::Written,
             Bound::Depth(_) => Kind::Depth,
             Bound::Layers(_) => Kind::FloatLayers,
             Bound::Linear(_) => Kind::Linear,
@@ -152,6 +185,7 @@ impl Kind {
         match self {
             Kind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
             Kind::List => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            Kind::Written => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
             Kind::Floats => texture(floats),
             Kind::FloatLayers => textures(floats, wgpu::TextureViewDimension::D2Array),
             Kind::Filtered => texture(wgpu::TextureSampleType::Float { filterable: true }),
@@ -162,32 +196,68 @@ impl Kind {
     }
 }
 
-fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], key: &Key) -> Pipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(program.name),
-        source: wgpu::ShaderSource::Wgsl(program.text().into()),
-    });
+/// WGSL as a module.
+fn module(device: &wgpu::Device, name: &str, text: String) -> wgpu::ShaderModule {
+    let source = wgpu::ShaderSource::Wgsl(text.into());
+    device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source })
+}
+
+/// What code that runs in these stages is bound to.
+fn layouts(
+    device: &wgpu::Device,
+    binds: &[Kind],
+    visibility: wgpu::ShaderStages,
+) -> (wgpu::BindGroupLayout, wgpu::PipelineLayout) {
     let entry = |(binding, kind): (usize, &Kind)| wgpu::BindGroupLayoutEntry {
         binding: binding as u32,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        visibility,
         ty: kind.layout(),
         count: None,
     };
-    let entries: Vec<_> = key.binds.iter().enumerate().map(entry).collect();
+    let entries: Vec<_> = binds.iter().enumerate().map(entry).collect();
     let bindings = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         bind_group_layouts: &[Some(&bindings)],
         ..Default::default()
     });
+    (bindings, layout)
+}
+
+fn compile_routine(
+    device: &wgpu::Device,
+    routine: &Routine,
+    constants: &[(&str, f64)],
+    used: &Used,
+) -> Pipeline<wgpu::ComputePipeline> {
+    let (bindings, layout) = layouts(device, &used.binds, wgpu::ShaderStages::COMPUTE);
+    let raw = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(routine.name),
+        layout: Some(&layout),
+        module: &module(device, routine.name, routine.text()),
+        entry_point: Some(routine.entry),
+        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+        cache: None,
+    });
+    Pipeline { raw, bindings }
+}
+
+fn compile(
+    device: &wgpu::Device,
+    program: &Program,
+    constants: &[(&str, f64)],
+    (used, way): &(Used, Way),
+) -> Pipeline<wgpu::RenderPipeline> {
+    let module = module(device, program.name, program.text());
+    let (bindings, layout) = layouts(device, &used.binds, wgpu::ShaderStages::VERTEX_FRAGMENT);
     let options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-    let blend = match key.way.blend {
+    let blend = match way.blend {
         Blend::Replace => None,
         Blend::Over => Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
         Blend::Screen => Some(wgpu::BlendState { color: SCREEN, alpha: SCREEN }),
         Blend::Add => Some(wgpu::BlendState { color: ADD, alpha: ADD }),
     };
     let target = |&format| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL });
-    let targets: Vec<_> = key.way.into.iter().map(target).collect();
+    let targets: Vec<_> = way.into.iter().map(target).collect();
     let raw = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(program.name),
         layout: Some(&layout),
@@ -198,7 +268,7 @@ fn compile(device: &wgpu::Device, program: &Program, constants: &[(&str, f64)], 
             buffers: &[],
         },
         primitive: Default::default(),
-        depth_stencil: key.way.depth.map(depth),
+        depth_stencil: way.depth.map(depth),
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,

@@ -1,12 +1,14 @@
-//! Executes plans: the only place that turns the techniques' descriptions of draws into bindings and passes.
+//! Executes plans: the only place that turns the techniques' descriptions of steps into bindings and passes.
 
-use super::device::{Device, failed};
+use std::mem::offset_of;
+
+use super::device::{Device, failed, readable};
 use super::kept::{Kept, Texture, check_size, texture};
 use super::pipeline::{Bound, DEPTH, Pipelines, Way};
 use super::target::{Scratches, Spare, Target};
 use crate::base::error::Result;
 use crate::base::pixels::Rgba;
-use crate::layers::parts::plan::{Bind, Blend, Canvas, Draw, Format, Plan, Program};
+use crate::layers::parts::plan::{Bind, Blend, Canvas, Compute, Draw, Format, Groups, Plan, Program, Step, Tally};
 
 /// The format of frames on the device.
 pub const FRAME: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -17,6 +19,8 @@ pub struct Runner {
     pipelines: Pipelines,
     kept: Kept,
     spare: Spare,
+    /// How much room the plans since the last [`Runner::had_room`] have asked for.
+    asked: Vec<wgpu::Buffer>,
 }
 
 /// A draw with everything that it needs on the device.
@@ -25,8 +29,13 @@ struct Ready {
     group: wgpu::BindGroup,
     /// Left, top, width, height.
     scissor: Option<[u32; 4]>,
-    vertices: u32,
-    instances: u32,
+    amount: Amount,
+}
+
+/// How much is drawn: so many vertices and instances, or what is found in a buffer.
+enum Amount {
+    Count(u32, u32),
+    Found(wgpu::Buffer),
 }
 
 /// What was drawn before.
@@ -45,29 +54,98 @@ impl Runner {
         into: &wgpu::Texture,
         plans: &[Plan],
     ) -> Result<()> {
-        let all = || plans.iter().flat_map(|plan| &plan.draws);
-        let first: Vec<&Draw> = all().filter(|draw| is_first(draw)).collect();
+        let all = || plans.iter().flat_map(|plan| &plan.steps);
+        let first: Vec<&Draw> = all().filter_map(Step::draw).filter(|draw| is_first(draw)).collect();
         let size = (into.width() as usize, into.height() as usize);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        let deep = first.iter().any(|draw| draw.depth) || all().any(reads_depth);
+        let deep = first.iter().any(|draw| draw.depth) || all().any(|step| reads_depth(step.binds()));
         let depth = deep.then(|| texture(device, size, DEPTH, usage)).transpose()?;
         let target = Target::of(into, depth.as_ref(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
         let nothing = Scratches::default();
         self.pass(device, encoder, (&target, Before { depth: None, scratch: &nothing }), &first)?;
-        let (drawn_on, others): (Vec<&Plan>, Vec<&Plan>) = plans.iter().partition(|plan| !plan.scratch.is_empty());
-        for plan in drawn_on.into_iter().chain(others) {
+        let (with_scratch, others): (Vec<&Plan>, Vec<&Plan>) = plans.iter().partition(|plan| !plan.scratch.is_empty());
+        for plan in with_scratch.into_iter().chain(others) {
             let scratch = self.spare.take(device, size, &plan.scratch)?;
-            let later: Vec<&Draw> = plan.draws.iter().filter(|draw| !is_first(draw)).collect();
-            for draws in later.chunk_by(|one, next| is_same(one, next)) {
-                let target = match draws.first().and_then(|draw| draw.into.as_ref()) {
-                    Some(canvas) => scratch.target(canvas)?,
-                    None => Target::of(into, None, wgpu::LoadOp::Load),
-                };
-                self.pass(device, encoder, (&target, Before { depth: depth.as_ref(), scratch: &scratch }), draws)?;
-            }
+            scratch.clear(encoder);
+            self.later(device, encoder, (into, Before { depth: depth.as_ref(), scratch: &scratch }), plan)?;
+            self.note(device, encoder, &scratch)?;
             self.spare.give_back(scratch);
         }
         Ok(())
+    }
+
+    /// The steps of a plan that come after the first draws of all.
+    fn later(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (into, before): (&wgpu::Texture, Before),
+        plan: &Plan,
+    ) -> Result<()> {
+        let later: Vec<&Step> = plan.steps.iter().filter(|step| !step.draw().is_some_and(is_first)).collect();
+        for steps in later.chunk_by(|one, next| is_same(one, next)) {
+            let draws: Vec<&Draw> = steps.iter().filter_map(|step| step.draw()).collect();
+            let target = match draws.first().map(|draw| draw.into.as_ref()) {
+                Some(Some(canvas)) => before.scratch.target(canvas)?,
+                Some(None) => Target::of(into, None, wgpu::LoadOp::Load),
+                None => {
+                    self.compute(device, encoder, before, steps)?;
+                    continue;
+                }
+            };
+            self.pass(device, encoder, (&target, before), &draws)?;
+        }
+        Ok(())
+    }
+
+    /// Some steps that compute, each after those before.
+    fn compute(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        before: Before,
+        steps: &[&Step],
+    ) -> Result<()> {
+        let mut ready = Vec::with_capacity(steps.len());
+        for step in steps {
+            let Step::Compute(Compute { routine, constants, binds, groups }) = step else { continue };
+            let bound = self.all_bound(device, encoder, binds, before)?;
+            let found = match *groups {
+                Groups::Count(count) => Err(count),
+                Groups::Found(number) => Ok(before.scratch.buffer(number)?.clone()),
+            };
+            ready.push((self.pipelines.computing(device, (routine, constants), &bound)?, found));
+        }
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        for ((pipeline, group), groups) in &ready {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            match groups {
+                Err(count) => pass.dispatch_workgroups(*count, 1, 1),
+                Ok(tally) => pass.dispatch_workgroups_indirect(tally, offset_of!(Tally, groups) as u64),
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes how much room a plan has asked for.
+    fn note(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, scratch: &Scratches) -> Result<()> {
+        for tally in scratch.tallies() {
+            let asked = readable(device, size_of::<u32>() as u64)?;
+            encoder.copy_buffer_to_buffer(tally, offset_of!(Tally, room) as u64, &asked, 0, asked.size());
+            self.asked.push(asked);
+        }
+        Ok(())
+    }
+
+    /// Whether all plans that were submitted had room for what they computed; if not, they will have when they are run again.
+    pub fn had_room(&mut self, device: &Device) -> Result<bool> {
+        let mut most = None;
+        for asked in std::mem::take(&mut self.asked) {
+            let asked = device.read(&asked, bytemuck::pod_read_unaligned::<u32>)?;
+            most = most.max(Some(u64::from(asked)));
+        }
+        Ok(most.is_none_or(|most| self.spare.grow(device, most)))
     }
 
     /// One pass of draws; those that cover no pixel are left out.
@@ -81,13 +159,15 @@ impl Runner {
         let mut ready = Vec::with_capacity(draws.len());
         for draw in draws {
             let Some(scissor) = scissor(draw, target.size_px) else { continue };
-            let bound = draw.binds.iter().map(|bind| self.bound(device, encoder, (bind, before)));
-            let bound = bound.collect::<Result<Vec<_>>>()?;
+            let bound = self.all_bound(device, encoder, &draw.binds, before)?;
             let depth = target.depth.is_some().then_some(draw.depth);
             let way = Way { blend: draw.blend, into: target.formats.clone(), depth };
             let (pipeline, group) = self.pipelines.get(device, (draw.program, &draw.constants), &bound, way)?;
-            let (vertices, instances) = (draw.vertices, draw.instances);
-            ready.push(Ready { pipeline, group, scissor: Some(scissor), vertices, instances });
+            let amount = match draw.found {
+                Some(number) => Amount::Found(before.scratch.buffer(number)?.clone()),
+                None => Amount::Count(draw.vertices, draw.instances),
+            };
+            ready.push(Ready { pipeline, group, scissor: Some(scissor), amount });
         }
         pass(encoder, target, &ready);
         Ok(())
@@ -111,7 +191,7 @@ impl Runner {
         let bound = [Bound::Texture(Texture { view, format: Format::Rgba32Float })];
         let way = Way { blend, into: vec![into.format()], depth: None };
         let (pipeline, group) = self.pipelines.get(device, (program, &[]), &bound, way)?;
-        let draw = Ready { pipeline, group, scissor: None, vertices: 3, instances: 1 };
+        let draw = Ready { pipeline, group, scissor: None, amount: Amount::Count(3, 1) };
         pass(encoder, &Target::of(into, None, wgpu::LoadOp::Load), &[draw]);
         Ok(())
     }
@@ -127,7 +207,17 @@ impl Runner {
         self.spare.end_frame();
     }
 
-    /// What a program reads, on the device.
+    /// What code reads and writes, on the device.
+    fn all_bound(
+        &mut self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        binds: &[Bind],
+        before: Before,
+    ) -> Result<Vec<Bound>> {
+        binds.iter().map(|bind| self.bound(device, encoder, (bind, before))).collect()
+    }
+
     fn bound(
         &mut self,
         device: &Device,
@@ -142,6 +232,7 @@ impl Runner {
                 Ok(Bound::Depth(depth.create_view(&Default::default())))
             }
             Bind::Scratch(number) => before.scratch.bound(*number),
+            Bind::Written(number) => before.scratch.buffer(*number).cloned().map(Bound::Written),
             Bind::Linear => Ok(Bound::Linear(device.raw.create_sampler(&wgpu::SamplerDescriptor {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
@@ -174,21 +265,21 @@ fn buffer(device: &Device, bytes: &[u8], usage: wgpu::BufferUsages) -> Result<wg
     Ok(buffer)
 }
 
-/// Whether a draw reads the depths of the surfaces.
-fn reads_depth(draw: &Draw) -> bool {
-    draw.binds.iter().any(|bind| matches!(bind, Bind::Depth))
+/// Whether something that reads these reads the depths of the surfaces.
+fn reads_depth(binds: &[Bind]) -> bool {
+    binds.iter().any(|bind| matches!(bind, Bind::Depth))
 }
 
 /// Whether a draw comes before what reads depths.
 fn is_first(draw: &Draw) -> bool {
-    draw.into.is_none() && !reads_depth(draw)
+    draw.into.is_none() && !reads_depth(&draw.binds)
 }
 
-/// Whether a draw goes on where the one before it has drawn.
-fn is_same(before: &Draw, draw: &Draw) -> bool {
-    match (&before.into, &draw.into) {
-        (None, None) => true,
-        (Some(one), Some(next)) => *next == Canvas { clear: false, ..one.clone() },
+/// Whether a step goes on where the one before it has drawn, or both compute.
+fn is_same(before: &Step, step: &Step) -> bool {
+    match (before.draw().map(|draw| &draw.into), step.draw().map(|draw| &draw.into)) {
+        (None, None) | (Some(None), Some(None)) => true,
+        (Some(Some(one)), Some(Some(next))) => *next == Canvas { clear: false, ..one.clone() },
         _ => false,
     }
 }
@@ -224,6 +315,9 @@ fn pass(encoder: &mut wgpu::CommandEncoder, target: &Target, draws: &[Ready]) {
         }
         pass.set_pipeline(&draw.pipeline);
         pass.set_bind_group(0, &draw.group, &[]);
-        pass.draw(0..draw.vertices, 0..draw.instances);
+        match &draw.amount {
+            Amount::Count(vertices, instances) => pass.draw(0..*vertices, 0..*instances),
+            Amount::Found(tally) => pass.draw_indirect(tally, offset_of!(Tally, draw) as u64),
+        }
     }
 }

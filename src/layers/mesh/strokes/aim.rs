@@ -57,7 +57,7 @@ pub struct Aim<'a> {
 impl<'a> Aim<'a> {
     /// Strokes along something, at an angle where that is not sure, all turned; both counter-clockwise, in radians.
     pub fn new(along: Follows<'a>, angle: f64, turn: f64, vary: Option<(Grows<'a>, [f64; 2])>) -> Self {
-        Aim { along, angle, turn, vary, drawn: blended(DVec2::X, 0.0, -(angle + turn)).0 }
+        Aim { along, angle, turn, vary, drawn: half_way(-(angle + turn)) }
     }
 }
 
@@ -159,6 +159,11 @@ impl Aim<'_> {
             }
         }
     }
+}
+
+/// The end of a stroke at this angle that counts.
+pub fn half_way(angle: f64) -> f64 {
+    blended(DVec2::X, 0.0, angle).0
 }
 
 /// The normal at a place of a triangle, turned to the camera.

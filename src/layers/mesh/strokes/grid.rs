@@ -1,17 +1,24 @@
 //! Impulses that are fixed to the frame, in a grid of cells: a pattern behind a shower door.
 
+use std::ops::RangeInclusive;
+
 use glam::{DVec2, DVec3};
 
 use super::impulse::{Dice, FADE, Impulse, Recipe, factor};
 
+/// The columns and rows of cells that may have impulses in a frame, if kernels have this radius.
+pub fn cells((width, height): (usize, usize), radius_px: f64) -> [RangeInclusive<i32>; 2] {
+    [width, height].map(|length| -1..=((length as f64 + radius_px) / (2.0 * radius_px)).floor() as i32)
+}
+
 /// All impulses of a noise that may be seen in a frame; strokes run at `angle`, clockwise from +x, in radians.
-pub fn impulses((width, height): (usize, usize), recipe: &Recipe, angle: f64) -> Vec<Impulse> {
+pub fn impulses(size_px: (usize, usize), recipe: &Recipe, angle: f64) -> Vec<Impulse> {
     let side = 2.0 * recipe.radius_px;
     let wanted = 4.0 * recipe.overlap / std::f64::consts::PI;
-    let cells = |length: usize| -1..=((length as f64 + recipe.radius_px) / side).floor() as i32;
     let mut found = Vec::new();
-    for a in cells(width) {
-        for b in cells(height) {
+    let [columns, rows] = cells(size_px, recipe.radius_px);
+    for a in columns {
+        for b in rows.clone() {
             for number in 0.. {
                 if f64::from(number) * FADE >= wanted {
                     break;

@@ -9,6 +9,7 @@ pub mod check;
 pub mod curvature;
 pub mod curves;
 pub mod draw;
+pub mod emit;
 pub mod even;
 pub mod explain;
 pub mod flat;
@@ -50,7 +51,7 @@ use crate::layers::space::eye::Eye;
 pub struct Given<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
-    /// Its vertices in the world: where they are, and their normals.
+    /// Its vertices in the world: where they are, and their normals. Empty, as the pixels below, where the device draws.
     pub world: &'a [(DVec3, DVec3)],
     /// How it is placed.
     pub placed: &'a Placed,
@@ -66,8 +67,7 @@ pub struct Given<'a> {
     pub magnified: f64,
     /// The scene time.
     pub t: f64,
-    /// 1 / the depth of what each pixel shows, whatever that is; 0 where it is nothing. Empty, as what follows, where only the
-    /// device knows that.
+    /// 1 / the depth of what each pixel shows, whatever that is; 0 where it is nothing.
     pub inverse: Vec<f64>,
     /// The triangle of the layer that each pixel shows; `raster::NONE` where it shows none.
     pub triangle: Vec<u32>,

@@ -3,7 +3,6 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::aim::{Aim, Follows, Grows};
-use super::flat::Flat;
 use super::impulse::{Impulse, Recipe, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
 use super::sum::{Noise, Shown, Trim, covers, sum};
@@ -22,7 +21,7 @@ pub struct Scene<'a> {
     /// What pixels show.
     pub shown: Shown<'a>,
     /// Where the light goes, in camera coordinates.
-    light: DVec3,
+    pub light: DVec3,
     /// How many times larger all is drawn than the document says.
     pub scale: f64,
     /// The number of the drawing.
@@ -82,15 +81,25 @@ impl<'a> Scene<'a> {
         wanted.anchor.unwrap_or(self.ready.strokes.anchor)
     }
 
-    /// All impulses of one of its noises as if nothing were hidden, and what their kernels cover; `None` for a texture.
-    pub fn emitted(&self, wanted: &Wanted) -> Option<(Vec<Impulse>, Trim)> {
-        self.aimed(wanted, |anchor, aim| self.all_points(wanted, anchor, aim))
+    /// Where the strokes of a noise run.
+    pub fn direction<'b>(&'b self, wanted: &'b Wanted) -> &'b Direction {
+        wanted.direction.as_ref().unwrap_or(&self.ready.strokes.direction)
     }
 
-    /// All impulses of one of its noises as a texture.
-    pub fn flats(&self, wanted: &Wanted) -> Vec<Flat> {
-        let measure = (self.px_per_m(), wanted.reach);
-        self.aimed(wanted, |_, aim| flat::flats(&self.surface, &self.recipe(wanted), aim, measure))
+    /// What makes strokes of a noise larger or finer.
+    pub fn vary<'b>(&'b self, wanted: &'b Wanted) -> Option<&'b Vary> {
+        let vary = wanted.vary.as_ref().or(self.ready.strokes.vary.as_ref());
+        vary.filter(|_| self.anchor(wanted) == Anchor::Surface)
+    }
+
+    /// What the kernels of a noise cover.
+    pub fn trim(&self, wanted: &Wanted) -> Trim {
+        match wanted.trim {
+            _ if self.anchor(wanted) == Anchor::Screen => Trim::Object,
+            Ends::Depth => Trim::Depth(wanted.reach),
+            Ends::Triangle => Trim::Triangle,
+            Ends::Object => Trim::Object,
+        }
     }
 
     /// How many pixels of the frame a meter is, for strokes that are a texture.
@@ -100,10 +109,7 @@ impl<'a> Scene<'a> {
 
     /// Makes something of the anchor of a noise and how its impulses run.
     fn aimed<R>(&self, wanted: &Wanted, make: impl FnOnce(Anchor, &Aim) -> R) -> R {
-        let strokes = &self.ready.strokes;
-        let direction = wanted.direction.as_ref().unwrap_or(&strokes.direction);
-        let anchor = self.anchor(wanted);
-        let vary = wanted.vary.as_ref().or(strokes.vary.as_ref()).filter(|_| anchor == Anchor::Surface);
+        let (direction, anchor, vary) = (self.direction(wanted), self.anchor(wanted), self.vary(wanted));
         let tensors = |smooth: f64, is: bool| if is { self.tensors(smooth) } else { Tensors::default() };
         let own = tensors(direction.smooth, direction.along == Along::Curvature);
         let of_vary = tensors(SMOOTH, vary.is_some_and(|vary| vary.by == By::Curvature));
@@ -147,27 +153,19 @@ impl<'a> Scene<'a> {
 
     /// The impulses of a noise, and what their kernels cover; `None` for a texture.
     fn points(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Option<(Vec<Impulse>, Trim)> {
-        let (mut points, trim) = self.all_points(wanted, anchor, aim)?;
-        if anchor == Anchor::Surface && trim == Trim::Object {
-            visible::weigh(&self.shown, wanted.reach, &mut points);
-        }
-        Some((points, trim))
-    }
-
-    fn all_points(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Option<(Vec<Impulse>, Trim)> {
-        let recipe = self.recipe(wanted);
-        match anchor {
+        let (recipe, trim) = (self.recipe(wanted), self.trim(wanted));
+        let points = match anchor {
             Anchor::Surface => {
-                let trim = match wanted.trim {
-                    Ends::Depth => Trim::Depth(wanted.reach),
-                    Ends::Triangle => Trim::Triangle,
-                    Ends::Object => Trim::Object,
-                };
-                Some((impulses(&self.surface, &recipe, aim), trim))
+                let mut points = impulses(&self.surface, &recipe, aim);
+                if trim == Trim::Object {
+                    visible::weigh(&self.shown, wanted.reach, &mut points);
+                }
+                points
             }
-            Anchor::Screen => Some((grid::impulses(self.shown.size_px, &recipe, aim.drawn), Trim::Object)),
-            Anchor::Texture => None,
-        }
+            Anchor::Screen => grid::impulses(self.shown.size_px, &recipe, aim.drawn),
+            Anchor::Texture => return None,
+        };
+        Some((points, trim))
     }
 
     fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {

@@ -48,6 +48,8 @@ impl Piece {
 pub struct Pieces {
     /// Those of triangles that are halved, by triangle, then number.
     halved: Vec<Piece>,
+    triangles: u32,
+    count: usize,
 }
 
 impl Pieces {
@@ -63,7 +65,19 @@ impl Pieces {
             found.sort_unstable_by_key(|piece: &Piece| piece.number);
             if found.len() > 1 { found } else { Vec::new() }
         });
-        Pieces { halved: halved.collect() }
+        let (halved, triangles): (Vec<Piece>, usize) = (halved.collect(), mesh.triangles.len());
+        let whole = triangles - halved.chunk_by(|one, next| one.triangle == next.triangle).count();
+        Pieces { count: whole + halved.len(), halved, triangles: triangles as u32 }
+    }
+
+    /// How many triangles the mesh has.
+    pub fn triangles(&self) -> u32 {
+        self.triangles
+    }
+
+    /// How many pieces they have.
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// Calls `each` with the pieces of the triangles `from..to`, in order.

@@ -1,18 +1,19 @@
 //! What the GPU draws of strokes: what the layer shows, the kernels of each noise as splats that add up, the noises, the
-//! distances to rims, and of all that the marks. Where impulses are is computed here, with double precision.
+//! distances to rims, and of all that the marks.
 
 use std::collections::BTreeSet;
 
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 
+use super::emit::{self, Places};
 use super::even::{FAR, WIDE};
 use super::marks::{Outline, Set};
 use super::model::{Anchor, Noise as Wanted};
 use super::noise::Scene;
 use super::sum::{Trim, variance};
-use super::upload::{Flat, Layers, Mark, Noise, Rim, Sheet, Splat, Style};
+use super::upload::{Layers, Mark, Noise, Rim, Sheet, Style};
 use super::{Given, Ready};
-use crate::layers::parts::plan::{Bind, Blend, COMMON, Canvas, Draw, Format, Program, Scratch};
+use crate::layers::parts::plan::{Bind, Blend, COMMON, Canvas, Draw, Format, Plan, Program, Scratch, Step};
 
 /// The numbers of the textures. What the layer shows: its shaded colors, and `Facts` in frame.wgsl.
 const SHADED: usize = 0;
@@ -26,8 +27,8 @@ const VALUES: usize = 4;
 /// Sums of sums, and rims.
 const PAIRS: usize = 5;
 
-/// At most so many impulses are drawn at once.
-const MOST: usize = 1 << 20;
+/// What impulses are made of.
+const PLACES: Places = Places { pieces: 6, blocks: 7, made: 8, tally: 9 };
 
 const SPLAT_SOURCE: &[&str] = &[include_str!("sheet.wgsl"), include_str!("kernel.wgsl"), include_str!("splats.wgsl")];
 const FLAT_SOURCE: &[&str] = &[include_str!("sheet.wgsl"), include_str!("kernel.wgsl"), include_str!("flats.wgsl")];
@@ -68,8 +69,9 @@ pub fn shown() -> Canvas {
     Canvas { textures: vec![(SHADED, 0), (FACTS, 0)], depths: Some(OWN), clear: true }
 }
 
-/// The strokes of a layer, once what it shows is drawn: with textures for both. What pixels show need not be given.
-pub fn plan(ready: &Ready, given: &Given, ambient: f64) -> (Vec<Scratch>, Vec<Draw>) {
+/// The strokes of a layer, once what it shows is drawn: with textures for both. What pixels show need not be given. `posed` is
+/// what binds the mesh.
+pub fn plan(ready: &Ready, given: &Given, ambient: f64, posed: &dyn Fn() -> Vec<Bind>) -> Plan {
     let scene = Scene::new(ready, given);
     let strokes = &ready.strokes;
     let sets: Vec<Set> = strokes.marks.iter().filter_map(Set::of).collect();
@@ -77,24 +79,24 @@ pub fn plan(ready: &Ready, given: &Given, ambient: f64) -> (Vec<Scratch>, Vec<Dr
     let noises: Vec<(&str, &Wanted)> =
         named.into_iter().filter_map(|name| Some((name, strokes.noises.get(name)?))).collect();
     let place = |name: &str| noises.iter().position(|(known, _)| *known == name);
-    let drawing = Drawing { scene: &scene, sheet: Sheet::of(&scene) };
-    let mut draws = Vec::new();
+    let drawing = Drawing { scene: &scene, sheet: Sheet::of(&scene), posed };
+    let mut steps = Vec::new();
     for (layer, (_, noise)) in noises.iter().enumerate() {
-        draws.extend(drawing.noise(noise, layer as u32));
+        steps.extend(drawing.noise(noise, layer as u32));
     }
     let (mut layers, mut marks) = (noises.len(), Vec::new());
     for set in &sets {
         marks.extend(Mark::of(&scene, set, &Layers { of: &place, rims: layers }));
         if let Set::Outline(outline) = set {
-            draws.extend(drawing.distances(outline, layers as u32));
+            steps.extend(drawing.distances(outline, layers as u32).map(Step::Draw));
             layers += 1;
         }
     }
     let list = list(&marks);
     let style = Style::of(&scene, ambient, marks.len());
     let read = [Bind::Bytes(bytes_of(&style).to_vec()), list, Bind::Scratch(SHADED), Bind::Scratch(VALUES)];
-    draws.push(Draw::frame(&INK, drawing.binds(read)));
-    let scratch = vec![
+    steps.push(Step::Draw(Draw::frame(&INK, drawing.binds(read))));
+    let mut scratch = vec![
         Scratch::Texels(Format::Rgba32Float),
         Scratch::Texels(Format::Rgba32Uint),
         Scratch::Depths,
@@ -102,7 +104,8 @@ pub fn plan(ready: &Ready, given: &Given, ambient: f64) -> (Vec<Scratch>, Vec<Dr
         Scratch::Layers(Format::R32Float, layers as u32),
         Scratch::Texels(Format::Rg32Float),
     ];
-    (scratch, draws)
+    scratch.extend(emit::scratch(&scene, noises.iter().map(|(_, noise)| *noise)));
+    Plan { scratch, steps }
 }
 
 /// An array. A buffer cannot be empty: an empty array gets one item that is never read.
@@ -114,6 +117,7 @@ fn list<T: Pod + Zeroable>(all: &[T]) -> Bind {
 struct Drawing<'a> {
     scene: &'a Scene<'a>,
     sheet: Sheet,
+    posed: &'a dyn Fn() -> Vec<Bind>,
 }
 
 impl Drawing<'_> {
@@ -129,18 +133,19 @@ impl Drawing<'_> {
     }
 
     /// Draws a noise into a layer of the values.
-    fn noise(&self, wanted: &Wanted, layer: u32) -> Vec<Draw> {
+    fn noise(&self, wanted: &Wanted, layer: u32) -> Vec<Step> {
         let uniform = self.uniform(wanted);
         let uniform = || Bind::Bytes(bytes_of(&uniform).to_vec());
         let (sums, rows) = (|| Bind::Scratch(SUMS), || Bind::Scratch(PAIRS));
-        let mut draws = self.kernels(wanted, &uniform);
+        let mut draws = vec![self.kernels(wanted, uniform())];
         if wanted.even {
             draws.push(self.draw(&ALONG_ROWS, [uniform(), sums()], (PAIRS, 0)));
             draws.push(self.draw(&EVEN, [uniform(), sums(), rows()], (VALUES, layer)));
         } else {
             draws.push(self.draw(&PLAIN, [uniform(), sums()], (VALUES, layer)));
         }
-        draws
+        let impulses = emit::steps(self.scene, wanted, self.posed, &PLACES);
+        impulses.into_iter().map(Step::Compute).chain(draws.into_iter().map(Step::Draw)).collect()
     }
 
     fn uniform(&self, wanted: &Wanted) -> Noise {
@@ -159,38 +164,20 @@ impl Drawing<'_> {
     }
 
     /// The kernels of a noise, which add up.
-    fn kernels(&self, wanted: &Wanted, uniform: &dyn Fn() -> Bind) -> Vec<Draw> {
-        let Some((points, trim)) = self.scene.emitted(wanted) else {
-            let flats: Vec<Flat> = self.scene.flats(wanted).iter().map(Flat::of).collect();
-            return self.splats(&FLATS, &flats, Vec::new(), uniform);
-        };
-        let focal_px = self.scene.given.eye.focal_px;
-        let splats: Vec<Splat> = points.iter().map(|impulse| Splat::of(impulse, focal_px)).collect();
-        let covers = match trim {
+    fn kernels(&self, wanted: &Wanted, uniform: Bind) -> Draw {
+        let anchor = self.scene.anchor(wanted);
+        let covers = match self.scene.trim(wanted) {
             Trim::Depth(_) => 0.0,
-            Trim::Object if self.scene.anchor(wanted) == Anchor::Screen => 1.0,
+            Trim::Object if anchor == Anchor::Screen => 1.0,
             Trim::Triangle => 2.0,
             Trim::Object => 3.0,
         };
-        self.splats(&SPLATS, &splats, vec![("covers", covers)], uniform)
-    }
-
-    fn splats<T: Pod + Zeroable>(
-        &self,
-        program: &'static Program,
-        all: &[T],
-        constants: Vec<(&'static str, f64)>,
-        uniform: &dyn Fn() -> Bind,
-    ) -> Vec<Draw> {
-        let draw = |(i, some): (usize, &[T])| {
-            let draw = self.draw(program, [uniform(), list(some)], (SUMS, 0));
-            let into = draw.into.map(|canvas| Canvas { clear: i == 0, ..canvas });
-            let (constants, instances) = (constants.clone(), some.len() as u32);
-            Draw { into, constants, blend: Blend::Add, vertices: 6, instances, ..draw }
+        let (program, constants) = match anchor {
+            Anchor::Texture => (&FLATS, Vec::new()),
+            Anchor::Surface | Anchor::Screen => (&SPLATS, vec![("covers", covers)]),
         };
-        // The sums are cleared where there are none.
-        let lumps: Vec<&[T]> = if all.is_empty() { vec![all] } else { all.chunks(MOST).collect() };
-        lumps.into_iter().enumerate().map(draw).collect()
+        let draw = self.draw(program, [uniform, Bind::Scratch(PLACES.made)], (SUMS, 0));
+        Draw { constants, blend: Blend::Add, found: Some(PLACES.tally), ..draw }
     }
 
     /// Draws the distances to the rims that an outline follows into a layer of the values.

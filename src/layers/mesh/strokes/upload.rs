@@ -2,11 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use super::curves::turns;
-use super::flat::Flat as OnSurface;
-use super::impulse::Impulse;
 use super::ink::{Paint, linear};
 use super::marks::{Ink, Outline, Pigment, Relief, Set};
 use super::model::{Force, Ground, Side, ToneOf};
@@ -45,34 +42,6 @@ pub struct Noise {
     pub wide: i32,
     /// Nothing.
     pub padding: f32,
-}
-
-/// `Splat` in splats.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Splat {
-    at: [f32; 2],
-    radius: f32,
-    factor: f32,
-    waves: [f32; 2],
-    phase: f32,
-    scale: f32,
-    slope: [f32; 2],
-    inverse: f32,
-    triangle: u32,
-}
-
-/// `Flat` in flats.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Flat {
-    at: [f32; 3],
-    factor: f32,
-    along: [f32; 3],
-    phase: f32,
-    across: [f32; 3],
-    padding: f32,
-    pixels: [f32; 4],
 }
 
 /// `Rim` in rims.wgsl.
@@ -138,41 +107,6 @@ impl Sheet {
             focal: eye.focal_px as f32,
             near: NEAR_M as f32,
             padding: [0.0; 2],
-        }
-    }
-}
-
-impl Splat {
-    /// An impulse as it is seen at this focal length.
-    pub fn of(impulse: &Impulse, focal_px: f64) -> Splat {
-        let Impulse { at, plane, radius_px, spacing_px, .. } = *impulse;
-        let waves = DVec2::new(-sin(impulse.angle), cos(impulse.angle)) / spacing_px;
-        Splat {
-            at: at.as_vec2().to_array(),
-            radius: radius_px as f32,
-            factor: impulse.factor as f32,
-            waves: waves.as_vec2().to_array(),
-            phase: turns(impulse.phase),
-            scale: (impulse.depth * focal_px / radius_px) as f32,
-            slope: plane.truncate().as_vec2().to_array(),
-            inverse: plane.dot(at.extend(1.0)) as f32,
-            triangle: impulse.of[0],
-        }
-    }
-}
-
-impl Flat {
-    /// An impulse on the surface.
-    pub fn of(flat: &OnSurface) -> Flat {
-        let [along, across, _] = flat.axes.map(|axis| axis.as_vec3().to_array());
-        Flat {
-            at: flat.at.as_vec3().to_array(),
-            factor: flat.factor as f32,
-            along,
-            phase: turns(flat.phase),
-            across,
-            padding: 0.0,
-            pixels: [flat.from.0, flat.from.1, flat.to.0, flat.to.1].map(|v| v as f32),
         }
     }
 }

@@ -10,7 +10,8 @@ use super::view::{Extremes, View};
 use crate::layers::mesh::surface::Look;
 use crate::layers::parts::plan::{Bind, COMMON, Program};
 
-const SOURCE: &[&str] = &[COMMON, include_str!("../../frame.wgsl"), include_str!("sample.wgsl")];
+const SOURCE: &[&str] =
+    &[COMMON, include_str!("../../posed.wgsl"), include_str!("../../frame.wgsl"), include_str!("sample.wgsl")];
 
 /// Views mixed in each pixel.
 pub static EXACT: Program = Program { name: "view_map/sample.wgsl", source: SOURCE, vertex: "spot", fragment: "exact" };

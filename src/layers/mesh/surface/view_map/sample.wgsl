@@ -122,8 +122,7 @@ fn cells_at(in: Spot) -> Cells {
 // The way from a place to the eye, in the model.
 fn way_from(in: Spot) -> vec3f {
     let turn = mat3x3f(mesh.eye_from_model[0].xyz, mesh.eye_from_model[1].xyz, mesh.eye_from_model[2].xyz);
-    let angle = mesh.bend * clamp((dot(in.point, mesh.along) - mesh.start) / mesh.length, 0.0, 1.0);
-    return normalize(bent(-in.seen * turn, -angle));
+    return normalize(bent(-in.seen * turn, -bend_at(in.point)));
 }
 
 // What a cell shows: the dependent views over its base coat.
