@@ -378,7 +378,7 @@ fn the_gpu_shows_view_maps_as_the_cpu_does() {
         ("both sides, by texture", viewed(json!({"sides": "both"}), &json!({"atlas": "uv"}), &both)),
     ];
     let frames = scenes.map(|(name, synth)| {
-        assert!(!synth.by_cpu(), "{name}");
+        assert_eq!(gpu.by_cpu(&synth), None, "{name}");
         let frame = gpu.frame(&synth, 0.0).unwrap();
         let (largest, share) = difference(&frame, &cpu::frame(&synth, 0.0));
         println!("{name}: {:.3} % differ, by up to {largest}", share * 100.0);
@@ -455,7 +455,7 @@ fn the_gpu_draws_strokes_as_the_cpu_does() {
     let strokes = all_strokes();
     for (i, own) in strokes.iter().enumerate() {
         let synth = drawn(own, if i % 2 == 0 { &pictured } else { &plain });
-        assert!(!synth.by_cpu(), "{own}");
+        assert_eq!(gpu.by_cpu(&synth), None, "{own}");
         let (by_gpu, by_cpu) = (gpu.frame(&synth, 0.3).unwrap(), cpu::frame(&synth, 0.3));
         let (largest, share) = difference(&by_gpu, &by_cpu);
         let told = format!("{own}: {:.3} % differ, by up to {largest}", share * 100.0);
@@ -465,6 +465,53 @@ fn the_gpu_draws_strokes_as_the_cpu_does() {
     }
     assert_eq!(apart, [""; 0]);
     assert_eq!(frames.len(), strokes.len(), "each shows something else");
+}
+
+#[test]
+fn a_gpu_that_cannot_compute_leaves_strokes_to_the_cpu_and_says_so() {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::GL;
+    let Ok(mut gpu) = Gpu::open(wgpu::Instance::new(descriptor), None) else { return };
+    let synth = drawn(&json!({"style": "hatching"}), &json!({"kind": "plain", "color": "#c8b8a0"}));
+    let (frame, by_cpu) = (gpu.frame(&synth, 0.3).unwrap(), cpu::frame(&synth, 0.3));
+    match gpu.by_cpu(&synth) {
+        None => drop(within("OpenGL", &frame, &by_cpu, 0.005)),
+        Some(why) => assert_eq!((&frame, why), (&by_cpu, format!("{} cannot compute strokes", gpu.device().name()))),
+    }
+}
+
+/// A plane of so many squares on each side, so often behind itself.
+fn sheets(side: usize, count: usize) -> Mesh {
+    let mut mesh = Mesh::default();
+    for sheet in 0..count {
+        let first = mesh.vertices.len() as u32;
+        for i in 0..(side + 1) * (side + 1) {
+            let at = DVec2::new((i % (side + 1)) as f64, (i / (side + 1)) as f64) / side as f64;
+            let position = DVec3::new(2.0 * at.x - 1.0, 2.0 * at.y - 1.0, -0.01 * sheet as f64);
+            mesh.vertices.push(Vertex { position, normal: DVec3::Z, uv: at });
+        }
+        let row = side as u32 + 1;
+        let corners = (0..side * side).map(|i| first + (i / side) as u32 * row + (i % side) as u32);
+        mesh.triangles.extend(corners.flat_map(|a| [[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]));
+    }
+    mesh
+}
+
+#[test]
+fn the_gpu_makes_impulses_of_many_pieces_and_more_of_them_than_there_was_room_for() {
+    let Some(mut gpu) = gpu() else { return };
+    let mark = json!({"name": "m", "kind": "ink", "noise": "a", "from": 2, "to": 1, "amount": 0.5, "softness": 0});
+    // More than 256 blocks of pieces; more impulses than there is room for at first.
+    for (mesh, size, spacing) in [(sheets(190, 1), [48, 36], 6.0), (sheets(4, 20), [128, 96], 2.0)] {
+        let noise = json!({"spacing": spacing, "overlap": 8, "regularity": 1, "direction": {"along": "axis"}});
+        let scene = json!({"plica": 1, "size": size, "camera": {"position": [0.3, 0.2, 3], "target": [0, 0, 0], "fov": 30},
+            "layers": [{"kind": "mesh", "name": "m", "mesh": "m",
+                "strokes": {"style": "none", "noises": {"a": noise}, "marks": [mark.clone()]}}]});
+        let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
+        let synth = render::synth(&serde_json::from_value(scene).unwrap(), &materials, None).unwrap();
+        assert_eq!(gpu.by_cpu(&synth), None);
+        within(&format!("{size:?}"), &gpu.frame(&synth, 0.0).unwrap(), &cpu::frame(&synth, 0.0), 0.005);
+    }
 }
 
 #[test]

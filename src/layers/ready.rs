@@ -112,9 +112,9 @@ pub trait Ready: Any + Debug + Send + Sync {
         false
     }
 
-    /// Whether the CPU alone can draw it.
-    fn by_cpu(&self) -> bool {
-        false
+    /// Why the CPU alone can draw it; `None` if a GPU can too.
+    fn by_cpu(&self) -> Option<&'static str> {
+        None
     }
 
     /// Whether the CPU takes long for a frame of it, and longer still where it pretends to be a GPU.

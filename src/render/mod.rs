@@ -61,9 +61,9 @@ impl Synth {
         self.layers.iter().any(|layer| layer.has_strokes())
     }
 
-    /// Whether it has what the CPU alone can draw.
-    pub fn by_cpu(&self) -> bool {
-        self.layers.iter().any(|layer| layer.by_cpu())
+    /// Why the CPU alone can draw it; `None` if a GPU can too.
+    pub fn by_cpu(&self) -> Option<&'static str> {
+        self.layers.iter().find_map(|layer| layer.by_cpu())
     }
 
     /// Whether the CPU takes long for a frame: one should not wait for it.

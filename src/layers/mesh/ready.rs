@@ -34,9 +34,10 @@ impl Ready for Synth {
         self.strokes.is_some()
     }
 
-    fn by_cpu(&self) -> bool {
+    fn by_cpu(&self) -> Option<&'static str> {
         // Those with programs of their own do not tell what strokes are drawn from.
-        self.surface.by_cpu() || self.has_strokes() && self.surface.takes_long()
+        let covered = self.has_strokes() && self.surface.takes_long();
+        self.surface.by_cpu().or(covered.then_some("there are strokes over a view map"))
     }
 
     fn takes_long(&self) -> bool {

@@ -140,6 +140,8 @@ fn write(
     context: &mut Context,
 ) -> Result<()> {
     let mut renderer = Renderer::new(args, opened, (show.width, show.height), todo.len())?;
+    let by_cpu = renderer.by_cpu.take().map(|why| format!("--gpu: the CPU draws this: {why}"));
+    context.say_all(&by_cpu.into_iter().collect::<Vec<_>>());
     let _encoding = opened.materials.budget.take(target.memory(&show), &show.place)?;
     if todo.len() > 1 {
         let document = &opened.document;
@@ -291,6 +293,8 @@ struct Renderer<'a> {
     _share: Share,
     #[cfg(feature = "window")]
     gpu: Option<Box<crate::render::gpu::Gpu>>,
+    /// Why the CPU draws though the GPU should.
+    by_cpu: Option<String>,
 }
 
 impl<'a> Renderer<'a> {
@@ -323,7 +327,15 @@ impl<'a> Renderer<'a> {
             true => Some(Box::new(crate::render::gpu::Gpu::new()?)),
             false => None,
         };
+        #[cfg(feature = "window")]
+        let by_cpu = match &gpu {
+            Some(gpu) => first.and_then(|synth| gpu.by_cpu(synth)),
+            None => args.gpu.then(|| "strokes with several samples a pixel".to_owned()),
+        };
+        #[cfg(not(feature = "window"))]
+        let by_cpu = None;
         Ok(Renderer {
+            by_cpu,
             opened,
             samples,
             bands,

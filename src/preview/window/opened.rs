@@ -185,7 +185,7 @@ impl Opened {
         // Passes are drawn by the CPU, and so are sprites, strokes and view maps where the CPU would only pretend to be a GPU: that
         // takes several times as long.
         let much = show.has_sprites() || show.frames.takes_long();
-        let by_cpu = show.frames.by_cpu() || much && self.gpu.device().is_software();
+        let by_cpu = self.gpu.by_cpu(&show.frames).is_some() || much && self.gpu.device().is_software();
         let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));
         let left_out = state.thin.left_out();
         let frame = (&*thinned(frame.0, left_out), frame.1);

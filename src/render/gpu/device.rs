@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 use crate::base::error::{Error, Result};
+use crate::layers::ready::Ready;
 
 /// The place in error messages about the GPU, and the hint if it fails.
 const PLACE: &str = "GPU";
@@ -93,12 +94,21 @@ impl Device {
         self.raw.features().contains(wgpu::Features::FLOAT32_BLENDABLE)
     }
 
-    /// Whether it computes what is drawn.
-    pub fn computes(&self) -> bool {
+    /// Why it cannot draw a layer; `None` if it can.
+    pub fn cannot(&self, layer: &dyn Ready) -> Option<String> {
+        let lacks = || format!("{} cannot compute strokes", self.name());
+        let computed = layer.has_strokes() && !self.computes();
+        layer.by_cpu().map(str::to_owned).or_else(|| computed.then(lacks))
+    }
+
+    /// Whether it computes what is drawn, and draws numbers that are read later.
+    fn computes(&self) -> bool {
         let wanted = wgpu::DownlevelFlags::COMPUTE_SHADERS
             | wgpu::DownlevelFlags::INDIRECT_EXECUTION
             | wgpu::DownlevelFlags::VERTEX_STORAGE;
-        self.adapter.get_downlevel_capabilities().flags.contains(wanted)
+        let floats = self.adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float).allowed_usages;
+        let flags = self.adapter.get_downlevel_capabilities().flags;
+        flags.contains(wanted) && floats.contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
     }
 
     /// Waits for a buffer that everything needed was submitted for, and hands out what is in it.

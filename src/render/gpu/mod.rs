@@ -42,7 +42,9 @@ impl Uploader {
     /// The device is lost, or has not enough memory; or `stop` was set, soon after that.
     pub fn upload(&self, scenes: &[&Synth], sent: &Progress, stop: &AtomicBool) -> Result<Uploaded> {
         // What the CPU draws itself where it would pretend to be a GPU is not wanted there.
-        let is_drawn = |layer: &&Arc<dyn Ready>| !(self.device.is_software() && layer.takes_long());
+        let is_drawn = |layer: &&Arc<dyn Ready>| {
+            !(self.device.is_software() && layer.takes_long()) && self.device.cannot(&***layer).is_none()
+        };
         let plans = scenes.iter().flat_map(|synth| {
             let moment = synth.moment(0.0);
             synth.layers.iter().filter(is_drawn).map(move |layer| layer.plan(&moment))
@@ -123,10 +125,15 @@ impl Gpu {
         Ok((first, second))
     }
 
+    /// Why the CPU draws frames in place of this GPU, in a few words; `None` if it need not.
+    pub fn by_cpu(&self, synth: &Synth) -> Option<String> {
+        synth.layers.iter().find_map(|layer| self.parts.device.cannot(&**layer))
+    }
+
     /// The frame at `scene_time` in [0, 1]. A device lost on the way is replaced once. What the CPU alone can draw
     /// makes all of a frame its work.
     pub fn frame(&mut self, synth: &Synth, scene_time: f64) -> Result<Frame> {
-        if synth.by_cpu() {
+        if self.by_cpu(synth).is_some() {
             return Ok(cpu::frame(synth, scene_time));
         }
         let frame = self.frame_once(synth, scene_time);

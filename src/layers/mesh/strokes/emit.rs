@@ -241,7 +241,7 @@ mod tests {
         let mut all = Vec::new();
         pieces.of(0..2, |piece| all.push(*piece));
         assert_eq!((all.len(), pieces.triangles()), (pieces.count(), 2));
-        let mut bytes = Vec::new();
+        let mut bytes: Vec<u8> = Vec::new();
         (pieces.pack()[0].rows)(0..1, &mut |row| bytes.extend(row));
         let texels: &[[u32; 4]] = bytemuck::cast_slice(&bytes);
         for (piece, texels) in all.iter().zip(texels.chunks(2)) {

@@ -145,9 +145,9 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     /// The same for the GPU.
     fn plan(&self, moment: &Moment, placed: &Placed) -> Look;
 
-    /// Whether the CPU alone can draw it.
-    fn by_cpu(&self) -> bool {
-        false
+    /// See `Ready::by_cpu`.
+    fn by_cpu(&self) -> Option<&'static str> {
+        None
     }
 
     /// See `Ready::takes_long`.

@@ -52,7 +52,7 @@ impl ReadySurface for Ready {
     }
 
     fn plan(&self, moment: &Moment, placed: &Placed) -> Look {
-        let Some(eye) = moment.eye.filter(|_| !self.by_cpu()) else { return Look::Color([0.0; 4]) };
+        let Some(eye) = moment.eye.filter(|_| self.by_cpu().is_none()) else { return Look::Color([0.0; 4]) };
         let focal_px = eye.focal_px / f64::from(moment.magnified.max(1));
         plan::look((&self.map, self.arrays.as_ref()), base(&self.points, &eye, placed), focal_px)
     }
@@ -77,8 +77,8 @@ impl ReadySurface for Ready {
         bundle::write(self.filled(), &self.points, layer, to).map(Some)
     }
 
-    fn by_cpu(&self) -> bool {
-        !upload::fits(self.filled())
+    fn by_cpu(&self) -> Option<&'static str> {
+        (!upload::fits(self.filled())).then_some("a view map has more cells and entries than textures hold")
     }
 
     fn takes_long(&self) -> bool {
