@@ -16,9 +16,11 @@ use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Linear, Rgba, decode, encode};
 use plica::export::textures::{self, Forms};
 use plica::files::outputs::Guard;
+use plica::layers::parts::marks::{Mark, Shape, View};
 use plica::layers::parts::materials::Materials;
 use plica::layers::parts::readout::Value as Told;
 use plica::render::bands::Bands;
+use plica::render::overlay;
 use plica::render::passes::Asked;
 use plica::render::{self, Synth, cpu};
 use plica::scene::Scene;
@@ -325,4 +327,38 @@ fn a_baked_base_coat_is_what_the_mesh_shows_with_it() {
     let far = pairs.map(|(a, b)| a.iter().zip(encode(*b)).map(|(a, b)| a.abs_diff(b)).max().unwrap());
     let far: Vec<u8> = far.collect();
     assert!(far.iter().filter(|far| **far > 6).count() * 100 < far.len(), "{far:?}");
+}
+
+#[test]
+fn cameras_are_drawn_with_their_names_and_how_far_the_selected_one_is_seen() {
+    let near = json!({ "blend": { "points": [{ "position": [0.5, 0, 2] }] } });
+    let scene = changed(&scene(10.0, &json!({ "pose": { "scale": 0.3 } })), &near);
+    let synth = synth(&scene);
+    let marks = |selection: &str| {
+        let view = View { selection: Some(selection.into()), times: vec![0.0], ..View::of(&["view-views"]) };
+        overlay::overlay(&scene, Some(&synth), &view)
+    };
+    let found = marks("/layers/0/surface/views/3/hold");
+    let labels = |found: &[Mark]| {
+        let text = |mark: &Mark| match &mark.shape {
+            Shape::Label(_, text) => Some((text.clone(), mark.selected)),
+            _ => None,
+        };
+        found.iter().filter_map(text).collect::<Vec<_>>()
+    };
+    let named = |name: &str, selected| (name.to_owned(), selected);
+    assert_eq!(labels(&found), [named("a", false), named("dots", true), named("blend 1", false)], "b and c are behind");
+    let count = |found: &[Mark], name: &str| found.iter().filter(|mark| mark.look.name == name).count();
+    assert!(count(&found, "where a view is gone") > 60 && count(&found, "where a view is whole") > 60, "{found:?}");
+    let other = marks("/layers/0/surface/views/0");
+    assert_eq!(count(&other, "where a view is gone"), 0, "the base coat is seen from everywhere");
+    assert_eq!(labels(&other).iter().filter(|(_, selected)| *selected).count(), 1);
+    // The cameras of the front are a straight line of sight away: in the middle of what they look at.
+    let scene_behind = marks("");
+    let at = scene_behind.iter().find_map(|mark| match (&mark.shape, mark.look.name) {
+        (Shape::Label(at, text), "view") if text == "dots" => Some(*at),
+        _ => None,
+    });
+    let at = at.unwrap();
+    assert!((20.0..40.0).contains(&at.x) && (10.0..34.0).contains(&at.y), "{at:?}");
 }

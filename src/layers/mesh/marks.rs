@@ -6,6 +6,7 @@ use kurbo::Point;
 use rayon::prelude::*;
 
 use super::model::Sides;
+use super::surface;
 use super::synth::Synth;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::{CENTRE, Columns, Moment};
@@ -29,6 +30,7 @@ pub static OVERLAYS: &[Overlay] = &[
     overlay(WIRES, "M", "Edges of meshes", true),
     overlay(NORMALS, "N", "Normals at the vertices of meshes", false),
     overlay(BACKS, "B", "Where the back of a mesh is seen", false),
+    surface::OVERLAY,
 ];
 
 /// An edge.
@@ -39,7 +41,20 @@ static BACK: Look = Look::new("back side", 26, [230, 60, 200, 150], 0.0).dots(Do
 static NORMAL: Look = Look::new("normal", 27, [240, 160, 40, 230], 1.2);
 
 /// Every look, from bottom to top.
-pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &WIRE, &BACK, &NORMAL];
+pub static LOOKS: &[&Look] = &[
+    &GRID,
+    &AXES[0],
+    &AXES[1],
+    &AXES[2],
+    &FRUSTUM,
+    &WIRE,
+    &BACK,
+    &NORMAL,
+    surface::LOOKS[0],
+    surface::LOOKS[1],
+    surface::LOOKS[2],
+    surface::LOOKS[3],
+];
 
 /// At most so many strokes, or cells, of one overlay of one layer.
 const MOST: usize = 60_000;
@@ -48,14 +63,14 @@ const LENGTH: f64 = 0.015;
 
 /// The marks of a layer at one time.
 pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
-    let shown = [WIRES, NORMALS, BACKS].map(|name| view.shows(name));
-    let Some(eye) = moment.eye.filter(|_| shown.contains(&true)) else { return Vec::new() };
     let placed = synth.pose.at(synth.time(moment));
+    let mut marks = synth.surface.marks(view, moment, &placed);
+    let shown = [WIRES, NORMALS, BACKS].map(|name| view.shows(name));
+    let Some(eye) = moment.eye.filter(|_| shown.contains(&true)) else { return marks };
     let vertices = synth.mesh.vertices.par_iter();
     let world = vertices.map(|vertex| placed.point(vertex.position, vertex.normal)).collect();
     let seen = Seen { synth, moment, eye, world };
     let [wires, normals, backs] = shown;
-    let mut marks = Vec::new();
     // Who looks at back sides looks into the mesh.
     let nearest = view.nearest.as_deref().filter(|_| !backs);
     marks.extend(wires.then(|| seen.wires(MOST, nearest)).into_iter().flatten());

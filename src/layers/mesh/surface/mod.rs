@@ -21,6 +21,7 @@ use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::bundle::{Form, Sink};
+use crate::layers::parts::marks::{self, Mark, Overlay};
 use crate::layers::parts::materials::{Materials, Use};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
@@ -36,6 +37,12 @@ pub const PASSES: [Pass; 3] = [view_map::passes::INDEPENDENT, view_map::passes::
 pub const COLORS: Pass = view_map::passes::COLORS;
 /// The programs that kinds of surface add.
 pub static PROGRAMS: [&Program; 2] = [&view_map::plan::EXACT, &view_map::plan::ARRAYS];
+
+/// The overlay that kinds of surface add, and its looks.
+pub const OVERLAY: Overlay = view_map::marks::OVERLAY;
+/// See [`OVERLAY`].
+pub static LOOKS: [&marks::Look; 4] =
+    [&view_map::marks::CAMERA, &view_map::marks::WHOLE, &view_map::marks::GONE, &view_map::marks::BLEND];
 
 /// What the surface of a mesh shows, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -168,6 +175,11 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     /// See `Ready::balanced`; paths are relative to the surface.
     fn balanced(&self) -> Option<Vec<(String, Value)>> {
         None
+    }
+
+    /// What explains it on a mesh that is placed so; paths are relative to the layer.
+    fn marks(&self, _view: &marks::View, _moment: &Moment, _placed: &Placed) -> Vec<Mark> {
+        Vec::new()
     }
 
     /// Writes its files for other engines, as the surface of a layer of this name, and gives what the manifest says about

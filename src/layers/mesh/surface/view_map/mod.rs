@@ -20,6 +20,7 @@ pub mod lay;
 pub mod lists;
 pub mod looked;
 pub mod map;
+pub mod marks;
 pub mod mix;
 pub mod mixer;
 pub mod model;

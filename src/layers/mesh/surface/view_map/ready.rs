@@ -9,7 +9,7 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked, base};
 use super::map::{Map, Wanted};
-use super::{again, bundle, passes, plan, probe, told, upload};
+use super::{again, bundle, marks, passes, plan, probe, told, upload};
 use crate::base::budget::Share;
 use crate::base::error::Result;
 use crate::base::number;
@@ -17,6 +17,7 @@ use crate::base::pixels::Linear;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::bundle::Sink;
+use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::readout::Entry;
@@ -71,6 +72,10 @@ impl ReadySurface for Ready {
             (format!("/views/{view}/gain"), gain.map(number::json).into_iter().collect())
         };
         Some(gains.map(set).collect())
+    }
+
+    fn marks(&self, view: &View, moment: &Moment, placed: &Placed) -> Vec<Mark> {
+        marks::marks(&self.map, &self.points, view, moment, placed)
     }
 
     fn bundle(&self, layer: &str, to: &mut dyn Sink) -> Result<Option<Value>> {

@@ -75,13 +75,15 @@ fn waves(size: usize, phase: f64) -> Arc<Picture> {
     Arc::new(Picture::from_cells(size, size, (0..size * size).map(cell).collect()))
 }
 
-fn view(position: [f64; 3], number: usize) -> View {
+/// A view that looks at the origin.
+pub fn view(position: [f64; 3], number: usize) -> View {
     const SIZE: usize = 40;
     let paint = Paint { picture: waves(SIZE, number as f64), mask: None, guide: None, feather_px: 0.0, gain: [1.0; 3] };
     View {
         name: number.to_string(),
         number,
         camera: camera(position, 40.0, SIZE),
+        target: DVec3::ZERO,
         paint,
         base: true,
         dependent: true,

@@ -16,6 +16,8 @@ pub struct View {
     pub number: usize,
     /// From where it was seen, for its picture's size.
     pub camera: Camera,
+    /// What that looks at.
+    pub target: DVec3,
     /// Its picture.
     pub paint: Paint,
     /// Whether the base coat is made of it.
@@ -76,7 +78,7 @@ impl View {
     /// Whether both count the same in what they tell.
     pub fn counts_the_same(&self, other: &View) -> bool {
         (&self.name, self.number, self.dependent) == (&other.name, other.number, other.dependent)
-            && (&self.extremes, self.fade) == (&other.extremes, other.fade)
+            && (&self.extremes, self.fade, self.target) == (&other.extremes, other.fade, other.target)
     }
 }
 

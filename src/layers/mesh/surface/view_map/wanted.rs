@@ -102,6 +102,7 @@ fn view(own: &model::View, number: usize, mesh: &Mesh, materials: &Materials) ->
         name: own.name.clone(),
         number,
         camera,
+        target,
         paint: Paint { picture, mask, guide, feather_px: own.feather, gain: own.gain },
         base: own.kind != Feeds::Dependent,
         dependent: own.kind != Feeds::Independent,
