@@ -19,7 +19,7 @@ use super::parts::pass::{Pass, Which};
 use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
-use super::parts::shots::Taken;
+use super::parts::shots::{Painted, Taken};
 use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
@@ -98,6 +98,17 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// What the camera of a picture that lies on it, by its index, sees of it without that picture; `None` if the picture does not
     /// count, or there is none.
     fn guide(&self, _picture: usize) -> Option<Linear> {
+        None
+    }
+
+    /// The width and height of a picture that lies on it, by its index; `None` if the picture does not count, or there is none.
+    fn laid_px(&self, _picture: usize) -> Option<(usize, usize)> {
+        None
+    }
+
+    /// That picture, so much of it from 0 to 1, over what its camera sees of the layer; `None` likewise. It may take as long as a
+    /// frame.
+    fn painted(&self, _picture: usize, _share: f64) -> Option<Painted> {
         None
     }
 

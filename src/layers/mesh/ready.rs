@@ -17,7 +17,7 @@ use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Under;
-use crate::layers::parts::shots::Taken;
+use crate::layers::parts::shots::{Painted, Taken};
 use crate::layers::ready::{Ready, Still};
 
 impl Ready for Synth {
@@ -54,6 +54,14 @@ impl Ready for Synth {
 
     fn guide(&self, picture: usize) -> Option<Linear> {
         self.surface.guide(picture)
+    }
+
+    fn laid_px(&self, picture: usize) -> Option<(usize, usize)> {
+        self.surface.laid_px(picture)
+    }
+
+    fn painted(&self, picture: usize, share: f64) -> Option<Painted> {
+        self.surface.painted(picture, share)
     }
 
     fn balanced(&self) -> Option<Vec<(String, Value)>> {

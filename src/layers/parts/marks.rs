@@ -22,6 +22,8 @@ pub struct Overlay {
     pub when: When,
     /// Whether surfaces in space hide its marks.
     pub hidden: bool,
+    /// Whether it shows what one selects pictures on a mesh by, and so always where one does.
+    pub selects: bool,
     /// Where plots of vector fields draw it; `None` if they leave it out.
     pub in_plots: Option<InPlots>,
     /// The legend that explains it in the window, if it needs one.
@@ -31,7 +33,7 @@ pub struct Overlay {
 impl Overlay {
     /// An overlay that no surface hides, that is in no plot and needs no legend.
     pub const fn new(name: &'static str, key: &'static str, help: &'static str, when: When) -> Overlay {
-        Overlay { name, key, help, when, hidden: false, in_plots: None, legend: None }
+        Overlay { name, key, help, when, hidden: false, selects: false, in_plots: None, legend: None }
     }
 
     /// The same, drawn in plots too.

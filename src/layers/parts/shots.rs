@@ -1,10 +1,14 @@
 //! Pictures with the cameras that took them, to be laid on a layer.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
+use super::marks::Mark;
 use crate::base::geometry::Xy;
 use crate::base::maths;
+use crate::base::picture::Picture;
 use crate::base::pixels::Linear;
 
 /// How much the shape of a picture may differ from that of its camera, as a share.
@@ -81,6 +85,15 @@ pub struct Lying<'a> {
     pub guide: Option<&'a str>,
     /// Its camera; `None` if there is none that makes sense.
     pub from: Option<SeenFrom>,
+}
+
+/// A picture over what its camera sees of a layer.
+#[derive(Clone, Debug)]
+pub struct Painted {
+    /// Both together, as large as the picture.
+    pub picture: Arc<Picture>,
+    /// The border of what of the picture counts, in its pixels; paths are relative to the layer.
+    pub marks: Vec<Mark>,
 }
 
 /// What is seen of a layer's model from a place.

@@ -22,6 +22,9 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
         (Mode::Normal, Pane::Picture) if state.picture.looking.is_some() => {
             vec![keys::PICKING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
         }
+        (Mode::Normal, Pane::Picture) if state.picture.painting.is_some() => {
+            vec![keys::PAINTING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
+        }
         (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::MOVING, keys::EVERYWHERE],

@@ -25,6 +25,7 @@ mod moving;
 mod naming;
 mod ordering;
 pub mod own_keys;
+mod painting;
 mod palette;
 pub mod pasting;
 mod picking;
@@ -81,6 +82,7 @@ pub static TABLE: Table = Table(&[
     playing::COMMANDS,
     camera::COMMANDS,
     views::COMMANDS,
+    painting::COMMANDS,
     picking::COMMANDS,
     picture::COMMANDS,
     typing::COMMANDS,

@@ -10,6 +10,7 @@ use crate::render::passes::Asked;
 use crate::tui::events::Effect;
 use crate::tui::graphics::{Protocol, viewport};
 use crate::tui::layout::picture;
+use crate::tui::state::painting::Sees;
 use crate::tui::state::picture::Picture;
 use crate::tui::state::{Pane, State};
 use crate::tui::text::numbers::short;
@@ -144,6 +145,9 @@ fn probe(state: &mut State, call: &Call) -> Done {
         state.picture.probing = false;
         picture::settle(state);
         return Ok(());
+    }
+    if picture::sees(state) != Sees::Results {
+        return Err("the read-out is of the results: :layout results shows them".into());
     }
     if !call.text.is_empty() {
         let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();

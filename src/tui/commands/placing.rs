@@ -9,6 +9,7 @@ use crate::render::{overlay, passes};
 use crate::scene::address;
 use crate::tui::events::Effect;
 use crate::tui::layout::picture;
+use crate::tui::state::painting::Sees;
 use crate::tui::state::{Mode, Pane, State, entry, place, spatial};
 use crate::tui::text::numbers::short;
 
@@ -46,6 +47,9 @@ fn cursor(state: &mut State, call: &Call) -> Done {
 }
 
 fn placed(state: &mut State, call: &Call) -> Done {
+    if picture::sees(state) != Sees::Results {
+        return Err("things are placed in the results: :layout results shows them".into());
+    }
     match call.text {
         "add" => {
             let (edit, pointer) = place::add_here(state)?;

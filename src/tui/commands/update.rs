@@ -17,7 +17,7 @@ use crate::tui::commands;
 use crate::tui::document::tree;
 use crate::tui::keys::Found;
 use crate::tui::layout::first_row;
-use crate::tui::state::{Mode, Pages, Pane, State, looking};
+use crate::tui::state::{Mode, Pages, Pane, State, looking, painting};
 
 /// Handles an event, and returns what is to be done outside.
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
@@ -68,6 +68,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),
     }
+    painting::follow(state);
     tutor::follow(state);
     state.ask_waiting();
     state.effects.drain(..).collect()

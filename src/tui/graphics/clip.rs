@@ -46,7 +46,7 @@ impl ClipView {
 }
 
 /// A picture as a scene that shows nothing else.
-fn alone(picture: Arc<Picture>) -> Option<Synth> {
+pub(super) fn alone(picture: Arc<Picture>) -> Option<Synth> {
     const NAME: &str = "frame";
     let scene = json!({ "plica": 1, "images": { NAME: { "path": NAME } }, "layers": [
         { "kind": "picture", "name": NAME, "image": NAME }

@@ -142,6 +142,7 @@ mod tests {
             bytes: 100_000,
             pass: None,
             clip: None,
+            sight: None,
             over: View::default(),
             marks: None,
         }

@@ -9,6 +9,7 @@ mod picture;
 pub mod probed;
 mod protocol;
 pub mod request;
+pub mod sight;
 mod sixel;
 pub mod viewport;
 

@@ -7,6 +7,7 @@ use ratatui::buffer::Buffer;
 
 use super::clip::square;
 use super::protocol::Wanted;
+use super::sight::Shown;
 use super::{encode, ink};
 use crate::base::pixels::Frame;
 use crate::layers::parts::marks::Mark;
@@ -49,6 +50,14 @@ impl TerminalPicture {
             let over = over.into_iter().chain(square).collect();
             return TerminalPicture::sent((&synth, None), time, wanted, over, before);
         }
+        let sight = wanted.sight.as_ref().and_then(|sight| sight.of(synth));
+        let synth = match sight {
+            Some(Shown { synth, marks: Some(over) }) => {
+                return TerminalPicture::sent((&synth, None), time, wanted, over, before);
+            }
+            Some(Shown { synth, marks: None }) => &synth.clone(),
+            None => synth,
+        };
         let over = if wanted.over.shown.is_empty() { Vec::new() } else { overlay(scene, Some(synth), &wanted.over) };
         TerminalPicture::sent((synth, Some(scene)), time, wanted, over, before)
     }

@@ -3,6 +3,7 @@
 use kurbo::Point;
 
 use super::clip::ClipView;
+use super::sight::Sight;
 use crate::layers::parts::marks::View;
 use crate::render::part::Part;
 use crate::render::passes::Asked;
@@ -108,6 +109,8 @@ pub struct Wanted {
     pub pass: Option<Asked>,
     /// What to show of a clip in place of the scene.
     pub clip: Option<ClipView>,
+    /// What to show in place of what the scene's camera sees.
+    pub sight: Option<Sight>,
     /// The overlays that need more than the document alone.
     pub over: View,
     /// The other marks drawn into the pixels; `None` for half-blocks, whose marks are drawn as characters.

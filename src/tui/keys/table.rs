@@ -15,6 +15,8 @@ pub const TABLE: &str = "form and table";
 pub const PICKABLE: &str = "tree, on sprites";
 /// The picture, while it shows a clip that pictures are picked from.
 pub const PICKING: &str = "picking from a clip";
+/// The picture, in the layout for painting on a mesh.
+pub const PAINTING: &str = "picture, in the layout for painting";
 /// The picture with its cursor.
 pub const PICTURE: &str = "picture";
 /// The picture's cursor, also while it sets a jump vector or a landing.
@@ -245,6 +247,15 @@ const OWN: &[KeyRow] = &[
     row(PICKING, "z M", "clip cut", "Show what is cut out of the frame, over black, or the frame again"),
     row(PICKING, "z C", "clip sheet", "Show all that is cut out, tracks that hardly move framed, or the frame again"),
     row(PICKING, "Esc", "clip off", "Show the scene again"),
+    row(PAINTING, "Tab", "layout next", "From results to the painting, to select, and round"),
+    row(PAINTING, "Shift-Tab", "layout previous", "The same the other way"),
+    row(PAINTING, "z )", "layout more", "More of the picture that is painted on, less of what its camera sees"),
+    row(PAINTING, "z (", "layout less", "Less of it"),
+    row(PAINTING, "Alt-Left", "layout orbit -15 0", "In select, go round the mesh to the left"),
+    row(PAINTING, "Alt-Right", "layout orbit 15 0", "Go round it to the right"),
+    row(PAINTING, "Alt-Up", "layout orbit 0 15", "Go up"),
+    row(PAINTING, "Alt-Down", "layout orbit 0 -15", "Go down"),
+    row(PAINTING, "Esc", "layout usual", "Show all panes as usual"),
     row(AIM, "Enter", "place jump", "End the jump vector, or land, at the cursor"),
     row(AIM, "Esc", "cancel", "Keep the old one"),
     row(AIM, "Ctrl-c", "cancel", "Keep the old one"),

@@ -65,12 +65,13 @@ fn has_curves(state: &State) -> bool {
     state.document().scene().layers.iter().any(|layer| !layer.technique().curves(wrap).is_empty())
 }
 
-/// The areas of the screen as it is: without the lesson, and the pane that has the focus alone where it is enlarged. Panes
+/// The areas of the screen as it is: without the lesson, and the pane that has the focus alone where it is enlarged, as the picture is while one paints. Panes
 /// that are not shown have an empty area.
 pub fn areas_of(state: &State) -> Areas {
     let screen = screen(state);
     let all = areas(screen, state);
-    if !state.cursor.enlarged {
+    let paints = state.picture.painting.is_some() && state.cursor.focus == Pane::Picture;
+    if !state.cursor.enlarged && !paints {
         return all;
     }
     let body = Rect { height: screen.height.saturating_sub(2), ..screen };

@@ -10,7 +10,9 @@ use crate::layers::parts::marks::{Overlay, View, When};
 use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::document::tree;
+use crate::tui::graphics::sight::Sight;
 use crate::tui::graphics::{Marks, Protocol, Wanted, viewport};
+use crate::tui::state::painting::{self, Sees};
 use crate::tui::state::{Mode, State, looking, place};
 
 /// What the panes want from the worker now.
@@ -26,7 +28,12 @@ pub fn probe_at(state: &State) -> Option<ProbeAt> {
     let at = state.picture.cursor;
     let pixel = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
     let layer = tree::layer_of(&state.cursor.node).unwrap_or(0);
-    state.picture.probing.then_some(ProbeAt { layer, pixel, time: state.play.time })
+    (state.picture.probing && sees(state) == Sees::Results).then_some(ProbeAt { layer, pixel, time: state.play.time })
+}
+
+/// Which view of the layout for painting is seen; the results without it.
+pub fn sees(state: &State) -> Sees {
+    state.picture.painting.map_or(Sees::Results, |painting| painting.sees)
 }
 
 /// The protocol in use.
@@ -55,9 +62,15 @@ pub fn overlays(state: &State) -> View {
     View { shown: of_document.map(|overlay| overlay.name).collect(), selection, ..View::default() }
 }
 
+/// Whether a picture is seen in place of the scene.
+fn is_painting(sight: &Option<Sight>) -> bool {
+    matches!(sight, Some(Sight::Painting { .. }))
+}
+
 /// The other overlays that are shown, no denser than stays legible.
-fn switched(state: &State, part: &Part, protocol: Protocol) -> View {
-    let is_shown = |overlay: &&Overlay| overlay.when != When::Document && state.picture.switches.is_on(overlay.name);
+fn switched(state: &State, part: &Part, protocol: Protocol, selects: bool) -> View {
+    let is_on = |overlay: &Overlay| state.picture.switches.is_on(overlay.name) || selects && overlay.selects;
+    let is_shown = |overlay: &&Overlay| overlay.when != When::Document && is_on(overlay);
     let shown: BTreeSet<_> = overlay::overlays().filter(is_shown).map(|overlay| overlay.name).collect();
     if shown.is_empty() {
         return View::default();
@@ -74,7 +87,8 @@ fn wanted(state: &State) -> Option<Wanted> {
     let (playing, still) = graphics.bytes;
     let protocol = protocol(state);
     let part = part(state)?;
-    let over = switched(state, &part, protocol);
+    let sight = painting::sight(state);
+    let over = switched(state, &part, protocol, matches!(sight, Some(Sight::From(_))));
     let marks = || Marks {
         view: overlays(state),
         cursor: state.picture.cursor,
@@ -86,8 +100,9 @@ fn wanted(state: &State) -> Option<Wanted> {
         protocol,
         tmux: graphics.tmux,
         bytes: if state.play.playing { playing } else { still },
-        pass: state.picture.pass.clone().filter(|_| state.picture.looking.is_none()),
+        pass: state.picture.pass.clone().filter(|_| state.picture.looking.is_none() && !is_painting(&sight)),
         clip: looking::view(state),
+        sight,
         over,
         marks: (protocol != Protocol::Blocks).then(marks),
     })

@@ -66,6 +66,16 @@ const HINTS: &[(&str, &[(&str, &str)])] = &[
             ("clip off", "scene"),
         ],
     ),
+    (
+        keys::PAINTING,
+        &[
+            ("layout next", "next view"),
+            ("layout more", "more of the picture"),
+            ("layout orbit 15 0", "round"),
+            ("probe", "read out"),
+            ("layout usual", "all panes"),
+        ],
+    ),
     (keys::AIM, &[("place jump", "take it"), ("cancel", "keep the old one"), ("help", "help")]),
     (
         keys::ENTRY,

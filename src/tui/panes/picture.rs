@@ -15,10 +15,12 @@ use crate::render::part::Part;
 use crate::tui::graphics::clip::square;
 use crate::tui::graphics::{Protocol, TerminalPicture, viewport};
 use crate::tui::layout::picture;
+use crate::tui::state::painting::{self, Painting, Sees};
 use crate::tui::state::{Mode, Pane, State, place};
 use crate::tui::text::color;
 use crate::tui::text::color::Depth;
 use crate::tui::text::numbers::short;
+use crate::tui::text::plain;
 
 /// The title: the cursor's coordinates, the scale, and the protocol.
 pub fn title(state: &State) -> String {
@@ -38,7 +40,14 @@ pub fn title(state: &State) -> String {
         Some((Sight::Frame(frame), frames)) => format!("clip {frame} of {frames}"),
         Some((Sight::Cut(frame), frames)) => format!("cut out of {frame} of {frames}"),
         Some((Sight::Sheet, _)) => "all that is cut out".into(),
-        None => format!("picture{pass}"),
+        None => match (state.picture.painting, painting::current(state)) {
+            (Some(Painting { sees: Sees::Painting, share, .. }), Some((.., name))) => {
+                format!("painting {}, {:.0} % of it", plain(&name), share * 100.0)
+            }
+            (Some(Painting { sees: Sees::Select, .. }), _) => "select".into(),
+            (Some(_), _) => format!("results{pass}"),
+            (None, _) => format!("picture{pass}"),
+        },
     };
     format!("{what}  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
 }
@@ -147,6 +156,7 @@ fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
     let synth = state.picture.synth.as_deref();
     let mut marks = match state.picture.looking {
         Some(looking) => vec![square(state.picture.cursor, looking.side)],
+        None if picture::sees(state) != Sees::Results => Vec::new(),
         None => overlay::overlay(state.document().scene(), synth, &picture::overlays(state)),
     };
     marks.sort_by_key(|mark| mark.selected);

@@ -2,7 +2,7 @@
 
 use kurbo::Point;
 
-use super::State;
+use super::{State, painting};
 use crate::layers::parts::picking::{Picking, Picks, Sight};
 use crate::scene::field;
 use crate::tui::graphics::clip::ClipView;
@@ -77,7 +77,7 @@ pub fn look(state: &mut State, looking: Option<Looking>) {
         let Picking { frames, followed, side, .. } = *seen;
         Looking { frames, followed, side, ..*looking }
     });
-    let of_scene = state.picture.synth.as_ref().map(|synth| synth.size);
+    let of_scene = painting::size(state);
     let size = found.map(|(_, seen)| (seen.picture.width(), seen.picture.height())).or(of_scene);
     let other = std::mem::replace(&mut state.picture.size, size) != size;
     if other && (before || state.picture.looking.is_some()) {

@@ -9,6 +9,7 @@ pub mod kept;
 pub mod looking;
 pub mod memory;
 pub mod outside;
+pub mod painting;
 pub mod picture;
 pub mod place;
 pub mod play;

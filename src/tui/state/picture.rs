@@ -5,6 +5,7 @@ use std::sync::Arc;
 use kurbo::{Point, Vec2};
 
 use super::looking::Looking;
+use super::painting::Painting;
 use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
@@ -26,6 +27,8 @@ pub struct Picture {
     pub pass: Option<Asked>,
     /// What is looked at of a clip in place of the scene.
     pub looking: Option<Looking>,
+    /// How one paints on a mesh, in the layout for that.
+    pub painting: Option<Painting>,
     /// Which overlays are shown here and in the windows. Those of the document alone are always shown here.
     pub switches: Switches,
     /// How pictures are sent to the terminal.
@@ -61,6 +64,7 @@ impl Picture {
             size: None,
             pass: None,
             looking: None,
+            painting: None,
             switches: Switches::default(),
             graphics: Graphics::default(),
             latest: None,

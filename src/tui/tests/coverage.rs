@@ -57,6 +57,7 @@ const TABLES: &[fn()] = &[
     super::picture::graphics_are_told_and_set,
     super::picture::a_pass_is_shown_in_place_of_the_picture,
     super::picture::the_read_out_opens_follows_and_closes,
+    super::views::one_paints_in_three_views,
 ];
 
 thread_local! {

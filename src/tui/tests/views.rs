@@ -3,16 +3,22 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use kurbo::Point;
 use serde_json::json;
 
 use super::support::{at, press, said};
 use crate::files::materials::{self, Cache};
+use crate::layers::parts::marks::Shape;
 use crate::layers::space::camera::Camera;
 use crate::preview::wire::message::ToEditor;
 use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Effect;
+use crate::tui::graphics::TerminalPicture;
+use crate::tui::graphics::sight::Sight;
+use crate::tui::layout::{self, picture};
+use crate::tui::panes;
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
 
@@ -126,4 +132,59 @@ fn what_the_shell_does_is_done_with_the_open_scene() {
         });
         assert_eq!(ran.unwrap(), words, "{line}");
     }
+}
+
+#[test]
+pub fn one_paints_in_three_views() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    assert!(run(&mut state, "layout paint").0.contains(":views add NAME lays one"), "there is none yet");
+    run(&mut state, "views add a both 8x6");
+    show(&mut state);
+    run(&mut state, "go layers.wall.surface.views.5.hold");
+    let made = |state: &State| {
+        let wanted = picture::request(state).picture.unwrap();
+        let synth = state.picture.synth.as_ref().unwrap();
+        TerminalPicture::new(synth, state.document().scene(), 0.0, wanted, None)
+    };
+    let title = |state: &State| panes::picture::title(state).split("  ").next().unwrap().to_owned();
+    let width = |state: &State| layout::picture_area(state).map(|area| area.width);
+    assert_eq!(width(&state), None, "there is no room for it beside the others");
+    run(&mut state, "layout paint");
+    assert_eq!((title(&state).as_str(), width(&state), state.picture.size), ("results", Some(78), Some((24, 16))));
+    let results = made(&state);
+    press(&mut state, "Tab");
+    assert_eq!((title(&state).as_str(), state.picture.size), ("painting a, 50 % of it", Some((8, 6))));
+    let sight = |share: f64| Some(Sight::Painting { layer: 0, picture: 5, share });
+    let painting = made(&state);
+    assert_eq!(painting.wanted.sight, sight(0.5));
+    // The picture is what its camera sees.
+    let at = [painting.wanted.part, results.wanted.part].map(|part| part.place_of(Point::new(39.0, 20.0)));
+    let colors = [painting.color_at(at[0]), results.color_at(at[1])];
+    assert!(colors[0] == colors[1] && colors[0].is_some_and(|[r, ..]| r == 0xa0), "{colors:?}");
+    press(&mut state, "z )");
+    assert_eq!(made(&state).wanted.sight, sight(0.625));
+    assert!(run(&mut state, "place add").0.contains(":layout results"));
+    assert!(run(&mut state, "probe").0.contains(":layout results"));
+    press(&mut state, "Tab");
+    assert_eq!((title(&state).as_str(), state.picture.size), ("select", Some((24, 16))));
+    let select = made(&state);
+    let names: Vec<&str> = select
+        .over
+        .iter()
+        .filter_map(|mark| match &mark.shape {
+            Shape::Label(_, name) => Some(name.as_str()),
+            _ => None,
+        })
+        .collect();
+    assert!(names.len() == 6 && names.contains(&"a"), "all cameras are seen: {names:?}");
+    press(&mut state, "Alt-Right Alt-Up");
+    let turned = made(&state);
+    assert!(turned.wanted.sight != select.wanted.sight && turned.frame != select.frame);
+    assert_eq!(turned.over.iter().filter(|mark| matches!(mark.shape, Shape::Label(..))).count(), 6);
+    press(&mut state, "Tab");
+    assert_eq!((title(&state).as_str(), made(&state).frame == results.frame), ("results", true));
+    press(&mut state, "Shift-Tab Shift-Tab Esc");
+    assert_eq!((state.picture.size, state.picture.painting), (Some((24, 16)), None));
+    assert!(run(&mut state, "layout twice").0.starts_with("layout takes "));
 }

@@ -27,7 +27,7 @@ use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::{Bind, Program};
 use crate::layers::parts::readout::Entry;
-use crate::layers::parts::shots::{Laid, Laying, Lying};
+use crate::layers::parts::shots::{Laid, Laying, Lying, Painted};
 use crate::layers::ready::Making;
 use crate::layers::space::raster::Hit;
 
@@ -169,6 +169,16 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
 
     /// See `Ready::guide`.
     fn guide(&self, _picture: usize) -> Option<Linear> {
+        None
+    }
+
+    /// See `Ready::laid_px`.
+    fn laid_px(&self, _picture: usize) -> Option<(usize, usize)> {
+        None
+    }
+
+    /// See `Ready::painted`; paths are relative to the layer.
+    fn painted(&self, _picture: usize, _share: f64) -> Option<Painted> {
         None
     }
 

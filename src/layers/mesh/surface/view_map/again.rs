@@ -68,15 +68,20 @@ pub fn without((map, arrays): Filled, points: &Points, number: usize) -> Option<
     let wanted = Wanted { levels: Some(map.cells.layers.len()), views, ..map.wanted.clone() };
     let left = Map::new(wanted, Some(map), &Watch { stopped: &|| false, done: &|_| () })?;
     let arrays = arrays.and_then(|arrays| Arrays::new(&left, arrays.side(), &|| false));
-    let (again, (width, height)) = (Again::new(&left, view), view.camera.size_px);
+    Some(seen((&left, arrays.as_ref()), points, view))
+}
+
+/// What a view sees of a map.
+pub fn seen((map, arrays): Filled, points: &Points, view: &View) -> Linear {
+    let (again, (width, height)) = (Again::new(map, view), view.camera.size_px);
     let base = points.at(view.camera.position, -view.camera.axes()[2]);
     let mut picture: Vec<Rgba> = vec![[0.0; 4]; width * height];
     picture.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
-        let mut reader = Reader::new(&left, arrays.as_ref());
+        let mut reader = Reader::new(map, arrays);
         again.row(y, |x, _, spot| {
             let [r, g, b] = reader.at(spot, None).shown(base).map(|light| light as f32);
             row[x] = [r, g, b, 1.0];
         });
     });
-    Some(Linear::from_cells(width, height, picture))
+    Linear::from_cells(width, height, picture)
 }

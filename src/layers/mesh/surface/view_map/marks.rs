@@ -16,8 +16,10 @@ use crate::layers::space::marks::{line, spot};
 const VIEWS: &str = "view-views";
 
 /// The overlay.
-pub const OVERLAY: Overlay =
-    Overlay::new(VIEWS, "V", "Cameras of view maps, how far the selected one is seen, blend points", When::EveryFrame);
+pub const OVERLAY: Overlay = Overlay {
+    selects: true,
+    ..Overlay::new(VIEWS, "V", "Cameras of view maps, how far the selected one is seen, blend points", When::EveryFrame)
+};
 
 /// The camera of a view.
 pub static CAMERA: Look = Look::new("view", 28, [120, 200, 255, 230], 1.3);

@@ -25,6 +25,7 @@ pub mod mix;
 pub mod mixer;
 pub mod model;
 pub mod paint;
+pub mod painted;
 pub mod passes;
 pub mod plan;
 pub mod probe;

@@ -1,6 +1,6 @@
 //! A view map ready for any time, as the surface of a mesh.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
@@ -9,7 +9,7 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked, base};
 use super::map::{Map, Wanted};
-use super::{again, bundle, marks, passes, plan, probe, told, upload};
+use super::{again, bundle, marks, painted, passes, plan, probe, told, upload, view};
 use crate::base::budget::Share;
 use crate::base::error::Result;
 use crate::base::number;
@@ -21,6 +21,7 @@ use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::readout::Entry;
+use crate::layers::parts::shots::Painted;
 
 /// A view map ready for any time.
 #[derive(Clone, Debug)]
@@ -33,12 +34,29 @@ pub struct Ready {
     pub points: Points,
     /// The memory of it all.
     pub kept: Arc<Share>,
+    /// What the camera of the view of this number sees, once that was asked for.
+    pub seen: Arc<Mutex<Option<(usize, Arc<Linear>)>>>,
 }
 
 impl Ready {
     /// The map with its arrays.
     pub fn filled(&self) -> Filled<'_> {
         (&self.map, self.arrays.as_deref())
+    }
+
+    fn view(&self, number: usize) -> Option<&view::View> {
+        self.map.wanted.views.iter().find(|view| view.number == number)
+    }
+
+    /// What the camera of a view sees. That of one is kept.
+    fn seen(&self, view: &view::View) -> Arc<Linear> {
+        let mut kept = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, seen)) = kept.as_ref().filter(|(number, _)| *number == view.number) {
+            return seen.clone();
+        }
+        let seen = Arc::new(again::seen(self.filled(), &self.points, view));
+        *kept = Some((view.number, seen.clone()));
+        seen
     }
 
     /// Whether it is the map that is wanted, with arrays of so many directions a side.
@@ -64,6 +82,15 @@ impl ReadySurface for Ready {
 
     fn guide(&self, view: usize) -> Option<Linear> {
         again::without(self.filled(), &self.points, view)
+    }
+
+    fn laid_px(&self, view: usize) -> Option<(usize, usize)> {
+        self.view(view).map(|view| view.camera.size_px)
+    }
+
+    fn painted(&self, view: usize, share: f64) -> Option<Painted> {
+        let view = self.view(view)?;
+        Some(painted::painted(view, &self.seen(view), share))
     }
 
     fn balanced(&self) -> Option<Vec<(String, Value)>> {

@@ -81,7 +81,7 @@ impl Slot for ViewMap {
         let before = before.and_then(|before| before.downcast::<Ready>());
         let side = self.directions.map(|side| side as usize);
         if let Some(ready) = before.filter(|before| before.is_of(&wanted, side)) {
-            return Ok(Arc::new(Ready { points, ..ready.clone() }));
+            return Ok(Arc::new(Ready { points, seen: Arc::default(), ..ready.clone() }));
         }
         let pixels: Vec<u64> = wanted.views.iter().map(pixels).collect();
         materials.expect(pixels.iter().sum());
@@ -101,7 +101,13 @@ impl Slot for ViewMap {
         });
         let kept = kept.map_err(short)?;
         let arrays = side.map(|side| Arrays::new(&map, side, &stopped).ok_or_else(stop)).transpose()?;
-        Ok(Arc::new(Ready { map: Arc::new(map), arrays: arrays.map(Arc::new), points, kept: Arc::new(kept) }))
+        Ok(Arc::new(Ready {
+            map: Arc::new(map),
+            arrays: arrays.map(Arc::new),
+            points,
+            kept: Arc::new(kept),
+            seen: Arc::default(),
+        }))
     }
 
     fn check_made(&self, made: &dyn ReadySurface) -> Vec<Problem> {

@@ -1,0 +1,138 @@
+//! Painting on a mesh: which of its three views the picture's pane shows.
+
+use glam::DVec3;
+use kurbo::Point;
+
+use super::State;
+use crate::base::geometry::farther;
+use crate::base::maths::{cos, sin};
+use crate::layers::parts::shots::SeenFrom;
+use crate::layers::space::camera::Camera;
+use crate::layers::space::fit::{Ball, fit};
+use crate::tui::graphics::sight::Sight;
+use crate::tui::graphics::viewport::Viewport;
+
+/// The three views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sees {
+    /// The frame.
+    #[default]
+    Results,
+    /// A picture that lies on the mesh, over what its camera sees.
+    Painting,
+    /// The mesh with the cameras of all of them, from elsewhere.
+    Select,
+}
+
+/// The views, in the order in which one goes from one to the next.
+pub const ALL: [Sees; 3] = [Sees::Results, Sees::Painting, Sees::Select];
+
+/// How one paints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Painting {
+    /// Which view is shown.
+    pub sees: Sees,
+    /// How much of the picture is shown over what is beneath, from 0 to 1.
+    pub share: f64,
+    /// How far one has gone round what is selected from, in degrees to the right and up.
+    pub around: (f64, f64),
+}
+
+impl Default for Painting {
+    fn default() -> Self {
+        Painting { sees: Sees::default(), share: 0.5, around: (0.0, 0.0) }
+    }
+}
+
+/// How near to the poles one goes, in degrees.
+const HIGHEST: f64 = 85.0;
+
+/// The picture on a mesh that is painted on: that of the row under the cursor, else the first of its layer, else the first of
+/// all; its layer, its index and its name.
+pub fn current(state: &State) -> Option<(usize, usize, String)> {
+    let focused = state.focused();
+    let layers = state.document().scene().layers.iter().enumerate();
+    let found = layers.filter_map(|(i, layer)| {
+        let technique = layer.technique();
+        let lying = technique.lying().filter(|lying| !lying.is_empty())?;
+        let path = format!("/layers/{i}");
+        let list = format!("{path}{}/", technique.lay(&[]).map_or("", |laying| laying.list));
+        let row = focused.strip_prefix(&list).and_then(|rest| rest.split('/').next()?.parse().ok());
+        let row = row.filter(|row| *row < lying.len());
+        let is_own = focused == path || focused.starts_with(&format!("{path}/"));
+        let index = row.unwrap_or(0);
+        Some((row.is_some(), is_own, (i, index, lying[index].name.to_owned())))
+    });
+    // Of several the first.
+    let found: Vec<_> = found.collect();
+    let best = found.iter().find(|(row, ..)| *row).or_else(|| found.iter().find(|(_, own, _)| *own)).or(found.first());
+    best.map(|(.., view)| view.clone())
+}
+
+/// What the pane shows in place of what the scene's camera sees.
+pub fn sight(state: &State) -> Option<Sight> {
+    let painting = state.picture.painting.filter(|_| state.picture.looking.is_none())?;
+    match painting.sees {
+        Sees::Results => None,
+        Sees::Painting => {
+            let (layer, picture, _) = current(state)?;
+            Some(Sight::Painting { layer, picture, share: painting.share })
+        }
+        Sees::Select => camera(state, painting.around).map(|camera| Sight::From(Box::new(camera))),
+    }
+}
+
+/// A camera that sees the mesh and the cameras of all pictures on it, from where the scene's camera stands, turned by so many
+/// degrees to the right and up.
+fn camera(state: &State, (right, lift): (f64, f64)) -> Option<Camera> {
+    let (layer, ..) = current(state)?;
+    let (scene, time) = (state.document().scene(), state.play.time);
+    let technique = scene.layers.get(layer)?.technique();
+    let place = technique.model_to_world(time)?;
+    let at = |from: SeenFrom| match from {
+        SeenFrom::Shot(shot) => shot.position(),
+        SeenFrom::Standing { position, .. } => position,
+    };
+    let cameras = technique.lying()?.into_iter().filter_map(|lying| lying.from).map(at);
+    let cameras: Vec<DVec3> = cameras.map(|at| place.transform_point3(at)).collect();
+    let synth = state.picture.synth.as_ref()?;
+    let made = synth.layers.get(layer)?;
+    let reach = |ways: &[DVec3]| {
+        let of_cameras = cameras.iter().map(|at| ways.iter().map(|way| way.dot(*at)).collect::<Vec<f64>>());
+        of_cameras.chain(made.reach(time, ways)).reduce(farther)
+    };
+    let ball = Ball::around(&reach)?;
+    let own = scene.camera.clone().unwrap_or_default();
+    let ([position, target, up], fov) = own.view(time);
+    let up = up.normalize_or(DVec3::Y);
+    let back = (position - target).normalize_or(DVec3::Z);
+    let level = (back - up * back.dot(up)).normalize_or(up.any_orthonormal_vector());
+    let angle = (90.0 - back.angle_between(up).to_degrees() + lift).clamp(-HIGHEST, HIGHEST).to_radians();
+    let turned = level * cos(right.to_radians()) + up.cross(level) * sin(right.to_radians());
+    let back = turned * cos(angle) + up * sin(angle);
+    let [position, target] = fit(&|ways| ball.reach(ways), [back, up], fov, synth.size)?;
+    Some(Camera { position: position.into(), target: target.into(), up: up.into(), fov, ..Camera::default() })
+}
+
+/// The width and height of what the pane shows, if it is known and no clip.
+pub fn size(state: &State) -> Option<(usize, usize)> {
+    let synth = state.picture.synth.as_ref()?;
+    let painted = || match sight(state)? {
+        Sight::Painting { layer, picture, .. } => synth.layers.get(layer)?.laid_px(picture),
+        Sight::From(_) => None,
+    };
+    Some(painted().unwrap_or(synth.size))
+}
+
+/// Takes the size of what the pane shows now. Where it is another, the pane shows all of it.
+pub fn follow(state: &mut State) {
+    let size = size(state);
+    if state.picture.looking.is_some() || size.is_none() || state.picture.size == size {
+        return;
+    }
+    state.picture.size = size;
+    let (width, height) = size.unwrap_or_default();
+    let center = Point::new((width / 2) as f64 + 0.5, (height / 2) as f64 + 0.5);
+    state.picture.viewport = Viewport { zoom: None, center };
+    state.picture.cursor = center;
+}
