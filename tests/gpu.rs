@@ -32,6 +32,7 @@ use plica::layers::technique::Kind;
 use plica::render::{self, Synth, bands::Bands, cpu, gpu::Gpu, reduce::reduced};
 use plica::scene::Scene;
 use serde_json::{Value, json};
+use wgpu::naga::{AddressSpace, Type, TypeInner, front::wgsl, valid};
 
 /// Times on frames and between them; s reaches below 0 and above 1.
 const TIMES: [f64; 6] = [0.0, 0.13, 0.25, 0.5, 0.77, 1.0];
@@ -376,6 +377,15 @@ fn the_gpu_shows_view_maps_as_the_cpu_does() {
         ("bent", viewed(bent.clone(), &none, &both)),
         ("bent, arrays of directions", viewed(bent, &json!({"directions": 6}), &both)),
         ("both sides, by texture", viewed(json!({"sides": "both"}), &json!({"atlas": "uv"}), &both)),
+        ("under strokes", viewed(json!({"strokes": {"style": "painterly"}}), &none, &both)),
+        (
+            "arrays under strokes",
+            viewed(
+                json!({"strokes": {"style": "hatching", "ground": "scene", "tone": {"of": "light"}}}),
+                &json!({"directions": 8}),
+                &both,
+            ),
+        ),
     ];
     let frames = scenes.map(|(name, synth)| {
         assert_eq!(gpu.by_cpu(&synth), None, "{name}");
@@ -585,15 +595,59 @@ fn what_is_too_large_is_refused_with_the_way_out() {
     assert!(error.contains(&side.to_string()) && error.contains("--gpu"), "{error}");
 }
 
+/// The name and the WGSL of all shaders of a kind.
+fn shaders(kind: &Kind) -> impl Iterator<Item = (&'static str, String)> {
+    let programs = kind.programs.iter().map(|program| (program.name, program.text()));
+    programs.chain(kind.routines.iter().map(|routine| (routine.name, routine.text())))
+}
+
+/// The members of a struct that mean something, with where they begin; and its size.
+fn layout(found: &Type) -> (Vec<(String, usize)>, usize) {
+    let TypeInner::Struct { members, span } = &found.inner else { panic!("{found:?}") };
+    let named = members.iter().map(|member| (member.name.clone().unwrap(), member.offset as usize));
+    (named.filter(|(name, _)| name != "unused").collect(), *span as usize)
+}
+
+#[test]
+fn what_shaders_read_lies_where_rust_puts_it() {
+    for kind in KINDS {
+        let twins: Vec<_> = kind.twins.iter().copied().flatten().collect();
+        let mut seen = BTreeSet::new();
+        for (shader, text) in shaders(kind) {
+            let module = wgsl::parse_str(&text).unwrap();
+            let uniforms = module.global_variables.iter().filter(|(_, of)| of.space == AddressSpace::Uniform);
+            for (_, uniform) in uniforms {
+                let name = module.types[uniform.ty].name.as_deref();
+                assert!(twins.iter().any(|twin| Some(twin.name) == name), "{shader}: Rust knows no {name:?}");
+            }
+            let strides = module.types.iter().filter_map(|(_, found)| match found.inner {
+                TypeInner::Array { base, stride, .. } => Some((module.types[base].name.as_deref()?, stride as usize)),
+                _ => None,
+            });
+            let strides: Vec<_> = strides.collect();
+            for twin in &twins {
+                let Some((_, found)) = module.types.iter().find(|(_, found)| found.name.as_deref() == Some(twin.name))
+                else {
+                    continue;
+                };
+                let (members, span) = layout(found);
+                let fields: Vec<_> = twin.fields.iter().map(|(name, at)| ((*name).to_owned(), *at)).collect();
+                assert_eq!(members, fields, "{shader}: {}", twin.name);
+                assert!((span..span + 16).contains(&twin.size), "{shader}: {}: {span}, {}", twin.name, twin.size);
+                let stride = strides.iter().find(|(name, _)| *name == twin.name);
+                assert!(stride.is_none_or(|(_, stride)| *stride == twin.size), "{shader}: {}", twin.name);
+                seen.insert(twin.name);
+            }
+        }
+        assert_eq!(seen.len(), twins.len(), "{}: {seen:?}", kind.name);
+    }
+}
+
 #[test]
 fn every_shader_is_valid() {
-    use wgpu::naga::{front::wgsl, valid};
-    let programs = KINDS.iter().flat_map(|kind| kind.programs).chain(render::gpu::PROGRAMS);
-    let routines = KINDS.iter().flat_map(|kind| kind.routines).map(|routine| (routine.name, routine.text()));
-    let programs = programs.map(|program| (program.name, program.text())).chain(routines);
+    let own = render::gpu::PROGRAMS.iter().map(|program| (program.name, program.text()));
     let window = [plica::layers::parts::plan::COMMON, include_str!("../src/preview/window/screen.wgsl")].concat();
-    let window = ("screen.wgsl", window);
-    for (name, source) in programs.chain([window]) {
+    for (name, source) in KINDS.iter().flat_map(|kind| shaders(kind)).chain(own).chain([("screen.wgsl", window)]) {
         let source = source.as_str();
         let module = wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));
         let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::empty());

@@ -21,6 +21,7 @@ use super::parts::plan::{Program, Routine};
 use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
 use super::parts::shots::{Laid, Laying, Lying};
+use super::parts::twin::Twin;
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::space::eye::Ray;
 use super::starts::{Preset, Starts, Styles, Template};
@@ -278,6 +279,8 @@ pub struct Kind {
     pub programs: &'static [&'static Program],
     /// All routines that compute for that.
     pub routines: &'static [&'static Routine],
+    /// What these read of structs.
+    pub twins: &'static [&'static [Twin]],
     /// What becomes of its layers for other engines; `None` if it has no textures for them.
     pub bundle: Option<Bundle>,
     /// The things whose number in a scene is limited.

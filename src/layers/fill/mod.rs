@@ -23,6 +23,7 @@ pub static KIND: Kind = Kind {
     space: Space::Plane,
     programs: &[&synth::PROGRAM],
     routines: &[],
+    twins: &[synth::TWINS],
     bundle: None,
     counted: &[],
     overlays: &[],

@@ -9,6 +9,7 @@ use crate::base::pixels::Rgba;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::{Bind, COMMON, Draw, Plan, Program};
+use crate::layers::parts::twin::{Twin, twin};
 use crate::layers::ready::{Ready, Still};
 
 /// The shader.
@@ -45,10 +46,11 @@ struct Stop {
     padding: [f32; 3],
 }
 
-/// The part of `Fill` in frame.wgsl after the stops.
+/// `Fill` in frame.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Line {
+struct Fill {
+    stops: [Stop; MOST_STOPS],
     origin: [f32; 2],
     axis: [f32; 2],
     place: [f32; 2],
@@ -56,20 +58,28 @@ struct Line {
     padding: u32,
 }
 
+/// What shaders read.
+pub const TWINS: &[Twin] = &[twin!(Stop: color, along), twin!(Fill: stops, origin, axis, place, count)];
+
 impl Ready for Synth {
     fn at<'a>(&'a self, _moment: &'a Moment) -> Box<dyn Still + 'a> {
         Box::new(self)
     }
 
     fn plan(&self, _moment: &Moment) -> Plan {
-        let stop = |&(along, color): &(f64, Rgba)| Stop { color, along: along as f32, padding: [0.0; 3] };
-        let mut stops: Vec<Stop> = self.stops.iter().map(stop).collect();
-        let count = stops.len() as u32;
-        stops.resize(MOST_STOPS, Stop::default());
         let pair = |v: Vec2| [v.x as f32, v.y as f32];
-        let line = Line { origin: pair(self.from), axis: pair(self.axis), place: pair(self.place), count, padding: 0 };
-        let bytes = [bytemuck::cast_slice(&stops), bytemuck::bytes_of(&line)].concat();
-        Plan::of([Draw::frame(&PROGRAM, vec![Bind::Bytes(bytes)])])
+        let mut fill = Fill {
+            stops: [Stop::default(); MOST_STOPS],
+            origin: pair(self.from),
+            axis: pair(self.axis),
+            place: pair(self.place),
+            count: self.stops.len() as u32,
+            padding: 0,
+        };
+        for (stop, &(along, color)) in fill.stops.iter_mut().zip(&self.stops) {
+            *stop = Stop { color, along: along as f32, padding: [0.0; 3] };
+        }
+        Plan::of([Draw::frame(&PROGRAM, vec![Bind::Bytes(bytemuck::bytes_of(&fill).to_vec())])])
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {

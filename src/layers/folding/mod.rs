@@ -67,6 +67,7 @@ pub static KIND: Kind = Kind {
     space: Space::Plane,
     programs: plan::PROGRAMS,
     routines: &[],
+    twins: &[plan::TWINS],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },

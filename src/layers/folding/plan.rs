@@ -3,6 +3,7 @@
 use super::synth::{Synth, ZoneSynth};
 use crate::base::pixels::Beyond;
 use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::parts::twin::{Twin, twin};
 
 /// Draws the layer's own picture.
 static STILL: Program = Program {
@@ -32,6 +33,9 @@ struct ZoneUniform {
     s: f32,
     padding: f32,
 }
+
+/// What shaders read.
+pub const TWINS: &[Twin] = &[twin!(ZoneUniform as "Zone": offset, origin, s)];
 
 /// The plan for the layer at scene time `t`.
 pub fn plan(synth: &Synth, t: f64) -> Plan {

@@ -79,21 +79,19 @@ struct Facts {
     @location(1) facts: vec4u,
 }
 
+// By what 1 / depth grows on a triangle; each of its corners must say the same.
+fn slope(triangle: vec4u) -> vec2f {
+    let a = vertex(triangle.x).seen;
+    let normal = cross(vertex(triangle.y).seen - a, vertex(triangle.z).seen - a);
+    return vec2f(normal.x, -normal.y) / dot(normal, a);
+}
+
 @vertex
 fn facet(@builtin(vertex_index) i: u32) -> Facet {
     let number = i / 3u;
     let triangle = textureLoad(triangles, place(number), 0);
     let own = vertex(triangle[i % 3u]);
-    // Each corner must say the same.
-    let a = vertex(triangle.x).seen;
-    let normal = cross(vertex(triangle.y).seen - a, vertex(triangle.z).seen - a);
-    var out: Facet;
-    out.position = projected(own.seen);
-    out.normal = own.normal;
-    out.uv = own.uv;
-    out.triangle = number;
-    out.slope = vec2f(normal.x, -normal.y) / dot(normal, a);
-    return out;
+    return Facet(projected(own.seen), own.normal, own.uv, number, slope(triangle));
 }
 
 // A direction in two numbers: on an octahedron, folded flat.
@@ -103,20 +101,19 @@ fn packed(way: vec3f) -> u32 {
     return pack2x16snorm(select(flat, folded, way.z < 0.0));
 }
 
-fn facts(in: Facet, front: bool, color: vec4f) -> Facts {
+fn facts(in: Facet, front: bool, shaded: vec4f) -> Facts {
     let facing = normalize(in.normal) * select(-1.0, 1.0, front);
-    let codes = vec4u(in.triangle + 1u, packed(facing), bitcast<u32>(in.slope.x), bitcast<u32>(in.slope.y));
-    return Facts(shaded(color, in.normal, front), codes);
+    return Facts(shaded, vec4u(in.triangle + 1u, packed(facing), bitcast<vec2u>(in.slope)));
 }
 
 @fragment
 fn plain_facts(in: Facet, @builtin(front_facing) front: bool) -> Facts {
     shown(front);
-    return facts(in, front, mesh.color);
+    return facts(in, front, shaded(mesh.color, in.normal, front));
 }
 
 @fragment
 fn pictured_facts(in: Facet, @builtin(front_facing) front: bool) -> Facts {
     shown(front);
-    return facts(in, front, pictured_at(in.uv));
+    return facts(in, front, shaded(pictured_at(in.uv), in.normal, front));
 }

@@ -43,7 +43,6 @@ pub static KIND: Kind = Kind {
     programs: &[
         &plan::PLAIN,
         surface::PROGRAMS[0],
-        surface::PROGRAMS[1],
         strokes::plan::PROGRAMS[0],
         strokes::plan::PROGRAMS[1],
         strokes::plan::PROGRAMS[2],
@@ -51,6 +50,7 @@ pub static KIND: Kind = Kind {
         strokes::plan::PROGRAMS[4],
     ],
     routines: strokes::emit::ROUTINES,
+    twins: &[plan::TWINS, surface::TWINS, strokes::upload::TWINS, strokes::emit::TWINS],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[],
     overlays: marks::OVERLAYS,

@@ -5,11 +5,12 @@ use glam::DVec3;
 use super::model::Sides;
 use super::pose::Placed;
 use super::strokes::{self, Given};
-use super::surface::Look;
+use super::surface::{Look, Own};
 use super::synth::Synth;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::{Bind, COMMON, Draw, Plan, Program, Step};
+use crate::layers::parts::twin::{Twin, twin};
 use crate::layers::space::eye::{Eye, NEAR_M};
 use crate::layers::space::upload::{TRIANGLES, VERTICES, matrix};
 
@@ -33,7 +34,7 @@ struct Uniform {
     eye_from_model: [f32; 16],
     world_from_normal: [f32; 16],
     along: [f32; 3],
-    from: f32,
+    start: f32,
     light: [f32; 3],
     ambient: f32,
     color: [f32; 4],
@@ -45,14 +46,20 @@ struct Uniform {
     both: f32,
 }
 
+/// What shaders read.
+pub const TWINS: &[Twin] =
+    &[twin!(Uniform as "Mesh": eye_from_model, world_from_normal, along, start, light, ambient, color,
+    focal, shift, bend, length, near, both)];
+
 /// The layer at one time; nothing without a camera.
 pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
     let Some(eye) = moment.eye else { return Plan::default() };
     let placed = synth.pose.at(synth.time(moment));
-    let (program, color, read) = match synth.surface.plan(moment, &placed) {
-        Look::Color(color) => (&PLAIN, color, Vec::new()),
-        Look::Picture(picture) => (&PICTURED, [0.0; 4], vec![picture]),
-        Look::Own(program, binds) => (program, [0.0; 4], binds),
+    let own = |program, facts, binds| Own { program, facts, constants: Vec::new(), binds };
+    let (color, look) = match synth.surface.plan(moment, &placed) {
+        Look::Color(color) => (color, own(&PLAIN, &PLAIN_FACTS, Vec::new())),
+        Look::Picture(picture) => ([0.0; 4], own(&PICTURED, &PICTURED_FACTS, vec![picture])),
+        Look::Own(own) => ([0.0; 4], own),
     };
     let uniform = uniform(synth, moment, (&eye, &placed), color);
     let posed = || {
@@ -66,12 +73,12 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         Draw { vertices, depth: true, ..Draw::frame(program, binds) }
     };
     let Some(ready) = synth.strokes.as_deref() else {
-        return Plan::of([draw(program, read)]);
+        return Plan::of([Draw { constants: look.constants, ..draw(look.program, look.binds) }]);
     };
-    // Strokes hide all of its color: only its depths count. They are not drawn on surfaces with programs of their own.
+    // Strokes hide all of its color: only its depths count.
     let surface = draw(&PLAIN, Vec::new());
-    let program = if read.is_empty() { &PLAIN_FACTS } else { &PICTURED_FACTS };
-    let facts = Draw { into: Some(strokes::plan::shown()), ..draw(program, read) };
+    let into = Some(strokes::plan::shown());
+    let facts = Draw { into, constants: look.constants, ..draw(look.facts, look.binds) };
     let mut plan = on_it(synth, moment, (eye, &placed), (ready, &posed));
     plan.steps.splice(..0, [surface, facts].map(Step::Draw));
     plan
@@ -112,7 +119,7 @@ fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color
         eye_from_model: eye_from_model(eye, placed),
         world_from_normal: matrix(placed.turn, DVec3::ZERO),
         along: placed.along.as_vec3().to_array(),
-        from: placed.from as f32,
+        start: placed.from as f32,
         light: synth.light.toward().as_vec3().to_array(),
         ambient: synth.light.ambient as f32,
         color,

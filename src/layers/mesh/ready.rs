@@ -35,9 +35,7 @@ impl Ready for Synth {
     }
 
     fn by_cpu(&self) -> Option<&'static str> {
-        // Those with programs of their own do not tell what strokes are drawn from.
-        let covered = self.has_strokes() && self.surface.takes_long();
-        self.surface.by_cpu().or(covered.then_some("there are strokes over a view map"))
+        self.surface.by_cpu()
     }
 
     fn takes_long(&self) -> bool {

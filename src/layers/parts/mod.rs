@@ -15,3 +15,4 @@ pub mod plan;
 pub mod readout;
 pub mod repeat;
 pub mod shots;
+pub mod twin;

@@ -61,6 +61,7 @@ pub static KIND: Kind = Kind {
     space: Space::World,
     programs: &[&plan::PROGRAM],
     routines: &[],
+    twins: &[plan::TWINS],
     bundle: None,
     counted: &[],
     overlays: marks::OVERLAYS,

@@ -8,6 +8,7 @@ use super::synth::Synth;
 use super::upload::Atlas;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::{Bind, Blend, COMMON, Draw, Plan, Program};
+use crate::layers::parts::twin::{Twin, twin};
 use crate::layers::space::eye::NEAR_M;
 
 /// The sprites of a waterfall.
@@ -45,6 +46,12 @@ struct Sprite {
     residue: [f32; 4],
     depth: [f32; 4],
 }
+
+/// What shaders read.
+pub const TWINS: &[Twin] = &[
+    twin!(Frame: size, place, soft, near),
+    twin!(Sprite: middle, size, turn, side, mirrored, tint, opacity, slopes, keys, residue, depth),
+];
 
 /// The layer at one time; nothing without a camera, or without anything that is seen.
 pub fn plan(synth: &Synth, moment: &Moment) -> Plan {

@@ -14,6 +14,7 @@ use super::noise::Scene;
 use super::pieces::{Piece, Pieces};
 use super::synth::{Codes, SMOOTH};
 use crate::layers::parts::plan::{Bind, Compute, Format, Groups, Packed, Routine, Rows, Scratch, Upload};
+use crate::layers::parts::twin::{Twin, twin};
 use crate::layers::space::upload::{VERTICES, lines, matrix, packed};
 
 /// Threads of a group, which are the pieces of a block.
@@ -56,6 +57,11 @@ struct Recipe {
     down: u32,
     padding: u32,
 }
+
+/// What shaders read.
+pub const TWINS: &[Twin] =
+    &[twin!(Recipe: turn, light, overlap, axis, spread, size, middle, angle, drawn, unsure, turned, low,
+    high, half, focal, radius, spacing, reach, px_per_m, key, count, down)];
 
 /// Where a plan has what impulses are made of and what becomes of them: the numbers of its scratch.
 pub struct Places {

@@ -9,6 +9,7 @@ use super::marks::{Ink, Outline, Pigment, Relief, Set};
 use super::model::{Force, Ground, Side, ToneOf};
 use super::noise::Scene;
 use crate::base::maths::{cos, sin};
+use crate::layers::parts::twin::{Twin, twin};
 use crate::layers::space::eye::NEAR_M;
 
 /// `Sheet` in sheet.wgsl.
@@ -96,6 +97,16 @@ pub struct Mark {
     toward: [f32; 2],
     padding: [f32; 2],
 }
+
+/// What shaders read.
+pub const TWINS: &[Twin] = &[
+    twin!(Sheet: size, middle, focal, near),
+    twin!(Noise: reach, variance, radius, spacing, px_per_m, deviation, wide),
+    twin!(Rim: step, crease, reach),
+    twin!(Style: paper, fade, toward, ambient, dark, light, gamma, ground, count, by_light),
+    twin!(Mark: color, scene, kind, noise, grain, rims, start, full, amount, soft, opacity, rim, grained, side, strength,
+        even, half_width, vary, toward),
+];
 
 impl Sheet {
     /// That of a frame.

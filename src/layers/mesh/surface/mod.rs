@@ -28,6 +28,7 @@ use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::{Bind, Program};
 use crate::layers::parts::readout::Entry;
 use crate::layers::parts::shots::{Laid, Laying, Lying, Painted};
+use crate::layers::parts::twin::Twin;
 use crate::layers::ready::Making;
 use crate::layers::space::raster::Hit;
 
@@ -36,7 +37,10 @@ pub const PASSES: [Pass; 3] = [view_map::passes::INDEPENDENT, view_map::passes::
 /// What is looked at in place of one of them.
 pub const COLORS: Pass = view_map::passes::COLORS;
 /// The programs that kinds of surface add.
-pub static PROGRAMS: [&Program; 2] = [&view_map::plan::EXACT, &view_map::plan::ARRAYS];
+pub static PROGRAMS: [&Program; 1] = [&view_map::plan::SAMPLED];
+
+/// What shaders of kinds of surface read.
+pub const TWINS: &[Twin] = view_map::plan::TWINS;
 
 /// The overlay that kinds of surface add, and its looks.
 pub const OVERLAY: Overlay = view_map::marks::OVERLAY;
@@ -227,8 +231,21 @@ pub enum Look {
     Color(Rgba),
     /// A picture under light, by the texture coordinates.
     Picture(Bind),
-    /// What a program of its own makes of these, which follow what all programs for meshes read.
-    Own(&'static Program, Vec<Bind>),
+    /// Something else.
+    Own(Own),
+}
+
+/// Programs that draw a surface.
+#[derive(Debug)]
+pub struct Own {
+    /// What draws it.
+    pub program: &'static Program,
+    /// The same with what strokes are drawn from, `Facts` in frame.wgsl.
+    pub facts: &'static Program,
+    /// Values of their `override` constants.
+    pub constants: Vec<(&'static str, f64)>,
+    /// What they read after what all programs for meshes read.
+    pub binds: Vec<Bind>,
 }
 
 /// A surface at one time.

@@ -7,17 +7,21 @@ use super::arrays::Arrays;
 use super::map::Map;
 use super::upload::{CHARTS, ELEMENTS, ENTRIES, SQUARES, STARTS, TURNS};
 use super::view::{Extremes, View};
-use crate::layers::mesh::surface::Look;
+use crate::layers::mesh::surface::{Look, Own};
 use crate::layers::parts::plan::{Bind, COMMON, Program};
+use crate::layers::parts::twin::{Twin, twin};
 
 const SOURCE: &[&str] =
     &[COMMON, include_str!("../../posed.wgsl"), include_str!("../../frame.wgsl"), include_str!("sample.wgsl")];
 
-/// Views mixed in each pixel.
-pub static EXACT: Program = Program { name: "view_map/sample.wgsl", source: SOURCE, vertex: "spot", fragment: "exact" };
-/// Arrays of directions read.
-pub static ARRAYS: Program =
-    Program { name: "view_map/sample.wgsl", source: SOURCE, vertex: "spot", fragment: "arrays" };
+/// The map on the mesh.
+pub static SAMPLED: Program = sampled("sampled");
+/// The same with what strokes are drawn from.
+static FACTS: Program = sampled("sampled_facts");
+
+const fn sampled(fragment: &'static str) -> Program {
+    Program { name: "view_map/sample.wgsl", source: SOURCE, vertex: "spot", fragment }
+}
 
 /// The most layers.
 const MOST_LAYERS: usize = 9;
@@ -36,6 +40,9 @@ struct Uniform {
     side: u32,
     unused: [u32; 3],
 }
+
+/// What shaders read.
+pub const TWINS: &[Twin] = &[twin!(Uniform as "Map": layers, missing, base, scale, first, levels, charts, side)];
 
 /// A map of which so much of the base coat alone is seen, by a camera of this focal length, in pixels of the finished frame.
 pub fn look((map, arrays): (&Arc<Map>, Option<&Arc<Arrays>>), base: f64, focal_px: f64) -> Look {
@@ -56,20 +63,19 @@ pub fn look((map, arrays): (&Arc<Map>, Option<&Arc<Arrays>>), base: f64, focal_p
         side: arrays.map_or(0, |arrays| arrays.side() as u32),
         unused: [0; 3],
     };
-    let mut binds = vec![
-        Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec()),
-        Bind::Upload(map.atlas.clone(), 0),
-        Bind::Upload(map.cells.clone(), CHARTS),
-        Bind::Upload(map.cells.clone(), SQUARES),
-        Bind::Upload(map.coats.clone(), 0),
-    ];
-    if let Some(arrays) = arrays {
-        binds.extend([TURNS, ELEMENTS].map(|part| Bind::Upload(arrays.clone(), part)));
-        return Look::Own(&ARRAYS, binds);
-    }
-    binds.extend([STARTS, ENTRIES].map(|part| Bind::Upload(map.lists.clone(), part)));
+    let (cells, corners) = (|part| Bind::Upload(map.cells.clone(), part), || Bind::Upload(map.atlas.clone(), 0));
+    let uniform = Bind::Bytes(bytemuck::bytes_of(&uniform).to_vec());
+    let mut binds = vec![uniform, corners(), cells(CHARTS), cells(SQUARES), Bind::Upload(map.coats.clone(), 0)];
+    // Something has to stand where nothing is read.
+    let (lists, of_arrays) = match arrays {
+        None => ([STARTS, ENTRIES].map(|part| Bind::Upload(map.lists.clone(), part)), [corners(), corners()]),
+        Some(arrays) => ([CHARTS, CHARTS].map(cells), [TURNS, ELEMENTS].map(|part| Bind::Upload(arrays.clone(), part))),
+    };
+    binds.extend(lists);
     binds.push(Bind::List(bytemuck::cast_slice(&views(&map.wanted.views)).to_vec()));
-    Look::Own(&EXACT, binds)
+    binds.extend(of_arrays);
+    let constants = vec![("from_arrays", f64::from(u8::from(arrays.is_some())))];
+    Look::Own(Own { program: &SAMPLED, facts: &FACTS, constants, binds })
 }
 
 /// Of each view two, then the extreme places of all; never empty.

@@ -23,19 +23,23 @@ struct Map {
 @group(0) @binding(5) var charts: texture_2d<u32>;
 @group(0) @binding(6) var squares: texture_2d<u32>;
 @group(0) @binding(7) var coats: texture_2d<f32>;
-
+// What views tell.
 @group(0) @binding(8) var starts: texture_2d<u32>;
 @group(0) @binding(9) var entries: texture_2d<u32>;
 // Of each view two; then the extreme places of all.
 @group(0) @binding(10) var<storage, read> views: array<vec4f>;
 
-@group(0) @binding(8) var turns: texture_2d<f32>;
-@group(0) @binding(9) var elements: texture_2d<f32>;
+// Arrays of directions.
+@group(0) @binding(11) var turns: texture_2d<f32>;
+@group(0) @binding(12) var elements: texture_2d<f32>;
+
+// Whether those are read, in place of what views tell.
+override from_arrays: bool;
 
 const NONE: u32 = 0xffffffffu;
 
 struct Spot {
-    @builtin(position) position: vec4f,
+    @builtin(position) @invariant position: vec4f,
     @location(0) seen: vec3f,
     @location(1) point: vec3f,
     // Where it is in its chart.
@@ -43,6 +47,10 @@ struct Spot {
     @location(3) @interpolate(flat) chart: u32,
     // The cells of layer 0 that a pixel covers at depth 1.
     @location(4) @interpolate(flat) cells: f32,
+    // As those of a `Facet`.
+    @location(5) normal: vec3f,
+    @location(6) @interpolate(flat) triangle: u32,
+    @location(7) @interpolate(flat) slope: vec2f,
 }
 
 @vertex
@@ -52,17 +60,20 @@ fn spot(@builtin(vertex_index) i: u32) -> Spot {
     let triangle = textureLoad(triangles, place(number), 0);
     let ab = textureLoad(corners, place(2u * number), 0);
     let c = textureLoad(corners, place(2u * number + 1u), 0);
-    let seen = vertex(triangle[own]).seen;
+    let corner = vertex(triangle[own]);
     // Each corner must say the same.
     let a = vertex(triangle.x).seen;
     let volume = abs(dot(a, cross(vertex(triangle.y).seen - a, vertex(triangle.z).seen - a)));
     var out: Spot;
-    out.position = projected(seen);
-    out.seen = seen;
+    out.position = projected(corner.seen);
+    out.seen = corner.seen;
     out.point = textureLoad(vertices, place(2u * triangle[own]), 0).xyz;
     out.at = select(select(ab.xy, ab.zw, own == 1u), c.xy, own == 2u);
     out.chart = u32(c.w);
     out.cells = map.scale * c.z / volume;
+    out.normal = corner.normal;
+    out.triangle = number;
+    out.slope = slope(triangle);
     return out;
 }
 
@@ -323,9 +334,7 @@ fn kept(layer: u32, cell: u32, way: vec3f) -> vec4f {
     return mix(top, bottom, part.y);
 }
 
-@fragment
-fn exact(in: Spot, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    shown(front);
+fn light_of(in: Spot) -> vec4f {
     var found = cells_at(in);
     let way = way_from(in);
     var sum = select(map.missing, vec3f(0.0), found.all > 0.0);
@@ -333,23 +342,26 @@ fn exact(in: Spot, @builtin(front_facing) front: bool) -> @location(0) vec4f {
         if found.weights[k] > 0.0 {
             let layer = found.layer + k / 4u;
             let cell = found.cells[k];
-            sum += found.weights[k] / found.all * over(layer, cell, mixed(layer, cell, in.point, way));
+            var dependent = vec4f(0.0);
+            if from_arrays {
+                dependent = kept(layer, cell, way);
+            } else {
+                dependent = mixed(layer, cell, in.point, way);
+            }
+            sum += found.weights[k] / found.all * over(layer, cell, dependent);
         }
     }
     return vec4f(sum, 1.0);
 }
 
 @fragment
-fn arrays(in: Spot, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+fn sampled(in: Spot, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     shown(front);
-    var found = cells_at(in);
-    let way = way_from(in);
-    var sum = select(map.missing, vec3f(0.0), found.all > 0.0);
-    for (var k = 0u; k < 8u; k++) {
-        if found.weights[k] > 0.0 {
-            let layer = found.layer + k / 4u;
-            sum += found.weights[k] / found.all * over(layer, found.cells[k], kept(layer, found.cells[k], way));
-        }
-    }
-    return vec4f(sum, 1.0);
+    return light_of(in);
+}
+
+@fragment
+fn sampled_facts(in: Spot, @builtin(front_facing) front: bool) -> Facts {
+    shown(front);
+    return facts(Facet(in.position, in.normal, vec2f(0.0), in.triangle, in.slope), front, light_of(in));
 }
