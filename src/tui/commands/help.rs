@@ -8,8 +8,8 @@ use super::fields;
 use crate::base::pointer::Pointer;
 use crate::scene::field::{self, Child, Field, Kind};
 use crate::scene::{Document, address};
-use crate::tui::document::sheet::{Cell, Part};
-use crate::tui::document::{derived, sheet};
+use crate::tui::document::cell::{Cell, Part};
+use crate::tui::document::{cell, derived};
 use crate::tui::keys::OWN_FILE;
 use crate::tui::state::{Mode, Pages, Pane, State};
 use crate::tui::text::wrap::wrapped;
@@ -146,13 +146,13 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
     };
     say("value", value(state, at, field, cell));
     // The range names the unit too.
-    match (sheet::told_range(field), field.unit) {
+    match (cell::told_range(field), field.unit) {
         (Some(range), _) => say("range", range),
         (None, Some(unit)) => say("unit", unit.to_owned()),
         (None, None) => {}
     }
     if let Some(default) = &field.default {
-        say("default", sheet::summary(field, default));
+        say("default", cell::summary(field, default));
     }
     let place = match cell.map(|cell| cell.part) {
         Some(Part::Number(i)) => Pointer(at).join(i),
@@ -161,7 +161,7 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
     let path = plain(&address::address(document, &place));
     let is_object = matches!(field.kind, Kind::Object | Kind::Tagged { .. });
     let inside = if is_object { field::children(document, at) } else { Vec::new() };
-    let inside: Vec<_> = inside.into_iter().filter(|child| !sheet::is_node(&child.field.kind)).collect();
+    let inside: Vec<_> = inside.into_iter().filter(|child| !cell::is_node(&child.field.kind)).collect();
     if !path.is_empty() {
         let one = inside.first().map(|child| format!(".{}", plain(&child.name))).unwrap_or_default();
         say("path", format!("{path}   (:set {path}{one}=VALUE)"));
@@ -180,7 +180,7 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
 /// A field of an object in a line: name, value, unit, and what it is.
 fn line(document: &Document, child: &Child) -> String {
     let value = derived::value(document, &child.pointer).unwrap_or_default();
-    let value = sheet::summary(&child.field, &value);
+    let value = cell::summary(&child.field, &value);
     let unit = child.field.unit.filter(|unit| *unit != "1").map(|unit| format!(" {unit}")).unwrap_or_default();
     let name = plain(&child.name);
     let what = if value.is_empty() { name } else { format!("{name} = {value}{unit}") };
@@ -191,7 +191,7 @@ fn value(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> String 
     let number = cell.filter(|cell| cell.is_number()).and_then(|cell| Some((cell, cell.number(state.document())?)));
     let Some((cell, number)) = number else {
         let value = derived::value(state.document(), at).unwrap_or_default();
-        return sheet::summary(field, &value);
+        return cell::summary(field, &value);
     };
     let unit = if cell.part == Part::Degrees { Some("degrees, counter-clockwise") } else { field.unit };
     format!("{}{}", numbers::exact(number), unit.map(|unit| format!(" {unit}")).unwrap_or_default())

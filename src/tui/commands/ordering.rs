@@ -11,9 +11,9 @@ use super::yanking::counted;
 use crate::base::pointer::Pointer;
 use crate::layers::parts::materials::List;
 use crate::scene::{Edit, field, json};
+use crate::tui::document::cell::Cell;
 use crate::tui::document::pointers::item_of;
 use crate::tui::document::rows::same;
-use crate::tui::document::sheet::Cell;
 use crate::tui::state::{Pane, State, entry};
 use crate::tui::text::said::unquoted;
 

@@ -1,6 +1,6 @@
 //! A list to choose from: the words of a choice, the kinds of a tagged object, the scene's images.
 
-use super::sheet::Cell;
+use super::cell::Cell;
 use crate::base::pointer::Pointer;
 use crate::scene::Document;
 use crate::scene::field::{self, Kind};

@@ -1,6 +1,6 @@
 //! A value being typed into a cell.
 
-use super::sheet::Cell;
+use super::cell::Cell;
 use crate::scene::{Document, field};
 use crate::tui::text::input::Text;
 use crate::tui::text::numbers;

@@ -1,5 +1,6 @@
 //! Views of a document: its nodes as rows and as a tree, its places, tables as text, and the open scene with its file.
 
+pub mod cell;
 pub mod choice;
 pub mod csv;
 pub mod derived;

@@ -8,8 +8,9 @@ use csv::Writer;
 use kurbo::Vec2;
 use serde_json::{Value, json};
 
+use super::cell::{Cell, Part, in_range};
 use super::csv::{Record, number, records, values};
-use super::sheet::{Cell, Part, Row, Sheet, in_range};
+use super::sheet::{Row, Sheet};
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use kurbo::Point;
 use serde_json::Value;
 
-use super::sheet;
+use super::cell;
 use crate::scene::Document;
 use crate::scene::field::{self, Child, Kind};
 use crate::scene::schema::{Body, Place, Shape};
@@ -39,7 +39,7 @@ pub fn rows(document: &Document, collapsed: &BTreeSet<String>) -> Vec<TreeRow> {
 
 fn below(place: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<String>, rows: &mut Vec<TreeRow>) {
     for (child, place) in field::below(place, pointer) {
-        let value = place.value.filter(|value| sheet::is_node(&child.field.kind) && !value.is_null());
+        let value = place.value.filter(|value| cell::is_node(&child.field.kind) && !value.is_null());
         let Some(value) = value else { continue };
         if named(value) {
             below_list(place, &child.pointer, depth, collapsed, rows);
@@ -65,7 +65,7 @@ fn below_list(list: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<Str
 fn leaf(child: Child, value: &Value, depth: usize) -> TreeRow {
     let note = match child.field.kind {
         Kind::Object => String::new(),
-        _ => sheet::summary(&child.field, value),
+        _ => cell::summary(&child.field, value),
     };
     TreeRow { pointer: child.pointer, label: plain(&child.name), note, depth, collapsed: None }
 }

@@ -2,7 +2,8 @@
 //! out as a whole, because half a number reads as another number; the first column of a table always stays.
 
 use crate::scene::field::Kind;
-use crate::tui::document::sheet::{Cell, Row};
+use crate::tui::document::cell::Cell;
+use crate::tui::document::sheet::Row;
 use crate::tui::text::numbers;
 use crate::tui::text::wrap::{clipped, width};
 

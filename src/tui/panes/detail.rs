@@ -7,9 +7,9 @@ use ratatui::style::{Modifier, Style};
 
 use super::write;
 use crate::scene::field::Kind;
+use crate::tui::document::cell;
+use crate::tui::document::cell::{Cell, Part};
 use crate::tui::document::derived;
-use crate::tui::document::sheet;
-use crate::tui::document::sheet::{Cell, Part};
 use crate::tui::state::{State, entry};
 use crate::tui::text::wrap::wrapped;
 use crate::tui::text::{color, numbers};
@@ -22,8 +22,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let value = number.map_or(cell.text.clone(), numbers::exact);
     let name = if cell.head.is_empty() || cell.head == row.label { String::new() } else { format!(" {}", cell.head) };
     let polar = matches!(cell.part, Part::Length | Part::Degrees);
-    let range =
-        sheet::told_range(&cell.field).filter(|_| !polar).map(|range| format!("   {range}")).unwrap_or_default();
+    let range = cell::told_range(&cell.field).filter(|_| !polar).map(|range| format!("   {range}")).unwrap_or_default();
     let unit = if cell.part == Part::Degrees { Some("degrees counter-clockwise") } else { cell.field.unit };
     let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
     let set = match derived::automatic(state.document(), &cell.pointer) {

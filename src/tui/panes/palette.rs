@@ -7,8 +7,8 @@ use ratatui::style::{Modifier, Style};
 
 use super::{typed, write};
 use crate::scene::field;
+use crate::tui::document::cell;
 use crate::tui::document::palette::{Palette, Row};
-use crate::tui::document::sheet;
 use crate::tui::layout::first_row;
 use crate::tui::state::State;
 use crate::tui::text::color;
@@ -62,6 +62,6 @@ fn draw_row(state: &State, palette: &Palette, row: &Row, here: bool, area: Rect,
 /// The value of a field or a node, in short.
 fn value(state: &State, pointer: &str) -> String {
     let place = field::field(state.document(), pointer).zip(field::value(state.document(), pointer));
-    let text = place.map(|(field, value)| sheet::summary(&field, &value)).unwrap_or_default();
+    let text = place.map(|(field, value)| cell::summary(&field, &value)).unwrap_or_default();
     clipped(&text, 24)
 }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::tui::document::sheet::{Cell, Row, Sheet};
+use crate::tui::document::cell::Cell;
+use crate::tui::document::sheet::{Row, Sheet};
 
 /// A pane that can have the focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

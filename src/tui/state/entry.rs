@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::expression;
 use crate::base::pointer::{Pointer, index};
+use crate::tui::document::cell::in_range;
 use crate::tui::document::csv;
 use crate::tui::document::entry::Entry;
-use crate::tui::document::sheet::in_range;
 use kurbo::Point;
 use serde_json::Value;
 
@@ -15,7 +15,8 @@ use super::{Mode, State, place};
 use crate::base::expression::{Mistake, Variables};
 use crate::scene::field::{Field, Kind};
 use crate::scene::{Document, Edit};
-use crate::tui::document::sheet::{Cell, Part, Row, Sheet};
+use crate::tui::document::cell::{Cell, Part};
+use crate::tui::document::sheet::{Row, Sheet};
 use crate::tui::text::input::Text;
 use crate::tui::text::numbers;
 
