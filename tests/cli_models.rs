@@ -151,6 +151,30 @@ fn a_model_that_is_opened_gets_its_scene() {
 }
 
 #[test]
+fn what_is_drawn_on_a_model_is_compared_side_by_side() {
+    let folder = folder();
+    let folder = folder.path();
+    plica(folder, &["new", "from/square.gltf", "-o", "s.plica.json"], true);
+    plica(folder, &["set", "s.plica.json", "size=[40, 30]"], true);
+    let compared = |by: &str| ["render", "s.plica.json", "--compare", by, "--frames", "0", "-o", "beside.png"];
+    let (_, why) = plica(folder, &compared("anchor"), false);
+    assert!(why.contains("no layer has strokes"), "{why}");
+    plica(folder, &["style", "apply", "stipple", "s.plica.json"], true);
+    for (by, ways) in [("anchor", vec!["surface", "screen", "texture"]), ("style", vec!["hatching", "stipple"])] {
+        plica(folder, &compared(by), true);
+        let all = image::open(folder.join("beside.png")).unwrap().to_rgba8();
+        assert_eq!(all.dimensions(), (40 * if by == "anchor" { 3 } else { 9 }, 30), "{by}");
+        for (i, way) in ways.into_iter().enumerate() {
+            plica(folder, &["set", "s.plica.json", &format!("layers.0.strokes.{by}={way}")], true);
+            let own = image::imageops::crop_imm(&all, 40 * i as u32, 0, 40, 30).to_image();
+            assert!(own == rendered(folder, "s.plica.json"), "{by} {way}");
+        }
+    }
+    let (_, why) = plica(folder, &["render", "s.plica.json", "--compare", "anchor", "-o", "a.exr"], false);
+    assert!(why.contains(".png, not .exr"), "{why}");
+}
+
+#[test]
 fn what_of_a_model_cannot_be_read_is_told() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);

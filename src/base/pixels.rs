@@ -61,6 +61,13 @@ impl<T: Clone> Grid<T> {
     }
 }
 
+/// Grids of as many rows side by side, from left to right.
+pub fn side_by_side<T: Clone>(grids: &[Grid<T>]) -> Grid<T> {
+    let height = grids.first().map_or(0, Grid::height);
+    let rows = (0..height).flat_map(|y| grids.iter().flat_map(move |grid| grid.row(y)));
+    Grid::from_cells(grids.iter().map(Grid::width).sum(), height, rows.cloned().collect())
+}
+
 /// One color: linear light, premultiplied by its alpha.
 pub type Rgba = [f32; 4];
 

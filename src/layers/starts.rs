@@ -68,6 +68,15 @@ pub struct Style {
     pub table: &'static str,
 }
 
+/// Ways of the same layer to be looked at side by side.
+#[derive(Debug)]
+pub struct Comparison {
+    /// What differs: "anchor".
+    pub by: &'static str,
+    /// The layer in each way, with its name, from left to right; none if it has no such ways.
+    pub ways: fn(layer: &Value) -> Vec<(&'static str, Value)>,
+}
+
 /// How new things in a document begin, and which lists ascend.
 #[derive(Debug)]
 pub struct Starts {

@@ -24,7 +24,7 @@ use super::parts::shots::{Laid, Laying, Lying};
 use super::parts::twin::Twin;
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::space::eye::Ray;
-use super::starts::{Preset, Starts, Styles, Template};
+use super::starts::{Comparison, Preset, Starts, Styles, Template};
 use super::timeline::{Timeline, Wrap};
 use crate::base::error::Error;
 use crate::base::problem::Problem;
@@ -299,6 +299,8 @@ pub struct Kind {
     pub presets: &'static [Preset],
     /// The styles that its layers can be drawn in, if they can.
     pub styles: Option<&'static Styles>,
+    /// By what its layers can be compared with themselves.
+    pub comparisons: &'static [Comparison],
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,
 }

@@ -1,6 +1,7 @@
 //! A scene opened for a command: its document and every file it refers to. Used by every command that looks at pixels.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::{Context, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
@@ -8,7 +9,7 @@ use crate::base::problem::Problem;
 use crate::files::{self, materials};
 use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth, bands::Bands};
-use crate::scene::{Document, address};
+use crate::scene::{Document, Scene, address};
 
 /// A scene and the files it refers to.
 pub struct Opened {
@@ -19,7 +20,7 @@ pub struct Opened {
     /// Its pictures and fields.
     pub materials: Materials,
     /// What was loaded counts against the limit on memory for as long as it is kept.
-    _loaded: materials::Cache,
+    _loaded: Arc<materials::Cache>,
 }
 
 /// A scene whose pictures are not loaded yet: a wrong command is reported before that.
@@ -57,7 +58,7 @@ impl Unloaded {
         for warning in warnings {
             context.messages.say(&format!("{}: {}", path.display(), address::of_problem(&document, &warning)));
         }
-        Ok(Opened { path, document, materials, _loaded: cache })
+        Ok(Opened { path, document, materials, _loaded: Arc::new(cache) })
     }
 }
 
@@ -68,6 +69,26 @@ impl Opened {
     /// As [`Unloaded::read`] and [`Unloaded::load`].
     pub fn new(path: &Path, options: &SceneOptions, context: &mut Context) -> Result<Self> {
         Unloaded::read(path, options, context)?.load(context)
+    }
+
+    /// The scene in each of its ways, as [`Scene::compared`] has them.
+    ///
+    /// # Errors
+    /// It has none.
+    pub fn compared(self, by: &str) -> Result<Vec<Opened>> {
+        let ways = self.document.scene().compared(by).map_err(|why| Error::at(self.path.display(), why))?;
+        let opened = |(_, scene): (&str, Scene)| {
+            let json = serde_json::to_value(scene).map_err(|error| Error::at(self.path.display(), error))?;
+            let document =
+                Document::from_json(json).map_err(|problems| refused(&self.path, &self.document, &problems))?;
+            Ok(Opened {
+                path: self.path.clone(),
+                document,
+                materials: self.materials.clone(),
+                _loaded: self._loaded.clone(),
+            })
+        };
+        ways.into_iter().map(opened).collect()
     }
 
     /// Prepares the scene for rendering frames at any time.

@@ -7,9 +7,12 @@ use std::ops::RangeInclusive;
 
 use super::keys::{KEYS, VIEW};
 use crate::layers::parts::pass::COLOR;
+use crate::render::shown::Shown;
 
 /// Switches that are on in a new window.
 const ON_AT_FIRST: [&str; 2] = ["view-checkerboard", "view-legends"];
+/// What stands for a comparison by nothing.
+const NOTHING: &str = "none";
 /// Commands that fit the picture anew and so undo earlier zooming.
 const FITS: [&str; 3] = ["zoom-fit", "zoom-whole", "zoom-one"];
 const ZOOM: Steps = Steps { down: "zoom-out", up: "zoom-in", most: -64..=64 };
@@ -74,8 +77,8 @@ pub(super) struct Views {
     switches: Switches,
     /// The pass that is shown in place of the frame, as `NAME` or `NAME:LAYER`.
     pass: Option<String>,
-    /// What of the scene is not shown: JSON pointers.
-    muted: Vec<String>,
+    /// How the scene is shown.
+    shown: Shown,
     /// How the picture was fitted last, if it was.
     fit: Option<&'static str>,
     /// Steps taken since then, or since the beginning, by the command that counts them up.
@@ -92,9 +95,7 @@ impl Views {
         if let Some(pass) = pass_in(command) {
             self.pass = pass;
         }
-        if let Some(muted) = muted_in(command) {
-            self.muted = muted;
-        }
+        shows_otherwise(&mut self.shown, command);
         if let Some(fit) = FITS.into_iter().find(|fit| *fit == command) {
             self.fit = Some(fit);
             self.steps.remove(ZOOM.up);
@@ -133,8 +134,11 @@ impl Views {
         let rows = KEYS.iter().filter_map(|row| switch(row.command));
         let differs = |name: &&str| self.switches.is_on(name) != before.switches.is_on(name);
         let pass = (self.pass != before.pass).then(|| show_pass(self.pass.as_deref()));
-        let muted = (self.muted != before.muted).then(|| show_muted(&self.muted));
-        rows.filter(differs).map(|name| set(name, self.switches.is_on(name))).chain(pass).chain(muted).collect()
+        let Shown { muted, compared } = &self.shown;
+        let compared = (*compared != before.shown.compared).then(|| show_compared(compared.as_deref()));
+        let muted = (*muted != before.shown.muted).then(|| show_muted(muted));
+        let switches = rows.filter(differs).map(|name| set(name, self.switches.is_on(name)));
+        switches.chain(pass).chain(muted).chain(compared).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -147,7 +151,7 @@ impl Views {
             return self.list();
         }
         let changes = wanted.changes(self);
-        (self.switches, self.pass, self.muted) = (wanted.switches, wanted.pass, wanted.muted);
+        (self.switches, self.pass, self.shown) = (wanted.switches, wanted.pass, wanted.shown);
         changes
     }
 }
@@ -187,9 +191,21 @@ pub fn show_muted(pointers: &[String]) -> String {
     format!("mute {}", serde_json::Value::from(pointers))
 }
 
-/// What a command leaves out; if it is such a command.
-pub fn muted_in(command: &str) -> Option<Vec<String>> {
-    serde_json::from_str(command.strip_prefix("mute ")?).ok()
+/// The command that shows the scene in all its ways by something; as one again for `None`.
+pub fn show_compared(by: Option<&str>) -> String {
+    format!("compare {}", by.unwrap_or(NOTHING))
+}
+
+/// Takes a command that changes how a scene is shown; whether it is one.
+pub fn shows_otherwise(shown: &mut Shown, command: &str) -> bool {
+    match command.split_once(' ') {
+        Some(("mute", pointers)) => serde_json::from_str(pointers).map(|muted| shown.muted = muted).is_ok(),
+        Some(("compare", by)) => {
+            shown.compared = (by != NOTHING).then(|| by.to_owned());
+            true
+        }
+        _ => false,
+    }
 }
 
 /// Whether a command sets what all windows show alike, a switch or the pass, and does nothing else: any window may ask for
@@ -217,11 +233,13 @@ mod tests {
 
     #[test]
     fn only_what_is_in_force_is_listed() {
-        let table: [(&[&str], &[&str]); 13] = [
+        let table: [(&[&str], &[&str]); 15] = [
             (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),
             (&["pass depth", "pass color"], &[]),
             (&["mute [\"/layers/0\"]", "view-grid"], &["view-grid on", "mute [\"/layers/0\"]"]),
             (&["mute [\"/layers/0\"]", "mute []"], &[]),
+            (&["compare anchor", "compare style", "pass depth"], &["pass depth", "compare style"]),
+            (&["compare anchor", "compare none"], &[]),
             (&["view-field", "view-grid", "view-field"], &["view-grid on"]),
             (&["view-field on", "view-field on"], &["view-field on"]),
             (&["view-checkerboard", "view-legends off", "view-legends"], &["view-checkerboard off"]),

@@ -18,17 +18,18 @@ use crate::scene::Scene;
 pub use crate::scene::sight::frame_size;
 
 pub mod bands;
+mod beside;
 pub mod cpu;
 #[cfg(feature = "window")]
 pub mod gpu;
 pub mod overlay;
 pub mod part;
 pub mod passes;
-#[cfg(feature = "window")]
 pub mod reduce;
 #[cfg(test)]
 pub mod samples;
 pub mod seams;
+pub mod shown;
 pub mod stage;
 mod whole;
 
@@ -82,7 +83,6 @@ impl Synth {
     }
 
     /// The same, whose frames are given up once `stop` is set.
-    #[cfg(feature = "window")]
     pub fn stoppable(&self, stop: &Arc<AtomicBool>) -> Synth {
         let layer = |layer: &Arc<dyn Ready>| layer.stoppable(stop).unwrap_or_else(|| layer.clone());
         Synth { layers: self.layers.iter().map(layer).collect(), stop: Some(stop.clone()), ..self.clone() }

@@ -14,6 +14,7 @@ pub mod address;
 pub mod build;
 pub mod check;
 mod clip;
+pub mod compared;
 pub mod complete;
 mod document;
 pub mod edit;

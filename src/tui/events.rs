@@ -126,6 +126,8 @@ pub enum Effect {
     RunSeen(Vec<String>),
     /// What is muted has changed.
     Mute,
+    /// What is compared has changed.
+    Compare,
     /// Send a table through a program of the person's.
     Pipe(String, String),
     /// Look for the files that a path could become.

@@ -33,6 +33,7 @@ pub static KIND: Kind = Kind {
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: &[],
     styles: None,
+    comparisons: &[],
     example: include_str!("example.json"),
 };
 

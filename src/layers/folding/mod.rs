@@ -86,6 +86,7 @@ pub static KIND: Kind = Kind {
     },
     presets: &[],
     styles: None,
+    comparisons: &[],
     example: include_str!("example.json"),
 };
 

@@ -68,6 +68,7 @@ pub static KIND: Kind = Kind {
     starts: Starts { beyond: |_, list| (list == "marks").then(|| ("kind", "outline".into())), ..Starts::PLAIN },
     presets: &[],
     styles: Some(&strokes::restyle::STYLES),
+    comparisons: strokes::restyle::COMPARISONS,
     example: include_str!("example.json"),
 };
 

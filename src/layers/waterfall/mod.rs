@@ -71,6 +71,7 @@ pub static KIND: Kind = Kind {
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: presets::PRESETS,
     styles: None,
+    comparisons: &[],
     example: include_str!("example.json"),
 };
 

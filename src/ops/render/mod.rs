@@ -17,7 +17,7 @@ use super::{
 };
 use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
-use crate::base::pixels::{Frame, Linear, Rgba};
+use crate::base::pixels::{Frame, Linear, Rgba, side_by_side};
 use crate::base::problem::Problem;
 use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
@@ -27,7 +27,7 @@ use crate::layers::parts::materials::Materials;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
-use crate::scene::{Scene, address};
+use crate::scene::{Scene, address, compared};
 
 /// Render frames to numbered files, an animation or a stream
 #[derive(clap::Args)]
@@ -53,6 +53,9 @@ pub struct Args {
     /// Render what frames are made from, to .exr files (or .png, to look at); NAME:LAYER renders one layer only
     #[arg(long, value_name = "NAME")]
     pass: Option<String>,
+    /// Render what is drawn on meshes with each anchor, or in each style, side by side
+    #[arg(long, value_name = "BY", value_parser = compared::names(), conflicts_with = "pass")]
+    compare: Option<String>,
     /// N x N samples per pixel, at most 16 x 16: smooth edges of folds and meshes
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     samples: u32,
@@ -92,6 +95,9 @@ type Numbered = (u64, u64);
 /// Renders the frames.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let light = args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    if light && args.compare.is_some() {
+        return Err(Error::Usage("--compare is for frames as one sees them: .png, not .exr".into()));
+    }
     if args.pass.is_some() || light {
         return pass::run(&args, context);
     }
@@ -106,7 +112,12 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let written = Arc::new(AtomicU64::new(0));
     let (target, place) = target(&args, &read, &numbered, &written, context)?;
     let opened = read.load(context)?;
-    let size = frame_size(&args, &opened)?;
+    let ways = match &args.compare {
+        Some(by) => opened.compared(by)?,
+        None => vec![opened],
+    };
+    let each = frame_size(&args, &ways[0])?;
+    let size = (each.0 * ways.len(), each.1);
     let todo: Vec<Numbered> =
         numbered.into_iter().filter(|(_, number)| !(args.skip_existing && target.has(*number, size))).collect();
     let skipped = frames.len() - todo.len();
@@ -117,7 +128,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     if !todo.is_empty() {
         let is_sequence = target.is_sequence();
         let mut done = 0;
-        let outcome = write(&args, (target, show), &opened, &timeline, &todo, &mut done, context);
+        let outcome = write(&args, (target, show), (&ways, each), &timeline, &todo, &mut done, context);
         if matches!(outcome, Err(Error::Interrupted)) && is_sequence {
             let all = todo.len();
             context.messages.say(&format!("{done} of {all} frames are there; with --skip-existing the same goes on"));
@@ -133,19 +144,21 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 fn write(
     args: &Args,
     (target, show): (Target, Show),
-    opened: &Opened,
+    (ways, each): (&[Opened], (usize, usize)),
     timeline: &Timeline,
     todo: &[Numbered],
     done: &mut u64,
     context: &mut Context,
 ) -> Result<()> {
-    let mut renderer = Renderer::new(args, opened, (show.width, show.height), todo.len())?;
-    let by_cpu = renderer.by_cpu.take().map(|why| format!("--gpu: the CPU draws this: {why}"));
-    context.say_all(&by_cpu.into_iter().collect::<Vec<_>>());
-    let _encoding = opened.materials.budget.take(target.memory(&show), &show.place)?;
+    let renderer = |opened| Renderer::new(args, opened, each, todo.len());
+    let mut renderers = ways.iter().map(renderer).collect::<Result<Vec<_>>>()?;
+    let by_cpu = renderers.iter_mut().find_map(|one| one.by_cpu.take());
+    context.say_all(&by_cpu.map(|why| format!("--gpu: the CPU draws this: {why}")).into_iter().collect::<Vec<_>>());
+    let first = &renderers[0];
+    let Opened { document, materials, .. } = first.opened;
+    let _encoding = materials.budget.take(target.memory(&show), &show.place)?;
     if todo.len() > 1 {
-        let document = &opened.document;
-        for warning in seams::warnings(document.scene(), &opened.materials, || renderer.samples.first()) {
+        for warning in seams::warnings(document.scene(), materials, || first.samples.first()) {
             let warning = address::of_problem(document, &warning);
             context.messages.say(&format!("{}: {warning}", args.scene.display()));
         }
@@ -155,7 +168,11 @@ fn write(
     for &(frame, number) in todo {
         context.check_cancelled()?;
         context.messages.step("frame", *done, total);
-        let drawn = renderer.frame(timeline.time_of(frame), &mut *context.messages)?;
+        let (time, messages) = (timeline.time_of(frame), &mut *context.messages);
+        let drawn = match renderers.as_mut_slice() {
+            [one] => one.frame(time, messages)?,
+            ways => side_by_side(&ways.iter_mut().map(|way| way.frame(time, messages)).collect::<Result<Vec<_>>>()?),
+        };
         // What is drawn then may be incomplete.
         context.check_cancelled()?;
         sink.frame(number, drawn)?;
@@ -250,7 +267,8 @@ fn show(
 /// The command line without its output.
 fn command(args: &Args) -> String {
     let scene = quoted(&args.scene.display().to_string());
-    let options = [("frames", &args.frames), ("size", &args.size), ("matrix", &args.matrix)];
+    let options =
+        [("frames", &args.frames), ("size", &args.size), ("compare", &args.compare), ("matrix", &args.matrix)];
     let options = options.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value.as_ref()?)));
     let samples = (args.samples > 1).then(|| format!(" --samples {}", args.samples));
     let words = ["plica render ".to_owned(), scene].into_iter().chain(options).chain(samples);

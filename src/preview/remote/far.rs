@@ -17,6 +17,7 @@ use crate::preview::keys::{KEYS, PLAY, VIEW};
 use crate::preview::views;
 use crate::preview::wire::connection::{ALIVE, HangUp, Wire};
 use crate::preview::wire::message::{FromEditor, ToEditor};
+use crate::render::shown::Shown;
 
 /// Waits before connecting again, by the number of attempts that failed in a row, in seconds.
 const WAITS_SECS: [u64; 5] = [1, 2, 5, 10, 30];
@@ -208,7 +209,7 @@ impl Far {
 fn harmless(said: FromEditor) -> Option<FromEditor> {
     // A switch says what it is set to: `view-field on`.
     let is_view = |line: &String| {
-        if views::muted_in(line).is_some() {
+        if views::shows_otherwise(&mut Shown::default(), line) {
             return true;
         }
         let name = line.strip_suffix(" on").or(line.strip_suffix(" off")).unwrap_or(line);

@@ -18,9 +18,10 @@ use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::fit::Ball;
 use crate::preview::follow::Update;
-use crate::preview::views::muted_in;
+use crate::preview::views::shows_otherwise;
 use crate::preview::wire::message::FromEditor;
 use crate::render::gpu::{Uploaded, Uploader};
+use crate::render::shown::Shown;
 use crate::render::{self, Synth};
 use crate::scene::Scene;
 
@@ -134,8 +135,8 @@ impl Drop for Sending {
 struct Job {
     scene: Arc<Scene>,
     revision: u64,
-    /// What of it is not shown.
-    muted: Arc<[String]>,
+    /// How it is shown.
+    how: Shown,
 }
 
 /// The event loop is gone.
@@ -169,18 +170,17 @@ pub fn start(
 
 fn listen(updates: &Receiver<Update>, cancel: &AtomicBool, jobs: &Sender<Job>, send: &impl Fn(Event) -> bool) {
     let mut alive = true;
-    let (mut latest, mut muted) = (None, Arc::<[String]>::default());
+    let (mut latest, mut how) = (None, Shown::default());
     while alive {
         alive = match updates.recv_timeout(LOOK) {
             Ok(Update::Scene { scene, revision }) => {
-                let job = Job { scene, revision, muted: muted.clone() };
+                let job = Job { scene, revision, how: how.clone() };
                 latest = Some(job.clone());
                 jobs.send(job).is_ok()
             }
-            Ok(Update::Said(FromEditor::View(command))) if muted_in(&command).is_some() => {
-                muted = muted_in(&command).unwrap_or_default().into();
-                let job = latest.as_mut().map(|latest| {
-                    latest.muted = muted.clone();
+            Ok(Update::Said(FromEditor::View(command))) if shows_otherwise(&mut how, &command) => {
+                let job = latest.as_mut().map(|latest: &mut Job| {
+                    latest.how = how.clone();
                     latest.clone()
                 });
                 job.is_none_or(|job| jobs.send(job).is_ok())
@@ -204,20 +204,16 @@ fn synthesise(
     let send = |event| if tell(event) { Ok(()) } else { Err(Gone) };
     let mut previous: Option<Synth> = None;
     while let Ok(first) = work.recv() {
-        let Job { scene, revision, muted } = work.try_iter().last().unwrap_or(first);
+        let Job { scene, revision, how } = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
         send(Event::Work(Work { what: READING, percent: None }))?;
         let made = fault::caught(|| {
             let (mut materials, problems) = load(&scene, progress(READING, tell.clone()));
-            let scene = match muted.is_empty() {
-                true => scene.clone(),
-                false => Arc::new(scene.without(&muted, render::frame_size(&scene, &materials))),
-            };
             send(Event::Work(Work { what: SYNTHESISING, percent: None }))?;
             materials.progress = Some(Arc::new(progress(SYNTHESISING, tell.clone())));
-            Ok((render::synth(&scene, &materials, previous.as_ref()), problems, scene))
+            Ok((how.synth(&scene, &materials, previous.as_ref()), problems))
         });
-        let (synth, problems, scene) = match made {
+        let (synth, problems) = match made {
             Ok(made) => made?,
             Err(fault) => {
                 previous = None;
@@ -226,7 +222,7 @@ fn synthesise(
             }
         };
         match synth {
-            Ok(synth) => {
+            Ok((scene, synth)) => {
                 previous = Some(synth.clone());
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
                 let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));

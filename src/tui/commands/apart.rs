@@ -1,11 +1,12 @@
-//! Layers and zones that are looked at alone, not looked at, or kept from edits, in this session.
+//! Layers and zones that are looked at alone, not looked at, or kept from edits, and a scene that is looked at in several ways,
+//! in this session.
 
 use std::collections::BTreeSet;
 
 use super::command::{Call, Command, Done, command};
 use super::items::targets;
 use super::yanking::counted;
-use crate::scene::address;
+use crate::scene::{address, compared};
 use crate::tui::events::Effect;
 use crate::tui::state::State;
 use crate::tui::state::apart::Apart;
@@ -16,6 +17,12 @@ pub const COMMANDS: &[Command] = &[
     command("mute", "[PATH|none]", "Do not show the layer or the zone here, or show it again; exports have it", mute),
     command("solo", "[PATH|none]", "Show only the layer or the zone here, or all again; exports have all", solo),
     command("lock", "[PATH|none]", "Refuse edits of the layer or the zone here, or allow them again", lock),
+    command(
+        "compare",
+        "[anchor|style|none]",
+        "Show what is drawn with each anchor, or in each style, side by side",
+        compare,
+    ),
     command("seen", "SUBCOMMAND ...", "Run a subcommand, as render, on what is shown, without what is muted", seen)
         .inside(),
 ];
@@ -67,11 +74,35 @@ fn turn(state: &mut State, call: &Call, (set, [done, undone]): Set) -> Done {
     Ok(())
 }
 
+/// Without an argument as one again, or by the first thing that there is.
+fn compare(state: &mut State, call: &Call) -> Done {
+    let by = match call.text {
+        "" if state.apart.compared.is_some() => None,
+        "" => compared::names().first().copied(),
+        by => compared::names().into_iter().find(|own| *own == by),
+    };
+    let Some(by) = by else {
+        let was = state.apart.compared.take();
+        state.say(if was.is_some() { "the scene as it is" } else { "nothing is compared" });
+        state.ask(Effect::Compare);
+        return Ok(());
+    };
+    let ways = state.document().scene().compared(by)?;
+    let names: Vec<&str> = ways.iter().map(|(name, _)| *name).collect();
+    state.say(format!("from left to right: {}; :compare ends it", names.join(", ")));
+    state.apart.compared = Some(by.to_owned());
+    state.ask(Effect::Compare);
+    Ok(())
+}
+
 fn seen(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
     let Some(name) = words.first() else { return Err("seen takes a subcommand: :seen render -o a.gif".into()) };
     if !call.table.subcommands().any(|known| known == *name) {
         return Err(format!("seen takes a subcommand, as render, synth, field or probe, not {name}"));
+    }
+    if state.apart.compared.is_some() {
+        return Err("what is compared is not one scene: :compare none, or render --compare".into());
     }
     state.ask(Effect::RunSeen(words));
     Ok(())

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::protocol::Wanted;
+use crate::render::shown::Shown;
 use crate::scene::Scene;
 
 /// What the worker is to make for the panes.
@@ -11,8 +12,8 @@ use crate::scene::Scene;
 pub struct Request {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What of it is not shown.
-    pub muted: Arc<[String]>,
+    /// How it is shown.
+    pub how: Shown,
     /// The scene's file; its pictures are relative to it.
     pub path: PathBuf,
     /// Scene time.
@@ -29,7 +30,7 @@ impl PartialEq for Request {
     /// Whether both ask for the same; `fresh` does not count.
     fn eq(&self, other: &Request) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
-            && self.muted == other.muted
+            && self.how == other.how
             && self.path == other.path
             && self.time == other.time
             && self.picture == other.picture

@@ -19,8 +19,8 @@ use crate::tui::state::{Mode, State, looking, place};
 pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
     let path = state.scene.path().to_owned();
-    let muted = state.apart.hidden(state.document()).into();
-    Request { scene, muted, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
+    let how = state.apart.shown(state.document());
+    Request { scene, how, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
 }
 
 /// The pixel under the cursor, if its read-out is open.

@@ -11,7 +11,8 @@ use crate::base::problem::{Problem, Severity};
 use crate::base::progress::Progress;
 use crate::files;
 use crate::layers::parts::materials::Materials;
-use crate::render::{self, Synth};
+use crate::render::Synth;
+use crate::render::shown::Shown;
 use crate::scene::Scene;
 use crate::tui::events::{Event, Synthesis};
 use crate::tui::graphics::TerminalPicture;
@@ -94,7 +95,7 @@ fn reading(begun: Instant, events: mpsc::Sender<Event>) -> Progress {
 /// A scene and what was made of it.
 struct Made {
     scene: Arc<Scene>,
-    muted: Arc<[String]>,
+    how: Shown,
     /// What is shown of it.
     shown: Arc<Scene>,
     synth: Arc<Synth>,
@@ -123,7 +124,7 @@ impl Studio {
     fn serve(&mut self, request: &Request, events: &mpsc::Sender<Event>) -> bool {
         #[cfg(test)]
         assert_ne!(request.path, std::path::Path::new("a fault"), "what a test asked for");
-        let is_made = |made: &Made| Arc::ptr_eq(&made.scene, &request.scene) && made.muted == request.muted;
+        let is_made = |made: &Made| Arc::ptr_eq(&made.scene, &request.scene) && made.how == request.how;
         if request.fresh || !self.made.as_ref().is_some_and(is_made) {
             if events.send(Event::Synthesising).is_err() {
                 return false;
@@ -181,21 +182,14 @@ impl Studio {
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
         let previous = self.made.as_ref().map(|made| &*made.synth);
-        let shown = match request.muted.is_empty() {
-            true => request.scene.clone(),
-            false => {
-                let size = render::frame_size(&request.scene, &materials);
-                Arc::new(request.scene.without(&request.muted, size))
-            }
-        };
-        let synth = render::synth(&shown, &materials, previous).map_err(|problem| {
+        let (shown, synth) = request.how.synth(&request.scene, &materials, previous).map_err(|problem| {
             // Why a picture could not be read says more than that it is missing.
             problems.first().unwrap_or(&problem).clone()
         })?;
         let synth = Arc::new(synth);
         materials.stop = None;
-        let (scene, muted) = (request.scene.clone(), request.muted.clone());
-        self.made = Some(Made { scene, muted, shown, synth: synth.clone(), materials });
+        let (scene, how) = (request.scene.clone(), request.how.clone());
+        self.made = Some(Made { scene, how, shown, synth: synth.clone(), materials });
         match problems.first() {
             Some(error) if error.severity == Severity::Error => Err(error.clone()),
             warning => Ok((synth, warning.cloned())),

@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use super::State;
 use crate::base::pointer::Pointer;
+use crate::render::shown::Shown;
 use crate::scene::{Document, Edit, address};
 use crate::tui::events::{Change, Effect};
 use crate::tui::text::plain;
 
-/// Layers and zones by their pointers.
+/// Layers and zones by their pointers, and what is compared.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Apart {
     /// They are not shown.
@@ -17,9 +18,16 @@ pub struct Apart {
     pub solo: BTreeSet<String>,
     /// They are not changed.
     pub locked: BTreeSet<String>,
+    /// By what the scene is shown in all its ways, side by side.
+    pub compared: Option<String>,
 }
 
 impl Apart {
+    /// How the scene is shown.
+    pub fn shown(&self, document: &Document) -> Shown {
+        Shown { muted: self.hidden(document), compared: self.compared.clone() }
+    }
+
     /// What is not shown.
     pub fn hidden(&self, document: &Document) -> Vec<String> {
         let mut hidden = self.muted.clone();

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::support::{at, press, replayed, said_last, state};
+use super::support::{at, press, replayed, said_last, state, state_of};
 use super::{check, zone};
 use crate::tui::commands::obey;
 use crate::tui::events::Effect;
@@ -14,7 +14,7 @@ const EYE: &str = "/layers/0/zones/0";
 const MOUTH: &str = "/layers/0/zones/1";
 
 fn hidden(state: &State) -> Vec<String> {
-    request(state).muted.to_vec()
+    request(state).how.muted
 }
 
 #[test]
@@ -87,4 +87,34 @@ fn what_is_muted_or_not_solo_is_hidden_here_and_in_the_window() {
     status::draw(&state, area, &mut buffer);
     let line: String = buffer.content().iter().map(|cell| cell.symbol()).collect();
     assert!(line.contains("muted"), "{line}");
+}
+
+#[test]
+fn what_is_drawn_is_compared_here_and_in_the_window() {
+    let with_strokes = r#"{ "plica": 1, "size": [8, 6], "camera": { "position": [0, 0, 3] }, "meshes": { "m": { "path": "m.obj" } },
+        "layers": [{ "kind": "mesh", "name": "m", "mesh": "m", "strokes": {} }] }"#;
+    for (lines, expected, said) in [
+        (&["compare style"][..], Some("style"), "from left to right: hatching, cross-hatching"),
+        (&["compare"], Some("anchor"), "from left to right: surface, screen, texture; :compare ends it"),
+        (&["compare", "compare"], None, "the scene as it is"),
+        (&["compare none"], None, "nothing is compared"),
+        (&["compare style", "compare anchor"], Some("anchor"), "surface"),
+    ] {
+        let mut state = state_of(with_strokes);
+        let run = |line: &&str| obey(&mut state, line, None).unwrap_or_else(|why| panic!("{line}: {why}"));
+        lines.iter().for_each(run);
+        assert_eq!(request(&state).how.compared.as_deref(), expected, "{lines:?}");
+        assert!(said_last(&state).1.contains(said), "{:?}", said_last(&state));
+        assert!(state.effects.iter().any(|effect| matches!(effect, Effect::Compare)), "{lines:?}");
+    }
+    let mut state = state_of(with_strokes);
+    obey(&mut state, "compare", None).unwrap();
+    let why = obey(&mut state, "seen render -o a.png", None).unwrap_err();
+    assert!(why.contains(":compare none"), "{why}");
+    let why = obey(&mut self::state(), "compare anchor", None).unwrap_err();
+    assert!(why.contains("no layer has strokes"), "{why}");
+    let words = |line: &str| obey(&mut self::state(), line, None).unwrap_err();
+    for name in crate::scene::compared::names() {
+        assert!(words("compare x").contains(name), "the command knows {name}");
+    }
 }

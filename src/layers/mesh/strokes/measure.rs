@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::draw::{grey, main_noise};
-use super::model::Anchor;
+use super::model::ANCHORS;
 use super::noise::Scene;
 use super::statistics::{Sums, correlation, median, percentile};
 use super::{Given, Ready};
@@ -14,9 +14,6 @@ use crate::layers::parts::measures::{Figures, Moved};
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;
 
-/// The anchors, with their names.
-const ANCHORS: [(Anchor, &str); 3] =
-    [(Anchor::Surface, "surface"), (Anchor::Screen, "screen"), (Anchor::Texture, "texture")];
 /// How the camera moves.
 const MOVES: [&str; 3] = ["pan", "turn", "zoom"];
 /// A step of a pan, in pixels.

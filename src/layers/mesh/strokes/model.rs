@@ -68,6 +68,10 @@ pub enum Anchor {
     Texture,
 }
 
+/// The anchors, with their names in the document.
+pub const ANCHORS: [(Anchor, &str); 3] =
+    [(Anchor::Surface, "surface"), (Anchor::Screen, "screen"), (Anchor::Texture, "texture")];
+
 /// What is under the marks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

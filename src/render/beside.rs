@@ -1,0 +1,83 @@
+//! Several ways of one scene side by side, as a single layer that the CPU draws.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::reduce::reduced;
+use super::stage::{Group, Stage};
+use super::whole::Kept;
+use super::{Synth, cpu};
+use crate::base::pixels::{Linear, Rgba, side_by_side};
+use crate::base::reduce::Reduced;
+use crate::layers::parts::moment::{Columns, Moment};
+use crate::layers::parts::plan::Plan;
+use crate::layers::ready::{Ready, Still};
+
+/// The ways, from left to right; frames of all have the same size.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// Their syntheses.
+    pub ways: Vec<Synth>,
+}
+
+impl Beside {
+    /// A scene whose frames are theirs, side by side.
+    pub fn synth(ways: Vec<Synth>) -> Synth {
+        let size = (ways.iter().map(|way| way.size.0).sum(), ways.first().map_or(0, |way| way.size.1));
+        let stop = ways.iter().find_map(|way| way.stop.clone());
+        let stage = Arc::new(Stage { groups: vec![Group::Plane(0)], ..Stage::default() });
+        Synth { size, layers: vec![Arc::new(Beside { ways })], stage, stop, kept: Kept::default() }
+    }
+
+    fn each(&self, way: impl Fn(&Synth) -> Synth) -> Arc<dyn Ready> {
+        Arc::new(Beside { ways: self.ways.iter().map(way).collect() })
+    }
+}
+
+impl Ready for Beside {
+    fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
+        let frames: Vec<Linear> = self.ways.iter().map(|way| cpu::linear(way, moment.t)).collect();
+        Box::new(Frames(side_by_side(&frames)))
+    }
+
+    fn plan(&self, _moment: &Moment) -> Plan {
+        Plan::default()
+    }
+
+    fn stoppable(&self, stop: &Arc<AtomicBool>) -> Option<Arc<dyn Ready>> {
+        Some(self.each(|way| way.stoppable(stop)))
+    }
+
+    fn by_cpu(&self) -> bool {
+        true
+    }
+
+    fn takes_long(&self) -> bool {
+        true
+    }
+
+    fn unmoved(self: Arc<Self>) -> Arc<dyn Ready> {
+        self.each(Synth::unmoved)
+    }
+
+    fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
+        self.each(|way| reduced(way, pictures.by))
+    }
+
+    fn largest_texture(&self) -> usize {
+        0
+    }
+}
+
+/// All ways at one time.
+struct Frames(Linear);
+
+impl Still for Frames {
+    fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
+        let row = self.0.row(y);
+        match columns {
+            Columns::All => out.copy_from_slice(row),
+            Columns::Some(columns) => out.iter_mut().zip(columns).for_each(|(out, &x)| *out = row[x]),
+        }
+    }
+}
