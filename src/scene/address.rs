@@ -193,10 +193,21 @@ fn within(text: &str, count: usize) -> bool {
 
 fn unknown(document: &Document, address: &str, path: &str, place: Place, token: &str) -> Error {
     let names = field::laid(document, path).unwrap_or_else(|| names_below(place));
+    // Of what is not there, the first step is what is missing.
+    let missing = |at: &str| {
+        let (parent, name) = Pointer(at).split()?;
+        let above = Place::of(document.json(), parent).filter(|above| matches!(above.shape.body(), Body::Map(_)))?;
+        let stands = document.json().pointer(at).is_some()
+            || field::laid(document, parent).is_some_and(|names| names.contains(&name));
+        (!stands).then(|| unknown(document, address, parent, above, &name))
+    };
+    if let Some(error) = Pointer(path).upward().find_map(missing) {
+        return error;
+    }
     let inside = if path.is_empty() { "a scene".into() } else { self::address(document, path) };
     let what = match place.shape.body() {
         Body::List(..) if names.is_empty() => format!("{inside} is empty"),
-        Body::List(..) => format!("there is no {} in {inside}", quoted(token)),
+        Body::List(..) | Body::Map(_) => format!("there is no {} in {inside}", quoted(token)),
         Body::Object | Body::Tagged(_) | Body::Numbers(_) | Body::Row(_) => {
             format!("there is no field {} in {inside}", quoted(token))
         }

@@ -1,6 +1,8 @@
-//! A scene without some of its layers and zones, for looking at the others.
+//! A scene without some of its layers and zones, for looking at the others, and for exports without them.
 
-use super::Scene;
+use serde_json::json;
+
+use super::{Document, Edit, Scene};
 use crate::base::pointer::Pointer;
 
 impl Scene {
@@ -24,6 +26,25 @@ impl Scene {
         });
         let side = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         Scene { layers: layers.collect(), size: Some([side(width), side(height)]), ..self.clone() }
+    }
+}
+
+impl Document {
+    /// The document from which the things at these pointers are taken away, with frames of this size; if it cannot be without one of
+    /// them, as others need it, as [`Scene::without`].
+    #[must_use]
+    pub fn without(&self, muted: &[String], size: (usize, usize)) -> Document {
+        // The last of a list first, so that the others keep their places until then.
+        let mut last_first: Vec<&String> = muted.iter().collect();
+        last_first.sort_by_key(|pointer| {
+            std::cmp::Reverse(Pointer(pointer).tokens().map(|token| (token.len(), token)).collect::<Vec<_>>())
+        });
+        let of_size = Edit::set(self, "/size", json!([size.0, size.1]));
+        let edits = std::iter::once(of_size).chain(last_first.into_iter().map(|pointer| Edit::remove(pointer)));
+        self.apply(&Edit::all(edits)).unwrap_or_else(|_| {
+            let shown = serde_json::to_value(self.scene().without(muted, size)).map(Document::from_json);
+            shown.ok().and_then(Result::ok).unwrap_or_else(|| self.clone())
+        })
     }
 }
 
@@ -67,5 +88,24 @@ mod tests {
         let shown = without(&["/layers/0"]);
         assert_eq!((&shown["layers"][0]["kind"], &shown["layers"][0]["name"]), (&"fill".into(), &"face".into()));
         assert_eq!(shown["layers"][1]["color"], "#102030");
+    }
+
+    #[test]
+    fn exports_are_without_what_is_muted_or_have_something_clear_where_others_need_it() {
+        let document = Document::parse(SCENE).unwrap();
+        let without = |muted: &[&str]| {
+            let muted: Vec<String> = muted.iter().map(|one| (*one).to_owned()).collect();
+            document.without(&muted, (20, 10)).json().clone()
+        };
+        let left = without(&["/layers/0/zones/0", "/layers/1"]);
+        assert_eq!((left["layers"].as_array().unwrap().len(), &left["size"]), (1, &serde_json::json!([20, 10])));
+        assert_eq!(left["layers"][0]["zones"][0]["name"], "right");
+        assert_eq!(left["layers"][0]["zones"][1], serde_json::Value::Null);
+        // A mesh shows the layer: something clear is there in its place.
+        let shown = r##"{ "plica": 1, "size": [8, 6], "camera": { "position": [0, 0, 3] }, "meshes": { "m": { "path": "m.obj" } },
+            "layers": [{ "kind": "fill", "name": "sky", "color": "#102030" },
+                { "kind": "mesh", "name": "m", "mesh": "m", "surface": { "kind": "layer", "layer": "sky" } }] }"##;
+        let shown = Document::parse(shown).unwrap().without(&["/layers/0".into()], (8, 6));
+        assert_eq!(shown.json()["layers"][0]["color"], "#00000000", "{}", shown.json());
     }
 }

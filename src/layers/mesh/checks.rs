@@ -183,6 +183,57 @@ fn the_variance_is_one_and_its_share_is_one() {
     }
 }
 
+/// The mean of the frequencies of a square of values that are round about 1/16 in both directions, in cycles a pixel, and how far they are from
+/// it: the deviation in one direction.
+fn spectrum(values: &[f32], side: usize) -> (DVec2, f64) {
+    // Frequencies that a whole number of waves has, up to 1/8.
+    let (count, turn) = (side / 8, TAU / side as f64);
+    let hann = |i: usize| 0.5 - 0.5 * cos(turn * i as f64);
+    let wave: Vec<DVec2> = (0..side).map(|i| DVec2::new(cos(turn * i as f64), -sin(turn * i as f64))).collect();
+    let times = |a: DVec2, b: DVec2| DVec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+    let rows: Vec<Vec<DVec2>> = (0..side)
+        .map(|y| {
+            let row: Vec<f64> = (0..side).map(|x| f64::from(values[y * side + x]) * hann(x) * hann(y)).collect();
+            (1..=count).map(|k| row.iter().enumerate().map(|(x, v)| wave[k * x % side] * *v).sum()).collect()
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (kx, ky) in (1..=count).flat_map(|x| (1..=count).map(move |y| (x, y))) {
+        let sum: DVec2 = rows.iter().enumerate().map(|(y, row)| times(row[kx - 1], wave[ky * y % side])).sum();
+        found.push((DVec2::new(kx as f64, ky as f64) / side as f64, sum.length_squared()));
+    }
+    let total: f64 = found.iter().map(|(_, power)| power).sum();
+    let middle = found.iter().map(|(at, power)| *at * *power).sum::<DVec2>() / total;
+    let spread = found.iter().map(|(at, power)| (*at - middle).length_squared() * power).sum::<f64>() / total;
+    // The window's own spread, in both directions.
+    let of_window = 2.0 / (3.0 * square(side as f64));
+    (middle, ((spread - of_window) / 2.0).sqrt())
+}
+
+#[test]
+fn waves_are_as_long_and_run_as_they_should() {
+    let (side, radius) = (384, 20.0);
+    let found = [1, 2].map(|seed| {
+        let strokes =
+            one(json!({ "seed": seed, "regularity": radius / 16.0, "direction": { "along": "screen", "angle": 45 } }));
+        let synth = synth(&plane(8), &strokes);
+        spectrum(&seen(&synth, &moment(DVec3::Z, side), |given| noise(&synth, given).0), side)
+    });
+    let middle = (found[0].0 + found[1].0) / 2.0;
+    let width = mean(found.iter().map(|(_, width)| *width));
+    assert!((middle.length() * 16.0 - 1.0).abs() < 0.01, "{middle}");
+    assert!((middle.y.atan2(middle.x).to_degrees() - 45.0).abs() < 1.0, "{middle}");
+    // The deviation of the frequencies of W: the root of the sum of W' squared over that of W squared, over 2 pi.
+    let gauss = |x: f64| pow(std::f64::consts::E, -PI * x * x);
+    let steps = (0..2000).map(|i| f64::from(i) / 1000.0 - 1.0);
+    let (kernel, slope) = steps.fold((0.0, 0.0), |(kernel, slope), x| {
+        (kernel + square(gauss(x) - gauss(1.0)), slope + square(TAU * x * gauss(x)))
+    });
+    let expected = (slope / kernel).sqrt() / TAU / radius;
+    assert!((expected - 0.015).abs() < 5e-5, "as in the contract: {expected}");
+    assert!((width / expected - 1.0).abs() < 0.05, "{width} for {expected}");
+}
+
 /// A frame of the noise itself.
 fn frame(synth: &Synth, moment: &Moment) -> Frame {
     let ready = synth.strokes.as_deref().unwrap();

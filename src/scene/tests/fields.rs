@@ -125,6 +125,8 @@ fn addresses() {
         ("layers.face.zones.\"left eye\".sampler.offset", Ok("/layers/0/zones/0/sampler/offset")),
         ("images.dog", Ok("/images/dog")),
         ("timeline.fps", Ok("/timeline/fps")),
+        ("images.nope.path.x", Err("there is no \"nope\" in images")),
+        ("shapes.nope.nodes.0.at", Err("there is no \"nope\" in shapes")),
         ("timeline.fpss", Err("there is no field \"fpss\" in timeline (did you mean \"fps\"?)")),
         ("layers.fase", Err("there is no \"fase\" in layers (did you mean \"face\"?)")),
         ("layers.1", Err("there is no \"1\" in layers (there is \"face\")")),

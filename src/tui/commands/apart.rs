@@ -16,7 +16,12 @@ use crate::tui::text::said::words;
 pub const COMMANDS: &[Command] = &[
     command("mute", "[PATH|none]", "Do not show the layer or the zone here, or show it again; exports have it", mute),
     command("solo", "[PATH|none]", "Show only the layer or the zone here, or all again; exports have all", solo),
-    command("lock", "[PATH|none]", "Refuse edits of the layer or the zone here, or allow them again", lock),
+    command(
+        "lock",
+        "[PATH|none]",
+        "Refuse edits of the layer or the zone here, or allow them again; undo goes on",
+        lock,
+    ),
     command(
         "compare",
         "[anchor|style|none]",
@@ -63,14 +68,20 @@ fn turn(state: &mut State, call: &Call, (set, [done, undone]): Set) -> Done {
     let own = set(&mut state.apart);
     let on = !found.is_subset(own);
     if on {
-        own.extend(found);
+        own.extend(found.iter().cloned());
     } else {
         own.retain(|pointer| !found.contains(pointer));
     }
     state.ask(Effect::Mute);
     let (what, are) =
         if let [one] = names.as_slice() { (one.clone(), "is") } else { (counted(names.len(), "thing"), "are") };
-    state.say(format!("{what} {are} {}", if on { done } else { undone }));
+    let Apart { muted, solo, .. } = &state.apart;
+    let nothing = if found.iter().any(|one| solo.contains(one) && muted.contains(one)) {
+        "; but it is muted, so it is not shown: x shows it"
+    } else {
+        ""
+    };
+    state.say(format!("{what} {are} {}{nothing}", if on { done } else { undone }));
     Ok(())
 }
 
@@ -99,7 +110,7 @@ fn seen(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
     let Some(name) = words.first() else { return Err("seen takes a subcommand: :seen render -o a.gif".into()) };
     if !call.table.subcommands().any(|known| known == *name) {
-        return Err(format!("seen takes a subcommand, as render, synth, field or probe, not {name}"));
+        return Err(format!("seen takes a subcommand, as render, synth or field, not {name}"));
     }
     if state.apart.compared.is_some() {
         return Err("what is compared is not one scene: :compare none, or render --compare".into());

@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use super::command::Table;
 use super::{fields, profiles};
+use crate::base::pointer::Pointer;
 use crate::layers::parts::materials::List;
 use crate::ops::style;
-use crate::scene::complete;
+use crate::scene::{address, complete};
 use crate::tui::state::State;
 use crate::tui::text::said::one_word;
 
@@ -31,13 +32,17 @@ pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
     PATHS.iter().find(|(own, _)| *own == name).map(|(_, beside)| (name, path, *beside))
 }
 
-/// The lines that `typed` can be completed to: names of commands, of presets, of styles, of shapes, of fields, and paths of the scene after `set`, `get`,
-/// `go` and the like.
+/// The lines that `typed` can be completed to: names of commands, of presets, of styles, of shapes, of fields, the words that a command
+/// takes, and paths of the scene after `set`, `get`, `go` and the like.
 pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
     match typed.split_once(' ') {
         None => table.names().into_iter().filter(|name| name.starts_with(typed)).collect(),
-        Some((command @ ("set" | "get" | "go" | "mute" | "solo" | "lock"), path)) => {
+        Some((command @ ("set" | "get" | "go"), path)) => {
             complete::paths(state.document(), path).into_iter().map(|path| format!("{command} {path}")).collect()
+        }
+        Some((command @ ("mute" | "solo" | "lock"), path)) => {
+            let paths = complete::paths(state.document(), path).into_iter().filter(|path| leads_apart(state, path));
+            paths.map(|path| format!("{command} {path}")).collect()
         }
         Some(("help", name)) => {
             let fields = fields::all(state).into_iter().map(|found| found.name);
@@ -57,6 +62,18 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
             let names = style::names().into_iter().map(|(own, _)| own).filter(|own| own.starts_with(name));
             names.map(|own| format!("style {own}")).collect()
         }
-        Some(_) => Vec::new(),
+        Some((name, typed)) => {
+            let words = table.find(name).and_then(|command| command.words()).map(|(words, _)| words);
+            let words = words.into_iter().flatten().filter(|word| word.starts_with(typed));
+            words.map(|word| format!("{name} {word}")).collect()
+        }
     }
+}
+
+/// Whether an address is that of a layer or a zone, or leads to some.
+fn leads_apart(state: &State, path: &str) -> bool {
+    let Ok(pointer) = address::resolve(state.document(), path) else { return false };
+    let scene = state.document().scene();
+    let is_one = |pointer: &str| scene.mutable(pointer).as_deref() == Some(pointer);
+    is_one(&pointer) || is_one(&Pointer(&pointer).join(0))
 }

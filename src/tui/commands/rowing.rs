@@ -80,8 +80,15 @@ fn count(call: &Call, what: &str) -> Result<usize, String> {
 
 fn thin(state: &mut State, call: &Call) -> Done {
     let every = count(call, "thin takes which rows to keep: 2 for every second")?;
-    let Rows { list, items, chosen, .. } = rows(state)?;
+    let Rows { list, items, chosen, part } = rows(state)?;
     let kept: BTreeSet<usize> = chosen.iter().copied().step_by(every).collect();
+    if !part && kept.len() < 2 && chosen.len() > 1 {
+        return Err(format!(
+            "one of {} would be left: thin {} keeps the first and the last",
+            chosen.len(),
+            chosen.len() - 1
+        ));
+    }
     let gone = chosen.len() - kept.len();
     let first = chosen.first().copied().unwrap_or(0);
     let rest = items.into_iter().enumerate().filter(|(i, _)| !chosen.contains(i) || kept.contains(i));
@@ -98,8 +105,12 @@ fn resample(state: &mut State, call: &Call) -> Done {
     if to + 1 - from != chosen.len() {
         return Err("only rows next to each other are resampled together".into());
     }
+    if chosen.len() < 2 {
+        return Err("one row has no way to go through: select two or more".into());
+    }
     let closed = !part && is_closed(state.document(), &list);
     let made = match resampled(&items[from..=to], closed, count) {
+        Some(nodes) if part => ends_kept(nodes, &items[from], &items[to]),
         Some(nodes) => nodes,
         None => evenly(state, &list, &items[from..=to], (from, closed, count))?,
     };
@@ -107,6 +118,20 @@ fn resample(state: &mut State, call: &Call) -> Done {
     replace(state, &list, all, from)?;
     state.say(format!("{} are {} now, evenly spaced", counted(chosen.len(), "row"), counted(count, "row")));
     Ok(())
+}
+
+/// Nodes with the handles that the sides beside them have.
+fn ends_kept(mut nodes: Vec<Value>, first: &Value, last: &Value) -> Vec<Value> {
+    let keep = |end: Option<&mut Value>, of: &Value, handle: &str| {
+        let Some(end) = end.and_then(Value::as_object_mut) else { return };
+        match of.get(handle) {
+            Some(kept) => drop(end.insert(handle.to_owned(), kept.clone())),
+            None => drop(end.remove(handle)),
+        }
+    };
+    keep(nodes.first_mut(), first, "in");
+    keep(nodes.last_mut(), last, "out");
+    nodes
 }
 
 /// So many rows evenly along the straight way through the places of these, with all their numbers between those of the two

@@ -1,5 +1,7 @@
 //! Shapes of the scene that outlines, fold regions and curves are made of: made from what is there, used, and copied back.
 
+use std::ops::RangeInclusive;
+
 use serde_json::{Map, Value, json};
 
 use super::command::{Call, Command, Done, command};
@@ -9,10 +11,10 @@ use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::materials::List;
 use crate::scene::schema::{Body, Place};
-use crate::scene::{Document, Edit};
+use crate::scene::{Document, Edit, address};
 use crate::tui::state::{Pane, State, first};
 use crate::tui::text::plain;
-use crate::tui::text::said::{unquoted, words};
+use crate::tui::text::said::{one_word, words};
 
 pub const COMMANDS: &[Command] = &[
     command(
@@ -24,8 +26,8 @@ pub const COMMANDS: &[Command] = &[
     .change(),
     command(
         "use",
-        "NAME [reverse]",
-        "Make the outline or the curve here of a shape; an outline of shapes gets one more part",
+        "NAME [reverse] [NAME ...]",
+        "Make the outline or the curve here of shapes; an outline of shapes gets more parts",
         take,
     )
     .change(),
@@ -92,31 +94,42 @@ fn made_of(document: &Document, line: &Line, names: &[&str]) -> Edit {
     }
 }
 
-/// The selected nodes of a closed path, if rows of its list are selected and not all of them: the first, and how many.
+/// The selected nodes of a path, if rows of its list are selected and not all of them: the first, and how many. A closed path
+/// has the first next to the last.
 fn selected(state: &State, line: &Line, count: usize) -> Result<Option<(usize, usize)>, String> {
-    let Line::Closed(pointer) = line else { return Ok(None) };
-    let list = Pointer(pointer).join("nodes");
+    let list = match line {
+        Line::Closed(pointer) => Pointer(pointer).join("nodes"),
+        Line::Open(pointer) => pointer.clone(),
+    };
     let sheet = state.sheet();
     let item = |row: usize| Some(Pointer(&sheet.pointer(row)?).item_of(&list)?.0);
     if state.cursor.focus != Pane::Table || !state.cursor.selects() {
         return Ok(None);
     }
     let Some(rows) = state.cursor.rows().into_iter().map(item).collect::<Option<Vec<usize>>>() else { return Ok(None) };
-    let (first, many) = (rows.first().copied().unwrap_or(0), rows.len());
-    if rows.last().is_none_or(|last| last + 1 - first != many) || many < 2 {
-        return Err("a shape is made of two nodes or more that are next to each other".into());
+    let many = rows.len();
+    if many == count {
+        return Ok(None);
     }
-    Ok((many < count).then_some((first, many)))
+    if matches!(line, Line::Open(_)) {
+        return Err("a curve is made of one shape as a whole: end the selection (Esc)".into());
+    }
+    // Where the rows begin, going around.
+    let begins: Vec<usize> = rows.iter().copied().filter(|row| !rows.contains(&((row + count - 1) % count))).collect();
+    match begins.as_slice() {
+        [first] if many > 1 => Ok(Some((*first, many))),
+        _ => Err("a shape is made of two nodes or more that are next to each other".into()),
+    }
 }
 
 fn share(state: &mut State, call: &Call) -> Done {
-    let name = unquoted(call.text);
+    let words = words(call.text)?;
+    let [name] = words.as_slice() else {
+        return Err("share takes a name for the shape, one with spaces in double quotes: :share lid".into());
+    };
     let document = state.document();
-    if name.is_empty() {
-        return Err("share takes a name for the shape: :share lid".into());
-    }
     if document.scene().names(List::Shapes).contains(name.as_str()) {
-        return Err(format!("there is already a shape {}: :use makes this of it", quoted(&name)));
+        return Err(format!("there is already a shape {}: :use makes this of it", quoted(name)));
     }
     let line = line(state)?;
     if is_shared(document, &line) {
@@ -125,13 +138,18 @@ fn share(state: &mut State, call: &Call) -> Done {
     let nodes = nodes(document, &line)?;
     let shape = |nodes: Vec<Value>| json!({ "nodes": nodes });
     let (shapes, told) = match selected(state, &line, nodes.len())? {
-        None => (vec![(name.clone(), shape(nodes))], String::new()),
+        None => {
+            // A closed path goes back to where it began.
+            let begin = nodes.first().cloned().filter(|_| matches!(line, Line::Closed(_)));
+            (vec![(name.clone(), shape(nodes.into_iter().chain(begin).collect()))], String::new())
+        }
         Some((from, many)) => {
+            let around = |range: RangeInclusive<usize>| range.map(|i| nodes[i % nodes.len()].clone()).collect();
             // The rest goes from the last of these nodes around to the first.
-            let rest = (from + many - 1..=from + nodes.len()).map(|i| nodes[i % nodes.len()].clone()).collect();
+            let (own, rest) = (around(from..=from + many - 1), around(from + many - 1..=from + nodes.len()));
             let other = format!("{name} rest");
             let told = format!(", and what is left of the outline, {}", quoted(&other));
-            (vec![(name.clone(), shape(nodes[from..from + many].to_vec())), (other, shape(rest))], told)
+            (vec![(name.clone(), shape(own)), (other, shape(rest))], told)
         }
     };
     let names: Vec<&str> = shapes.iter().map(|(name, _)| name.as_str()).collect();
@@ -140,8 +158,15 @@ fn share(state: &mut State, call: &Call) -> Done {
     let (added, _) = Edit::insert_entries(document, "/shapes", entries).ok_or("there is no list of shapes")?;
     state.edit(Edit::all([added, made]), false)?;
     leave_rows(state, &line);
-    state.say(plain(&format!("{} is a shape now{told}: :use makes others of it", quoted(&name))));
+    let place = address(state, &line);
+    state.say(plain(&format!("{place} is made of the shape {} now{told}: :use makes others of it", quoted(name))));
     Ok(())
+}
+
+/// Where a line is, for people.
+fn address(state: &State, line: &Line) -> String {
+    let (Line::Closed(pointer) | Line::Open(pointer)) = line;
+    address::address(state.document(), pointer)
 }
 
 /// The list of nodes is not there any more.
@@ -151,34 +176,63 @@ fn leave_rows(state: &mut State, line: &Line) {
     go_to(state, pointer);
 }
 
+/// A shape that is used, and whether from its end.
+type Used<'a> = (&'a str, bool);
+
+/// The shapes in the words of a line, each of which may have `reverse` behind it.
+fn used<'a>(state: &State, words: &'a [String]) -> Result<Vec<Used<'a>>, String> {
+    const BACK: &str = "reverse";
+    let known = state.document().scene().names(List::Shapes);
+    let mut used: Vec<Used> = Vec::new();
+    for word in words {
+        match used.last_mut() {
+            Some((_, reverse)) if word == BACK && !*reverse => *reverse = true,
+            _ if known.contains(word.as_str()) => used.push((word, false)),
+            _ => {
+                let near = nearest(word, known.iter().copied()).unwrap_or("share makes one".into());
+                return Err(format!("there is no shape {} ({near})", quoted(word)));
+            }
+        }
+    }
+    match used.is_empty() {
+        false => Ok(used),
+        true => {
+            Err("use takes names of shapes, those with spaces in double quotes, each with or without reverse".into())
+        }
+    }
+}
+
 fn take(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
-    let (name, reverse) = match words.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        [name] => (*name, false),
-        [name, "reverse"] => (*name, true),
-        _ => return Err("use takes the name of a shape, one with spaces in double quotes, and reverse".into()),
-    };
+    let used = used(state, &words)?;
     let document = state.document();
-    let known = document.scene().names(List::Shapes);
-    if !known.contains(name) {
-        let near = nearest(name, known.iter().copied()).unwrap_or("share makes one".into());
-        return Err(format!("there is no shape {} ({near})", quoted(name)));
-    }
     let line = line(state)?;
-    let part = if reverse { json!({ "shape": name, "reverse": true }) } else { json!({ "shape": name }) };
-    let edit = match &line {
-        Line::Open(_) if reverse => return Err("a curve follows its shape from the beginning to the end".into()),
-        Line::Closed(pointer) if is_shared(document, &line) => {
+    let part = |&(name, reverse): &Used| {
+        if reverse { json!({ "shape": name, "reverse": true }) } else { json!({ "shape": name }) }
+    };
+    let parts: Vec<Value> = used.iter().map(part).collect();
+    let more = is_shared(document, &line);
+    let edit = match (&line, used.as_slice()) {
+        (Line::Open(_), [(name, false)]) => made_of(document, &line, &[name]),
+        (Line::Open(_), _) => return Err("a curve follows one shape, from its beginning to its end".into()),
+        (Line::Closed(pointer), _) if more => {
             let list = Pointer(pointer).join("parts");
             let count = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
-            Edit::insert(document, &list, count, part)
+            let insert = |(i, part): (usize, Value)| Edit::insert(document, &list, count + i, part);
+            Edit::all(parts.into_iter().enumerate().map(insert))
         }
-        Line::Closed(pointer) => Edit::set(document, pointer, json!({ "kind": SHAPES, "parts": [part] })),
-        Line::Open(_) => made_of(document, &line, &[name]),
+        (Line::Closed(pointer), _) => Edit::set(document, pointer, json!({ "kind": SHAPES, "parts": parts })),
     };
-    state.edit(edit, false)?;
+    let done = state.edit(edit, false);
+    done.map_err(|why| match used.len() {
+        1 if !more => format!("{why}; an outline of several: :use {} OTHER", one_word(used[0].0)),
+        _ => why,
+    })?;
     leave_rows(state, &line);
-    state.say(plain(&format!("made of {}", quoted(name))));
+    let told = |&(name, reverse): &Used| format!("{}{}", quoted(name), if reverse { " reversed" } else { "" });
+    let told = used.iter().map(told).collect::<Vec<_>>().join(", ");
+    let (place, too) = (address(state, &line), if more && matches!(line, Line::Closed(_)) { " too" } else { "" });
+    state.say(plain(&format!("{place} is made of {told}{too}")));
     Ok(())
 }
 

@@ -73,8 +73,8 @@ fn register(state: &mut State, call: &Call) -> Done {
     let (name, value) = call.text.split_once(' ').unwrap_or((call.text, ""));
     let name = letter(name, "a register")?;
     if !value.is_empty() {
-        let yanked =
-            serde_json::from_str(value).map_err(|why| format!("register takes a letter and a value: {why}"))?;
+        let yanked = serde_json::from_str(value)
+            .map_err(|_| "register takes a letter: \"a y yanks into a, \"a p pastes from it")?;
         state.memory.registers.insert(name, yanked);
         return Ok(());
     }

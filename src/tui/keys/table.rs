@@ -290,6 +290,7 @@ const OWN: &[KeyRow] = &[
     row(HELP, "g g", "scroll -100000", "Scroll to the top"),
     row(HELP, "G", "scroll 100000", "Scroll to the end"),
     row(HELP, "/", "line /", "Search in the text"),
+    row(HELP, ":", "line :", "Type a command"),
     row(HELP, "n", "scroll next", "Go to the next match"),
     row(HELP, "N", "scroll previous", "Go to the previous match"),
     row(HELP, "Esc", "cancel", "Close the help"),

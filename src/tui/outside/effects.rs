@@ -181,13 +181,12 @@ impl Editor {
         }
     }
 
-    /// The scene as it is now; or as it is shown, without what is muted.
+    /// The scene as it is now; or as it is shown, without what is muted, if it can be without it.
     fn document(&self, seen: bool) -> Document {
         let document = self.state.document();
         let hidden = self.state.apart.hidden(document);
         let size = self.state.picture.synth.as_ref().map(|synth| synth.size).or(self.state.picture.size);
-        let shown = size.filter(|_| seen && !hidden.is_empty()).map(|size| document.scene().without(&hidden, size));
-        let shown = shown.and_then(|shown| Document::from_json(serde_json::to_value(shown).ok()?).ok());
+        let shown = size.filter(|_| seen && !hidden.is_empty()).map(|size| document.without(&hidden, size));
         shown.unwrap_or_else(|| document.clone())
     }
 

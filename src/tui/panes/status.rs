@@ -66,6 +66,7 @@ fn marks(state: &State) -> String {
         mark(state.scene.read_only(), "  RO"),
         mark(!state.apart.solo.is_empty(), "  solo"),
         mark(!state.apart.muted.is_empty(), "  muted"),
+        mark(!state.apart.locked.is_empty(), "  locked"),
         mark(state.apart.compared.is_some(), "  compared"),
         &state.outside.file.map(|word| format!("  {word}")).unwrap_or_default(),
         failing.as_deref().unwrap_or_default(),

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::State;
 use crate::base::pointer::Pointer;
+use crate::layers::parts::materials::{List, Of, Use};
 use crate::render::shown::Shown;
 use crate::scene::{Document, Edit, address};
 use crate::tui::events::{Change, Effect};
@@ -46,11 +47,10 @@ impl Apart {
         hidden.into_iter().collect()
     }
 
-    /// Words for the thing at a place: muted, solo, locked.
+    /// Letters for the thing at a place, as the keys are: x if it is muted, s if it is solo, L if it is locked.
     pub fn told(&self, pointer: &str) -> String {
-        let words = [(&self.muted, "muted"), (&self.solo, "solo"), (&self.locked, "locked")];
-        let words = words.into_iter().filter(|(set, _)| set.contains(pointer)).map(|(_, word)| word);
-        words.collect::<Vec<_>>().join(" ")
+        let letters = [(&self.muted, "x"), (&self.solo, "s"), (&self.locked, "L")];
+        letters.into_iter().filter(|(set, _)| set.contains(pointer)).map(|(_, letter)| letter).collect()
     }
 
     fn follow(&mut self, change: &Change) {
@@ -74,8 +74,20 @@ fn siblings<'a>(document: &'a Document, items: &'a [&'a String]) -> impl Iterato
     all.filter(|one| !items.contains(&one))
 }
 
+/// The shapes that a layer or a zone is made of.
+fn shapes_in(document: &Document, pointer: &str) -> Vec<String> {
+    let Some((index, way)) = Pointer(pointer).item_of("/layers") else { return Vec::new() };
+    let uses = document.scene().layers.get(index).map(|layer| layer.technique().uses()).unwrap_or_default();
+    let within = |at: &str| at.strip_prefix(way).is_some_and(|rest| rest.starts_with('/'));
+    let named = |one: Use| match one.of {
+        Of::Name(List::Shapes, name) if within(&one.at) => Some(name.to_owned()),
+        _ => None,
+    };
+    uses.into_iter().filter_map(named).collect()
+}
+
 impl State {
-    /// Refuses an edit of what is locked.
+    /// Refuses an edit of what is locked, also through a shape that it is made of.
     ///
     /// # Errors
     /// What that is, and how it is unlocked.
@@ -86,9 +98,11 @@ impl State {
         let before = self.document();
         // What is wrong with an edit is told when it is applied.
         let Ok(after) = before.apply(edit) else { return Ok(()) };
+        let shapes = |document: &Document, name: &str| document.json().pointer(&Pointer("/shapes").join(name)).cloned();
         let is_touched = |pointer: &&String| {
             let now = edit.follow(&after, pointer);
-            now.and_then(|now| after.json().pointer(&now)) != before.json().pointer(pointer)
+            let own = now.and_then(|now| after.json().pointer(&now)) != before.json().pointer(pointer);
+            own || shapes_in(before, pointer).iter().any(|name| shapes(before, name) != shapes(&after, name))
         };
         self.apart.locked.iter().find(is_touched).map_or(Ok(()), |pointer| {
             let place = plain(&address::address(before, pointer));

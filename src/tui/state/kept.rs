@@ -1,5 +1,5 @@
 //! What is kept from one session to the next: the lines that were typed after `:`, macros, registers, and for each scene the
-//! marks, the collapsed nodes and the cursor. Places come back as lines, and a register is written into the log when it is used,
+//! marks, the collapsed nodes, the cursor and what is muted, solo or locked. Places come back as lines, and a register is written into the log when it is used,
 //! so that the log of a session leads to the same scene without what was kept.
 
 use std::collections::BTreeMap;
@@ -77,7 +77,7 @@ pub fn keep_places(state: &State, before: Value, path: &Path) -> Value {
     serde_json::to_value(kept).unwrap_or_default()
 }
 
-/// The lines that lead to the marks, the collapsed nodes and the cursor of this scene.
+/// The lines that lead to the marks, the collapsed nodes, the cursor and what is muted, solo or locked in this scene.
 fn lines_to(state: &State) -> Vec<String> {
     let address = |pointer: &str| address::address(state.document(), pointer);
     let way = |spot: &Spot| {
@@ -96,7 +96,10 @@ fn lines_to(state: &State) -> Vec<String> {
     let mark = |(letter, spot): (char, &Spot)| [way(spot), vec![format!("mark {letter}")]].concat();
     let marks = state.memory.finding.marks().flat_map(mark);
     let folds = state.cursor.collapsed.iter().map(|node| format!("collapse {}", address(node)));
-    let lines = marks.chain(way(&state.spot())).chain(folds);
+    let apart = &state.apart;
+    let apart = [("mute", &apart.muted), ("solo", &apart.solo), ("lock", &apart.locked)].into_iter();
+    let apart = apart.flat_map(|(name, set)| set.iter().map(move |pointer| format!("{name} {}", address(pointer))));
+    let lines = marks.chain(way(&state.spot())).chain(folds).chain(apart);
     lines.filter(|line| !line.contains(char::is_control)).collect()
 }
 

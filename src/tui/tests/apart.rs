@@ -90,7 +90,7 @@ fn what_is_muted_or_not_solo_is_hidden_here_and_in_the_window() {
 }
 
 #[test]
-fn what_is_drawn_is_compared_here_and_in_the_window() {
+pub fn what_is_drawn_is_compared_here_and_in_the_window() {
     let with_strokes = r#"{ "plica": 1, "size": [8, 6], "camera": { "position": [0, 0, 3] }, "meshes": { "m": { "path": "m.obj" } },
         "layers": [{ "kind": "mesh", "name": "m", "mesh": "m", "strokes": {} }] }"#;
     for (lines, expected, said) in [
@@ -117,4 +117,25 @@ fn what_is_drawn_is_compared_here_and_in_the_window() {
     for name in crate::scene::compared::names() {
         assert!(words("compare x").contains(name), "the command knows {name}");
     }
+}
+
+#[test]
+fn what_is_locked_is_not_changed_through_its_shapes() {
+    let mut state = state();
+    for line in ["go layers.face.zones.mouth.outline", "share k", "lock"] {
+        obey(&mut state, line, None).unwrap_or_else(|why| panic!("{line}: {why}"));
+    }
+    let why = obey(&mut state, "set shapes.k.nodes.0.at=[1,1]", None).unwrap_err();
+    assert!(why.contains("layers.face.zones.mouth is locked"), "{why}");
+    obey(&mut state, "lock none", None).unwrap();
+    obey(&mut state, "set shapes.k.nodes.0.at=[1,1]", None).unwrap();
+}
+
+#[test]
+fn what_is_muted_and_solo_says_that_it_is_not_shown() {
+    let mut state = state();
+    for line in ["mute layers.face.zones.mouth", "solo layers.face.zones.mouth"] {
+        obey(&mut state, line, None).unwrap_or_else(|why| panic!("{line}: {why}"));
+    }
+    assert!(said_last(&state).1.contains("but it is muted, so it is not shown: x shows it"), "{:?}", said_last(&state));
 }

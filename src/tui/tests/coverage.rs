@@ -19,6 +19,7 @@ const TABLES: &[fn()] = &[
     super::time_goes_by_frames,
     super::escape_ends_one_thing_after_the_other,
     super::apart::what_is_locked_is_not_edited,
+    super::apart::what_is_drawn_is_compared_here_and_in_the_window,
     super::macros::macros_play_what_was_asked_for,
     super::macros::the_last_change_is_repeated_here,
     super::counts::every_command_repeats_by_its_count_or_uses_it_or_refuses_it,

@@ -31,6 +31,9 @@ pub fn rows_and_nodes_are_made_anew() {
         (&format!("{PATH} j g h"), &format!("{nodes}/1/out"), json!([8, 6])),
         (&format!("{PATH} j v g h"), &format!("{nodes}/0"), json!({ "at": [10, 10] })),
         (&format!("{PATH} j v g h g H"), &format!("{nodes}/1/in"), json!([-10.666666667, -8])),
+        // The sides beside them stay as they are.
+        (&format!("{PATH} g h v j : \"resample 3\" Enter"), &format!("{nodes}/0/in"), json!([-8, 6])),
+        (&format!("{PATH} g h v j : \"resample 3\" Enter"), &format!("{nodes}/2/out"), json!([8, 6])),
         (&format!("{PATH} g h : \"handles none\" Enter"), &format!("{nodes}/2"), json!({ "at": [50, 40] })),
     ]);
     for (keys, part) in [
@@ -39,6 +42,8 @@ pub fn rows_and_nodes_are_made_anew() {
         (motion("g h"), "only nodes of paths and curves have handles"),
         (motion("V : \"resample 3\" Enter").replace("V", "t j t"), "only rows next to each other"),
         (format!("{POINTS} : \"thin 2\" Enter"), "at least 3"),
+        (format!("{PATH} : \"thin 9\" Enter"), "one of 4 would be left: thin 3 keeps the first and the last"),
+        (format!("{PATH} : \"select i==0\" Enter : \"resample 3\" Enter"), "select two or more"),
         (": \"go timeline\" Enter : \"thin 2\" Enter".into(), "only rows of a list"),
     ] {
         let mut state = state();

@@ -5,6 +5,7 @@ use serde_json::json;
 
 use super::support::{at, press, said_last, state};
 use super::{check, zone};
+use crate::tui::commands::obey;
 use crate::tui::state::State;
 
 const EYE: &str = ": \"go layers.0.zones.0.outline\" Enter";
@@ -17,12 +18,15 @@ pub fn outlines_and_curves_are_made_of_shapes_and_get_them_back() {
     let share = eye(": \"share lid\" Enter");
     let after = |keys: &str| format!("{share} {keys}");
     let corners = json!([{ "at": [10, 10] }, { "at": [50, 10] }, { "at": [50, 40] }, { "at": [10, 40] }]);
+    // It goes back to where it began, so that nothing is lost at its ends.
+    let ring =
+        json!([{ "at": [10, 10] }, { "at": [50, 10] }, { "at": [50, 40] }, { "at": [10, 40] }, { "at": [10, 10] }]);
     let of_lid = json!({ "kind": "shapes", "parts": [{ "shape": "lid" }] });
     let both = json!({ "kind": "shapes", "parts": [{ "shape": "lid" }, { "shape": "lid rest" }] });
     let select =
         ": \"set layers.0.zones.0.outline.kind=path\" Enter : \"go layers.0.zones.0.outline.nodes\" Enter j v j";
     check(&[
-        (&share, "/shapes/lid/nodes", corners.clone()),
+        (&share, "/shapes/lid/nodes", ring.clone()),
         (&share, &zone("/outline"), of_lid.clone()),
         (&after("u"), "/shapes", json!(null)),
         (&after("u"), &zone("/outline/kind"), json!("polygon")),
@@ -36,7 +40,7 @@ pub fn outlines_and_curves_are_made_of_shapes_and_get_them_back() {
         (&after(": \"go shapes.lid\" Enter : \"move 1 0\" Enter"), "/shapes/lid/nodes/2", json!({ "at": [51, 40] })),
         (&after(": \"go shapes.lid.nodes\" Enter + +"), "/shapes/lid/nodes/0", json!({ "at": [12, 10] })),
         (&after(": \"go shapes.lid\" Enter : \"rename top\" Enter"), &zone("/outline/parts/0/shape"), json!("top")),
-        (&after(": \"go shapes.lid\" Enter d"), "/shapes/lid/nodes", corners.clone()),
+        (&after(": \"go shapes.lid\" Enter d"), "/shapes/lid/nodes", ring.clone()),
         (
             &eye(&format!("{select} : \"share lid\" Enter")),
             "/shapes/lid/nodes",
@@ -48,9 +52,21 @@ pub fn outlines_and_curves_are_made_of_shapes_and_get_them_back() {
             json!([{ "at": [50, 40] }, { "at": [10, 40] }, { "at": [10, 10] }, { "at": [50, 10] }]),
         ),
         (&eye(&format!("{select} : \"share lid\" Enter")), &zone("/outline"), both),
+        (&eye(&format!("{select} V : \"share lid\" Enter")), "/shapes/lid/nodes", ring.clone()),
+        // The first node is next to the last.
+        (
+            &eye(&format!("{select} Esc : \"select i==0 or i==3\" Enter : \"share ends\" Enter")),
+            "/shapes/ends/nodes",
+            json!([{ "at": [10, 40] }, { "at": [10, 10] }]),
+        ),
+        (
+            &after(&format!("{MOUTH} : \"share low\" Enter : \"unshare\" Enter : \"use lid low reverse\" Enter")),
+            "/layers/0/zones/1/outline/parts",
+            json!([{ "shape": "lid" }, { "shape": "low", "reverse": true }]),
+        ),
         (&format!("{CURVE} : \"share line\" Enter"), &zone("/motion/0/nodes"), json!("line")),
         (&format!("{share} {CURVE} : \"use lid\" Enter"), &zone("/motion/0/nodes"), json!("lid")),
-        (&format!("{share} {CURVE} : \"use lid\" Enter : \"unshare\" Enter"), &zone("/motion/0/nodes"), corners),
+        (&format!("{share} {CURVE} : \"use lid\" Enter : \"unshare\" Enter"), &zone("/motion/0/nodes"), ring),
         (": \"go shapes\" Enter g t o", "/shapes/shape/nodes", json!([{ "at": [11, 26] }, { "at": [51, 26] }])),
     ]);
 }
@@ -58,15 +74,28 @@ pub fn outlines_and_curves_are_made_of_shapes_and_get_them_back() {
 #[test]
 fn what_is_no_line_or_no_shape_says_so() {
     for (keys, part) in [
-        (": \"share a\" Enter".to_owned(), "\"a\" is a shape now"),
+        (": \"share a\" Enter".to_owned(), "left eye\".outline is made of the shape \"a\" now"),
         (": \"go timeline\" Enter : \"share a\" Enter".into(), "go to an outline, a fold region or a curve first"),
         (format!("{EYE} : \"share\" Enter"), "share takes a name"),
         (format!("{EYE} : \"use lid\" Enter"), "there is no shape \"lid\" (share makes one)"),
         (format!("{EYE} : \"share lid\" Enter : \"use lidd\" Enter"), "did you mean \"lid\""),
         (format!("{EYE} : \"share lid\" Enter : \"share a\" Enter"), "made of shapes already: :unshare"),
         (format!("{EYE} : \"share lid\" Enter {MOUTH} : \"share lid\" Enter"), "there is already a shape \"lid\""),
+        (
+            format!("{EYE} : \"share lid\" Enter {MOUTH} : \"use lid reverse\" Enter"),
+            "mouth.outline is made of \"lid\" reversed",
+        ),
+        (format!("{EYE} : \"share lid\" Enter : \"use lid\" Enter"), "outline is made of \"lid\" too"),
+        (format!("{EYE} : \"share a b\" Enter"), "one with spaces in double quotes"),
+        (
+            format!("{CURVE} : \"go layers.0.zones.0.motion.0.nodes\" Enter v : \"share a\" Enter"),
+            "a curve is made of one shape as a whole",
+        ),
         (format!("{EYE} : \"unshare\" Enter"), "not made of shapes: :use"),
-        (format!("{EYE} : \"share lid\" Enter {CURVE} : \"use lid reverse\" Enter"), "from the beginning to the end"),
+        (
+            format!("{EYE} : \"share lid\" Enter {CURVE} : \"use lid reverse\" Enter"),
+            "a curve follows one shape, from its beginning to its end",
+        ),
         (format!("{EYE} : \"share lid\" Enter : \"go shapes.lid\" Enter d"), "lid is used by layers.face.zones"),
         (format!("{EYE} : \"share lid\" Enter : \"move 1 1\" Enter"), "made of shared shapes: move those"),
         (
@@ -98,4 +127,42 @@ fn an_edit_of_a_shape_moves_all_that_is_made_of_it() {
     press(&mut state, ": \"go layers.0.zones.0.outline\" Enter : \"unshare\" Enter");
     assert!(of_shapes(&state), "{:?}", state.document().warnings());
     assert_eq!(at(&state, "/shapes/lid/nodes/0/at"), json!([10, 10]));
+}
+
+/// What a path means does not change when it is shared, and comes back as it was.
+#[test]
+fn sharing_keeps_every_handle() {
+    let mut state = state();
+    let nodes = json!([
+        { "at": [10, 20], "in": [-4, 6], "out": [3, -9] },
+        { "at": [60, 22], "in": [-2, -8], "out": [5, 7] },
+        { "at": [40, 50], "in": [9, 1], "out": [-9, -1] }
+    ]);
+    let line = format!("set layers.0.zones.0.outline={}", json!({ "kind": "path", "nodes": nodes }));
+    obey(&mut state, &line, None).unwrap();
+    let outline = |state: &State| state.document().scene().layers[0].technique().bounds("/zones/0/outline");
+    let before = outline(&state);
+    for share in ["share edge", "share \"an edge\""] {
+        press(&mut state, EYE);
+        obey(&mut state, share, None).unwrap();
+        assert_eq!(outline(&state), before);
+        obey(&mut state, "unshare", None).unwrap();
+        assert_eq!(at(&state, &zone("/outline/nodes")), nodes, "{share}");
+        obey(&mut state, "undo 2", None).unwrap();
+    }
+}
+
+#[test]
+fn straight_lines_become_an_outline_together() {
+    let mut state = state();
+    press(&mut state, EYE);
+    for (name, x) in [("a", 1), ("b", 9)] {
+        let line = format!("set shapes.{name}={}", json!({ "nodes": [{ "at": [x, 1] }, { "at": [x, 20] }] }));
+        obey(&mut state, &line, None).unwrap();
+    }
+    let why = obey(&mut state, "use a", None).unwrap_err();
+    assert!(why.contains("an outline of several: :use a OTHER"), "{why}");
+    obey(&mut state, "use a b reverse", None).unwrap();
+    let parts = json!([{ "shape": "a" }, { "shape": "b", "reverse": true }]);
+    assert_eq!(at(&state, &zone("/outline/parts")), parts);
 }
