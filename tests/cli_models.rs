@@ -156,11 +156,12 @@ fn what_is_drawn_on_a_model_is_compared_side_by_side() {
     let folder = folder.path();
     plica(folder, &["new", "from/square.gltf", "-o", "s.plica.json"], true);
     plica(folder, &["set", "s.plica.json", "size=[40, 30]"], true);
-    let compared = |by: &str| ["render", "s.plica.json", "--compare", by, "--frames", "0", "-o", "beside.png"];
+    let compared = |by: &'static str| ["render", "s.plica.json", "--compare", by, "--frames", "0", "-o", "beside.png"];
     let (_, why) = plica(folder, &compared("anchor"), false);
     assert!(why.contains("no layer has strokes"), "{why}");
     plica(folder, &["style", "apply", "stipple", "s.plica.json"], true);
-    for (by, ways) in [("anchor", vec!["surface", "screen", "texture"]), ("style", vec!["hatching", "stipple"])] {
+    for (by, ways) in [("anchor", vec!["surface", "screen", "texture"]), ("style", vec!["hatching", "cross-hatching"])]
+    {
         plica(folder, &compared(by), true);
         let all = image::open(folder.join("beside.png")).unwrap().to_rgba8();
         assert_eq!(all.dimensions(), (40 * if by == "anchor" { 3 } else { 9 }, 30), "{by}");

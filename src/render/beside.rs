@@ -1,7 +1,7 @@
 //! Several ways of one scene side by side, as a single layer that the CPU draws.
 
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::reduce::reduced;
 use super::stage::{Group, Stage};
@@ -18,6 +18,8 @@ use crate::layers::ready::{Ready, Still};
 pub struct Beside {
     /// Their syntheses.
     pub ways: Vec<Synth>,
+    /// The last frame, with its time: whoever wants some of its pixels wants others next.
+    last: Arc<Mutex<Option<(f64, Arc<Linear>)>>>,
 }
 
 impl Beside {
@@ -26,18 +28,32 @@ impl Beside {
         let size = (ways.iter().map(|way| way.size.0).sum(), ways.first().map_or(0, |way| way.size.1));
         let stop = ways.iter().find_map(|way| way.stop.clone());
         let stage = Arc::new(Stage { groups: vec![Group::Plane(0)], ..Stage::default() });
-        Synth { size, layers: vec![Arc::new(Beside { ways })], stage, stop, kept: Kept::default() }
+        Synth { size, layers: vec![Beside::of(ways)], stage, stop, kept: Kept::default() }
+    }
+
+    fn of(ways: Vec<Synth>) -> Arc<dyn Ready> {
+        Arc::new(Beside { ways, last: Arc::default() })
     }
 
     fn each(&self, way: impl Fn(&Synth) -> Synth) -> Arc<dyn Ready> {
-        Arc::new(Beside { ways: self.ways.iter().map(way).collect() })
+        Beside::of(self.ways.iter().map(way).collect())
+    }
+
+    fn frame(&self, t: f64) -> Arc<Linear> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, frame)) = last.as_ref().filter(|(time, _)| *time == t) {
+            return frame.clone();
+        }
+        let frames: Vec<Linear> = self.ways.iter().map(|way| cpu::linear(way, t)).collect();
+        let frame = Arc::new(side_by_side(&frames));
+        *last = (!self.ways.iter().any(Synth::is_stopped)).then(|| (t, frame.clone()));
+        frame
     }
 }
 
 impl Ready for Beside {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
-        let frames: Vec<Linear> = self.ways.iter().map(|way| cpu::linear(way, moment.t)).collect();
-        Box::new(Frames(side_by_side(&frames)))
+        Box::new(Frames(self.frame(moment.t)))
     }
 
     fn plan(&self, _moment: &Moment) -> Plan {
@@ -48,8 +64,8 @@ impl Ready for Beside {
         Some(self.each(|way| way.stoppable(stop)))
     }
 
-    fn by_cpu(&self) -> bool {
-        true
+    fn by_cpu(&self) -> Option<&'static str> {
+        Some("several ways are compared")
     }
 
     fn takes_long(&self) -> bool {
@@ -70,7 +86,7 @@ impl Ready for Beside {
 }
 
 /// All ways at one time.
-struct Frames(Linear);
+struct Frames(Arc<Linear>);
 
 impl Still for Frames {
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {

@@ -16,7 +16,7 @@ use super::strokes::noise::Scene;
 use super::strokes::statistics::{correlation, percentile};
 use super::strokes::tone::threshold;
 use super::synth::Synth;
-use crate::base::maths::{TAU, cos, pow, sin};
+use crate::base::maths::{TAU, atan2, cos, pow, sin};
 use crate::base::mesh::{Mesh, Vertex};
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Moment;
@@ -222,7 +222,7 @@ fn waves_are_as_long_and_run_as_they_should() {
     let middle = (found[0].0 + found[1].0) / 2.0;
     let width = mean(found.iter().map(|(_, width)| *width));
     assert!((middle.length() * 16.0 - 1.0).abs() < 0.01, "{middle}");
-    assert!((middle.y.atan2(middle.x).to_degrees() - 45.0).abs() < 1.0, "{middle}");
+    assert!((atan2(middle.y, middle.x).to_degrees() - 45.0).abs() < 1.0, "{middle}");
     // The deviation of the frequencies of W: the root of the sum of W' squared over that of W squared, over 2 pi.
     let gauss = |x: f64| pow(std::f64::consts::E, -PI * x * x);
     let steps = (0..2000).map(|i| f64::from(i) / 1000.0 - 1.0);
