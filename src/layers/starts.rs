@@ -12,6 +12,8 @@ pub struct Template {
     pub of: List,
     /// The layer, called as what it shows.
     pub layer: fn(shown: &Shown) -> Value,
+    /// The background of a new scene on which it is seen best, if nothing else is in the scene.
+    pub ground: Option<&'static str>,
 }
 
 /// What a new layer shows.

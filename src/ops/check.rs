@@ -12,7 +12,7 @@ use crate::layers::parts::materials::Materials;
 use crate::render;
 use crate::scene::{Document, Scene, address};
 
-/// Find every problem in a scene
+/// Find every problem in a scene; warnings alone fail too, unless --lenient is given
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; - is standard input

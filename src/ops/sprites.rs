@@ -22,7 +22,7 @@ pub struct Args {
     #[arg(long, value_name = "LAYER")]
     layer: Option<String>,
     /// The folder for the pictures, sheet.png and sprites.json; created if missing
-    #[arg(short, long, value_name = "DIR", required_unless_present = "take", conflicts_with = "take")]
+    #[arg(short, long, value_name = "DIR", conflicts_with = "take")]
     output: Option<PathBuf>,
     /// Also write this many pictures between each two keys
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..100))]
@@ -43,6 +43,9 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     if args.take {
         set::refuse_input(&args.scene)?;
+    } else if args.output.is_none() {
+        let what = "sprites: name a folder for the pictures by -o DIR, or take the choice into the scene by --take";
+        return Err(Error::Usage(what.into()));
     }
     let read = Unloaded::read(&args.scene, &args.options, context)?;
     let mut place = None;

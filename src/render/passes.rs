@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::stage::{Group, Stage};
 use super::{Synth, cpu, whole};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
-use crate::base::problem::{nearest, quoted};
+use crate::base::problem::{like, nearest, quoted, there_are};
 use crate::layers::KINDS;
 use crate::layers::parts::moment::{Columns, Space};
 use crate::layers::parts::pass::{self, COLOR, Holds, OBJECT, PASSES, Pass, Which};
@@ -70,8 +70,10 @@ impl Asked {
     pub fn parse(text: &str, scene: &Scene) -> Result<Asked, String> {
         let (name, rest) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
         let pass = all().find(|pass| pass.name == name);
-        let shown: Vec<&str> = all().filter(|pass| is_shown(pass, None, scene)).map(|pass| pass.name).collect();
-        let known = || nearest(name, shown.iter().copied()).unwrap_or_default();
+        // A slip of a finger means any of them; else those are told that have something here.
+        let shown = || all().filter(|pass| is_shown(pass, None, scene)).map(|pass| pass.name);
+        let meant = like(name, all().map(|pass| pass.name)).map(|name| format!("did you mean {}?", quoted(name)));
+        let known = || meant.unwrap_or_else(|| there_are(shown()));
         let pass = pass.ok_or_else(|| format!("there is no pass {} ({})", quoted(name), known()))?;
         let known: BTreeSet<&str> = scene.layers.iter().flat_map(|layer| layer.technique().pass_names(pass)).collect();
         let of = rest.map(|rest| rest.split_once(':').map_or((rest, None), |(of, layer)| (of, Some(layer))));

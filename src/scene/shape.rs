@@ -159,7 +159,12 @@ impl Walk {
             let few = if min == max { "" } else { few };
             let wanted = format!("{few}{bound}");
             let items = if bound == 1 { "item" } else { "items" };
-            self.report(format!("expected {wanted} {items}, found {count}"), None);
+            let cure = match count {
+                0 if min > 0 => Some("add one".to_owned()),
+                _ if count > max && min < max => Some(format!("leave {} out", count - max)),
+                _ => None,
+            };
+            self.report(format!("expected {wanted} {items}, found {count}"), cure);
         }
         self.items(items, |walk, item| walk.value(shape, item));
     }

@@ -36,6 +36,8 @@ pub struct Start {
     meshes: BTreeMap<String, Arc<Mesh>>,
     /// Whether a layer is in space.
     in_space: bool,
+    /// What the only layer is seen best on.
+    ground: Option<&'static str>,
     /// See [`Start::fitted`].
     fitted: Option<String>,
 }
@@ -98,6 +100,7 @@ impl Start {
     /// As [`Start::document`].
     pub fn document_under(mut self, rules: Rules) -> Result<Document, Vec<Problem>> {
         let mut scene = Map::from_iter([("plica".to_owned(), VERSION.into())]);
+        scene.extend(self.ground.map(|ground| ("background".to_owned(), ground.into())));
         if self.in_space {
             scene.insert("camera".into(), camera(&self.meshes, self.frame.unwrap_or(FRAME)));
         }
@@ -132,6 +135,7 @@ impl Start {
         let fields = layer.as_object().into_iter().flatten().filter(|(name, value)| plain.get(name) != Some(*value));
         let fields: Map<String, Value> = fields.map(|(name, value)| (name.clone(), value.clone())).collect();
         self.fitted = (!fields.is_empty()).then(|| Value::Object(fields).to_string());
+        self.ground = template.ground.filter(|_| self.layers.is_empty());
         let name = unique_name(shown.name, |name| self.layers.iter().any(|other| other["name"] == name));
         layer["name"] = name.into();
         self.layers.push(layer);
@@ -201,6 +205,7 @@ mod tests {
         let document = Start::default().clip("falls", "falls/%04d.jpg", 3, None).document().unwrap();
         let expected = json!({
             "plica": 1,
+            "background": "#15191c",
             "camera": {},
             "clips": { "falls": { "path": "falls/%04d.jpg", "first": 3 } },
             "layers": [{ "kind": "waterfall", "name": "falls", "clip": "falls" }]
@@ -208,5 +213,7 @@ mod tests {
         assert_eq!(document.json(), &expected);
         let document = Start::default().picture("cat", "cat.png", (8, 6)).document().unwrap();
         assert_eq!(document.json().get("camera"), None);
+        let both = Start::default().picture("cat", "cat.png", (8, 6)).clip("falls", "falls/%04d.jpg", 3, None);
+        assert_eq!(both.document().unwrap().json().get("background"), None, "the picture is behind it");
     }
 }

@@ -76,7 +76,7 @@ pub static KIND: Kind = Kind {
     overlays: looks::OVERLAYS,
     passes: &[],
     looks: looks::LOOKS,
-    template: Some(Template { of: List::Images, layer: starts::template }),
+    template: Some(Template { of: List::Images, layer: starts::template, ground: None }),
     starts: Starts {
         start: starts::start,
         beyond: starts::beyond,

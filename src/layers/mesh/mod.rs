@@ -63,7 +63,7 @@ pub static KIND: Kind = Kind {
         surface::PASSES[2],
     ],
     looks: marks::LOOKS,
-    template: Some(Template { of: List::Meshes, layer: template }),
+    template: Some(Template { of: List::Meshes, layer: template, ground: None }),
     // A new mark needs no noise.
     starts: Starts { beyond: |_, list| (list == "marks").then(|| ("kind", "outline".into())), ..Starts::PLAIN },
     presets: &[],

@@ -7,7 +7,7 @@ use super::lines::{Line, lines, water};
 use super::look::Look;
 use super::model::{Node, WaterfallLayer};
 use super::sprites::cut::Sources;
-use super::sprites::model::{Pick, Shows, Sprites};
+use super::sprites::model::{Growth, Pick, Shows, Sprites};
 use super::sprites::{SIDE_STEP, bytes_of};
 use crate::base::budget::size;
 use crate::base::clip::Clip;
@@ -67,9 +67,25 @@ fn of_sprites(layer: &WaterfallLayer) -> Vec<Problem> {
     let bytes = bytes_of(sprites);
     if bytes > MOST_BYTES {
         let message = format!("keys of {} (limit {}): lower size, keys or growth.max", size(bytes), size(MOST_BYTES));
-        problems.push(Problem::error("/sprites", message));
+        problems.push(Problem::error("/sprites", message).hint(enough(sprites)));
     }
     problems
+}
+
+/// Which size alone, or which number of keys or of tracks that are chosen, takes no more memory than may be.
+fn enough(sprites: &Sprites) -> String {
+    let fits = |changed: &Sprites| bytes_of(changed) <= MOST_BYTES;
+    let sized = |side: u32| Sprites { size: side, ..sprites.clone() };
+    let keyed = |keys: u32| Sprites { keys, ..sprites.clone() };
+    let grown = |max: u32| Sprites { growth: Growth { max, ..sprites.growth.clone() }, ..sprites.clone() };
+    let sides = (SIDE_STEP..sprites.size).step_by(SIDE_STEP as usize).rev();
+    let all = [
+        ("size", sides.clone().find(|side| fits(&sized(*side)))),
+        ("keys", (1..sprites.keys).rev().find(|keys| fits(&keyed(*keys)))),
+        ("growth.max", (1..sprites.growth.max).rev().find(|max| fits(&grown(*max)))),
+    ];
+    let told = all.into_iter().filter_map(|(name, most)| Some(format!("{name} {}", most?))).collect::<Vec<_>>();
+    if told.is_empty() { "use fewer sheets and picks".to_owned() } else { format!("{} is enough", told.join(" or ")) }
 }
 
 fn of_look(look: &Look, path: &str) -> Vec<Problem> {
@@ -132,8 +148,13 @@ pub fn with_sources(layer: &WaterfallLayer, sources: &Sources) -> Vec<Problem> {
     for (i, (sheet, image)) in sprites.sheets.iter().zip(&sources.sheets).enumerate() {
         let (columns, rows) = (sheet.columns as usize, sheet.rows as usize);
         if (image.width(), image.height()) != (columns * side, rows * side) {
-            let (width, height) = (image.width() as f64 / columns as f64, image.height() as f64 / rows as f64);
-            let message = format!("cells of {width} x {height}; sprites.size is {side}");
+            let uneven = [(image.width(), columns, "columns"), (image.height(), rows, "rows")];
+            let uneven = uneven.into_iter().find(|(size, count, _)| size % count != 0);
+            let cells = format!("cells of {} x {}", image.width() / columns, image.height() / rows);
+            let message = match uneven {
+                Some((size, count, what)) => format!("{size} px do not divide by {count} {what}"),
+                None => format!("{cells}; sprites.size is {side}"),
+            };
             let hint = "give columns and rows as the image has them, or its size";
             problems.push(Problem::error(format!("/sprites/sheets/{i}"), message).hint(hint));
         }
@@ -182,7 +203,11 @@ fn of_pick(sprites: &Sprites, pick: &Pick, clip: &Clip) -> Vec<Problem> {
         } else {
             format!("frame {frame} passes the clip's end ({count})")
         };
-        problems.push(Problem::error("", what).hint("take an earlier frame"));
+        let hint = match count.checked_sub(frames) {
+            Some(last) => format!("the last that it can be is {last}"),
+            None => "track false makes it a single picture".to_owned(),
+        };
+        problems.push(Problem::error("", what).hint(hint));
     }
     problems
 }

@@ -166,7 +166,7 @@ impl Fall {
         let level = to * to - end.y * end.y;
         if to < 0.0 || level < 0.0 {
             let least = short(end.y.abs(), DECIMALS);
-            return Err(format!("it comes down at {least} m/s: its impact is at least that"));
+            return Err(format!("it comes down at {least} m/s: its impact is at least that (more, or lower vy)"));
         }
         let way = DVec2::new(end.x, end.z).try_normalize();
         let way = way.ok_or("it comes straight down: set vx or vz first")? * level.sqrt();

@@ -67,7 +67,7 @@ pub static KIND: Kind = Kind {
     overlays: marks::OVERLAYS,
     passes: &[passes::LINES, passes::SPRITES],
     looks: marks::LOOKS,
-    template: Some(Template { of: List::Clips, layer: template }),
+    template: Some(Template { of: List::Clips, layer: template, ground: Some(GROUND) }),
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: presets::PRESETS,
     styles: None,
@@ -180,6 +180,9 @@ impl Technique for WaterfallLayer {
         Ok(Arc::new(synth::Synth::new(self, making, previous)?))
     }
 }
+
+/// White water on transparent paper is not seen.
+const GROUND: &str = "#15191c";
 
 /// A fall of water from a clip; what is cut out of it fits into it, as far as that can be.
 fn template(shown: &Shown) -> Value {

@@ -118,15 +118,15 @@ fn go(state: &mut State, call: &Call) -> Done {
 /// Goes to the next place that matches, in the order of the document, continuing at its other end.
 fn search(state: &mut State, call: &Call) -> Done {
     let before = state.memory.finding.sought.clone();
-    match call.text {
-        "next" | "previous" => {}
-        text => state.memory.finding.sought = unquoted(text),
+    let again = matches!(call.text, "next" | "previous");
+    if !again {
+        state.memory.finding.sought = unquoted(call.text);
     }
     if state.memory.finding.sought.is_empty() {
         return Err("there was no search yet: / searches".into());
     }
     let steps = if call.text == "previous" { -call.times() } else { call.times() };
-    let Some(found) = find(state, steps) else {
+    let Some(found) = find(state, steps, !again) else {
         // A failed search changes nothing: n repeats the one before.
         let sought = std::mem::replace(&mut state.memory.finding.sought, before);
         return Err(format!("no name or value matches {sought}"));
@@ -146,13 +146,17 @@ struct Found {
     count: usize,
 }
 
-/// The match so many steps from the cursor.
-fn find(state: &mut State, steps: i64) -> Option<Found> {
+/// The match so many steps from the cursor; if `whole`, of those that are called just so, if there are any.
+fn find(state: &mut State, steps: i64, whole: bool) -> Option<Found> {
     let document = state.document().clone();
     let listed = state.memory.finding.listed(&document);
-    let sought = Sought::new(&state.memory.finding.sought);
+    let sought_text = state.memory.finding.sought.clone();
+    let sought = Sought::new(&sought_text);
     let matches = listed.iter().enumerate().filter_map(|(i, one)| Some((i, one.matched(&sought)?)));
-    let matches: Vec<(usize, usize)> = matches.collect();
+    let all: Vec<(usize, usize)> = matches.collect();
+    let is_called = |(i, _): &&(usize, usize)| listed[*i].pointer.rsplit('/').next() == Some(&sought_text);
+    let called: Vec<(usize, usize)> = all.iter().filter(is_called).copied().collect();
+    let matches = if whole && !called.is_empty() { &called } else { &all };
     let count = matches.len();
     let here = here(state);
     let at = listed.iter().position(|one| one.pointer == here);
@@ -163,7 +167,8 @@ fn find(state: &mut State, steps: i64) -> Option<Found> {
     let index = usize::try_from(index.checked_rem_euclid(count as i64)?).ok()?;
     let (i, part) = matches[index];
     let one = &listed[i];
-    Some(Found { pointer: one.pointer.clone(), address: one.address.clone(), part, index, count })
+    let index = all.partition_point(|(other, _)| *other < i);
+    Some(Found { pointer: one.pointer.clone(), address: one.address.clone(), part, index, count: all.len() })
 }
 
 /// What is under the cursor: the cell, else the row, else the node.
@@ -180,7 +185,7 @@ pub fn search_typed(state: &mut State, typed: &str) {
     let Some(origin) = state.memory.finding.origin.clone() else { return };
     state.return_to_origin(&origin);
     let before = std::mem::replace(&mut state.memory.finding.sought, typed.to_owned());
-    let found = if typed.is_empty() { None } else { find(state, 1) };
+    let found = if typed.is_empty() { None } else { find(state, 1, true) };
     state.memory.finding.sought = before;
     if let Some(found) = found {
         let mode = std::mem::replace(&mut state.typing.mode, Mode::Normal);

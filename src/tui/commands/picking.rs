@@ -69,6 +69,9 @@ fn show(state: &mut State) -> Done {
     state.show(format!("/layers/{layer}{}", picks.list));
     state.cursor.focus = Pane::Picture;
     state.settle();
+    if let Some(now) = state.picture.looking {
+        move_inside(state, now.side);
+    }
     go_to_pick(state);
     Ok(())
 }
@@ -169,7 +172,8 @@ fn tell_alone(state: &mut State, why: Option<String>) {
 /// Moves the cursor so that the square around it lies in the picture.
 fn move_inside(state: &mut State, side: f64) {
     let (width, height) = state.picture.size.unwrap_or_default();
-    let inside = |at: f64, size: usize| at.min(size as f64 - side / 2.0).max(side / 2.0);
+    // A whole number, as the square's pixels are.
+    let inside = |at: f64, size: usize| at.round().min(size as f64 - side / 2.0).max(side / 2.0);
     let Point { x, y } = state.picture.cursor;
     state.picture.cursor = Point::new(inside(x, width), inside(y, height));
     picture::settle(state);

@@ -64,6 +64,8 @@ fn placed(state: &State) -> Option<(String, Place, Point)> {
     let document = state.document();
     Pointer(&focused)
         .upward()
+        // The size of the frame is no place.
+        .filter(|pointer| !pointer.is_empty())
         .find_map(|pointer| place(document, pointer).map(|(place, at)| (pointer.to_string(), place, at)))
 }
 

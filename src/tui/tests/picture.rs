@@ -195,6 +195,7 @@ pub fn a_pass_is_shown_in_place_of_the_picture() {
         (": \"pass depth\" Enter : \"pass color\" Enter", "picture  x", None),
         (": \"pass dept\" Enter", "picture  x", Some("did you mean \"depth\"?")),
         (": \"pass uv:fce\" Enter", "picture  x", Some("did you mean \"face\"?")),
+        (": \"pass bogus\" Enter", "picture  x", Some("\"bogus\" (there is \"color\")")),
     ] {
         let mut state = opened((160, 48));
         press(&mut state, keys);

@@ -52,7 +52,7 @@ pub struct Growth {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pick {
-    /// The frame of its first key; 0 is the clip's first.
+    /// The frame of its first key; 0 is the clip's first. With track, (keys - 1) x step more frames follow it in the clip.
     #[schemars(extend("unit" = "frames"))]
     pub frame: u32,
     /// Its middle.
