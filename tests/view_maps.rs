@@ -10,6 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use plica::base::budget::Budget;
 use plica::base::maths::{TAU, cos, sin, tan};
 use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
@@ -362,4 +363,38 @@ fn cameras_are_drawn_with_their_names_and_how_far_the_selected_one_is_seen() {
     });
     let at = at.unwrap();
     assert!((18.0..30.0).contains(&at.x) && (22.0..34.0).contains(&at.y), "{at:?}");
+}
+
+#[test]
+fn what_there_is_no_memory_for_is_left_out_where_that_is_told() {
+    let surface = json!({ "directions": 8 });
+    let scene = changed(&scene(20.0, &json!({})), &surface);
+    let made = |bytes: u64, leaves_out: bool| {
+        let with = Materials { budget: Budget::new(bytes), leaves_out, ..materials() };
+        render::synth(&scene, &with, None)
+    };
+    let told = |synth: &Synth| synth.lacks().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+    let refused = made(1000, false).unwrap_err().to_string();
+    assert!(refused.contains("make the pictures of its views smaller, or give --limit memory="), "{refused}");
+    let nothing = made(1000, true).unwrap();
+    assert!(
+        told(&nothing).contains("are allowed: nothing of its views is shown (make the pictures"),
+        "{}",
+        told(&nothing)
+    );
+    assert_eq!(nothing.lacks()[0].path, "/layers/0/surface");
+    assert_eq!(*cpu::frame(&nothing, 0.0).get(30, 22), [0x80, 0x80, 0x80, 255], "missing");
+    // Enough to look with all views, and for exact directions.
+    let enough = (48 * 48 * 96 * rayon::current_num_threads() as u64).max(2_000_000);
+    assert!(made(enough, false).unwrap_err().to_string().contains("\"levels\": "), "what would fit");
+    let coat = made(enough, true).unwrap();
+    assert!(told(&coat).contains(": only its base coat is shown (\"levels\": "), "{}", told(&coat));
+    assert!(told(&coat).contains(" or no \"directions\" would fit, or give --limit memory="), "{}", told(&coat));
+    let exact = changed(&scene, &json!({ "directions": null }));
+    let expected = pass(&exact, "independent").cells().iter().map(|color| encode(*color)).collect::<Vec<_>>();
+    assert_eq!(cpu::frame(&coat, 0.0).cells(), expected);
+    assert_eq!(synth(&exact).lacks(), []);
+    // With enough memory again nothing is left out.
+    let again = render::synth(&exact, &materials(), Some(&coat)).unwrap();
+    assert!(again.lacks().is_empty() && cpu::frame(&again, 0.0) == cpu::frame(&synth(&exact), 0.0));
 }

@@ -102,17 +102,31 @@ impl Short {
         Problem::error(path, self.what()).hint(self.cure())
     }
 
+    /// The same; `smaller` is how to make it smaller.
+    pub fn problem_of(self, path: impl Into<String>, smaller: &str) -> Problem {
+        Problem::error(path, self.what()).hint(self.cure_or(smaller))
+    }
+
+    /// How many bytes are left.
+    pub fn left(&self) -> u64 {
+        self.most.saturating_sub(self.taken)
+    }
+
     fn what(self) -> String {
         let besides = if self.taken > 0 { format!(" besides {} in use", size(self.taken)) } else { String::new() };
         format!("needs {} of memory{besides}, and at most {} are allowed", size(self.wanted), size(self.most))
     }
 
     fn cure(self) -> String {
+        self.cure_or("make it smaller")
+    }
+
+    fn cure_or(self, smaller: &str) -> String {
         const MIB: u64 = 1 << 20;
         const GIB: u64 = 1 << 30;
         let enough = self.wanted.saturating_add(self.taken);
         let (unit, letter) = if enough < 4 * GIB { (MIB, 'M') } else { (GIB, 'G') };
-        format!("make it smaller, or give --limit memory={}{letter}", enough.div_ceil(unit))
+        format!("{smaller}, or give --limit memory={}{letter}", enough.div_ceil(unit))
     }
 }
 

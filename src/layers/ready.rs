@@ -101,6 +101,11 @@ pub trait Ready: Any + Debug + Send + Sync {
         None
     }
 
+    /// What it does not show, as there was too little memory for it; paths are relative to the layer.
+    fn lacks(&self) -> Option<Problem> {
+        None
+    }
+
     /// The width and height of a picture that lies on it, by its index; `None` if the picture does not count, or there is none.
     fn laid_px(&self, _picture: usize) -> Option<(usize, usize)> {
         None

@@ -57,6 +57,12 @@ impl Synth {
         self.stage.moment(t, self.size)
     }
 
+    /// What its layers do not show, as there was too little memory for it (`Materials::leaves_out`).
+    pub fn lacks(&self) -> Vec<Problem> {
+        let layers = self.layers.iter().enumerate();
+        layers.filter_map(|(i, layer)| Some(layer.lacks()?.under(&format!("/layers/{i}")))).collect()
+    }
+
     /// Whether it has strokes.
     pub fn has_strokes(&self) -> bool {
         self.layers.iter().any(|layer| layer.has_strokes())

@@ -12,6 +12,7 @@ use super::synth::Synth;
 use super::{around, marks, plan, probe, strokes};
 use crate::base::geometry;
 use crate::base::pixels::Linear;
+use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
@@ -52,6 +53,10 @@ impl Ready for Synth {
 
     fn guide(&self, picture: usize) -> Option<Linear> {
         self.surface.guide(picture)
+    }
+
+    fn lacks(&self) -> Option<Problem> {
+        self.surface.lacks().map(|problem| problem.under("/surface"))
     }
 
     fn laid_px(&self, picture: usize) -> Option<(usize, usize)> {

@@ -118,6 +118,11 @@ pub struct Materials {
     pub progress: Option<Arc<Progress>>,
     /// The memory that is left for what is made from them.
     pub budget: Budget,
+    /// Whether a layer for which there is too little of it shows what it can, and tells that ([`Ready::lacks`]); otherwise it
+    /// cannot be made.
+    ///
+    /// [`Ready::lacks`]: crate::layers::ready::Ready::lacks
+    pub leaves_out: bool,
 }
 
 impl Materials {

@@ -211,9 +211,10 @@ fn synthesise(
             let (mut materials, problems) = load(&scene, progress(READING, tell.clone()));
             send(Event::Work(Work { what: SYNTHESISING, percent: None }))?;
             materials.progress = Some(Arc::new(progress(SYNTHESISING, tell.clone())));
+            materials.leaves_out = true;
             Ok((how.synth(&scene, &materials, previous.as_ref()), problems))
         });
-        let (synth, problems) = match made {
+        let (synth, mut problems) = match made {
             Ok(made) => made?,
             Err(fault) => {
                 previous = None;
@@ -225,6 +226,7 @@ fn synthesise(
             Ok((scene, synth)) => {
                 previous = Some(synth.clone());
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
+                problems.extend(synth.lacks());
                 let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
                 send(Event::Ready(Ready { scene, synth, around, revision, synth_ms, problems }))?;
             }

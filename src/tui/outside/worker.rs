@@ -181,6 +181,7 @@ impl Studio {
     fn synthesise(&mut self, request: &Request) -> Result<(Arc<Synth>, Option<Problem>), Problem> {
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
+        materials.leaves_out = true;
         let previous = self.made.as_ref().map(|made| &*made.synth);
         let (shown, synth) = request.how.synth(&request.scene, &materials, previous).map_err(|problem| {
             // Why a picture could not be read says more than that it is missing.
@@ -192,7 +193,10 @@ impl Studio {
         self.made = Some(Made { scene, how, shown, synth: synth.clone(), materials });
         match problems.first() {
             Some(error) if error.severity == Severity::Error => Err(error.clone()),
-            warning => Ok((synth, warning.cloned())),
+            warning => {
+                let lacking = synth.lacks().into_iter().next();
+                Ok((synth, lacking.or_else(|| warning.cloned())))
+            }
         }
     }
 }

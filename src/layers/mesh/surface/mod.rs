@@ -176,6 +176,11 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
         None
     }
 
+    /// See `Ready::lacks`; paths are relative to the surface.
+    fn lacks(&self) -> Option<Problem> {
+        None
+    }
+
     /// See `Ready::laid_px`.
     fn laid_px(&self, _picture: usize) -> Option<(usize, usize)> {
         None

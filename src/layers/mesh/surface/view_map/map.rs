@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::atlas::{Atlas, By};
-use super::cells::Cells;
+use super::cells::{Cells, Layer};
 use super::coat::{Coat, coats};
 use super::entries::{Told, told};
 use super::id::Seen;
@@ -179,6 +179,13 @@ impl Map {
     /// The memory of what views see, in bytes.
     pub fn seen_bytes(&self) -> u64 {
         self.seen.iter().flatten().map(|seen| seen.bytes() as u64).sum()
+    }
+
+    /// The same without what depends on the direction, and what the base coat was made of: only that is left.
+    pub fn coat_alone(self) -> Map {
+        let empty = |layer: &Layer| Lists::new(layer.len(), None, &[]);
+        let lists = Arc::new(self.cells.layers.iter().map(empty).collect());
+        Map { lists, seen: vec![None; self.seen.len()], ..self }
     }
 
     /// Forgets what views see; it is found again when it is needed.

@@ -14,6 +14,7 @@ use crate::base::budget::Share;
 use crate::base::error::Result;
 use crate::base::number;
 use crate::base::pixels::Linear;
+use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::bundle::Sink;
@@ -34,6 +35,10 @@ pub struct Ready {
     pub points: Points,
     /// The memory of it all.
     pub kept: Arc<Share>,
+    /// How many directions there are to be along a side, if not exact ones.
+    pub side: Option<usize>,
+    /// What is not there, as there was too little memory for it.
+    pub lacks: Option<Problem>,
     /// What the camera of the view of this number sees, once that was asked for.
     pub seen: Arc<Mutex<Option<(usize, Arc<Linear>)>>>,
 }
@@ -61,7 +66,7 @@ impl Ready {
 
     /// Whether it is the map that is wanted, with arrays of so many directions a side.
     pub fn is_of(&self, wanted: &Wanted, side: Option<usize>) -> bool {
-        self.map.wanted.same(wanted) && self.arrays.as_ref().map(|arrays| arrays.side()) == side
+        self.map.wanted.same(wanted) && self.side == side
     }
 }
 
@@ -82,6 +87,10 @@ impl ReadySurface for Ready {
 
     fn guide(&self, view: usize) -> Option<Linear> {
         again::without(self.filled(), &self.points, view)
+    }
+
+    fn lacks(&self) -> Option<Problem> {
+        self.lacks.clone()
     }
 
     fn laid_px(&self, view: usize) -> Option<(usize, usize)> {

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use super::super::{Before, ReadySurface, Slot};
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
-use super::cells::Cells;
-use super::map::{Map, UNSEEN, Watch};
+use super::cells::{Cells, Layer};
+use super::map::{Map, UNSEEN, Wanted, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
 use super::report;
 use super::view::View;
 use super::wanted::{laid_flat, misfits, wanted};
 use super::{atlas, bundle, check, lay, warnings};
-use crate::base::budget::Short;
+use crate::base::budget::Share;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::bundle::Form;
@@ -83,36 +83,99 @@ impl Slot for ViewMap {
         if let Some(ready) = before.filter(|before| before.is_of(&wanted, side)) {
             return Ok(Arc::new(Ready { points, seen: Arc::default(), ..ready.clone() }));
         }
-        let pixels: Vec<u64> = wanted.views.iter().map(pixels).collect();
-        materials.expect(pixels.iter().sum());
-        // Each thread looks with one view at a time.
-        let looked = pixels.iter().max().copied().unwrap_or(0) * LOOKED_BYTES * rayon::current_num_threads() as u64;
-        let short = |short: Short| short.problem("");
-        let looking = materials.budget.try_take(looked).map_err(short)?;
-        let (stopped, stop) = (|| materials.stopped(), || Problem::error("", "stopped"));
-        let watch = Watch { stopped: &stopped, done: &|view| materials.made(pixels[view]) };
-        let mut map = Map::new(wanted, before.map(|before| &*before.map), &watch).ok_or_else(stop)?;
-        drop(looking);
-        let elements = side.map_or(0, |side| (map.cells.count() * side * side) as u64 * ELEMENT_BYTES);
-        let bytes = report::bytes((&map, None)) + elements;
-        let kept = materials.budget.try_take(bytes + map.seen_bytes()).or_else(|_| {
-            map.forget_seen();
-            materials.budget.try_take(bytes)
-        });
-        let kept = kept.map_err(short)?;
-        let arrays = side.map(|side| Arrays::new(&map, side, &stopped).ok_or_else(stop)).transpose()?;
-        Ok(Arc::new(Ready {
-            map: Arc::new(map),
-            arrays: arrays.map(Arc::new),
-            points,
-            kept: Arc::new(kept),
-            seen: Arc::default(),
-        }))
+        // What is left out is no beginning of what is not.
+        let before = before.filter(|before| before.lacks.is_none()).map(|before| &*before.map);
+        let filled = filled((wanted, side), before, materials)?;
+        Ok(Arc::new(Ready { points, side, ..filled }))
     }
 
     fn check_made(&self, made: &dyn ReadySurface) -> Vec<Problem> {
         made.downcast::<Ready>().map_or_else(Vec::new, |made| warnings::warnings(self, &made.map))
     }
+}
+
+/// A map filled, and its arrays of so many directions a side; without what there is no memory for, if that may be left out.
+fn filled(
+    (wanted, side): (Wanted, Option<usize>),
+    before: Option<&Map>,
+    materials: &Materials,
+) -> Result<Ready, Problem> {
+    let pixels: Vec<u64> = wanted.views.iter().map(pixels).collect();
+    materials.expect(pixels.iter().sum());
+    // Each thread looks with one view at a time.
+    let looked = pixels.iter().max().copied().unwrap_or(0) * LOOKED_BYTES * rayon::current_num_threads() as u64;
+    let (stopped, stop) = (|| materials.stopped(), || Problem::error("", "stopped"));
+    let watch = Watch { stopped: &stopped, done: &|view| materials.made(pixels[view]) };
+    let looking = match materials.budget.try_take(looked) {
+        Ok(looking) => looking,
+        Err(short) => {
+            let problem = short.problem_of("", "make the pictures of its views smaller");
+            let nothing = Wanted { views: Vec::new(), ..wanted };
+            let map = |watch: &Watch| Map::new(nothing, None, watch).ok_or_else(stop);
+            return left_out(problem, "nothing of its views is shown", materials, || map(&watch));
+        }
+    };
+    let mut map = Map::new(wanted, before, &watch).ok_or_else(stop)?;
+    drop(looking);
+    let bytes = bytes(&map, map.cells.layers.len(), side);
+    let kept = materials.budget.try_take(bytes + map.seen_bytes()).or_else(|_| {
+        map.forget_seen();
+        materials.budget.try_take(bytes)
+    });
+    let kept = match kept {
+        Ok(kept) => kept,
+        Err(short) => {
+            let problem = short.problem_of("", &smaller(&map, side, short.left()));
+            return left_out(problem, "only its base coat is shown", materials, || Ok(map.coat_alone()));
+        }
+    };
+    let arrays = side.map(|side| Arrays::new(&map, side, &stopped).ok_or_else(stop)).transpose()?;
+    Ok(ready(map, arrays, kept, None))
+}
+
+/// A map without what there is no memory for.
+///
+/// # Errors
+/// That problem, if nothing may be left out.
+fn left_out(
+    problem: Problem,
+    shown: &str,
+    materials: &Materials,
+    map: impl FnOnce() -> Result<Map, Problem>,
+) -> Result<Ready, Problem> {
+    if !materials.leaves_out {
+        return Err(problem);
+    }
+    let message = format!("{}: {shown}", problem.message);
+    Ok(ready(map()?, None, Share::default(), Some(Problem { message, ..problem })))
+}
+
+fn ready(map: Map, arrays: Option<Arrays>, kept: Share, lacks: Option<Problem>) -> Ready {
+    Ready {
+        map: Arc::new(map),
+        arrays: arrays.map(Arc::new),
+        points: Points::default(),
+        kept: Arc::new(kept),
+        side: None,
+        lacks,
+        seen: Arc::default(),
+    }
+}
+
+/// The memory of the first layers of a map, and of their arrays of so many directions a side.
+fn bytes(map: &Map, levels: usize, side: Option<usize>) -> u64 {
+    let entries: usize = map.lists.iter().take(levels).map(|lists| lists.entries.len()).sum();
+    let cells: usize = map.cells.layers.iter().take(levels).map(Layer::len).sum();
+    entries as u64 * report::ENTRY_BYTES + side.map_or(0, |side| (cells * side * side) as u64 * ELEMENT_BYTES)
+}
+
+/// How a map that needs more than is left gets along with that: with fewer layers, or without arrays.
+fn smaller(map: &Map, side: Option<usize>, left: u64) -> String {
+    let levels = map.cells.layers.len();
+    let fewer = (1..levels).rev().find(|levels| bytes(map, *levels, side) <= left);
+    let exact = side.filter(|_| bytes(map, levels, None) <= left).map(|_| "no \"directions\"".to_owned());
+    let all: Vec<String> = fewer.map(|fewer| format!("\"levels\": {fewer}")).into_iter().chain(exact).collect();
+    if all.is_empty() { "make \"cells\" smaller".into() } else { format!("{} would fit", all.join(" or ")) }
 }
 
 fn pixels(view: &View) -> u64 {
