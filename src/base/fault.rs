@@ -17,7 +17,7 @@ pub fn told(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason is known");
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    format!("a fault of its own: {line} (the log tells more)")
+    format!("a fault of its own: {line} (see the log)")
 }
 
 #[cfg(test)]
@@ -28,8 +28,8 @@ mod tests {
     fn a_panic_is_a_line() {
         assert_eq!(caught(|| 5), Ok(5));
         let of = |work: fn()| caught(work).unwrap_err();
-        assert_eq!(of(|| panic!("two\n  lines")), "a fault of its own: two lines (the log tells more)");
-        assert_eq!(of(|| panic!("number {}", 7)), "a fault of its own: number 7 (the log tells more)");
+        assert_eq!(of(|| panic!("two\n  lines")), "a fault of its own: two lines (see the log)");
+        assert_eq!(of(|| panic!("number {}", 7)), "a fault of its own: number 7 (see the log)");
         assert!(of(|| std::panic::panic_any(7)).contains("no reason is known"));
     }
 }

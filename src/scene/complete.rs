@@ -1,5 +1,8 @@
 //! Completion of addresses, for people who type them.
 
+use serde_json::Value;
+
+use super::field::Kind;
 use super::{Document, address, field};
 use crate::base::pointer::Pointer;
 
@@ -23,6 +26,24 @@ pub fn paths(document: &Document, typed: &str) -> Vec<String> {
     };
     let begins = |name: &String| name.trim_start_matches('"').starts_with(last.trim_start_matches('"'));
     children.into_iter().map(name).filter(begins).map(|name| format!("{parent}{name}")).collect()
+}
+
+/// The values that what is typed as `PATH=VALUE` may end with, if there are only some.
+pub fn values(document: &Document, typed: &str) -> Vec<String> {
+    let Some((path, value)) = typed.split_once('=') else { return Vec::new() };
+    let pointer = address::resolve_all(document, path).ok().and_then(|all| all.into_iter().next());
+    let kind = pointer.and_then(|pointer| field::field(document, &pointer)).map(|field| field.kind);
+    let known: Vec<String> = match kind {
+        Some(Kind::Choice(words)) => words.into_iter().map(|word| word.name.to_owned()).collect(),
+        Some(Kind::Reference(list)) => match document.json().get(list) {
+            Some(Value::Object(named)) => named.keys().cloned().collect(),
+            Some(Value::Array(items)) => items.iter().filter_map(|item| field::name_of(Some(item))).collect(),
+            _ => Vec::new(),
+        },
+        Some(Kind::Bool) => vec!["true".into(), "false".into()],
+        _ => Vec::new(),
+    };
+    known.into_iter().filter(|name| name.starts_with(value)).collect()
 }
 
 /// The places directly below a place, also those that stand there though they are not written.

@@ -147,7 +147,7 @@ fn whole(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(K
 fn kind(start: &[u8], place: &str) -> Result<Kind> {
     const READ: &str = "Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf)";
     if start.is_empty() {
-        return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it anew"));
+        return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it again"));
     }
     let name = place.to_ascii_lowercase();
     if start.starts_with(b"glTF") {

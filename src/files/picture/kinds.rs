@@ -98,7 +98,7 @@ const BRANDS: &[(&[u8], Foreign)] =
 /// The kind of the file that begins with `start`.
 pub(super) fn kind(start: &[u8], file: &mut File, place: &str) -> Result<Kind> {
     if start.is_empty() {
-        return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it anew"));
+        return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it again"));
     }
     if let Some(found) = unread(start) {
         return Err(convert(place, found));

@@ -1,6 +1,7 @@
 //! Saving, opening, leaving, the window, and other programs.
 
 use super::command::{Call, Command, Done, command};
+use super::picture::switch;
 use crate::base::problem::quoted;
 use crate::files::paths;
 use crate::preview::keys as window;
@@ -83,8 +84,12 @@ fn view(state: &mut State, call: &Call) -> Done {
         name if known(name) => {
             // A switch is told as what it is set to here.
             call.steps().for_each(|_| {
-                let told = state.picture.switches.take(name).unwrap_or_else(|| name.to_owned());
-                state.ask(Effect::View(Some(told)));
+                let told = switch(state, name);
+                if let Some(on) = told.as_deref().and_then(|told| told.strip_prefix(name)) {
+                    let row = window::KEYS.iter().find(|row| row.command == name);
+                    state.say(format!("{}:{on}", row.map_or(name, |row| row.help)));
+                }
+                state.ask(Effect::View(Some(told.unwrap_or_else(|| name.to_owned()))));
             });
         }
         name => return Err(format!("the window has no command {}", quoted(name))),

@@ -124,9 +124,20 @@ fn pass(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
+/// Takes a command that turns something on or off, or over, here; returns it as it is told to windows, if it is one.
+pub fn switch(state: &mut State, command: &str) -> Option<String> {
+    let told = state.picture.switches.take(command)?;
+    match told.split_once(' ') {
+        Some((name, "off")) => drop(state.picture.off.insert(name.to_owned())),
+        Some((name, _)) => drop(state.picture.off.remove(name)),
+        None => {}
+    }
+    Some(told)
+}
+
 /// Shows here what a window was told to show.
 pub fn follow_window(state: &mut State, command: &str) {
-    state.picture.switches.take(command);
+    switch(state, command);
     // The window's scene may be a step behind, and have other layers.
     if let Some(pass) = views::pass_in(command)
         && let Ok(asked) = pass.map(|pass| Asked::parse(&pass, state.document().scene())).transpose()

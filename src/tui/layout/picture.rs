@@ -58,7 +58,8 @@ pub fn settle(state: &mut State) {
 /// Which overlays of the document are drawn over the picture, and what is selected.
 pub fn overlays(state: &State) -> View {
     let selection = Some(state.focused());
-    let of_document = overlay::overlays().filter(|overlay| overlay.when == When::Document);
+    let is_shown = |overlay: &&Overlay| overlay.when == When::Document && !state.picture.off.contains(overlay.name);
+    let of_document = overlay::overlays().filter(is_shown);
     View { shown: of_document.map(|overlay| overlay.name).collect(), selection, ..View::default() }
 }
 

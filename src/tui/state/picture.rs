@@ -1,5 +1,6 @@
 //! The picture: which part of it is visible, and what the worker has made of the scene.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
@@ -29,8 +30,10 @@ pub struct Picture {
     pub looking: Option<Looking>,
     /// How one paints on a mesh, in the layout for that.
     pub painting: Option<Painting>,
-    /// Which overlays are shown here and in the windows. Those of the document alone are always shown here.
+    /// Which overlays are shown here and in the windows. Those of the document alone are shown here until they are turned off.
     pub switches: Switches,
+    /// Those of the document that were.
+    pub off: BTreeSet<String>,
     /// How pictures are sent to the terminal.
     pub graphics: Graphics,
     /// The picture that the worker made last.
@@ -66,6 +69,7 @@ impl Picture {
             looking: None,
             painting: None,
             switches: Switches::default(),
+            off: BTreeSet::new(),
             graphics: Graphics::default(),
             latest: None,
             frame_ms: None,

@@ -124,7 +124,7 @@ fn the_empty_last_line_tells_the_keys_of_the_pane() {
     for (keys, part) in [
         ("", "Enter edit   o add   d delete"),
         (MOTION, "Enter edit   o add"),
-        ("g i", "a add   r move   s aim"),
+        ("g i", "a add   r move   ? help"),
         ("/ \"radius\" Enter i", "Enter take it   Tab next cell"),
         ("/ \"function\" Enter Enter", "Enter take it   j down"),
     ] {

@@ -14,7 +14,7 @@ use ratatui::style::Color;
 use serde_json::json;
 
 use super::screens::{STATES, changed, opened, screen, see};
-use super::support::{press, said, state, state_of};
+use super::support::{press, said, said_last, state, state_of};
 use crate::base::mesh::{Mesh, Vertex};
 use crate::layers::parts::marks::View;
 use crate::layers::parts::materials::Materials;
@@ -391,6 +391,7 @@ fn overlays_that_are_switched_on_are_in_the_picture() {
         let before = shown(&state);
         let told = press(&mut state, "z v");
         assert!(told.iter().any(|effect| matches!(effect, Effect::View(Some(view)) if view == "view-field on")));
+        state.message = None;
         see(&mut state);
         let arrows = shown(&state);
         match protocol {
@@ -423,5 +424,19 @@ fn the_edges_of_a_mesh_are_made_for_every_protocol() {
         let [plain, edges] = [shown(View::default()), shown(View::of(&["view-wires"]))];
         assert_eq!((plain.over.len(), edges.over.len()), (0, 5));
         assert_eq!(plain.frame != edges.frame, protocol == Protocol::Kitty, "half-blocks have them over the picture");
+    }
+}
+
+#[test]
+fn what_is_turned_off_in_windows_is_off_here_too() {
+    let mut state = state();
+    let shown = |state: &State| picture::overlays(state).shown.contains("view-outlines");
+    assert!(shown(&state), "at first");
+    for (keys, on, said) in
+        [("z o", true, "Zone outlines: on"), ("z o", false, "Zone outlines: off"), ("z o", true, "on")]
+    {
+        press(&mut state, keys);
+        assert_eq!(shown(&state), on, "{keys}");
+        assert!(said_last(&state).1.contains(said), "{:?}", said_last(&state));
     }
 }

@@ -49,7 +49,7 @@ fn file(bytes: &[u8]) -> File {
 fn what_is_no_mesh_says_what_it_is() {
     const READ: &str = "(Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf))";
     const EXPORT: &str = "(export it as .glb or .obj, with Blender for example)";
-    const COPY: &str = "(copy it again from where it came, or export it anew)";
+    const COPY: &str = "(copy it again from where it came, or export it again)";
     for (name, bytes, expected) in [
         ("a.obj", &b"\x89PNG\r\n\x1a\n"[..], format!("is a PNG picture, not a mesh {READ}")),
         ("a.glb", b"\xff\xd8\xff\xe0", format!("is a JPEG picture, not a mesh {READ}")),
