@@ -399,3 +399,20 @@ impl<'a> Renderer<'a> {
         cpu::finish(&scale::resize(picture, self.size))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::budget::Budget;
+
+    #[test]
+    fn a_frame_that_is_too_large_is_a_problem_before_it_is_made() {
+        let scene: Scene = serde_json::from_str(r#"{ "plica": 1, "size": [1000, 500], "layers": [] }"#).unwrap();
+        for (most, fits) in [(1 << 30, true), (1 << 20, false)] {
+            let materials = Materials { budget: Budget::new(most), ..Materials::default() };
+            let found = room(&scene, &materials);
+            assert_eq!(found.as_ref().err().map(|short| short.path.as_str()), (!fits).then_some("/size"), "{most}");
+            assert_eq!(materials.budget.taken() > 0, fits, "it is taken while it is kept");
+        }
+    }
+}

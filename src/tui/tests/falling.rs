@@ -41,6 +41,22 @@ fn columns(state: &State, row: usize) -> Vec<(String, String)> {
 }
 
 #[test]
+fn a_whole_name_is_found_first_and_what_is_no_place_stays() {
+    let mut state = falling(json!({}));
+    state.show("");
+    state.cursor.focus = Pane::Tree;
+    press(&mut state, "/ \"lip\" Enter");
+    assert_eq!(state.cursor.node, "/layers/0/lip");
+    press(&mut state, "n");
+    assert!(!said_last(&state).0, "then all others: {:?}", said_last(&state));
+    state.show("/clips");
+    let before = state.document().json().clone();
+    press(&mut state, "g i r");
+    assert!(said_last(&state).0 && said_last(&state).1.contains("has no place"), "{:?}", said_last(&state));
+    assert_eq!(state.document().json(), &before);
+}
+
+#[test]
 fn a_lip_that_is_not_written_begins_as_what_stands_for_it() {
     let layer = json!({ "kind": "waterfall", "name": "falls", "clip": "w" });
     let clips = json!({ "w": { "path": "w-%04d.png" } });

@@ -99,6 +99,7 @@ fn what_would_leave_the_clip_is_picked_inside_it_or_as_a_single_picture() {
     for (keys, path, wanted, told) in [
         (": \"cursor at 0 0\" Enter a", "/1/at", json!([8, 8]), ""),
         (": \"cursor at 63 47\" Enter r", "/0/at", json!([56, 40]), ""),
+        (": \"cursor at 24.3 21.6\" Enter a", "/1/at", json!([24, 22]), ""),
         ("} a", "/1/track", json!(false), followed),
         ("3 [ 3 ] a", "/1/track", Value::Null, ""),
         ("} r", "/0/track", json!(false), followed),
