@@ -478,6 +478,23 @@ fn the_gpu_draws_strokes_as_the_cpu_does() {
 }
 
 #[test]
+fn samples_of_strokes_are_drawn_in_one_frame_and_left_to_the_cpu_beside_pictures() {
+    let Some(mut gpu) = gpu() else { return };
+    let mesh =
+        |name: &str, extra: Value| with(json!({"kind": "mesh", "name": name, "mesh": "ring", "sides": "both"}), &extra);
+    let drawn = mesh("drawn", json!({"strokes": {"style": "hatching"}, "pose": {"rotate": [55, 10, 0]}}));
+    let behind = mesh("behind", json!({"pose": {"position": [0.6, 0.3, -1.0]}}));
+    let materials = Materials { meshes: [("ring".to_owned(), Arc::new(ring()))].into(), ..materials() };
+    for (layers, left) in [([behind, drawn.clone()], false), ([layer("a", "own", &[]), drawn], true)] {
+        let scene = json!({"plica": 1, "size": [64, 48], "camera": {"position": [0, 0, 4], "target": [0, 0, 0]}, "layers": layers});
+        let samples = render::samples(&serde_json::from_value(scene).unwrap(), &materials, 2).unwrap();
+        assert_eq!(gpu.samples_by_cpu(&samples).is_some(), left);
+        let (by_gpu, by_cpu) = (cpu::finish(&gpu.mean(&samples, 0.3).unwrap()), cpu::frames(&samples, 0.3));
+        within("samples", &by_gpu, &by_cpu, 0.005);
+    }
+}
+
+#[test]
 fn a_gpu_that_cannot_compute_leaves_strokes_to_the_cpu_and_says_so() {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::GL;
@@ -490,14 +507,14 @@ fn a_gpu_that_cannot_compute_leaves_strokes_to_the_cpu_and_says_so() {
     }
 }
 
-/// A plane of so many squares on each side, so often behind itself.
+/// A plane of so many squares on each side, so often before itself: the last is what is seen.
 fn sheets(side: usize, count: usize) -> Mesh {
     let mut mesh = Mesh::default();
     for sheet in 0..count {
         let first = mesh.vertices.len() as u32;
         for i in 0..(side + 1) * (side + 1) {
             let at = DVec2::new((i % (side + 1)) as f64, (i / (side + 1)) as f64) / side as f64;
-            let position = DVec3::new(2.0 * at.x - 1.0, 2.0 * at.y - 1.0, -0.01 * sheet as f64);
+            let position = DVec3::new(2.0 * at.x - 1.0, 2.0 * at.y - 1.0, 0.01 * sheet as f64);
             mesh.vertices.push(Vertex { position, normal: DVec3::Z, uv: at });
         }
         let row = side as u32 + 1;
@@ -512,7 +529,7 @@ fn the_gpu_makes_impulses_of_many_pieces_and_more_of_them_than_there_was_room_fo
     let Some(mut gpu) = gpu() else { return };
     let mark = json!({"name": "m", "kind": "ink", "noise": "a", "from": 2, "to": 1, "amount": 0.5, "softness": 0});
     // More than 256 blocks of pieces; more impulses than there is room for at first.
-    for (mesh, size, spacing) in [(sheets(190, 1), [48, 36], 6.0), (sheets(4, 20), [128, 96], 2.0)] {
+    for (mesh, size, spacing) in [(sheets(190, 1), [48, 36], 6.0), (sheets(4, 12), [128, 96], 2.0)] {
         let noise = json!({"spacing": spacing, "overlap": 8, "regularity": 1, "direction": {"along": "axis"}});
         let scene = json!({"plica": 1, "size": size, "camera": {"position": [0.3, 0.2, 3], "target": [0, 0, 0], "fov": 30},
             "layers": [{"kind": "mesh", "name": "m", "mesh": "m",
@@ -520,7 +537,10 @@ fn the_gpu_makes_impulses_of_many_pieces_and_more_of_them_than_there_was_room_fo
         let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh))].into(), ..Materials::default() };
         let synth = render::synth(&serde_json::from_value(scene).unwrap(), &materials, None).unwrap();
         assert_eq!(gpu.by_cpu(&synth), None);
-        within(&format!("{size:?}"), &gpu.frame(&synth, 0.0).unwrap(), &cpu::frame(&synth, 0.0), 0.005);
+        let frame = gpu.frame(&synth, 0.0).unwrap();
+        within(&format!("{size:?}"), &frame, &cpu::frame(&synth, 0.0), 0.005);
+        let inked = frame.cells().iter().filter(|[r, _, _, a]| *r < 128 && *a > 0).count();
+        assert!((0.3..0.6).contains(&(inked as f64 / frame.cells().len() as f64)), "{inked}");
     }
 }
 

@@ -107,6 +107,17 @@ impl Synth {
         Synth { stage: Arc::new(stage), ..self.clone() }
     }
 
+    /// The same of a frame that is so many times larger on each side, with all samples of a pixel in pixels of their own; `None` if
+    /// something in it is of a fixed number of pixels: a layer in the frame, or sprites.
+    #[cfg(feature = "window")]
+    pub fn magnified(&self, by: u32) -> Option<Synth> {
+        let in_space = self.stage.groups.iter().all(|group| matches!(group, stage::Group::World(_)));
+        let fixed = !in_space || self.layers.iter().any(|layer| layer.has_sprites());
+        let stage = Stage { magnified: by, ..(*self.stage).clone() };
+        let size = (self.size.0 * by as usize, self.size.1 * by as usize);
+        (!fixed).then(|| Synth { size, stage: Arc::new(stage), ..self.clone() })
+    }
+
     /// The same with nothing that moves.
     pub fn unmoved(&self) -> Synth {
         let camera = self.stage.camera.as_ref().map(|camera| camera.unmoved());

@@ -17,6 +17,8 @@ pub struct Stage {
     pub groups: Vec<Group>,
     /// See [`Moment::left_out`].
     pub left_out: u32,
+    /// See [`Moment::magnified`].
+    pub magnified: u32,
 }
 
 /// Layers that are composed as one.
@@ -51,13 +53,13 @@ impl Stage {
             }
         }
         let background = color::parse(&scene.background).map_or([0.0; 4], decode);
-        Stage { background, camera: scene.camera.clone(), groups, left_out: 0 }
+        Stage { background, camera: scene.camera.clone(), groups, left_out: 0, magnified: 1 }
     }
 
     /// What a frame at scene time `t` depends on besides the layers.
     pub fn moment(&self, t: f64, size_px: (usize, usize)) -> Moment {
         let eye = self.camera.as_ref().map(|camera| camera.at(t, size_px));
-        Moment { t, size_px, eye, left_out: self.left_out, magnified: 1 }
+        Moment { t, size_px, eye, left_out: self.left_out, magnified: self.magnified }
     }
 
     /// The camera, if layers are seen by it.

@@ -13,7 +13,7 @@ use super::surface::{self, Place, Reader, StillSurface};
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
-use crate::layers::parts::moment::{CENTRE, Columns, Moment};
+use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::pass::{self, Pass, Which};
 use crate::layers::ready::{Still, Surfaces};
 use crate::layers::space::raster::{Hit, NONE, Raster};
@@ -117,8 +117,7 @@ impl<'a> Seen<'a> {
     /// The layer at one time.
     pub fn new(synth: &'a Synth, moment: &'a Moment) -> Self {
         let placed = synth.pose.at(synth.time(moment));
-        let place = if moment.magnified > 1 { CENTRE } else { synth.place };
-        let view = View::new(&synth.mesh, synth.sides, &placed, place, moment);
+        let view = View::new(&synth.mesh, synth.sides, &placed, synth.place(moment), moment);
         let light = (synth.light.toward(), synth.light.ambient);
         Seen { synth, moment, placed, view, light, surface: synth.surface.at(moment, &placed), alone: OnceLock::new() }
     }

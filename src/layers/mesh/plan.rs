@@ -114,7 +114,8 @@ fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color
     let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
     let focal = [2.0 * eye.focal_px / width, 2.0 * eye.focal_px / height];
     // A pixel is drawn at its centre; what is to be seen there is moved there.
-    let shift = [(1.0 - 2.0 * synth.place.x) / width, (2.0 * synth.place.y - 1.0) / height];
+    let place = synth.place(moment);
+    let shift = [(1.0 - 2.0 * place.x) / width, (2.0 * place.y - 1.0) / height];
     Uniform {
         eye_from_model: eye_from_model(eye, placed),
         world_from_normal: matrix(placed.turn, DVec3::ZERO),

@@ -340,16 +340,12 @@ impl<'a> Renderer<'a> {
             return Err(Error::at("--gpu", "this plica was built without the GPU").cure("leave --gpu out"));
         }
         #[cfg(feature = "window")]
-        // Samples of strokes come from one frame that is as many times larger, which only the CPU draws.
-        let gpu = match args.gpu && (strokes == 0 || args.samples == 1) {
+        let gpu = match args.gpu {
             true => Some(Box::new(crate::render::gpu::Gpu::new()?)),
             false => None,
         };
         #[cfg(feature = "window")]
-        let by_cpu = match &gpu {
-            Some(gpu) => first.and_then(|synth| gpu.by_cpu(synth)),
-            None => args.gpu.then(|| "strokes with several samples a pixel".to_owned()),
-        };
+        let by_cpu = gpu.as_ref().and_then(|gpu| gpu.samples_by_cpu(&samples));
         #[cfg(not(feature = "window"))]
         let by_cpu = None;
         Ok(Renderer {
@@ -377,11 +373,13 @@ impl<'a> Renderer<'a> {
     fn drawn(&mut self, time: f64, messages: &mut dyn Progress) -> Result<Frame> {
         #[cfg(feature = "window")]
         if let Some(gpu) = &mut self.gpu {
-            let frames = self.samples.iter().map(|synth| gpu.frame(synth, time)).collect::<Result<Vec<_>>>()?;
-            return Ok(match &frames[..] {
-                [frame] if (frame.width(), frame.height()) == self.size => frame.clone(),
-                frames => self.finish(&cpu::mean_of(frames.iter().map(Frame::to_linear))),
-            });
+            if let [synth] = &self.samples[..]
+                && synth.size == self.size
+            {
+                return gpu.frame(synth, time);
+            }
+            let mean = gpu.mean(&self.samples, time)?;
+            return Ok(self.finish(&mean));
         }
         if let Some(bands) = &self.bands {
             // A single frame of many samples takes as long as many frames.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::base::error::Result;
-use crate::base::pixels::{Frame, Grid};
+use crate::base::pixels::{Frame, Grid, Linear};
 use crate::base::progress::Progress;
 use crate::layers::parts::plan::{Plan, Upload};
 use crate::layers::ready::Ready;
@@ -144,12 +144,65 @@ impl Gpu {
         self.frame_once(synth, scene_time)
     }
 
+    /// Why the CPU draws in place of this GPU where these are all samples of a pixel, in a few words; `None` if it need not.
+    pub fn samples_by_cpu(&self, samples: &[Synth]) -> Option<String> {
+        let first = samples.first()?;
+        self.by_cpu(first).or_else(|| match Each::of(samples) {
+            Each::Magnified(large) if large.size.0.max(large.size.1) > self.device().max_side() => {
+                Some(format!("strokes with so many samples take frames of {} x {}", large.size.0, large.size.1))
+            }
+            Each::Apart => Some("strokes with several samples, with pictures or sprites beside them".to_owned()),
+            Each::Magnified(_) | Each::Alone => None,
+        })
+    }
+
+    /// The mean light of frames at `scene_time`, which are all samples of a pixel.
+    pub fn mean(&mut self, samples: &[Synth], scene_time: f64) -> Result<Linear> {
+        if self.samples_by_cpu(samples).is_some() {
+            return Ok(cpu::mean(samples, scene_time));
+        }
+        let Each::Magnified(large) = Each::of(samples) else {
+            let frames = samples.iter().map(|synth| self.frame(synth, scene_time)).collect::<Result<Vec<_>>>()?;
+            return Ok(cpu::mean_of(frames.iter().map(Frame::to_linear)));
+        };
+        let frame = self.frame(&large, scene_time)?;
+        let each = large.stage.magnified as usize;
+        let sample = |k: usize| {
+            let rows = (k / each..frame.height()).step_by(each).map(|y| frame.row(y));
+            let cells = rows.flat_map(|row| row[k % each..].iter().step_by(each).copied());
+            Frame::from_cells(frame.width() / each, frame.height() / each, cells.collect()).to_linear()
+        };
+        Ok(cpu::mean_of((0..samples.len()).map(sample)))
+    }
+
     fn frame_once(&mut self, synth: &Synth, scene_time: f64) -> Result<Frame> {
         let frame = self.texture(synth, scene_time)?;
         let encoded = self.parts.painter.encode(&self.parts.device, &frame)?;
         let read = read_back(&self.parts.device, &encoded);
         self.parts.device.take_uncaught()?;
         read
+    }
+}
+
+/// How samples of a pixel are drawn.
+enum Each {
+    /// Frame by frame.
+    Alone,
+    /// In one frame that is so much larger: strokes are the same in all of them.
+    Magnified(Synth),
+    /// Not at all: strokes would be others in each.
+    Apart,
+}
+
+impl Each {
+    fn of(samples: &[Synth]) -> Each {
+        let each_way = samples.len().isqrt() as u32;
+        match samples.first() {
+            Some(synth) if samples.len() > 1 && synth.has_strokes() => {
+                synth.magnified(each_way).map_or(Each::Apart, Each::Magnified)
+            }
+            _ => Each::Alone,
+        }
     }
 }
 
