@@ -19,7 +19,8 @@ use super::parts::pass::{Pass, Which};
 use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
-use super::parts::shots::{Painted, Taken};
+use super::parts::shots::{Painted, Put, Taken};
+use super::space::eye::Ray;
 use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
@@ -115,6 +116,15 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// frame.
     fn painted(&self, _picture: usize, _share: f64) -> Option<Painted> {
         None
+    }
+
+    /// What is put where a ray of the world meets the sphere of a picture that lies on it, by its index, at a scene time: the list
+    /// that it goes to, relative to the layer, or what is to be set where there is no such list yet; and its value.
+    ///
+    /// # Errors
+    /// Why there is nothing to put.
+    fn put_round(&self, _picture: usize, _put: Put, _ray: &Ray, _t: f64) -> Result<(String, Value), String> {
+        Err("no pictures lie on it".into())
     }
 
     /// The values with which the pictures that lie on it agree in brightness: their paths in the layer. `None` if it can

@@ -18,8 +18,9 @@ use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Under;
-use crate::layers::parts::shots::{Painted, Taken};
+use crate::layers::parts::shots::{Painted, Put, Taken};
 use crate::layers::ready::{Ready, Still};
+use crate::layers::space::eye::Ray;
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
@@ -65,6 +66,12 @@ impl Ready for Synth {
 
     fn painted(&self, picture: usize, share: f64) -> Option<Painted> {
         self.surface.painted(picture, share)
+    }
+
+    fn put_round(&self, picture: usize, put: Put, ray: &Ray, t: f64) -> Result<(String, Value), String> {
+        let placed = self.pose.at(if self.still { 0.0 } else { t });
+        let (path, value) = self.surface.put_round(picture, put, ray, &placed)?;
+        Ok((format!("/surface{path}"), value))
     }
 
     fn balanced(&self) -> Option<Vec<(String, Value)>> {

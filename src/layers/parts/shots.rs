@@ -96,6 +96,15 @@ pub struct Painted {
     pub marks: Vec<Mark>,
 }
 
+/// What is put round what the camera of a picture looks at, as far away from that as the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Put {
+    /// A point at which the picture is gone.
+    Extreme,
+    /// A place from which the picture is not seen.
+    Blend,
+}
+
 /// What is seen of a layer's model from a place.
 #[derive(Clone, Debug)]
 pub struct Taken {

@@ -1,6 +1,7 @@
 //! Which keys are in use.
 
 use crate::tui::keys;
+use crate::tui::state::painting::Sees;
 use crate::tui::state::{Mode, Pane, State, entry, looking};
 
 /// The contexts of the key table that apply, the innermost first.
@@ -23,7 +24,9 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
             vec![keys::PICKING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
         }
         (Mode::Normal, Pane::Picture) if state.picture.painting.is_some() => {
-            vec![keys::PAINTING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
+            let all = [keys::SELECTING, keys::PAINTING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE];
+            let selects = state.picture.painting.is_some_and(|painting| painting.sees == Sees::Select);
+            all[usize::from(!selects)..].to_vec()
         }
         (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],

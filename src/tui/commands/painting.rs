@@ -1,17 +1,32 @@
 //! The layout for painting on a mesh: results, painting and select, one at a time and large.
 
+use kurbo::Point;
+use serde_json::Value;
+
 use super::command::{Call, Command, Done, command};
+use super::items::go_to;
+use crate::layers::parts::shots::Put;
+use crate::scene::Edit;
 use crate::tui::layout::picture;
 use crate::tui::state::painting::{self, ALL, Painting, Sees};
 use crate::tui::state::{Pane, State};
 use crate::tui::text::plain;
 
-pub const COMMANDS: &[Command] = &[command(
-    "layout",
-    "paint|usual|results|painting|select|next|previous|more|less|orbit X Y",
-    "Show results, the painting and the cameras of views large, one after the other, or all panes as usual",
-    layout,
-)];
+pub const COMMANDS: &[Command] = &[
+    command(
+        "sphere",
+        "add|move|blend",
+        "In select, put an extreme point or a blend point where the cursor is, as far away as the selected view",
+        sphere,
+    )
+    .change(),
+    command(
+        "layout",
+        "paint|usual|results|painting|select|next|previous|more|less|orbit X Y",
+        "Show results, the painting and the cameras of views large, one after the other, or all panes as usual",
+        layout,
+    ),
+];
 
 /// How much more or less of a picture is shown by one step.
 const STEP: f64 = 0.125;
@@ -61,6 +76,48 @@ fn layout(state: &mut State, call: &Call) -> Done {
         state.say(format!("{} is shown once it is active and the picture is made", plain(&name)));
     }
     shown(state)
+}
+
+fn sphere(state: &mut State, call: &Call) -> Done {
+    let what = if call.text == "blend" { Put::Blend } else { Put::Extreme };
+    let (path, value) = painting::put(state, what)?;
+    let document = state.document();
+    let list = document.json().pointer(&path).and_then(Value::as_array).cloned();
+    if what == Put::Extreme && list.is_none() {
+        let edit = Edit::set(document, &path, value);
+        state.edit(edit, false)?;
+        state.say("its extremes are points now, where it was gone: r moves the selected one, a adds one");
+        go_to(state, &format!("{path}/points/0"));
+        return Ok(());
+    }
+    let list = list.unwrap_or_default();
+    let focused = state.focused();
+    let selected = focused.strip_prefix(&format!("{path}/")).and_then(|rest| rest.split('/').next()?.parse().ok());
+    let selected: Option<usize> = selected.filter(|index| *index < list.len());
+    let (edit, index) = match (call.text, selected) {
+        ("move", Some(index)) => (Edit::set(document, &format!("{path}/{index}"), value), index),
+        ("move", None) => return Err("no extreme point is selected: go to one, or a adds one".into()),
+        (_, after) => {
+            let index = if what == Put::Extreme { round(&list, &value) } else { after.map_or(list.len(), |at| at + 1) };
+            (Edit::insert(document, &path, index, value), index)
+        }
+    };
+    state.edit(edit, false)?;
+    go_to(state, &format!("{path}/{index}"));
+    Ok(())
+}
+
+/// Where a point comes into a list of points that goes round, so that it goes round as shortly as can be.
+fn round(list: &[Value], value: &Value) -> usize {
+    let at = |value: &Value| {
+        let number = |k: usize| value.get(k).and_then(Value::as_f64).unwrap_or_default();
+        Point::new(number(0), number(1))
+    };
+    let longer = |k: usize| {
+        let (from, to, new) = (at(&list[k]), at(&list[(k + 1) % list.len()]), at(value));
+        from.distance(new) + new.distance(to) - from.distance(to)
+    };
+    (0..list.len()).min_by(|a, b| longer(*a).total_cmp(&longer(*b))).map_or(0, |k| k + 1)
 }
 
 /// Shows what is to be seen now.

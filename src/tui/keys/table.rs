@@ -17,6 +17,8 @@ pub const PICKABLE: &str = "tree, on sprites";
 pub const PICKING: &str = "picking from a clip";
 /// The picture, in the layout for painting on a mesh.
 pub const PAINTING: &str = "picture, in the layout for painting";
+/// The picture, while the cameras of views are seen in that layout.
+pub const SELECTING: &str = "picture, in select";
 /// The picture with its cursor.
 pub const PICTURE: &str = "picture";
 /// The picture's cursor, also while it sets a jump vector or a landing.
@@ -247,6 +249,9 @@ const OWN: &[KeyRow] = &[
     row(PICKING, "z M", "clip cut", "Show what is cut out of the frame, over black, or the frame again"),
     row(PICKING, "z C", "clip sheet", "Show all that is cut out, tracks that hardly move framed, or the frame again"),
     row(PICKING, "Esc", "clip off", "Show the scene again"),
+    row(SELECTING, "a", "sphere add", "Add an extreme point of the selected view here, as far away as its camera"),
+    row(SELECTING, "r", "sphere move", "Move the selected extreme point here"),
+    row(SELECTING, "s", "sphere blend", "Add a blend point here, which looks where the view looks"),
     row(PAINTING, "Tab", "layout next", "From results to the painting, to select, and round"),
     row(PAINTING, "Shift-Tab", "layout previous", "The same the other way"),
     row(PAINTING, "z )", "layout more", "More of the picture that is painted on, less of what its camera sees"),

@@ -67,6 +67,17 @@ const HINTS: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
+        keys::SELECTING,
+        &[
+            ("sphere add", "extreme"),
+            ("sphere move", "move it"),
+            ("sphere blend", "blend"),
+            ("layout next", "next view"),
+            ("layout orbit 15 0", "round"),
+            ("layout usual", "all panes"),
+        ],
+    ),
+    (
         keys::PAINTING,
         &[
             ("layout next", "next view"),

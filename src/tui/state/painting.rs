@@ -1,12 +1,13 @@
 //! Painting on a mesh: which of its three views the picture's pane shows.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use kurbo::Point;
+use serde_json::Value;
 
 use super::State;
 use crate::base::geometry::farther;
 use crate::base::maths::{cos, sin};
-use crate::layers::parts::shots::SeenFrom;
+use crate::layers::parts::shots::{Put, SeenFrom};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{Ball, fit};
 use crate::tui::graphics::sight::Sight;
@@ -112,6 +113,23 @@ fn camera(state: &State, (right, lift): (f64, f64)) -> Option<Camera> {
     let back = turned * cos(angle) + up * sin(angle);
     let [position, target] = fit(&|ways| ball.reach(ways), [back, up], fov, synth.size)?;
     Some(Camera { position: position.into(), target: target.into(), up: up.into(), fov, ..Camera::default() })
+}
+
+/// What is put where the cursor is, on the sphere of the view that is selected: its list, or what is to be set, and its value.
+///
+/// # Errors
+/// Why there is nothing to put.
+pub fn put(state: &State, put: Put) -> Result<(String, Value), String> {
+    let Some(Sight::From(camera)) = sight(state) else {
+        return Err("this is put in select: :layout select shows it".into());
+    };
+    let (layer, index, _) = current(state).ok_or("no picture lies on a mesh")?;
+    let (size, synth) = state.picture.size.zip(state.picture.synth.as_ref()).ok_or("nothing is shown yet")?;
+    let Point { x, y } = state.picture.cursor;
+    let ray = camera.at(state.play.time, size).ray_in_world(DVec2::new(x, y));
+    let made = synth.layers.get(layer).ok_or("nothing is shown yet")?;
+    let (path, value) = made.put_round(index, put, &ray, state.play.time)?;
+    Ok((format!("/layers/{layer}{path}"), value))
 }
 
 /// The width and height of what the pane shows, if it is known and no clip.

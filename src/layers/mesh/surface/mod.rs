@@ -27,9 +27,10 @@ use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::plan::{Bind, Program};
 use crate::layers::parts::readout::Entry;
-use crate::layers::parts::shots::{Laid, Laying, Lying, Painted};
+use crate::layers::parts::shots::{Laid, Laying, Lying, Painted, Put};
 use crate::layers::parts::twin::Twin;
 use crate::layers::ready::Making;
+use crate::layers::space::eye::Ray;
 use crate::layers::space::raster::Hit;
 
 /// The passes that kinds of surface add.
@@ -189,6 +190,14 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     /// See `Ready::painted`; paths are relative to the layer.
     fn painted(&self, _picture: usize, _share: f64) -> Option<Painted> {
         None
+    }
+
+    /// See `Ready::put_round`; paths are relative to the surface.
+    ///
+    /// # Errors
+    /// Why there is nothing to put.
+    fn put_round(&self, _picture: usize, _put: Put, _ray: &Ray, _placed: &Placed) -> Result<(String, Value), String> {
+        Err("no pictures with cameras lie on it".into())
     }
 
     /// See `Ready::balanced`; paths are relative to the surface.

@@ -31,6 +31,7 @@ pub mod plan;
 pub mod probe;
 pub mod ready;
 pub mod report;
+pub mod round;
 pub mod sample;
 pub mod slot;
 #[cfg(test)]

@@ -9,9 +9,9 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked, base};
 use super::map::{Map, Wanted};
-use super::{again, bundle, marks, painted, passes, plan, probe, told, upload, view};
+use super::{again, bundle, marks, painted, passes, plan, probe, round, told, upload, view};
 use crate::base::budget::Share;
-use crate::base::error::Result;
+use crate::base::error::Error;
 use crate::base::number;
 use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
@@ -22,7 +22,8 @@ use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::pass::Pass;
 use crate::layers::parts::readout::Entry;
-use crate::layers::parts::shots::Painted;
+use crate::layers::parts::shots::{Painted, Put};
+use crate::layers::space::eye::Ray;
 
 /// A view map ready for any time.
 #[derive(Clone, Debug)]
@@ -102,6 +103,10 @@ impl ReadySurface for Ready {
         Some(painted::painted(view, &self.seen(view), share))
     }
 
+    fn put_round(&self, view: usize, put: Put, ray: &Ray, placed: &Placed) -> Result<(String, Value), String> {
+        round::put(&self.map, view, put, ray, placed)
+    }
+
     fn balanced(&self) -> Option<Vec<(String, Value)>> {
         let gains = told::balanced(&self.map).into_iter();
         let set = |(view, gain): (usize, [f64; 3])| {
@@ -114,7 +119,7 @@ impl ReadySurface for Ready {
         marks::marks(&self.map, &self.points, view, moment, placed)
     }
 
-    fn bundle(&self, layer: &str, to: &mut dyn Sink) -> Result<Option<Value>> {
+    fn bundle(&self, layer: &str, to: &mut dyn Sink) -> Result<Option<Value>, Error> {
         bundle::write(self.filled(), &self.points, layer, to).map(Some)
     }
 
