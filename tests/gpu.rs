@@ -242,10 +242,16 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
     KINDS.iter().map(example).collect()
 }
 
+/// The examples, and one of a view map, for what only that has.
+fn examples_of_all() -> Vec<(&'static str, Scene, Materials)> {
+    let (scene, materials) = with_views(json!({}), &json!({}), &vec![json!({}); 3]);
+    examples().into_iter().chain([("mesh", scene, materials)]).collect()
+}
+
 #[test]
-fn every_overlay_draws_something_over_the_example_of_its_technique() {
-    let mut nothing = Vec::new();
-    for (kind, scene, materials) in examples() {
+fn every_overlay_draws_something_over_an_example_of_its_technique() {
+    let (mut something, mut all) = (BTreeSet::new(), BTreeSet::new());
+    for (kind, scene, materials) in examples_of_all() {
         let synth = render::synth(&scene, &materials, None).unwrap();
         // From elsewhere, so that the scene's camera is seen too.
         let elsewhere = Camera { position: [2.5, -2.0, 2.5], target: [0.0; 3], ..Camera::default() };
@@ -254,30 +260,35 @@ fn every_overlay_draws_something_over_the_example_of_its_technique() {
         // Labels are texts at the marks of others.
         for overlay in overlays.filter(|overlay| overlay.name != "view-labels") {
             let view = View { spacing_px: 8.0, cell_px: 2.0, times: vec![0.4], ..View::of(&[overlay.name]) };
-            if render::overlay::overlay(&scene, Some(&synth), &view).is_empty() {
-                nothing.push(format!("{kind}: {}", overlay.name));
+            all.insert((kind, overlay.name));
+            if !render::overlay::overlay(&scene, Some(&synth), &view).is_empty() {
+                something.insert((kind, overlay.name));
             }
         }
         let all_off = View { times: vec![0.4], ..View::default() };
         assert!(render::overlay::overlay(&scene, Some(&synth), &all_off).is_empty(), "{kind}");
     }
+    let nothing: Vec<_> = all.difference(&something).collect();
     assert!(nothing.is_empty(), "nothing is drawn: {nothing:?}");
 }
 
 #[test]
 fn every_technique_with_textures_bundles_its_example() {
-    for (kind, scene, materials) in examples() {
-        let bundles = KINDS.iter().any(|row| row.name == kind && row.bundle.is_some());
+    let mut bundled = BTreeSet::new();
+    for (kind, scene, materials) in examples_of_all() {
         let folder = tempfile::tempdir().unwrap();
         let place = Guard::new(false).folder(&folder.path().join("textures"), &|_| true, BTreeSet::new()).unwrap();
         let synth = render::synth(&scene, &materials, None).unwrap();
         let written = textures::write(&scene, &synth, Depth::Float.into(), &place, &mut |_, _| Ok(())).unwrap();
-        let textures = written.names.iter().filter(|name| *name != "manifest.json").count();
-        assert_eq!(textures > 0, bundles, "{kind}: {:?}", written.names);
+        if written.names.iter().any(|name| name != "manifest.json") {
+            bundled.insert(kind);
+        }
         for name in &written.names {
             assert!(folder.path().join("textures").join(name).metadata().unwrap().len() > 0, "{kind}: {name}");
         }
     }
+    let expected = KINDS.iter().filter(|row| row.bundle.is_some()).map(|row| row.name).collect();
+    assert_eq!(bundled, expected);
 }
 
 #[test]
@@ -330,6 +341,11 @@ fn every_technique_answers_everything() {
 
 /// A ring with pictures on it, taken from around; `extra` goes over its surface, `views` over each of its views in turn.
 fn viewed(layer: Value, extra: &Value, views: &[Value]) -> Synth {
+    let (scene, materials) = with_views(layer, extra, views);
+    render::synth(&scene, &materials, None).unwrap()
+}
+
+fn with_views(layer: Value, extra: &Value, views: &[Value]) -> (Scene, Materials) {
     let view = |(i, own): (usize, &Value)| {
         let angle = i as f64 * TAU / 5.0;
         let at = [3.0 * maths::sin(angle), 1.0 + 0.4 * i as f64, 3.0 * maths::cos(angle)];
@@ -347,7 +363,7 @@ fn viewed(layer: Value, extra: &Value, views: &[Value]) -> Synth {
         pictures: pictures.collect(),
         ..Materials::default()
     };
-    render::synth(&serde_json::from_value(scene).unwrap(), &materials, None).unwrap()
+    (serde_json::from_value(scene).unwrap(), materials)
 }
 
 #[test]

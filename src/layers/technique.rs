@@ -196,6 +196,11 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
+    /// Whether the places at `path` are in the coordinates of the layer's model, not in those of the world.
+    fn is_in_model(&self, _path: &str) -> bool {
+        false
+    }
+
     /// What changes in the layer over the scene time, item by item.
     fn curves(&self, _wrap: Wrap) -> Vec<Curve<'_>> {
         Vec::new()

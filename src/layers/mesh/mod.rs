@@ -185,6 +185,10 @@ impl Technique for MeshLayer {
         ))
     }
 
+    fn is_in_model(&self, path: &str) -> bool {
+        path.starts_with("/surface/")
+    }
+
     fn bounds(&self, _path: &str) -> Rect {
         Rect::new(0.0, 0.0, 1.0, 1.0)
     }

@@ -55,7 +55,8 @@ fn take(state: &mut State, call: &Call) -> Done {
     write(state, call, rounded(standing(&own)), "the window's camera is the scene's now")
 }
 
-/// Sets the window's view, or that of the scene, as a key at the present time.
+/// Sets the window's view, or that of the scene, as a key at the present time. What the other keys do not name they get as it is at
+/// their times, since it would be that of the new key there.
 fn key(state: &mut State, call: &Call) -> Done {
     let time = state.play.time;
     let scene = state.document().scene().camera.clone();
@@ -71,8 +72,14 @@ fn key(state: &mut State, call: &Call) -> Done {
         target: Some(target.into()),
         fov: Some(fov),
     };
-    let others = scene.keys.iter().filter(|other| (other.at - time).abs() > SAME_TIME);
-    let mut keys: Vec<&camera::Key> = others.chain([&key]).collect();
+    let unturned = Camera { turn: 0.0, ..scene.clone() };
+    let whole = |other: &camera::Key| {
+        let ([position, target, _], fov) = unturned.view(other.at);
+        let (position, target) = (other.position.or(Some(position.into())), other.target.or(Some(target.into())));
+        camera::Key { at: other.at, position, target, fov: other.fov.or(Some(fov)) }
+    };
+    let others = scene.keys.iter().filter(|other| (other.at - time).abs() > SAME_TIME).map(whole);
+    let mut keys: Vec<camera::Key> = others.chain([key]).collect();
     keys.sort_by(|a, b| a.at.total_cmp(&b.at));
     let alone = if keys.len() == 1 { "; with one key the camera stands still" } else { "" };
     let keys = serde_json::to_value(keys).map_err(|error| error.to_string())?;

@@ -94,6 +94,9 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
 fn add(state: &mut State, call: &Call) -> Done {
     match call.path()? {
         None => add_here(state, call.times_of("add")?),
+        Some(_) if call.text.starts_with(['{', '[']) => {
+            Err("add takes the path of a file; a value is added by :set PATH.-=VALUE, as layers.-".into())
+        }
         Some(path) => add_file(state, &path.to_string_lossy()),
     }
 }
@@ -195,7 +198,8 @@ fn tell_added(state: &mut State, list: List, (name, path): (&str, &str), notes: 
     // Of a clip of numbered files, some are there.
     let found = place.exists() || list == List::Clips && name_of(path).contains('%');
     if !found {
-        return state.complain(plain(&format!("{path} is among the {map}, but there is no file {}", place.display())));
+        let missing = format!("{path} is among the {map}; there is no file {} yet", place.display());
+        return state.say(plain(&missing));
     }
     let unseen = state.document().scene().layers.is_empty();
     let next = if unseen { ": now add a layer that shows it (o on layers)" } else { "" };

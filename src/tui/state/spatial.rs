@@ -1,7 +1,7 @@
 //! Placing things in space with the picture's cursor, as the scene's camera sees them at the time that is shown: in the plane
 //! through what is selected that is parallel to the view. What has a place in space is read from the schema.
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use kurbo::Point;
 use serde_json::Value;
 
@@ -16,18 +16,24 @@ use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::text::numbers;
 
-/// The place of something in space: the field that has it, and where that is.
+/// The place of something in space: the field that has it, and where that is in the world.
 pub type Place = (String, DVec3);
 
-/// The place of what is at `pointer`; `None` if it has none in space.
-pub fn place(document: &Document, pointer: &str) -> Option<Place> {
+/// From the coordinates of what is at `pointer` to the world, at the time that is shown.
+fn to_world(state: &State, document: &Document, pointer: &str) -> DAffine3 {
+    let layer = field::layer_of(document, pointer).filter(|(layer, way)| layer.is_in_model(way));
+    layer.and_then(|(layer, _)| layer.model_to_world(state.play.time)).unwrap_or_default()
+}
+
+/// The place of what is at `pointer` in a document; `None` if it has none in space.
+pub fn place(state: &State, document: &Document, pointer: &str) -> Option<Place> {
     let (layer, _) = field::layer_of(document, pointer)?;
     let in_space = layer.kind().space == Space::World;
     let is_object = matches!(field::field(document, pointer)?.kind, Kind::Object | Kind::Tagged { .. });
     let children = if in_space && is_object { field::children(document, pointer) } else { Vec::new() };
     let child = children.into_iter().find(|child| is_place(&child.field))?;
     let at: [f64; 3] = serde_json::from_value(field::value(document, &child.pointer)?).ok()?;
-    Some((child.pointer, at.into()))
+    Some((child.pointer, to_world(state, document, pointer).transform_point3(at.into())))
 }
 
 fn is_place(field: &Field) -> bool {
@@ -38,7 +44,7 @@ fn is_place(field: &Field) -> bool {
 pub fn selected(state: &State) -> Option<(String, Place)> {
     let focused = state.focused();
     let mut upward = Pointer(&focused).upward();
-    upward.find_map(|pointer| Some((pointer.to_owned(), place(state.document(), pointer)?)))
+    upward.find_map(|pointer| Some((pointer.to_owned(), place(state, state.document(), pointer)?)))
 }
 
 /// Where the picture is seen from.
@@ -66,10 +72,11 @@ pub fn seen(state: &State, at: DVec3) -> Option<Point> {
 /// The edit that moves what is at `pointer` in `document` under the cursor: as far away as what is selected is, else as it is
 /// itself. `None` if it has no place in space, or is behind the camera.
 pub fn moved(state: &State, document: &Document, pointer: &str) -> Option<Edit> {
-    let (field, own) = place(document, pointer)?;
+    let (field, own) = place(state, document, pointer)?;
     let beside = selected(state).map_or(own, |(_, (_, at))| at);
     let depth = Some(-eye(state).ok()?.seen(beside).z).filter(|depth| *depth >= NEAR_M)?;
     let to = ray(state).ok()?.at_depth(depth);
+    let to = to_world(state, document, pointer).inverse().transform_point3(to);
     Some(Edit::set(document, &field, numbers::rounded(Value::from(to.to_array().to_vec()))))
 }
 

@@ -176,3 +176,19 @@ fn a_scene_in_space_opens_without_a_camera_and_gets_one_that_sees_it() {
     run(&mut state, "set camera={}");
     assert_eq!(state.document().scene().camera, Some(Camera::default()));
 }
+
+#[test]
+fn other_keys_show_what_they_showed() {
+    let keys = r#""keys": [{ "at": 0.2, "position": [3, 1, 4] }, { "at": 0.7, "position": [1, 2, 5], "fov": 20 }]"#;
+    let mut state = state_of(&SCENE.replace(r#""fov": 30"#, &format!(r#""fov": 30, {keys}"#)));
+    let views = |state: &State| [0.2, 0.7].map(|t| state.document().scene().camera.as_ref().unwrap().view(t));
+    let before = views(&state);
+    state.outside.window = "window".into();
+    update(&mut state, said(ToEditor::Camera(Some(own()))));
+    run(&mut state, "time 0.5");
+    assert_eq!(run(&mut state, "camera key"), "the camera has a key at 0.5");
+    assert_eq!(camera(&state)["keys"].as_array().map(Vec::len), Some(3));
+    for ((places, fov), (places_before, fov_before)) in views(&state).into_iter().zip(before) {
+        assert!(fov == fov_before && places.iter().zip(places_before).all(|(a, b)| a.distance(b) < 1e-6));
+    }
+}

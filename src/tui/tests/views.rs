@@ -7,6 +7,7 @@ use kurbo::Point;
 use serde_json::json;
 
 use super::support::{at, press, said};
+use crate::base::maths::tan;
 use crate::files::materials::{self, Cache};
 use crate::layers::parts::marks::Shape;
 use crate::layers::space::camera::Camera;
@@ -19,7 +20,7 @@ use crate::tui::graphics::TerminalPicture;
 use crate::tui::graphics::sight::Sight;
 use crate::tui::layout::{self, picture};
 use crate::tui::panes;
-use crate::tui::state::State;
+use crate::tui::state::{State, place};
 use crate::tui::text::color::Depth;
 
 const SCENE: &str = r##"{
@@ -208,4 +209,31 @@ pub fn one_paints_in_three_views() {
     press(&mut state, "Shift-Tab Shift-Tab Esc");
     assert_eq!((state.picture.size, state.picture.painting), (Some((24, 16)), None));
     assert!(run(&mut state, "layout twice").0.starts_with("layout takes "));
+}
+
+#[test]
+fn what_is_in_the_model_is_seen_and_moved_through_its_pose() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    run(&mut state, "views add flowers");
+    run(&mut state, "set camera.position=[0, 0, 8]");
+    show(&mut state);
+    state.picture.size = Some((24, 16));
+    let camera = "/layers/0/surface/views/5/camera";
+    run(&mut state, &format!("go {camera}"));
+    run(&mut state, "pane table");
+    // In the world it is on the way from the camera to the middle.
+    let middle = Point::new(12.0, 8.0);
+    let seen = place::selected(&state).unwrap();
+    assert!(seen.distance(middle) < 1e-9, "{seen:?}");
+    state.picture.cursor = middle;
+    run(&mut state, "place move");
+    assert_eq!(at(&state, &format!("{camera}/position")), json!([0, -0.5, 2]), "it stays where it is");
+    state.picture.cursor = Point::new(18.0, 8.0);
+    run(&mut state, "place move");
+    let moved = at(&state, &format!("{camera}/position"));
+    let x = moved[0].as_f64().unwrap();
+    // 6 px at 4 m, with a focal length of 8 px over the tangent of 20 degrees, and the model two times larger.
+    let expected = 6.0 * 4.0 * tan(20_f64.to_radians()) / 8.0 / 2.0;
+    assert!((x - expected).abs() < 1e-3 && moved[1] == json!(-0.5) && moved[2] == json!(2), "{moved} {expected}");
 }
