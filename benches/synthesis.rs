@@ -6,7 +6,7 @@ mod scenes;
 use divan::Bencher;
 use plica::layers::folding::field::{Field, Inputs};
 use plica::layers::parts::materials::Materials;
-use plica::layers::parts::moment::CENTRE;
+use plica::layers::parts::moment::CENTER;
 
 fn main() {
     divan::main();
@@ -60,6 +60,6 @@ fn edit_512x512_with_94_anchors_and_a_fold(bencher: Bencher, method: &str) {
 
 fn synthesis(bencher: Bencher, size: (usize, usize), anchors: usize, interpolation: &str) {
     let zone = scenes::zone(size, anchors, interpolation);
-    let inputs = Inputs::new(&zone, size, CENTRE);
+    let inputs = Inputs::new(&zone, size, CENTER);
     bencher.bench(|| Field::new(&inputs, &Materials::default()));
 }

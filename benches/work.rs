@@ -8,7 +8,7 @@ use bytemuck::cast_slice;
 use plica::base::error::{Error, Result};
 use plica::layers::Layer;
 use plica::layers::folding::field::{Field, Inputs};
-use plica::layers::parts::moment::CENTRE;
+use plica::layers::parts::moment::CENTER;
 use plica::ops::Context;
 use plica::ops::opened::Opened;
 use plica::ops::scene_options::SceneOptions;
@@ -65,5 +65,5 @@ fn inputs(opened: &Opened) -> Result<Inputs> {
         _ => None,
     });
     let (zone, picture) = zone.ok_or_else(|| Error::at(opened.path.display(), "has no zone"))?;
-    Ok(Inputs::new(zone, (picture.width(), picture.height()), CENTRE))
+    Ok(Inputs::new(zone, (picture.width(), picture.height()), CENTER))
 }

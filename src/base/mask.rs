@@ -14,7 +14,7 @@ pub fn bytes(own: &Picture, _mask: &Picture) -> u64 {
     own.width() as u64 * own.height() as u64 * each
 }
 
-/// The picture, seen as far as `mask` is bright; grey of code c lets c of 255 through, as a layer's mask does elsewhere.
+/// The picture, seen as far as `mask` is bright; gray of code c lets c of 255 through, as a layer's mask does elsewhere.
 pub fn by_brightness(own: &Picture, mask: &Picture) -> Picture {
     let (width, height) = (own.width(), own.height());
     let mut light: Vec<Rgba> = vec![[0.0; 4]; width];
@@ -22,7 +22,7 @@ pub fn by_brightness(own: &Picture, mask: &Picture) -> Picture {
     for y in 0..height {
         mask.row(0, y, &mut light);
         codes.extend(light.iter().map(|&[r, g, b, _]| {
-            // A grey is itself, to the bit; sums of the three would round it.
+            // A gray is itself, to the bit; sums of the three would round it.
             let y = if r == g && g == b { r } else { 0.2126 * r + 0.7152 * g + 0.0722 * b };
             encode([y, y, y, 1.0])[0]
         }));

@@ -325,7 +325,7 @@ impl Picture {
         true
     }
 
-    /// The bilinear read at image coordinates (x, y); the centre of pixel (i, j) is (i + 0.5, j + 0.5).
+    /// The bilinear read at image coordinates (x, y); the center of pixel (i, j) is (i + 0.5, j + 0.5).
     pub fn read(&self, x: f64, y: f64, beyond: Beyond) -> Rgba {
         with_texels!(self, texels => bilinear((self.width, self.height), (x, y), beyond, |i| texels.at(i)))
     }

@@ -92,7 +92,7 @@ pub enum Beyond {
     Transparent,
 }
 
-/// The bilinear read at image coordinates (x, y) of a picture of `size` whose pixel number i is `texel(i)`; the centre of
+/// The bilinear read at image coordinates (x, y) of a picture of `size` whose pixel number i is `texel(i)`; the center of
 /// pixel (i, j) is (i + 0.5, j + 0.5).
 #[inline]
 pub fn bilinear(

@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::parts::album::Album;
 use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
-use super::parts::moment::{CENTRE, Columns, Moment};
+use super::parts::moment::{CENTER, Columns, Moment};
 use super::parts::pass::{Pass, Which};
 use super::parts::picking::{Picking, Sight};
 use super::parts::plan::Plan;
@@ -39,18 +39,18 @@ pub struct Making<'a> {
     pub px_per_m: f64,
     /// The files that layers name.
     pub materials: &'a Materials,
-    /// The place in each pixel that is evaluated: its centre, or another for supersampling.
+    /// The place in each pixel that is evaluated: its center, or another for supersampling.
     pub place: Vec2,
     /// The layers that others show as textures, by name.
     pub textures: &'a Textures,
 }
 
 impl<'a> Making<'a> {
-    /// At the centre of each pixel, without layers as textures; the timeline is as long as one that is not set.
+    /// At the center of each pixel, without layers as textures; the timeline is as long as one that is not set.
     pub fn plain(wrap: Wrap, materials: &'a Materials) -> Self {
         static NONE: Textures = Textures::new();
         let duration = Timeline::default().duration;
-        Making { wrap, duration, size_px: (0, 0), px_per_m: 1.0, materials, place: CENTRE, textures: &NONE }
+        Making { wrap, duration, size_px: (0, 0), px_per_m: 1.0, materials, place: CENTER, textures: &NONE }
     }
 }
 
@@ -60,7 +60,7 @@ pub type Textures = BTreeMap<String, Texture>;
 /// A layer that others show as a texture.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// The layer, at the centres of its pixels.
+    /// The layer, at the centers of its pixels.
     pub layer: Arc<dyn Ready>,
     /// Width and height of its picture, in pixels.
     pub size_px: (usize, usize),

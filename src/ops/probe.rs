@@ -18,7 +18,7 @@ use crate::scene::Scene;
 pub struct Args {
     /// The scene; - is standard input
     scene: PathBuf,
-    /// The pixel that holds the point X,Y; may be given again. The centre of the top-left pixel is 0.5,0.5
+    /// The pixel that holds the point X,Y; may be given again. The center of the top-left pixel is 0.5,0.5
     #[arg(long, value_name = "X,Y", required = true, allow_hyphen_values = true, value_parser = parse_point)]
     at: Vec<[f64; 2]>,
     /// Scene time, 0 to 1

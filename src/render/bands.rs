@@ -14,7 +14,7 @@ use crate::base::pixels::{Frame, Grid, encode};
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::moment::CENTRE;
+use crate::layers::parts::moment::CENTER;
 use crate::layers::ready::{Making, Prepared, Whole};
 use crate::scene::Scene;
 
@@ -44,7 +44,7 @@ impl<'a> Bands<'a> {
     /// # Errors
     /// As [`super::synth`].
     pub fn after(scene: &Scene, materials: &'a Materials, n: u32, previous: Option<&Synth>) -> Result<Self, Problem> {
-        let places = if n == 1 { vec![CENTRE] } else { super::places(n).collect() };
+        let places = if n == 1 { vec![CENTER] } else { super::places(n).collect() };
         let textures = super::textures(scene, materials, None)?;
         let layers = |place: Vec2, first: Option<&Vec<Box<dyn Prepared>>>| {
             let prepare = |(i, layer): (usize, &Layer)| {

@@ -10,7 +10,7 @@ use crate::base::geometry::farther;
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::moment::{CENTRE, Moment};
+use crate::layers::parts::moment::{CENTER, Moment};
 use crate::layers::ready::{Making, Ready, Texture, Textures};
 use crate::layers::space::camera::Camera;
 use crate::layers::timeline::Timeline;
@@ -133,7 +133,7 @@ impl Synth {
 /// If there is no layer, or a picture that a layer names is not among the materials.
 pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> Result<Synth, Problem> {
     let textures = textures(scene, materials, previous)?;
-    synth_at(scene, (materials, &textures, CENTRE), previous)
+    synth_at(scene, (materials, &textures, CENTER), previous)
 }
 
 /// As [`synth`], for n x n places spread evenly over each pixel; [`cpu::frames`] averages their frames.
@@ -159,7 +159,7 @@ fn no_layers() -> Problem {
     Problem::error("/layers", "a scene without layers has nothing to show").hint("add a layer")
 }
 
-/// What the layers of a scene are made with, at the centre of each pixel and without layers as textures.
+/// What the layers of a scene are made with, at the center of each pixel and without layers as textures.
 pub fn making<'a>(scene: &Scene, materials: &'a Materials) -> Making<'a> {
     let Timeline { wrap, duration, .. } = scene.timeline;
     let size_px = frame_size(scene, materials);

@@ -135,7 +135,7 @@ fn veins(c: &mut Canvas, opening: &Mask) {
     c.lay(&over, opening);
 }
 
-/// The iris at an offset from its centre: fibres around a golden ring, dark at the rim.
+/// The iris at an offset from its center: fibres around a golden ring, dark at the rim.
 fn iris_color(dx: f64, dy: f64) -> [f32; 3] {
     let (r, turn) = ((dx * dx + dy * dy).sqrt() / IRIS_RADIUS, atan2(dy, dx) / TAU);
     let around = |n: f64| (n * cos(turn * TAU), n * sin(turn * TAU));

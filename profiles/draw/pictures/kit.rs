@@ -65,7 +65,7 @@ impl Mask {
         Mask::bez(canvas, &kurbo::Ellipse::new(center, radii, 0.0).to_path(0.01))
     }
 
-    /// `value` at every pixel centre.
+    /// `value` at every pixel center.
     pub fn from_fn(canvas: &Canvas, value: impl Fn(f64, f64) -> f64) -> Mask {
         let cells = canvas.centers().map(|(x, y)| value(x, y).clamp(0.0, 1.0) as f32).collect();
         Mask { width: canvas.width, cells }

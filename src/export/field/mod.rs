@@ -53,10 +53,10 @@ const MARGIN: f64 = 14.0;
 /// Below the picture, for the legend.
 const LEGEND: f64 = 62.0;
 
-/// A jump vector at the centre of a pixel.
+/// A jump vector at the center of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrow {
-    /// The centre of the pixel.
+    /// The center of the pixel.
     pub at: Point,
     /// Its jump vector, in pixels of the image.
     pub jump: [f32; 2],
@@ -102,7 +102,7 @@ pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) ->
     let frame = Rect::new(MARGIN, MARGIN, MARGIN + shown.width() * scale, MARGIN + shown.height() * scale);
     let arrows = arrows(synth, step);
     let longest = arrows.iter().map(|arrow| arrow.vector().hypot2().sqrt()).fold(0.0, f64::max);
-    // The longest arrow reaches a little beyond its neighbour.
+    // The longest arrow reaches a little beyond its neighbor.
     let stretch = if longest > 0.0 { 1.4 * step as f64 * scale / longest } else { 1.0 };
     let plot_from_image = |p: Point| frame.origin() + (p - shown.origin()) * scale;
 

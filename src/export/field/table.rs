@@ -6,7 +6,7 @@ use super::Arrow;
 use super::strokes::degrees;
 use crate::files::outputs::CSV_HEADER;
 
-/// Comma-separated values with a head: the centre of each pixel, its jump vector, that vector's length, and its direction
+/// Comma-separated values with a head: the center of each pixel, its jump vector, that vector's length, and its direction
 /// in degrees from the x axis toward the y axis (clockwise on the screen); 0 where there is no jump.
 pub fn csv(arrows: &[Arrow]) -> String {
     let mut text = format!("{CSV_HEADER}\n");

@@ -1,4 +1,4 @@
-//! ICC profiles, versions 2 and 4: matrix and curves, or tables (RGB, grey, CMYK). moxcms parses the profile; the
+//! ICC profiles, versions 2 and 4: matrix and curves, or tables (RGB, gray, CMYK). moxcms parses the profile; the
 //! colors are computed here in double precision, because that crate has no black point compensation and its results
 //! depend on the processor. The rendering intent is relative colorimetric, as everywhere in a scene.
 
@@ -30,7 +30,7 @@ pub(super) fn understand(bytes: &[u8], model: Model) -> Result<Profile, String> 
     };
     let lut = profile.lut_a_to_b_colorimetric.as_ref().or(profile.lut_a_to_b_perceptual.as_ref());
     match lut {
-        // A grey picture has one sample instead of the three that such a table needs: the curves must do.
+        // A gray picture has one sample instead of the three that such a table needs: the curves must do.
         Some(lut) if space != 3 || model.count() >= 3 => table(&profile, lut, space).map(Profile::Table),
         _ => shaper(&profile, space).map(|shaper| Profile::Shaper(Box::new(shaper))),
     }
@@ -106,7 +106,7 @@ fn table(profile: &ColorProfile, lut: &LutWarehouse, inputs: usize) -> Option<Ta
 }
 
 /// The darkest color of a device, found as in Little CMS: for inks what the profile's inverse table makes of black,
-/// otherwise that of zero device values; made neutral grey, and no lighter than L* 50.
+/// otherwise that of zero device values; made neutral gray, and no lighter than L* 50.
 fn black_point(profile: &ColorProfile, lut: &Lut, inputs: usize) -> [f64; 3] {
     let darkest = if inputs == 4 && profile.profile_class == ProfileClass::OutputDevice {
         let back = profile.lut_b_to_a_perceptual.as_ref().and_then(|back| Lut::of(back, profile.pcs));

@@ -1,5 +1,5 @@
 //! JPEG. Its markers are walked first: a truncated file is detected here, because the decoder would paint what is
-//! missing grey; and the pieces of a color profile are joined. Inks (CMYK, YCCK) stay inks if there is a profile for
+//! missing gray; and the pieces of a color profile are joined. Inks (CMYK, YCCK) stay inks if there is a profile for
 //! them.
 
 use std::fs::File;

@@ -1,4 +1,4 @@
-//! TIFF: samples of 1 to 64 bits, integers or floating point, grey, RGB, palette, CMYK, YCbCr or Lab. Of several pages
+//! TIFF: samples of 1 to 64 bits, integers or floating point, gray, RGB, palette, CMYK, YCbCr or Lab. Of several pages
 //! the first that is not a thumbnail is read; raw photographs are recognized and refused.
 
 use std::fs::File;

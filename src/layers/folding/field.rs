@@ -128,7 +128,7 @@ pub struct Inputs {
 
 impl Inputs {
     /// The inputs of the field of `zone`, on a picture of `size`, for a `place` in each pixel; (0.5, 0.5) is the
-    /// centre.
+    /// center.
     pub fn new(zone: &Zone, size: (usize, usize), place: Vec2) -> Self {
         // Every field is named: a new one has to be placed, here or among those that a field does not depend on.
         let Zone { outline, motion, interpolation, feather, fold, position, name: _, sampler: _, speed: _, shift: _ } =

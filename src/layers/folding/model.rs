@@ -32,7 +32,7 @@ pub struct Zone {
     /// Unique among the layer's zones.
     #[schemars(length(min = 1))]
     pub name: String,
-    /// The pixels that move: those whose centre is inside.
+    /// The pixels that move: those whose center is inside.
     pub outline: Outline,
     /// What gives the jump vectors: anchors and dense transforms, in this order.
     #[serde(default)]

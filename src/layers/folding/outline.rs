@@ -30,7 +30,7 @@ pub enum Outline {
     },
     /// An upright ellipse.
     Ellipse {
-        /// Centre.
+        /// Center.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// Half the width, half the height.

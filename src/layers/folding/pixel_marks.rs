@@ -20,7 +20,7 @@ pub fn marks(synth: &Synth, view: &View) -> Vec<Mark> {
 struct Pixel {
     /// Its index in the field's box.
     index: usize,
-    /// Its centre.
+    /// Its center.
     at: Point,
     /// Its jump vector.
     jump: Vec2,

@@ -7,7 +7,7 @@ use super::model::{PictureLayer, Zone};
 use super::position::Clock;
 use super::synth::source;
 use crate::base::problem::Problem;
-use crate::layers::parts::moment::CENTRE;
+use crate::layers::parts::moment::CENTER;
 use crate::layers::parts::readout::{Axis, Entry, ReadOut, Value};
 use crate::layers::ready::Making;
 
@@ -54,7 +54,7 @@ pub fn probe(
         if !zone.outline.polygon().bounds().contains(centre) {
             continue;
         }
-        let inputs = Inputs::new(zone, (own.width(), own.height()), CENTRE);
+        let inputs = Inputs::new(zone, (own.width(), own.height()), CENTER);
         let pixel =
             Prepared::new(&inputs, materials).map_err(|problem| problem.under(&format!("/zones/{index}")))?.pixel(x, y);
         if pixel.inside {

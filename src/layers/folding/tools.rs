@@ -56,20 +56,20 @@ pub enum Tool {
         #[schemars(extend("unit" = "px", "columns" = ["dx", "dy"]))]
         by: Xy,
     },
-    /// Dense: the samplers' places scaled about a centre. The picture is seen to change the opposite way: factors over 1
+    /// Dense: the samplers' places scaled about a center. The picture is seen to change the opposite way: factors over 1
     /// show it smaller.
     Scale {
-        /// Centre, which stays.
+        /// Center, which stays.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// Factors along x and y: where the samplers go, so that 2 shows the picture half as large. 1 changes nothing; the
-        /// jump vector of 3 is twice the distance to the centre.
+        /// jump vector of 3 is twice the distance to the center.
         #[schemars(extend("unit" = "1", "columns" = ["x", "y"]))]
         factor: Xy,
     },
-    /// Dense: the samplers' places turned about a centre. The picture is seen to turn the opposite way.
+    /// Dense: the samplers' places turned about a center. The picture is seen to turn the opposite way.
     Rotate {
-        /// Centre, which stays.
+        /// Center, which stays.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// Angle: positive turns the samplers' places clockwise on the screen (x toward y), so the picture is seen to turn
@@ -77,9 +77,9 @@ pub enum Tool {
         #[schemars(range(min = -36000.0, max = 36000.0), extend("unit" = "degrees"))]
         degrees: f64,
     },
-    /// Dense: the samplers' places sheared about a centre. The picture is seen to shear the opposite way.
+    /// Dense: the samplers' places sheared about a center. The picture is seen to shear the opposite way.
     Shear {
-        /// Centre, which stays.
+        /// Center, which stays.
         #[schemars(extend("unit" = "px"))]
         center: Xy,
         /// [a, b]: a times y is added to a sampler's x, and b times x to its y. The picture is seen to move the opposite way.
@@ -190,7 +190,7 @@ impl Tool {
         }
     }
 
-    /// The centre that it turns or stretches the samplers' places about, if it does.
+    /// The center that it turns or stretches the samplers' places about, if it does.
     pub fn center(&self) -> Option<Xy> {
         match self {
             Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => Some(*center),

@@ -9,7 +9,7 @@ use super::model::Sides;
 use super::surface;
 use super::synth::Synth;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
-use crate::layers::parts::moment::{CENTRE, Columns, Moment};
+use crate::layers::parts::moment::{CENTER, Columns, Moment};
 use crate::layers::space::eye::Eye;
 use crate::layers::space::hidden::Depths;
 use crate::layers::space::marks::{AXES, CAMERA_OVERLAY, FRUSTUM, GRID, GROUND_OVERLAY, deep_line, line};
@@ -107,7 +107,7 @@ impl Seen<'_> {
     /// The triangles, as the eye sees them.
     fn raster(&self, both: bool) -> Raster<'_> {
         let seen = self.world.par_iter().map(|(at, _)| self.eye.seen(*at)).collect();
-        Raster::new(&self.eye, self.moment.size_px, CENTRE, &self.synth.mesh.triangles, seen, both)
+        Raster::new(&self.eye, self.moment.size_px, CENTER, &self.synth.mesh.triangles, seen, both)
     }
 
     /// The edges of what is seen, each once; without the parts that something nearer hides.

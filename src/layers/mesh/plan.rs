@@ -113,7 +113,7 @@ fn on_it(
 fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color: Rgba) -> Uniform {
     let (width, height) = (moment.size_px.0 as f64, moment.size_px.1 as f64);
     let focal = [2.0 * eye.focal_px / width, 2.0 * eye.focal_px / height];
-    // A pixel is drawn at its centre; what is to be seen there is moved there.
+    // A pixel is drawn at its center; what is to be seen there is moved there.
     let place = synth.place(moment);
     let shift = [(1.0 - 2.0 * place.x) / width, (2.0 * place.y - 1.0) / height];
     Uniform {

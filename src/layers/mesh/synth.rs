@@ -10,7 +10,7 @@ use super::strokes::{self, Strokes};
 use super::surface::ReadySurface;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
-use crate::layers::parts::moment::{CENTRE, Moment};
+use crate::layers::parts::moment::{CENTER, Moment};
 use crate::layers::ready::Making;
 
 /// A mesh with its surface.
@@ -61,7 +61,7 @@ impl Synth {
 
     /// The place in each pixel that is looked at then: samples have pixels of their own in a frame that is magnified.
     pub fn place(&self, moment: &Moment) -> Vec2 {
-        if moment.magnified > 1 { CENTRE } else { self.place }
+        if moment.magnified > 1 { CENTER } else { self.place }
     }
 
     /// The scene time that the pose is at.

@@ -243,7 +243,7 @@ pub static VECTOR_COLORS: Look =
 pub static VECTORS: Look = Look::new("vector field", 1, [190, 205, 220, 230], 1.0);
 
 /// The color of a vector if the longest is `longest`: its hue is the direction on the screen, and the longer it is, the
-/// lighter and the more saturated. No vector is dark grey.
+/// lighter and the more saturated. No vector is dark gray.
 pub fn vector_color(vector: Vec2, longest: f64) -> [u8; 4] {
     let length = vector.hypot2().sqrt();
     let share = if longest > 0.0 { (length / longest).min(1.0) } else { 0.0 };

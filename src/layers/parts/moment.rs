@@ -4,8 +4,8 @@ use kurbo::Vec2;
 
 use crate::layers::space::eye::Eye;
 
-/// The centre of a pixel, from its top-left corner.
-pub const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
+/// The center of a pixel, from its top-left corner.
+pub const CENTER: Vec2 = Vec2::new(0.5, 0.5);
 
 /// What a frame depends on besides the layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Moment {
     /// How many births layers of many sprites leave out after each that they show: 0 but for a preview that would be slow.
     pub left_out: u32,
     /// How many times larger than that of the scene the frame is on each side, for several samples a pixel of layers that
-    /// are drawn whole. Above 1, each pixel is looked at in its centre.
+    /// are drawn whole. Above 1, each pixel is looked at in its center.
     pub magnified: u32,
 }
 

@@ -270,7 +270,7 @@ fn pixels(low: f64, high: f64, place: f64, size: usize) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::parts::moment::CENTRE;
+    use crate::layers::parts::moment::CENTER;
 
     const SIZE: (usize, usize) = (40, 30);
 
@@ -292,7 +292,7 @@ mod tests {
     }
 
     fn frame(triangles: &[[u32; 3]], seen: &[DVec3], both: bool) -> Vec<u32> {
-        let raster = Raster::new(&eye(), SIZE, CENTRE, triangles, seen.to_vec(), both);
+        let raster = Raster::new(&eye(), SIZE, CENTER, triangles, seen.to_vec(), both);
         let row = |y: usize| {
             let (mut depth, mut row) = (vec![f64::INFINITY; SIZE.0], vec![NONE; SIZE.0]);
             raster.row(y, Columns::All, &mut depth, &mut row);
@@ -313,7 +313,7 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..40).map(|_| [0; 3].map(|_| ((next() + 0.5) * 60.0) as u32)).collect();
         let (mut hits, mut sum) = (0, 0_u64);
         for both in [false, true] {
-            let raster = Raster::new(&eye(), SIZE, CENTRE, &triangles, seen.clone(), both);
+            let raster = Raster::new(&eye(), SIZE, CENTER, &triangles, seen.clone(), both);
             for y in 0..SIZE.1 {
                 let (mut depth, mut row) = (vec![f64::INFINITY; SIZE.0], vec![NONE; SIZE.0]);
                 raster.row(y, Columns::All, &mut depth, &mut row);
@@ -351,12 +351,12 @@ mod tests {
 
     #[test]
     fn top_and_left_sides_own_their_pixels() {
-        // A square whose corners are centres of pixels, at a depth that keeps them exact.
+        // A square whose corners are centers of pixels, at a depth that keeps them exact.
         let eye = Eye { focal_px: 32.0, ..eye() };
         let corner = |x: f64, y: f64| eye.ray(DVec2::new(x, y)) * 2.0;
         let seen = [corner(4.5, 3.5), corner(8.5, 3.5), corner(8.5, 7.5), corner(4.5, 7.5)].to_vec();
         let triangles = [[0, 2, 1], [0, 3, 2]];
-        let raster = Raster::new(&eye, SIZE, CENTRE, &triangles, seen, false);
+        let raster = Raster::new(&eye, SIZE, CENTER, &triangles, seen, false);
         let covered = |y: usize| {
             let (mut depth, mut row) = (vec![f64::INFINITY; SIZE.0], vec![NONE; SIZE.0]);
             raster.row(y, Columns::All, &mut depth, &mut row);
@@ -403,7 +403,7 @@ mod tests {
         // It reaches from behind the eye to far in front.
         let seen = [DVec3::new(-50.0, -1.0, 50.0), DVec3::new(50.0, -1.0, 50.0), DVec3::new(0.0, -1.0, -400.0)];
         let triangles = [[0, 1, 2]];
-        let raster = Raster::new(&eye(), SIZE, CENTRE, &triangles, seen.to_vec(), false);
+        let raster = Raster::new(&eye(), SIZE, CENTER, &triangles, seen.to_vec(), false);
         for y in 0..SIZE.1 {
             let (mut depth, mut row) = (vec![f64::INFINITY; SIZE.0], vec![NONE; SIZE.0]);
             raster.row(y, Columns::All, &mut depth, &mut row);
@@ -418,7 +418,7 @@ mod tests {
     fn attributes_follow_the_perspective() {
         let seen = [at(5.0, 15.0, 1.0), at(5.0, 25.0, 1.0), at(35.0, 15.0, 5.0)];
         let triangles = [[0, 1, 2]];
-        let raster = Raster::new(&eye(), SIZE, CENTRE, &triangles, seen.to_vec(), false);
+        let raster = Raster::new(&eye(), SIZE, CENTER, &triangles, seen.to_vec(), false);
         assert_eq!(hit(&raster, 30, 29), None);
         let hit = hit(&raster, 15, 16).unwrap();
         let point: DVec3 = (0..3).map(|k| seen[k] * hit.weights[k]).sum();

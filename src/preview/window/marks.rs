@@ -81,7 +81,7 @@ impl Painter<'_> {
                 }
             }
             Shape::Cell(at, side, color) => {
-                // On whole pixels, so that neighbours meet without a seam.
+                // On whole pixels, so that neighbors meet without a seam.
                 let [a, b] = [-0.5, 0.5].map(|half| self.screen(*at + Vec2::new(side * half, side * half)).round());
                 if self.seen(&[a, b]) {
                     canvas.rect(Rect::from_points(a, b), 0.0, *color);

@@ -117,7 +117,7 @@ pub fn layer_of(pointer: &str) -> Option<usize> {
 }
 
 /// Where the cursor of the picture starts: the center of the first named item in the first layer.
-pub fn picture_centre(document: &Document) -> Point {
+pub fn picture_center(document: &Document) -> Point {
     let layer = document.scene().layers.first().zip(first_item(document));
     let middle = layer.map(|(layer, item)| layer.technique().bounds(&item[FIRST_LAYER.len()..]).center());
     middle

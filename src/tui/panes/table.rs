@@ -34,7 +34,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     }
     let height = area.height - u16::from(sheet.table);
     let first = first_row(state.cursor.row, sheet.len(), height);
-    let near = neighbours(first, height);
+    let near = neighbors(first, height);
     let rows = sheet.rows(near.clone());
     let labels = rows.iter().map(|row| label(row).1 + i32::from(width(&label(row).0))).max().unwrap_or(0);
     let labels = labels.min(i32::from(area.width) / 2) + GAP;
@@ -155,7 +155,7 @@ fn draw_heads(heads: &[&str], laid: &[Vec<Placed>], sights: &[VisibleCells], cel
 
 /// The rows whose columns are laid out together: the visible ones and some around them, up to round numbers, so that the
 /// columns stay in place while the table scrolls.
-fn neighbours(first: usize, height: u16) -> Range<usize> {
+fn neighbors(first: usize, height: u16) -> Range<usize> {
     const ROUND: usize = 64;
     first / ROUND * ROUND..(first + usize::from(height)).next_multiple_of(ROUND)
 }

@@ -97,7 +97,7 @@ impl State {
             cursor: Cursor::new(tree::first(scene.document())),
             apart: Apart::default(),
             typing: Typing::default(),
-            picture: Picture::new(tree::picture_centre(scene.document())),
+            picture: Picture::new(tree::picture_center(scene.document())),
             play: Play::default(),
             outside: Outside::new(&scene),
             memory: Memory::default(),

@@ -76,7 +76,7 @@ pub fn luminance([r, g, b]: [u8; 3]) -> u8 {
     ((u32::from(r) * 299 + u32::from(g) * 587 + u32::from(b) * 114) / 1000) as u8
 }
 
-/// xterm's 6 x 6 x 6 cube and its 24 greys.
+/// xterm's 6 x 6 x 6 cube and its 24 grays.
 fn indexed([r, g, b]: [u8; 3]) -> u8 {
     const STEPS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     let nearest = |v: u8| (0..6).min_by_key(|&i| STEPS[i].abs_diff(v)).unwrap_or(0);

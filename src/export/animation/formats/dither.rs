@@ -5,7 +5,7 @@
 use super::palette::{Palette, is_opaque};
 use crate::base::pixels::Frame;
 
-/// How much of an error its neighbours make good. With all of it they look grainier, without a visible gain in the mean.
+/// How much of an error its neighbors make good. With all of it they look grainier, without a visible gain in the mean.
 const STRENGTH: f32 = 0.9;
 /// Errors up to this many codes are ignored.
 const UNSEEN: f32 = 0.5;
@@ -52,7 +52,7 @@ impl Dither {
     }
 }
 
-/// The color for a pixel, with the error of its neighbours.
+/// The color for a pixel, with the error of its neighbors.
 fn choose(palette: &Palette, color: [u8; 4], owed: [f32; 3]) -> Shown {
     if !is_opaque(color) {
         return Shown { index: palette.transparent(), error: [0.0; 3] };

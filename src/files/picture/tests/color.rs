@@ -136,7 +136,7 @@ fn inks() -> Vec<u8> {
 fn tables_of_inks_are_followed() {
     let (paper, notes) = shown(inks(), Model::Cmyk, &[0; 4]);
     assert_eq!((paper, notes.len()), ([255; 3], 0));
-    // All inks give L* 0, three give 25 and two give 50: greys of 59 and 119.
+    // All inks give L* 0, three give 25 and two give 50: grays of 59 and 119.
     for (codes, grey) in [([255; 4], 0), ([255, 255, 255, 0], 59), ([255, 0, 255, 0], 119)] {
         let (found, _) = shown(inks(), Model::Cmyk, &codes);
         assert!(found.iter().all(|v| v.abs_diff(grey) <= 1), "{found:?} for {grey}");

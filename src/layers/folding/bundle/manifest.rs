@@ -13,7 +13,8 @@ pub struct Manifest {
     /// How all of it is read, in words.
     pub conventions: Conventions,
     /// The color atlas.
-    pub colour: Colour,
+    #[serde(rename = "colour")]
+    pub color: ColorNote,
     /// The position functions.
     pub function: Function,
     /// The layers, composed in this order: later over earlier.
@@ -25,7 +26,8 @@ pub struct Manifest {
 pub struct Conventions {
     texels: &'static str,
     coordinates: &'static str,
-    colour: &'static str,
+    #[serde(rename = "colour")]
+    color: &'static str,
     data: &'static str,
     codes: &'static str,
     time: &'static str,
@@ -41,7 +43,7 @@ pub struct Conventions {
 pub const CONVENTIONS: Conventions = Conventions {
     texels: "rows from the top; the centre of texel (i, j) is at (i + 0.5, j + 0.5)",
     coordinates: "u = x / width and v = y / height of the colour texture, v downward; flip v only where a target wants it",
-    colour: "sRGB with straight alpha; decode to linear light and premultiply before bilinear reads, encode at the end; where there is a float file take that, linear and premultiplied as it is",
+    color: "sRGB with straight alpha; decode to linear light and premultiply before bilinear reads, encode at the end; where there is a float file take that, linear and premultiplied as it is",
     data: "read init, jump, function and thresholds as they are: no colour space, no premultiplying, compression or mip maps; init, jump and thresholds nearest, texel for texel of the zone's box",
     codes: "whole numbers: value = (code - zero) / (one - zero) * scale, so that the code zero is exactly 0; 32 bits: the value itself",
     time: "frame k has t = k / frames, for once k / max(frames - 1, 1); a zone's x = speed (t + shift); tau = x - floor(x) for repeat, 1 - |1 - 2 (x - floor(x))| for ping-pong, clamp(x, 0, 1) for once",
@@ -55,7 +57,7 @@ pub const CONVENTIONS: Conventions = Conventions {
 
 /// The color atlas in the manifest.
 #[derive(Debug, Serialize)]
-pub struct Colour {
+pub struct ColorNote {
     /// The files.
     #[serde(flatten)]
     pub files: PictureNote,

@@ -20,10 +20,10 @@ mod function;
 mod manifest;
 
 use function::{Row, Table};
-use manifest::{CONVENTIONS, Colour, Function, Manifest, PieceNote, Slots, ThresholdsNote};
+use manifest::{CONVENTIONS, ColorNote, Function, Manifest, PieceNote, Slots, ThresholdsNote};
 
 /// The color atlas.
-const COLOUR: &str = "colour";
+const COLOR: &str = "colour";
 
 /// The position functions.
 const FUNCTION: &str = "function";
@@ -46,7 +46,7 @@ pub fn names(layers: &[&dyn Technique]) -> Names {
         .filter_map(|layer| model(*layer))
         .flat_map(|layer| layer.zones.iter().map(move |zone| (several.then(|| layer.name.clone()), zone.name.clone())));
     Names {
-        pictures: vec![COLOUR.into()],
+        pictures: vec![COLOR.into()],
         textures: vec![FUNCTION.into()],
         items: items.collect(),
         ends: ENDS.map(|end| (Form::Texture, end.to_owned())).to_vec(),
@@ -73,10 +73,10 @@ pub fn write(layers: &[Bundled], to: &mut dyn Sink) -> Result<Map<String, Value>
         noted[planned.layer].zones.push(note);
     }
     plan.layers_up_to(layers.len().saturating_sub(1), &mut noted);
-    let colour = colour(to, &plan.atlas)?;
+    let color = color(to, &plan.atlas)?;
     let texture = to.texture(FUNCTION, &table.texture())?;
     let function = Function { texture, error_between: table.error_between() };
-    let manifest = Manifest { conventions: CONVENTIONS, colour, function, layers: noted };
+    let manifest = Manifest { conventions: CONVENTIONS, color, function, layers: noted };
     match serde_json::to_value(manifest) {
         Ok(Value::Object(fields)) => Ok(fields),
         Ok(_) => Ok(Map::new()),
@@ -226,8 +226,8 @@ fn zone(to: &mut dyn Sink, plan: &Plan, table: &Table, zone: &Planned, row: usiz
     })
 }
 
-fn colour(to: &mut dyn Sink, atlas: &Atlas) -> Result<Colour> {
-    let files = to.picture(COLOUR, &atlas.colors, &|codes| atlas.keep_clear_colors(codes))?;
+fn color(to: &mut dyn Sink, atlas: &Atlas) -> Result<ColorNote> {
+    let files = to.picture(COLOR, &atlas.colors, &|codes| atlas.keep_clear_colors(codes))?;
     let note = |piece: &Piece| {
         let area = piece.need.area;
         let (width, height) = (area.width() as usize, area.height() as usize);
@@ -235,7 +235,7 @@ fn colour(to: &mut dyn Sink, atlas: &Atlas) -> Result<Colour> {
         PieceNote { image, x: piece.x, y: piece.y, width, height, from: [area.x0, area.y0] }
     };
     let pieces = atlas.pieces.iter().map(note).collect();
-    Ok(Colour { files, width: atlas.colors.width(), height: atlas.colors.height(), pieces })
+    Ok(ColorNote { files, width: atlas.colors.width(), height: atlas.colors.height(), pieces })
 }
 
 /// Where each sampler stands at s = 0 in the atlas, its temporal shift, and its zone's row; 0 outside the zone.

@@ -22,7 +22,7 @@ const METHODS: [&str; 9] = [
     r#"{"method":"rigid"}"#,
 ];
 
-const CENTRE: Vec2 = Vec2::new(0.5, 0.5);
+const CENTER: Vec2 = Vec2::new(0.5, 0.5);
 
 fn interpolator(json: &str, anchors: &[Anchor], size: [u32; 2], place: Vec2) -> Interpolator {
     let interpolation = serde_json::from_str(json).unwrap();
@@ -44,7 +44,7 @@ fn jumps(interpolator: &Interpolator, area: Area) -> Vec<Vec2> {
 }
 
 fn at(json: &str, anchors: &[[f64; 4]], (x, y): (u32, u32)) -> Vec2 {
-    let interpolator = interpolator(json, &make(anchors), [100, 100], CENTRE);
+    let interpolator = interpolator(json, &make(anchors), [100, 100], CENTER);
     jumps(&interpolator, Area { from: [x, y], to: [x + 1, y + 1] })[0]
 }
 
@@ -228,10 +228,10 @@ fn sums_by_cells_are_the_sums() {
 #[test]
 fn a_thin_plate_by_cells_passes_its_anchors() {
     let mut anchors = nasty(0, 120, 200.0);
-    anchors.iter_mut().for_each(|anchor| anchor.at = (anchor.at.floor().to_vec2() + CENTRE).to_point());
+    anchors.iter_mut().for_each(|anchor| anchor.at = (anchor.at.floor().to_vec2() + CENTER).to_point());
     let distinct = thin_plate::distinct(&anchors);
     let rows = Area { from: [0, 20], to: [96, 32] };
-    let found = jumps(&interpolator(METHODS[6], &anchors, [96, 80], CENTRE), rows);
+    let found = jumps(&interpolator(METHODS[6], &anchors, [96, 80], CENTER), rows);
     let seen = distinct.iter().filter(|anchor| (20.0..32.0).contains(&anchor.at.y));
     for anchor in seen {
         let error = found[(anchor.at.y as usize - 20) * 96 + anchor.at.x as usize] - anchor.jump;
@@ -266,7 +266,7 @@ fn the_hash_is_that_of_the_paper() {
 fn a_thin_plate_takes_no_more_memory_than_there_is_and_ends_when_asked_to() {
     let anchors: Vec<[f64; 4]> = (0..100).map(f64::from).map(|i| [i * 7.3 % 61.0, i * 3.7 % 23.0, i, -i]).collect();
     let solve = |materials: &Materials| {
-        Interpolator::new(&serde_json::from_str(METHODS[6]).unwrap(), &make(&anchors), [61, 23], CENTRE, materials)
+        Interpolator::new(&serde_json::from_str(METHODS[6]).unwrap(), &make(&anchors), [61, 23], CENTER, materials)
             .map(drop)
     };
     let budget = |most| Materials { budget: Budget::new(most), ..Materials::default() };

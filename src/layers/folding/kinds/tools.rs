@@ -124,7 +124,7 @@ impl Turning<'_> {
         Some((kept, left_out))
     }
 
-    /// The centre of the transform, if it has one.
+    /// The center of the transform, if it has one.
     fn own_center(&self) -> Option<Point> {
         self.old.center().map(point)
     }
@@ -294,7 +294,7 @@ impl Turning<'_> {
     }
 }
 
-/// The tool of the kind `to` that is nearest to a map, about its `own` centre if it has one, otherwise about the fixed
+/// The tool of the kind `to` that is nearest to a map, about its `own` center if it has one, otherwise about the fixed
 /// point of the map, or about the `middle`.
 fn nearest(map: Affine, to: &str, own: Option<Point>, middle: Point) -> Value {
     let [a, c, b, d, tx, ty] = map.as_coeffs();

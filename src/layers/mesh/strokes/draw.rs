@@ -58,7 +58,7 @@ pub fn main_noise(strokes: &Force) -> Option<&str> {
     strokes.noises.keys().find(|name| **name == first).map(String::as_str)
 }
 
-/// The lightness of every pixel, as an sRGB code from 0 to 1, of a grey surface of one tone without outlines.
+/// The lightness of every pixel, as an sRGB code from 0 to 1, of a gray surface of one tone without outlines.
 pub fn grey(ready: &Ready, given: &Given) -> Vec<f32> {
     const CODE: f64 = 0.5;
     let light = linear_from_srgb(CODE) as f32;

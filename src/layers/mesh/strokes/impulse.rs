@@ -1,4 +1,4 @@
-//! The impulses of a noise in one frame: the points that kernels are centred on. Each is fixed to its place on the surface;
+//! The impulses of a noise in one frame: the points that kernels are centered on. Each is fixed to its place on the surface;
 //! how much it counts depends on how large the surface is seen there, so that as many are over every pixel.
 
 use glam::{DVec2, DVec3};

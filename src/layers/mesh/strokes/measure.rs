@@ -1,5 +1,5 @@
 //! How flat strokes are, and how they move with the surface, for each anchor: the camera is moved in small steps, and
-//! drawings of a grey surface of one tone are compared along the true motion of its points.
+//! drawings of a gray surface of one tone are compared along the true motion of its points.
 
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;

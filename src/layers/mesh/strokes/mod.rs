@@ -1,5 +1,5 @@
 //! Strokes that a mesh is drawn with (after Benard, Lagae et al. 2010, "A Dynamic Noise Primitive for Coherent
-//! Stylization"): a sum of many small waves whose centres are fixed to the surface while their size, spacing and direction
+//! Stylization"): a sum of many small waves whose centers are fixed to the surface while their size, spacing and direction
 //! are those of the screen; and what is drawn from that noise and the tones of the surface. The mesh layer hands out what
 //! a frame shows of it ([`Given`]) and gets it back drawn.
 

@@ -322,7 +322,7 @@ pub fn normalized(shown: &Shown, sums: &[[f32; 2]], overlap: f64) -> Noise {
     Noise { value, share }
 }
 
-/// The pixels of a range whose centres are nearer to a place than a distance.
+/// The pixels of a range whose centers are nearer to a place than a distance.
 fn reached(middle: f64, radius: f64, of: &Range<usize>) -> Range<usize> {
     let from = (middle - radius - 0.5).floor() + 1.0;
     let to = (middle + radius - 0.5).ceil();
