@@ -25,7 +25,8 @@ pub fn square_with_strokes() -> (Arc<Scene>, Materials) {
     (Arc::new(serde_json::from_str(scene).unwrap()), square())
 }
 
-fn square() -> Materials {
+/// Its mesh.
+pub fn square() -> Materials {
     let corner = |[x, y]: [f64; 2]| Vertex { position: [x, y, 0.0].into(), ..Vertex::default() };
     let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec();
     let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };

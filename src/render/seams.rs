@@ -3,12 +3,15 @@
 
 use std::borrow::Borrow;
 
+use super::stage::Stage;
 use super::{Synth, cpu};
 use crate::base::pixels::encode;
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
+use crate::layers::space::camera::Camera;
+use crate::layers::timeline::Wrap;
 use crate::scene::Scene;
 
 /// How many pixels of what jumps are compared, at most, in each direction.
@@ -29,14 +32,19 @@ pub fn warnings<S: Borrow<Synth>>(
     }
     let repeat = |layer: &Layer| layer.technique().repeat(&scene.timeline, materials);
     let layers: Vec<Repeat> = scene.layers.iter().map(repeat).collect();
-    if layers.iter().all(|layer| layer.snaps.is_empty()) {
+    // The camera is seen by what is in space alone.
+    let camera = Stage::of(scene).seen_by().filter(|_| scene.timeline.wrap == Wrap::Repeat).map(Camera::snaps);
+    let camera = camera.unwrap_or_default();
+    if camera.is_empty() && layers.iter().all(|layer| layer.snaps.is_empty()) {
         return Vec::new();
     }
     let Some(synth) = synth() else { return Vec::new() };
     let speeds: Vec<f64> = layers.iter().flat_map(|layer| layer.speeds.iter().copied()).collect();
-    let snaps = layers.iter().enumerate().flat_map(|(i, layer)| layer.snaps.iter().map(move |snap| (i, snap)));
+    let of_layers = layers.iter().enumerate();
+    let of_layers = of_layers.flat_map(|(i, layer)| layer.snaps.iter().map(move |snap| (format!("/layers/{i}"), snap)));
+    let snaps = camera.iter().map(|snap| ("/camera".to_owned(), snap)).chain(of_layers);
     let seen = snaps.filter(|(_, snap)| is_seen(synth.borrow(), snap));
-    seen.map(|(i, snap)| warning(scene.timeline.duration, &speeds, snap).under(&format!("/layers/{i}"))).collect()
+    seen.map(|(at, snap)| warning(scene.timeline.duration, &speeds, snap).under(&at)).collect()
 }
 
 /// Whether enough pixels of what jumps differ before and after.
@@ -111,6 +119,44 @@ mod tests {
             ..Materials::default()
         };
         warnings(&scene, &materials, || crate::render::synth(&scene, &materials, None).ok())
+    }
+
+    #[test]
+    fn what_turns_without_coming_round_snaps() {
+        let (scene, _) = crate::render::samples::two_squares();
+        let found = |camera: serde_json::Value, spin: f64, wrap: &str| {
+            let mut json = serde_json::to_value(&scene).unwrap();
+            json["timeline"] = json!({ "loop": wrap });
+            camera.as_object().unwrap().iter().for_each(|(name, value)| json["camera"][name] = value.clone());
+            json["layers"][0]["pose"]["spin"] = spin.into();
+            let scene: Scene = serde_json::from_value(json).unwrap();
+            let materials = crate::render::samples::square();
+            let told = warnings(&scene, &materials, || crate::render::synth(&scene, &materials, None).ok());
+            told.iter().map(Problem::to_string).collect::<Vec<_>>().join("\n")
+        };
+        let keys = json!({ "keys": [{ "at": 0, "position": [0, 0, 4] }, { "at": 0.5, "position": [1, 1, 3] }] });
+        for (camera, spin, wrap, told) in [
+            (
+                json!({}),
+                50.0,
+                "repeat",
+                "layers.0.pose.spin: warning: the loop snaps where it starts over: it has turned by 50 degrees",
+            ),
+            (json!({}), 360.0, "repeat", ""),
+            (json!({}), 50.0, "ping-pong", ""),
+            (json!({ "turn": 90 }), 0.0, "repeat", "camera.turn"),
+            (json!({ "turn": 360 }), 0.0, "repeat", ""),
+            (
+                keys.clone(),
+                0.0,
+                "repeat",
+                "camera.keys: warning: the loop snaps where it starts over: it ends elsewhere",
+            ),
+            (keys, 0.0, "once", ""),
+        ] {
+            let found = found(camera, spin, wrap);
+            assert!(if told.is_empty() { found.is_empty() } else { found.contains(told) }, "{told}: {found}");
+        }
     }
 
     #[test]

@@ -30,10 +30,12 @@ use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
 use super::parts::pass::Pass;
 use super::parts::readout::ReadOut;
+use super::parts::repeat::{self, Repeat};
 use super::parts::shots::{Laid, Laying, Lying};
 use super::ready::{Making, Ready};
 use super::starts::{Shown, Starts, Template};
 use super::technique::{Bundle, Checked, Kind, Technique};
+use super::timeline::{Timeline, Wrap};
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -127,6 +129,11 @@ impl Technique for MeshLayer {
             Some(Err(problem)) => vec![problem],
             None => Vec::new(),
         }
+    }
+
+    fn repeat(&self, timeline: &Timeline, _materials: &Materials) -> Repeat {
+        let spin = (timeline.wrap == Wrap::Repeat).then(|| repeat::turned("/pose/spin", self.pose.spin)).flatten();
+        Repeat { snaps: spin.into_iter().collect(), speeds: Vec::new() }
     }
 
     fn uses(&self) -> Vec<Use<'_>> {

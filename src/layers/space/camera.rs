@@ -12,6 +12,7 @@ use crate::base::problem::Problem;
 use crate::base::text::short;
 use crate::layers::check;
 use crate::layers::keyframes;
+use crate::layers::parts::repeat::{EVERYWHERE, Snap, turned};
 use crate::layers::starts::{Starts, halfway};
 
 /// Where the scene is seen from. It looks from its position to its target.
@@ -114,6 +115,21 @@ impl Camera {
             .map_or(DMat3::IDENTITY, |axis| DMat3::from_axis_angle(axis, (self.turn * t).to_radians()));
         let position = if self.turn == 0.0 { position } else { target + turn * (position - target) };
         ([position, target, up], fov)
+    }
+
+    /// What jumps where a timeline that repeats starts over.
+    pub fn snaps(&self) -> Vec<Snap> {
+        let unturned = Camera { turn: 0.0, ..self.clone() };
+        let [begin, end] = [0.0, 1.0].map(|t| unturned.view(t));
+        let keys = (begin != end).then(|| Snap {
+            path: "/keys".into(),
+            bounds: EVERYWHERE,
+            time: 1.0,
+            what: "it ends elsewhere than it begins".into(),
+            cure: "give it a key at 1 like that at 0, or let the timeline be once or ping-pong".into(),
+            needs_time_alone: false,
+        });
+        turned("/turn", self.turn).into_iter().chain(keys).collect()
     }
 
     /// What stands for a field of a key that does not name it: what the other keys say at its time.
