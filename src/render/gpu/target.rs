@@ -175,7 +175,8 @@ impl Scratches {
         Ok(match *scratch {
             Scratch::Texels(format) => Bound::Texture(Texture { view: view(None), format }),
             Scratch::Layers(..) => Bound::Layers(view(Some(wgpu::TextureViewDimension::D2Array))),
-            _ => Bound::Depth(view(None)),
+            // The others are arrays.
+            Scratch::Depths | Scratch::Bytes(_) | Scratch::Growing | Scratch::Tally => Bound::Depth(view(None)),
         })
     }
 

@@ -4,6 +4,9 @@ use std::borrow::Cow;
 
 use serde::Deserialize;
 
+use crate::base::pixels::encode;
+use crate::base::text::hex;
+
 /// A text that is not copied where the JSON has it as it is: buffers may be in one.
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Text<'a>(#[serde(borrow)] pub(super) Cow<'a, str>);
@@ -80,6 +83,7 @@ pub(super) struct Attributes {
     pub(super) position: Option<usize>,
     pub(super) normal: Option<usize>,
     pub(super) texcoord_0: Option<usize>,
+    pub(super) color_0: Option<usize>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -135,12 +139,15 @@ pub(super) struct Buffer<'a> {
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Material {
     pub(super) pbr_metallic_roughness: Option<Surface>,
+    pub(super) double_sided: bool,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Surface {
     pub(super) base_color_texture: Option<TextureInfo>,
+    /// Linear light and alpha.
+    pub(super) base_color_factor: Option<[f32; 4]>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -162,6 +169,13 @@ pub(super) struct InfoExtensions {
 }
 
 impl Material {
+    /// Its base color if it is not white, which leaves a texture as it is: sRGB, #rrggbb.
+    pub(super) fn tint(&self) -> Option<String> {
+        let [r, g, b, _] = self.pbr_metallic_roughness.as_ref()?.base_color_factor?;
+        let [r, g, b, _] = encode([r, g, b, 1.0]);
+        ([r, g, b] != [255; 3]).then(|| format!("#{}", hex(&[r, g, b])))
+    }
+
     /// The texture of its base color.
     pub(super) fn base_color(&self) -> Option<&TextureInfo> {
         self.pbr_metallic_roughness.as_ref()?.base_color_texture.as_ref()

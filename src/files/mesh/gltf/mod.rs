@@ -52,8 +52,30 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
             "its bones and morph targets are not applied: it is shown as it is stored",
         ),
     ];
-    let notes = notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned()).collect();
+    let notes = notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned());
+    let pieces: Vec<&Piece> = shapes.values().flat_map(|shape| &shape.pieces).collect();
+    let notes = notes.chain(looks(&source, &pieces)).collect();
     Ok((builder, notes, pictures::first_file(&source)))
+}
+
+/// What of the materials a layer has to be told, since its surface is one for all triangles.
+fn looks(source: &Source, pieces: &[&Piece]) -> Vec<String> {
+    let used: BTreeSet<Option<usize>> = pieces.iter().map(|piece| piece.primitive.material).collect();
+    let materials = || used.iter().filter_map(|own| source.document.materials.get((*own)?));
+    let mut notes = Vec::new();
+    if used.len() > 1 {
+        notes.push(format!("of its {} materials one is shown on all of it", used.len()));
+    }
+    if let Some(tint) = materials().find_map(Material::tint) {
+        notes.push(format!("its color {tint} is not taken over: a plain surface has a \"color\""));
+    }
+    if materials().any(|material| material.double_sided) {
+        notes.push("both its sides are meant to be seen: \"sides\": \"both\"".to_owned());
+    }
+    if pieces.iter().any(|piece| piece.primitive.attributes.color_0.is_some()) {
+        notes.push("the colors of its vertices are not shown".to_owned());
+    }
+    notes
 }
 
 /// How corners make triangles.

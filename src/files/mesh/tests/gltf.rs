@@ -132,6 +132,19 @@ fn triangles_come_as_lists_strips_and_fans() {
         let of = ("/meshes/0/primitives/0/material", json!(0));
         assert_eq!(changed(&[("/materials", laid(info)), of]).unwrap().1.len(), told);
     }
+    let tinted = json!([{ "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] }, "doubleSided": true },
+        { "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 1] } }]);
+    let colored = json!({ "attributes": { "POSITION": 0, "COLOR_0": 0 }, "material": 1 });
+    let all = [("/materials", tinted), ("/meshes/0/primitives/0/material", json!(0)), add(colored)];
+    assert_eq!(
+        changed(&all).unwrap().1,
+        [
+            "of its 2 materials one is shown on all of it",
+            "its color #ff0000 is not taken over: a plain surface has a \"color\"",
+            "both its sides are meant to be seen: \"sides\": \"both\"",
+            "the colors of its vertices are not shown"
+        ]
+    );
     let (mesh, notes) = changed(&[add(lines), add(posed), add(bare), ("/nodes/0/skin", json!(0))]).unwrap();
     assert_eq!((mesh.triangles.len(), mesh.without_uv), (3, Some(2)));
     assert_eq!(

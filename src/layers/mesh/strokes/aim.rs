@@ -97,7 +97,9 @@ impl Aim<'_> {
         let plain = surface.turn_at(facet.triangle);
         let found = match &self.along {
             Follows::Screen | Follows::Outline => Some(plain * DVec3::new(cos(self.angle), sin(self.angle), 0.0)),
-            _ => self.tangent(surface, facet, weights, normal).map(|(way, _)| way),
+            Follows::Curvature(..) | Follows::Light(_) | Follows::Axis(_) | Follows::Image(_) => {
+                self.tangent(surface, facet, weights, normal).map(|(way, _)| way)
+            }
         };
         let laid = |way: DVec3| (way - normal * way.dot(normal)).try_normalize();
         let way = found.and_then(laid).or_else(|| laid(facet.corners[1] - facet.corners[0])).unwrap_or(DVec3::X);

@@ -184,7 +184,7 @@ impl<'a> Tile<'a> {
                     let level = level + impulse.plane.x * (columns.start as f64 + 0.5);
                     near(&mut covers[..wide], inverse, (impulse.plane.x, level), (scale, reach));
                 }
-                _ => {
+                Trim::Object | Trim::Triangle => {
                     let covered = trimmed(self.shown, self.trim, impulse, y, columns.clone());
                     covers.iter_mut().zip(covered).for_each(|(cover, covered)| *cover = covered);
                 }
