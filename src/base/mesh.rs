@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::geometry;
 
 pub mod builder;
+pub mod normals;
 
 /// Triangles over shared vertices: right-handed, y up, in meters.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,7 +9,8 @@ use glam::{DVec2, DVec3};
 use super::input;
 use crate::base::budget::Budget;
 use crate::base::error::{Error, Result};
-use crate::base::mesh::builder::{Builder, Corner, Counts, unit};
+use crate::base::mesh::builder::{Builder, Corner, Counts};
+use crate::base::mesh::normals::unit;
 use crate::files::Limits;
 use crate::files::limits::within;
 

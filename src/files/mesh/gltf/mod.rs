@@ -7,7 +7,8 @@ use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3};
 
 use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
-use crate::base::mesh::builder::{Builder, Corner, Counts, unit};
+use crate::base::mesh::builder::{Builder, Corner, Counts};
+use crate::base::mesh::normals::unit;
 use crate::files::limits::within;
 
 mod accessor;
