@@ -304,7 +304,7 @@ pub struct Kind {
     pub presets: &'static [Preset],
     /// The styles that its layers can be drawn in, if they can.
     pub styles: Option<&'static Styles>,
-    /// By what its layers can be compared with themselves.
+    /// The comparisons that its layers offer: the same layer in several ways.
     pub comparisons: &'static [Comparison],
     /// A small scene that uses most of it, for tests: frames of at most 96 x 64 pixels.
     pub example: &'static str,

@@ -86,7 +86,7 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
         problems.extend(made(scene, &materials));
         context.check_cancelled()?;
     }
-    // What is made for a frame is beside the frame.
+    // A frame needs memory beside what the layers take.
     let room = if is_broken(&problems) { None } else { Some(room(scene, &materials)) };
     problems.extend(room.iter().filter_map(|room| room.as_ref().err()).cloned());
     let (broken, mut failed) = (is_broken(&problems), None);

@@ -32,7 +32,7 @@ pub fn warnings<S: Borrow<Synth>>(
     }
     let repeat = |layer: &Layer| layer.technique().repeat(&scene.timeline, materials);
     let layers: Vec<Repeat> = scene.layers.iter().map(repeat).collect();
-    // The camera is seen by what is in space alone.
+    // The camera only matters to layers in space.
     let camera = Stage::of(scene).seen_by().filter(|_| scene.timeline.wrap == Wrap::Repeat).map(Camera::snaps);
     let camera = camera.unwrap_or_default();
     if camera.is_empty() && layers.iter().all(|layer| layer.snaps.is_empty()) {

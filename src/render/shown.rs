@@ -14,7 +14,7 @@ use crate::scene::Scene;
 pub struct Shown {
     /// What is not shown: JSON pointers.
     pub muted: Vec<String>,
-    /// By what the scene is shown in all its ways, as [`Scene::compared`] has them.
+    /// The comparison that is shown, such as "anchor": see [`Scene::compared`].
     pub compared: Option<String>,
 }
 

@@ -8,7 +8,7 @@ use crate::base::problem;
 use crate::layers::starts::Comparison;
 use crate::layers::{KINDS, Layer};
 
-/// By what scenes can be compared with themselves.
+/// The names of all comparisons.
 pub fn names() -> Vec<&'static str> {
     KINDS.iter().flat_map(|kind| kind.comparisons.iter().map(|comparison| comparison.by)).collect()
 }

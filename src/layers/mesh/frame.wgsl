@@ -75,11 +75,11 @@ struct Facet {
 struct Facts {
     // The shaded color, premultiplied.
     @location(0) shaded: vec4f,
-    // The triangle's number and 1, the normal, and by what 1 / depth grows to the right and down, on the plane at focal length 1.
+    // The triangle's number and 1, the normal, and how fast 1 / depth grows to the right and down, on the plane at focal length 1.
     @location(1) facts: vec4u,
 }
 
-// By what 1 / depth grows on a triangle; each of its corners must say the same.
+// How fast 1 / depth grows across a triangle, to the right and down; all its corners must agree.
 fn slope(triangle: vec4u) -> vec2f {
     let a = vertex(triangle.x).seen;
     let normal = cross(vertex(triangle.y).seen - a, vertex(triangle.z).seen - a);

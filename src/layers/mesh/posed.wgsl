@@ -1,4 +1,4 @@
-// The vertices of a mesh, bent, posed and seen by the camera, as in pose.rs: before the code of what is made of them.
+// The vertices of a mesh, bent, posed and seen by the camera, as in pose.rs: stands before the code that uses them.
 
 struct Mesh {
     eye_from_model: mat4x4f,
@@ -33,7 +33,7 @@ fn bent(v: vec3f, angle: f32) -> vec3f {
     return vec3f(c * v.x - s * v.y, s * v.x + c * v.y, v.z);
 }
 
-// By what angle the model is bent at one of its places.
+// The angle by which the model is bent at a place.
 fn bend_at(at: vec3f) -> f32 {
     return mesh.bend * clamp((dot(at, mesh.along) - mesh.start) / mesh.length, 0.0, 1.0);
 }

@@ -99,7 +99,7 @@ pub struct Tally {
     pub draw: [u32; 4],
 }
 
-/// The size of what the room of a [`Tally`] is counted in.
+/// The unit of [`Tally::room`], in bytes.
 pub const LUMP_BYTES: u64 = 16;
 
 impl Step {

@@ -92,7 +92,7 @@ pub struct Lying<'a> {
 pub struct Painted {
     /// Both together, as large as the picture.
     pub picture: Arc<Picture>,
-    /// The border of what of the picture counts, in its pixels; paths are relative to the layer.
+    /// The border of the part of the picture that counts, in its pixels; paths are relative to the layer.
     pub marks: Vec<Mark>,
 }
 

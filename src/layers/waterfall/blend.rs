@@ -167,7 +167,7 @@ impl Blend {
         }
     }
 
-    /// The same; `hides` tells from a number and the alpha how much of what is there is hidden.
+    /// The same; `hides` gives, from a number and the alpha, the share of the background that is hidden.
     #[inline(always)]
     fn mixed(
         &self,

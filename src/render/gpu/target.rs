@@ -12,7 +12,7 @@ pub struct Target {
     pub colors: Vec<wgpu::TextureView>,
     /// See `colors`.
     pub formats: Vec<wgpu::TextureFormat>,
-    /// By what pixels are tested, cleared first.
+    /// The depth texture that pixels are tested against, cleared first.
     pub depth: Option<wgpu::TextureView>,
     /// What is there at first.
     pub load: wgpu::LoadOp<wgpu::Color>,

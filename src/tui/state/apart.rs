@@ -19,7 +19,7 @@ pub struct Apart {
     pub solo: BTreeSet<String>,
     /// They are not changed.
     pub locked: BTreeSet<String>,
-    /// By what the scene is shown in all its ways, side by side.
+    /// The comparison that is shown, such as "anchor": the scene in all its ways, side by side.
     pub compared: Option<String>,
 }
 

@@ -86,7 +86,7 @@ fn only_frames_that_change_are_read_again() {
 
 #[test]
 fn what_is_wrong_names_the_frame_and_the_cure() {
-    // Widths of the frames from 0 on, none where there is none; the clip besides its path; a limit; what is said.
+    // Widths of the frames from 0 on, `None` if there is no frame; the clip besides its path; a limit; what is said.
     let none = serde_json::json!({});
     for (widths, more, limit, said) in [
         (vec![], none.clone(), None, "falls/0000.png: there is no such file (the clip begins with number 0"),

@@ -117,7 +117,7 @@ fn most_of(own: Piece) -> f32 {
     return density(min(recipe.low, recipe.high)) * area_of(own, spot) / (depth * depth * depth);
 }
 
-// The sum of what threads have up to this one.
+// The sum over the threads up to and including this one.
 var<workgroup> sums: array<u32, WIDE>;
 fn sum_to(lane: u32, own: u32) -> u32 {
     sums[lane] = own;

@@ -67,7 +67,7 @@ pub struct Given<'a> {
     pub magnified: f64,
     /// The scene time.
     pub t: f64,
-    /// 1 / the depth of what each pixel shows, whatever that is; 0 where it is nothing.
+    /// 1 / depth of whatever each pixel shows; 0 if it shows nothing.
     pub inverse: Vec<f64>,
     /// The triangle of the layer that each pixel shows; `raster::NONE` where it shows none.
     pub triangle: Vec<u32>,

@@ -29,7 +29,7 @@ fn whole(written: &Value) -> Result<Value, String> {
     Ok(force::whole(&strokes))
 }
 
-/// By what strokes can be compared: section 8 of the contract.
+/// The comparisons of strokes: with each anchor, in each style.
 pub const COMPARISONS: &[Comparison] =
     &[Comparison { by: "anchor", ways: anchors }, Comparison { by: "style", ways: styles }];
 

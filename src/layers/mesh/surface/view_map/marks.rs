@@ -138,8 +138,8 @@ impl Drawn<'_> {
     }
 }
 
-/// The places on the sphere of a view where so much of the way to where it is gone is done, once round it; none where it ends
-/// nowhere.
+/// Places once round a view, on the sphere about its target: this share of the way from its direction to where it has faded
+/// away. `None` in directions in which it never fades.
 fn around(views: &[View], number: usize, share: f64) -> Vec<Option<DVec3>> {
     let view = &views[number];
     let front = view.camera.position - view.target;

@@ -10,7 +10,7 @@ use crate::base::pixels::{Linear, Rgba};
 use crate::layers::parts::marks::{Look, Mark, Shape};
 use crate::layers::parts::shots::Painted;
 
-/// The border of what of a picture counts.
+/// The border of the part of a picture that counts.
 static BORDER: Look = Look::new("what of a view counts", 32, [255, 220, 90, 240], 1.2);
 
 /// The most lines of the border that are drawn: the longest.

@@ -33,7 +33,7 @@ struct Map {
 @group(0) @binding(11) var turns: texture_2d<f32>;
 @group(0) @binding(12) var elements: texture_2d<f32>;
 
-// Whether those are read, in place of what views tell.
+// Whether the arrays are read, instead of asking each view.
 override from_arrays: bool;
 
 const NONE: u32 = 0xffffffffu;

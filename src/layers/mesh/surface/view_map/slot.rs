@@ -83,7 +83,7 @@ impl Slot for ViewMap {
         if let Some(ready) = before.filter(|before| before.is_of(&wanted, side)) {
             return Ok(Arc::new(Ready { points, seen: Arc::default(), ..ready.clone() }));
         }
-        // What is left out is no beginning of what is not.
+        // An incomplete map is no start for a complete one.
         let before = before.filter(|before| before.lacks.is_none()).map(|before| &*before.map);
         let filled = filled((wanted, side), before, materials)?;
         Ok(Arc::new(Ready { points, side, ..filled }))
