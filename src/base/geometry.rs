@@ -19,6 +19,16 @@ pub const FLATNESS_PX: f64 = 2e-5;
 /// A position or vector in image pixels, [x, y], as documents hold it.
 pub type Xy = [f64; 2];
 
+/// The point at a position of a document.
+pub fn point([x, y]: Xy) -> Point {
+    Point::new(x, y)
+}
+
+/// A vector of a document.
+pub fn vector([x, y]: Xy) -> Vec2 {
+    Vec2::new(x, y)
+}
+
 /// A position or vector in space, [x, y, z], y up, as documents hold it.
 pub type Xyz = [f64; 3];
 

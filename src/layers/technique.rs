@@ -2,10 +2,11 @@
 //! relative to the layer.
 
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use kurbo::{Affine, Point, Rect};
+use kurbo::{Point, Rect};
 use serde_json::{Map, Value};
 
 use super::parts::bundle::{Names, Sink};
@@ -15,6 +16,7 @@ use super::parts::marks::{Hit, Look, Mark, Overlay, View};
 use super::parts::materials::{Materials, Use};
 use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
+use super::parts::moving::Mover;
 use super::parts::pass::Pass;
 use super::parts::picking::Picks;
 use super::parts::plan::{Program, Routine};
@@ -23,9 +25,11 @@ use super::parts::repeat::Repeat;
 use super::parts::shots::{Laid, Laying, Lying};
 use super::parts::twin::Twin;
 use super::ready::{Making, Prepared, Ready, Whole};
+use super::shapes::shape::Shape;
 use super::space::eye::Ray;
 use super::starts::{Comparison, Preset, Starts, Styles, Template};
 use super::timeline::{Timeline, Wrap};
+use crate::base::change::Change;
 use crate::base::error::Error;
 use crate::base::problem::Problem;
 
@@ -90,12 +94,35 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
-    /// The `value` at `path`, as it is written, moved, turned or stretched in the layer's picture with all that is in it; and
-    /// the box around its places before. `None` if it has no place there.
-    ///
-    /// # Errors
-    /// Why it cannot be.
-    fn transformed(&self, _path: &str, _value: &Value, _by: Affine) -> Option<Result<(Value, Rect), String>> {
+    /// What moves, turns or stretches the things of the layer in its picture; `None` if they have no place there.
+    fn mover(&self) -> Option<Mover> {
+        None
+    }
+
+    /// Looks up the shapes of the scene that the layer names.
+    fn resolve(&mut self, _shapes: &BTreeMap<String, Shape>) {}
+
+    /// Whether the thing at `path` can be left out by itself.
+    fn can_mute(&self, _path: &str) -> bool {
+        false
+    }
+
+    /// The layer as if the things at these paths, each of which can be left out, were not there, with the others in their
+    /// places.
+    #[must_use]
+    fn without(&self, _paths: &[&str]) -> Self
+    where
+        Self: Sized + Clone,
+    {
+        self.clone()
+    }
+
+    /// The layer that `json` means, if `change` is how it differs from what this one was read from; `None` if it must
+    /// be read as a whole.
+    fn reread(&self, _json: &Value, _change: &Change) -> Option<Self>
+    where
+        Self: Sized,
+    {
         None
     }
 
@@ -298,6 +325,8 @@ pub struct Kind {
     pub looks: &'static [&'static Look],
     /// What makes a new layer, if the technique can start from something. A layer in space brings a camera.
     pub template: Option<Template>,
+    /// A layer of this name that shows nothing, if the technique is the one that has such layers.
+    pub blank: Option<fn(name: &str) -> Value>,
     /// How new things in its layers begin.
     pub starts: Starts,
     /// Settings that change what its layers look like.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::problem;
 use crate::layers::parts::materials::{List, Of, Use};
 use crate::layers::space::camera::Camera;
-use crate::layers::{Layer, Shape, timeline::Timeline};
+use crate::layers::{Layer, shapes::shape::Shape, timeline::Timeline};
 
 pub mod address;
 pub mod build;
@@ -36,6 +36,7 @@ pub mod shots;
 pub mod sight;
 mod start;
 pub mod styles;
+pub mod transform;
 pub mod words;
 
 pub use clip::Clip;

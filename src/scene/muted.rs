@@ -4,6 +4,7 @@ use serde_json::json;
 
 use super::{Document, Edit, Scene};
 use crate::base::pointer::Pointer;
+use crate::layers::{KINDS, Layer};
 
 impl Scene {
     /// The thing at `pointer` or around it that can be left out by itself: a zone, else its layer. `None` outside of layers.
@@ -11,7 +12,9 @@ impl Scene {
         let (index, _) = Pointer(pointer).item_of("/layers")?;
         let layer = self.layers.get(index)?;
         let start = format!("/layers/{index}");
-        let inner = Pointer(pointer).upward().find(|at| at.strip_prefix(&start).is_some_and(|way| layer.can_mute(way)));
+        let inner = Pointer(pointer)
+            .upward()
+            .find(|at| at.strip_prefix(&start).is_some_and(|way| layer.technique().can_mute(way)));
         Some(inner.map_or(start, str::to_owned))
     }
 
@@ -22,11 +25,17 @@ impl Scene {
         let layers = self.layers.iter().enumerate().map(|(i, layer)| {
             let own = muted.iter().filter_map(|pointer| Pointer(pointer).item_of("/layers"));
             let paths: Vec<&str> = own.filter(|(index, _)| *index == i).map(|(_, way)| way).collect();
-            layer.without(&paths)
+            if paths.contains(&"") { blank(layer) } else { layer.without(&paths) }
         });
         let side = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         Scene { layers: layers.collect(), size: Some([side(width), side(height)]), ..self.clone() }
     }
+}
+
+/// A layer that shows nothing in place of another.
+fn blank(layer: &Layer) -> Layer {
+    let made = KINDS.iter().find_map(|kind| kind.blank).map(|blank| blank(layer.technique().name()));
+    made.and_then(|made| serde_json::from_value(made).ok()).unwrap_or_else(|| layer.clone())
 }
 
 impl Document {

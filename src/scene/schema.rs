@@ -173,6 +173,11 @@ impl Shape {
         self.text("symbol")
     }
 
+    /// Whether a pair in pixels is a vector from one place to another: its numbers are called dx and dy, or the schema says so.
+    pub fn is_relative(self) -> bool {
+        self.column(0) == Some("dx") || self.meta("relative").is_some()
+    }
+
     /// What its text names: the key of one of the scene's lists ("images").
     pub fn reference(self) -> Option<&'static str> {
         self.text("reference")

@@ -164,6 +164,12 @@ pub fn skip_item<'a>(line: &str, lines: &mut impl Iterator<Item = (usize, &'a st
     }
 }
 
+/// The paths that a file passes on by `pub use`.
+pub fn passed_by(source: &Source) -> Vec<String> {
+    let public = named(&source.text).into_iter().filter(|named| named.public);
+    public.map(|named| bound(&named.path).0.to_owned()).collect()
+}
+
 /// What modules pass on of others by `pub use`: module and name, and the path that this stands for.
 pub fn passed_on(sources: &[Source]) -> BTreeMap<Vec<String>, Vec<String>> {
     let mut all = BTreeMap::new();

@@ -30,6 +30,7 @@ pub static KIND: Kind = Kind {
     passes: &[],
     looks: &[],
     template: None,
+    blank: Some(blank),
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: &[],
     styles: None,
@@ -71,6 +72,10 @@ impl Technique for FillLayer {
     fn synth(&self, making: &Making, _previous: Option<&dyn Ready>) -> Result<Arc<dyn Ready>, Problem> {
         Ok(Arc::new(synth::Synth::new(self, making.place)))
     }
+}
+
+fn blank(name: &str) -> Value {
+    json!({ "kind": KIND.name, "name": name, "color": "#00000000" })
 }
 
 /// A new gradient goes from black above to white below.

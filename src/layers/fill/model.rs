@@ -28,13 +28,6 @@ pub struct FillLayer {
     pub gradient: Option<Gradient>,
 }
 
-impl FillLayer {
-    /// A layer that shows nothing.
-    pub fn clear(name: &str) -> FillLayer {
-        FillLayer { name: name.to_owned(), color: "#00000000".into(), gradient: None }
-    }
-}
-
 /// Colors that change along a line and are constant across it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

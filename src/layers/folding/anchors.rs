@@ -5,13 +5,13 @@ use std::sync::Arc;
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
 
 use super::anchor::Anchor;
-use super::node::Node;
-use super::outline::{Outline, bezier, point, vector};
+use super::outline::Outline;
 use super::tools::{CurveFrame, Distribution, JumpAlong, LassoVertex, Tool};
-use crate::base::geometry::Polygon;
+use crate::base::geometry::{Polygon, point, vector};
 use crate::base::maths;
 use crate::base::pixels::Grid;
 use crate::layers::parts::materials::Materials;
+use crate::layers::shapes::node::{Node, bezier};
 
 /// A field that is defined everywhere, in pixels.
 #[derive(Clone, Debug)]

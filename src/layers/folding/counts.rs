@@ -4,11 +4,11 @@
 use kurbo::Vec2;
 
 use super::model::Zone;
-use super::node::Node;
-use super::outline::{Outline, vector};
+use super::outline::Outline;
 use super::tools::{Gives, Tool};
-use crate::base::geometry::FLATNESS_PX;
+use crate::base::geometry::{FLATNESS_PX, vector};
 use crate::base::maths::{TAU, pow};
+use crate::layers::shapes::node::Node;
 
 /// The number of anchors of one tool in a zone with this outline.
 pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {

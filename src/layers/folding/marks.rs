@@ -5,11 +5,11 @@ use kurbo::{Point, Vec2};
 use super::looks::{ANCHOR, ANCHORS, CURVE, CURVES, FOLD_REGION, HANDLE, JUMP, LABELS, LASSO, OUTLINES, REGIONS};
 use super::looks::{STILL, ZONE_OUTLINE};
 use super::model::{PictureLayer, Zone};
-use super::node::Node;
-use super::outline::{bezier, point, vector};
 use super::tools::Tool;
+use crate::base::geometry::{point, vector};
 use crate::base::text::short;
 use crate::layers::parts::marks::{Look, Mark, Shape, View};
+use crate::layers::shapes::node::{Node, bezier};
 
 /// The marks of a layer that need no synthesis.
 pub fn marks(layer: &PictureLayer, view: &View) -> Vec<Mark> {

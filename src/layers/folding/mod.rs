@@ -18,8 +18,6 @@ pub mod marks;
 pub mod model;
 pub mod muted;
 pub mod needs;
-pub mod node;
-pub mod nodes;
 pub mod outline;
 pub mod pick;
 pub mod pixel_marks;
@@ -31,7 +29,6 @@ pub mod reduce;
 pub mod regions;
 pub mod reread;
 pub mod seam;
-pub mod shapes;
 pub mod shared;
 pub mod starts;
 pub mod synth;
@@ -44,21 +41,25 @@ pub mod transform;
 mod tests;
 
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use kurbo::{Affine, Point, Rect};
+use kurbo::{Point, Rect};
 use serde_json::Value;
 
 use self::model::PictureLayer;
 use super::parts::marks::{Hit, Mark, View};
 use super::parts::materials::{List, Materials, Use};
 use super::parts::moment::{Moment, Space};
+use super::parts::moving::Mover;
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready};
+use super::shapes::shape::Shape;
 use super::starts::{Starts, Template};
 use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
 use super::timeline::{Timeline, Wrap};
+use crate::base::change::Change;
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -77,6 +78,7 @@ pub static KIND: Kind = Kind {
     passes: &[],
     looks: looks::LOOKS,
     template: Some(Template { of: List::Images, layer: starts::template, ground: None }),
+    blank: None,
     starts: Starts {
         start: starts::start,
         beyond: starts::beyond,
@@ -136,8 +138,24 @@ impl Technique for PictureLayer {
         kinds::turned(self, path, old, to)
     }
 
-    fn transformed(&self, path: &str, value: &Value, by: Affine) -> Option<Result<(Value, Rect), String>> {
-        transform::transformed(path, value, by)
+    fn mover(&self) -> Option<Mover> {
+        Some(transform::moved)
+    }
+
+    fn resolve(&mut self, shapes: &BTreeMap<String, Shape>) {
+        shared::resolve(self, shapes);
+    }
+
+    fn can_mute(&self, path: &str) -> bool {
+        muted::can_be(path)
+    }
+
+    fn without(&self, paths: &[&str]) -> PictureLayer {
+        muted::layer(self, paths)
+    }
+
+    fn reread(&self, json: &Value, change: &Change) -> Option<PictureLayer> {
+        reread::layer(self, json, change)
     }
 
     fn bounds(&self, path: &str) -> Rect {

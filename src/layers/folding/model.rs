@@ -100,7 +100,7 @@ pub struct Sampler {
     pub clip: Option<String>,
     /// Added to where every sampler reads.
     #[serde(default)]
-    #[schemars(extend("unit" = "px"))]
+    #[schemars(extend("unit" = "px", "relative" = true))]
     pub offset: Xy,
 }
 

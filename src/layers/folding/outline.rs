@@ -1,13 +1,12 @@
 //! Outlines of zones and fold regions: as in the document, and as polygons.
 
-use kurbo::{BezPath, Point, Rect, Shape, Vec2};
+use kurbo::Rect;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::node::Node;
-use super::shapes::Part;
-use crate::base::geometry::Polygon;
-use crate::base::geometry::Xy;
+use crate::base::geometry::{Polygon, Xy, point, vector};
+use crate::layers::shapes::node::{Node, bezier};
+use crate::layers::shapes::shape::Part;
 
 /// A closed outline on the layer's image, even-odd where it crosses itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,30 +73,4 @@ impl Outline {
             Outline::Path { nodes } | Outline::Shapes { nodes, .. } => Polygon::flatten(&bezier(nodes, true)),
         }
     }
-}
-
-/// The cubic Bezier path through `nodes`.
-pub fn bezier(nodes: &[Node], closed: bool) -> BezPath {
-    let mut path = BezPath::new();
-    let Some(first) = nodes.first() else { return path };
-    path.move_to(point(first.at));
-    let next = nodes.iter().skip(1).chain(closed.then_some(first));
-    for (a, b) in nodes.iter().zip(next) {
-        path.curve_to(point(a.at) + vector(a.handle_out), point(b.at) + vector(b.handle_in), point(b.at));
-    }
-    if closed {
-        path.close_path();
-    }
-    debug_assert!(path.bounding_box().is_finite());
-    path
-}
-
-/// A document position as a point.
-pub fn point([x, y]: Xy) -> Point {
-    Point::new(x, y)
-}
-
-/// A document vector as a vector.
-pub fn vector([x, y]: Xy) -> Vec2 {
-    Vec2::new(x, y)
 }

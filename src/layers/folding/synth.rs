@@ -7,10 +7,10 @@ use kurbo::Vec2;
 
 use super::field::{self, Field, Inputs, Prepared};
 use super::model::{PictureLayer, Sampler, Zone};
-use super::outline::vector;
 use super::position::Clock;
 use crate::base::budget::Share;
 use crate::base::clip::Clip;
+use crate::base::geometry::vector;
 use crate::base::picture::Picture;
 use crate::base::pixels::Beyond;
 use crate::base::problem::Problem;

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::node::Node;
-use super::shapes::Nodes;
 use crate::base::geometry::Xy;
+use crate::layers::shapes::node::Node;
+use crate::layers::shapes::shape::Nodes;
 
 /// One tool of a zone's motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -67,6 +67,7 @@ pub static KIND: Kind = Kind {
     looks: marks::LOOKS,
     template: Some(Template { of: List::Meshes, layer: template, ground: None }),
     // A new mark needs no noise.
+    blank: None,
     starts: Starts { beyond: |_, list| (list == "marks").then(|| ("kind", "outline".into())), ..Starts::PLAIN },
     presets: &[],
     styles: Some(&strokes::restyle::STYLES),

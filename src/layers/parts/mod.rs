@@ -9,6 +9,7 @@ pub mod marks;
 pub mod materials;
 pub mod measures;
 pub mod moment;
+pub mod moving;
 pub mod pass;
 pub mod picking;
 pub mod plan;

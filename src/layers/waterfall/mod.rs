@@ -68,6 +68,7 @@ pub static KIND: Kind = Kind {
     passes: &[passes::LINES, passes::SPRITES],
     looks: marks::LOOKS,
     template: Some(Template { of: List::Clips, layer: template, ground: Some(GROUND) }),
+    blank: None,
     starts: Starts { start, ascending, item, ..Starts::PLAIN },
     presets: presets::PRESETS,
     styles: None,

@@ -9,7 +9,7 @@ use super::items::{alike, owned};
 use super::yanking::counted;
 use crate::base::pointer::Pointer;
 use crate::base::{maths, number};
-use crate::layers::{Handles, handled, resampled};
+use crate::layers::shapes::handles::{Handles, handled, resampled};
 use crate::scene::insert::is_closed;
 use crate::scene::{Edit, field};
 use crate::tui::document::pointers::item_of;

@@ -7,11 +7,8 @@ use super::items::targets;
 use super::yanking::counted;
 use crate::base::expression::{Variables, evaluate};
 use crate::base::maths;
-use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
-use crate::layers::transformed_shape;
-use crate::scene::field::{layer_of, value};
-use crate::scene::{Edit, address};
+use crate::scene::{Edit, address, transform};
 use crate::tui::state::State;
 use crate::tui::text::numbers::short;
 use crate::tui::text::plain;
@@ -84,20 +81,11 @@ type Transformed = Result<(serde_json::Value, Rect), String>;
 /// It has a place, but cannot be moved.
 fn transformed(state: &State, pointer: &str, by: Affine) -> Result<Transformed, String> {
     let document = state.document();
-    let found = layer_of(document, pointer).zip(value(document, pointer));
-    let moved = match Pointer(pointer).below("/shapes").filter(|way| !way.is_empty()) {
-        None => found.and_then(|((layer, way), value)| layer.transformed(way, &value, by)),
-        // The name is no field.
-        Some(way) => {
-            let way = way[1..].find('/').map_or("/outline", |end| &way[end + 1..]);
-            value(document, pointer).and_then(|value| transformed_shape(way, &value, by))
-        }
-    };
     let name = || match address::told(document, pointer) {
         name if name.is_empty() => "the scene".to_owned(),
         name => plain(&name),
     };
-    match moved {
+    match transform::transformed(document, pointer, by) {
         Some(Ok(moved)) => Ok(Ok(moved)),
         Some(Err(why)) => Err(format!("{}: {why}", name())),
         None => Ok(Err(format!("{} has no place in a picture: go to a zone, a tool, an outline or points", name()))),

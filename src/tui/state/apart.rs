@@ -40,7 +40,8 @@ impl Apart {
                     true => {}
                     false if zones.is_empty() => drop(hidden.insert(own)),
                     // Its own picture stays below them.
-                    false => hidden.extend(siblings(document, &zones).filter(|one| layer.can_mute(&one[own.len()..]))),
+                    false => hidden
+                        .extend(siblings(document, &zones).filter(|one| layer.technique().can_mute(&one[own.len()..]))),
                 }
             }
         }

@@ -6,12 +6,11 @@ use serde_json::{Value, json};
 
 use super::{Turned, pair, px, told};
 use crate::base::crossings::self_crossing;
-use crate::base::geometry::Xy;
-use crate::base::geometry::{FLATNESS_PX, Polygon};
+use crate::base::geometry::{FLATNESS_PX, Polygon, Xy, point};
 use crate::base::maths::{self, TAU};
 use crate::base::number;
-use crate::layers::folding::node::written;
-use crate::layers::folding::outline::{Outline, bezier, point};
+use crate::layers::folding::outline::Outline;
+use crate::layers::shapes::node::{bezier, written};
 
 /// How far the straight sides may be from the curve that they replace.
 const WITHIN_PX: f64 = 0.05;

@@ -8,11 +8,11 @@ use serde::de::value::StrDeserializer;
 use serde_json::{Value, json};
 
 use super::{Turned, pair, px, ratio, told};
+use crate::base::geometry::point;
 use crate::base::maths;
 use crate::layers::folding::anchors::{given, transform};
 use crate::layers::folding::counts;
 use crate::layers::folding::model::Zone;
-use crate::layers::folding::outline::point;
 use crate::layers::folding::starts;
 use crate::layers::folding::tools::Tool;
 

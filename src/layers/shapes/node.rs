@@ -1,10 +1,11 @@
-//! A node of a path, as in the document.
+//! A node of a path, as in the document, and the path through several.
 
+use kurbo::{BezPath, Shape};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::base::geometry::Xy;
+use crate::base::geometry::{Xy, point, vector};
 use crate::base::number;
 
 /// A node of a cubic Bezier path.
@@ -43,4 +44,20 @@ pub fn written(node: &Node) -> Value {
         }
     }
     written
+}
+
+/// The cubic Bezier path through `nodes`.
+pub fn bezier(nodes: &[Node], closed: bool) -> BezPath {
+    let mut path = BezPath::new();
+    let Some(first) = nodes.first() else { return path };
+    path.move_to(point(first.at));
+    let next = nodes.iter().skip(1).chain(closed.then_some(first));
+    for (a, b) in nodes.iter().zip(next) {
+        path.curve_to(point(a.at) + vector(a.handle_out), point(b.at) + vector(b.handle_in), point(b.at));
+    }
+    if closed {
+        path.close_path();
+    }
+    debug_assert!(path.bounding_box().is_finite());
+    path
 }

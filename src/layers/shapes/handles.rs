@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use kurbo::{ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
+use serde_json::Value;
 
-use super::node::Node;
-use super::outline::{bezier, point, vector};
-use crate::base::geometry::Xy;
+use super::node::{self, Node, bezier};
+use crate::base::geometry::{Xy, point, vector};
 use crate::base::number;
 
 /// Lengths along a path are exact to this many pixels.
@@ -29,8 +29,24 @@ fn xy(v: Vec2) -> Xy {
     [number::tidy(v.x), number::tidy(v.y)]
 }
 
+/// Nodes of a path as they are written, with the handles of some made anew; `None` if they are no nodes.
+pub fn handled(nodes: &[Value], closed: bool, chosen: &BTreeSet<usize>, handles: Handles) -> Option<Vec<Value>> {
+    let all = with_handles(&node::read(nodes)?, closed, chosen, handles);
+    // Those that stay are written as they were.
+    let each = nodes.iter().zip(&all).enumerate();
+    let written = |(i, (old, new)): (usize, (&Value, &_))| {
+        if chosen.contains(&i) { node::written(new) } else { old.clone() }
+    };
+    Some(each.map(written).collect())
+}
+
+/// So many nodes evenly along the path of nodes as they are written; `None` if they are no nodes.
+pub fn resampled(nodes: &[Value], closed: bool, count: usize) -> Option<Vec<Value>> {
+    Some(evenly(&node::read(nodes)?, closed, count).iter().map(node::written).collect())
+}
+
 /// The path with these nodes' handles made anew.
-pub fn handled(nodes: &[Node], closed: bool, chosen: &BTreeSet<usize>, handles: Handles) -> Vec<Node> {
+fn with_handles(nodes: &[Node], closed: bool, chosen: &BTreeSet<usize>, handles: Handles) -> Vec<Node> {
     let last = nodes.len().saturating_sub(1);
     let neighbor = |i: usize, forward: bool| match (i, forward) {
         (0, false) => closed.then_some(last),
@@ -72,7 +88,7 @@ fn smooth(here: Point, before: Option<Point>, after: Option<Point>) -> (Vec2, Ve
 }
 
 /// So many nodes evenly along a path, which it goes through in the directions that it had there; straight sides stay straight.
-pub fn resampled(nodes: &[Node], closed: bool, count: usize) -> Vec<Node> {
+fn evenly(nodes: &[Node], closed: bool, count: usize) -> Vec<Node> {
     let path = bezier(nodes, closed);
     let sides: Vec<(PathSeg, f64)> = path.segments().map(|side| (side, side.arclen(ACCURACY_PX))).collect();
     let whole: f64 = sides.iter().map(|(_, length)| length).sum();
@@ -121,8 +137,9 @@ mod tests {
     #[test]
     fn handles_are_smooth_mirrored_or_none() {
         let nodes = [at(0.0, 0.0), at(30.0, 30.0), at(60.0, 0.0)];
-        let made =
-            |closed, handles, chosen: &[usize]| handled(&nodes, closed, &chosen.iter().copied().collect(), handles);
+        let made = |closed, handles, chosen: &[usize]| {
+            with_handles(&nodes, closed, &chosen.iter().copied().collect(), handles)
+        };
         let smooth = made(false, Handles::Smooth, &[0, 1, 2]);
         let third = Vec2::new(30.0, 30.0).hypot() / 3.0;
         assert_eq!(
@@ -140,17 +157,17 @@ mod tests {
         assert_eq!(closed[1..], nodes[1..], "only those that are chosen");
         let mut one_sided = nodes.clone();
         one_sided[1].handle_in = [-4.0, 2.0];
-        let mirrored = handled(&one_sided, false, &[1].into(), Handles::Mirrored);
+        let mirrored = with_handles(&one_sided, false, &[1].into(), Handles::Mirrored);
         assert_eq!(mirrored[1].handle_out, [4.0, -2.0]);
-        assert_eq!(handled(&mirrored, false, &[1].into(), Handles::None)[1], nodes[1]);
+        assert_eq!(with_handles(&mirrored, false, &[1].into(), Handles::None)[1], nodes[1]);
     }
 
     #[test]
     fn nodes_are_even_and_the_path_stays() {
-        let line = resampled(&[at(0.0, 0.0), at(10.0, 0.0), at(40.0, 0.0)], false, 5);
+        let line = evenly(&[at(0.0, 0.0), at(10.0, 0.0), at(40.0, 0.0)], false, 5);
         assert_eq!(line.iter().map(|node| node.at[0]).collect::<Vec<_>>(), [0.0, 10.0, 20.0, 30.0, 40.0]);
         assert!(line.iter().all(|node| node.handle_out == [0.0; 2]), "straight stays straight");
-        let square = resampled(&[at(0.0, 0.0), at(8.0, 0.0), at(8.0, 8.0), at(0.0, 8.0)], true, 8);
+        let square = evenly(&[at(0.0, 0.0), at(8.0, 0.0), at(8.0, 8.0), at(0.0, 8.0)], true, 8);
         assert_eq!((square[1].at, square[7].at), ([4.0, 0.0], [0.0, 4.0]));
         // A circle of four nodes, made of twelve, stays a circle.
         let k = 55.228_474_983_079_36;
@@ -161,7 +178,7 @@ mod tests {
             node(-100.0, 0.0, [0.0, -k]),
             node(0.0, -100.0, [k, 0.0]),
         ];
-        let twelve = bezier(&resampled(&circle, true, 12), true);
+        let twelve = bezier(&evenly(&circle, true, 12), true);
         for side in twelve.segments() {
             for t in [0.0, 0.3, 0.5, 0.9] {
                 let radius = side.eval(t).to_vec2().hypot();
