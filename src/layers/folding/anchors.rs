@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, PathSeg, Point, Vec2};
+use serde_json::{Value, json};
 
 use super::anchor::Anchor;
+use super::neat::{pair, px, ratio};
 use super::outline::Outline;
 use super::tools::{CurveFrame, Distribution, JumpAlong, LassoVertex, Tool};
 use crate::base::geometry::{Polygon, point, vector};
@@ -101,6 +103,60 @@ fn turn(degrees: f64) -> (f64, f64) {
         180.0 => (-1.0, 0.0),
         270.0 => (0.0, -1.0),
         _ => (maths::cos(part.to_radians()), maths::sin(part.to_radians())),
+    }
+}
+
+/// The tool `to`, of the kind of `like`, that is nearest to a map, about its `own` center if it has one, otherwise about the
+/// fixed point of the map, or about the `middle`; `None` if that kind is no map.
+pub fn nearest(map: Affine, to: &str, like: &Tool, own: Option<Point>, middle: Point) -> Option<Value> {
+    let [a, c, b, d, tx, ty] = map.as_coeffs();
+    let center = |linear: [f64; 4]| pair(own.unwrap_or_else(|| fixed(linear, Vec2::new(tx, ty), middle)));
+    Some(match like {
+        Tool::Translate { .. } => json!({ "tool": to, "by": pair(map * middle - middle) }),
+        Tool::Affine { .. } => {
+            json!({ "tool": to, "matrix": [[ratio(a), ratio(b), px(tx)], [ratio(c), ratio(d), px(ty)]] })
+        }
+        Tool::Shear { .. } => {
+            json!({ "tool": to, "center": center([1.0, b, c, 1.0]), "factor": [ratio(b), ratio(c)] })
+        }
+        Tool::Scale { .. } => {
+            let [x, y] = stretch(a, b, c, d);
+            json!({ "tool": to, "center": center([x, 0.0, 0.0, y]), "factor": [ratio(x), ratio(y)] })
+        }
+        Tool::Rotate { .. } => {
+            let angle = maths::atan2(c - b, a + d);
+            let (cos, sin) = (maths::cos(angle), maths::sin(angle));
+            json!({ "tool": to, "center": center([cos, -sin, sin, cos]), "degrees": ratio(angle.to_degrees()) })
+        }
+        Tool::Point { .. }
+        | Tool::Curve { .. }
+        | Tool::Lasso { .. }
+        | Tool::StillBorder { .. }
+        | Tool::Field { .. } => return None,
+    })
+}
+
+/// The factors of a linear map along x and y, after its rotation is removed.
+fn stretch(a: f64, b: f64, c: f64, d: f64) -> [f64; 2] {
+    if b == 0.0 && c == 0.0 {
+        return [a, d];
+    }
+    let angle = maths::atan2(c - b, a + d);
+    let (cos, sin) = (maths::cos(angle), maths::sin(angle));
+    [cos * a + sin * c, cos * d - sin * b]
+}
+
+/// The fixed point of x -> L x + t; along directions that are not moved, the coordinate of `near`.
+fn fixed([a, b, c, d]: [f64; 4], t: Vec2, near: Point) -> Point {
+    let (p, q, r, s) = (1.0 - a, -b, -c, 1.0 - d);
+    let det = p * s - q * r;
+    let over = |x: f64, by: f64, other: f64| if by.abs() > 1e-12 { x / by } else { other };
+    if det.abs() > 1e-12 {
+        return Point::new((s * t.x - q * t.y) / det, (p * t.y - r * t.x) / det);
+    }
+    match q == 0.0 && r == 0.0 {
+        true => Point::new(over(t.x, p, near.x), over(t.y, s, near.y)),
+        false => Point::new(over(t.y, r, near.x), over(t.x, q, near.y)),
     }
 }
 

@@ -9,7 +9,7 @@ use super::anchor::Anchor;
 use super::interpolation::Interpolation;
 use super::position::{Pieces, Position};
 use super::{counts, fold::Fold, needs, outline::Outline};
-use super::{model::PictureLayer, model::Zone, tools::Tool};
+use super::{model::PictureLayer, model::Zone};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
 use crate::base::problem::{Kind, Problem, quoted};
@@ -73,7 +73,7 @@ pub fn check_materials(layer: &PictureLayer, materials: &Materials) -> Vec<Probl
             problems.push(Problem::warning(format!("/zones/{i}/outline"), message));
         }
         for (j, tool) in zone.motion.iter().enumerate() {
-            let Some(path) = tool.file() else { continue };
+            let Some(path) = tool.facts().file else { continue };
             let size = materials.fields.get(path).map(|field| (field.width(), field.height()));
             if let Some((w, h)) = size.filter(|&size| size != (width, height)) {
                 let message = format!("the field is {w} x {h} px, the picture {width} x {height}");
@@ -218,14 +218,8 @@ fn spread(anchors: &[Anchor]) -> Option<(f64, f64)> {
 
 /// Checks of fields in a tool that depend on each other.
 fn motion(zone: &Zone) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    for (i, tool) in zone.motion.iter().enumerate() {
-        if let Tool::Curve { jumps, .. } = tool {
-            let path = |j| format!("/motion/{i}/jumps/{j}/along");
-            problems.extend(rules::ascending("places along a curve", jumps.iter().map(|jump| jump.along), path));
-        }
-    }
-    problems
+    let tools = zone.motion.iter().enumerate();
+    tools.flat_map(|(i, tool)| tool.check().into_iter().map(move |each| each.under(&format!("/motion/{i}")))).collect()
 }
 
 /// Local times at which to look for values out of bounds.

@@ -12,7 +12,7 @@ use crate::layers::shapes::node::Node;
 
 /// The number of anchors of one tool in a zone with this outline.
 pub fn anchors(tool: &Tool, outline: &Outline) -> f64 {
-    match tool.gives() {
+    match tool.facts().gives {
         Gives::Anchors(count) => count,
         Gives::AnchorsAlong(spacing) => perimeter(outline) / spacing + 1.0,
         Gives::Field => 0.0,

@@ -86,6 +86,9 @@ pub enum Rule {
     FlyOver,
 }
 
+/// What the rules by regions do, for whoever writes a player.
+pub const IN_WORDS: &str = "return is active outside, fly-over inside, with e = s; cover is active outside with e = s, and inside with e = the last crossing passed, or still if none was; a pixel that is not active shows what lies beneath";
+
 impl Rule {
     /// The number by which frame.wgsl knows it; 0 is no rule.
     pub fn number(self) -> u32 {
@@ -171,6 +174,7 @@ mod tests {
             assert_eq!(rule.effective(true, &[], 0.3).is_some(), rule.moves_inside(), "{name}");
             assert_eq!(rule.effective(false, &[], 0.3).is_some(), !rule.moves_inside(), "{name}");
             assert_eq!(rule.effective(false, &[0.4], 0.6) == Some(0.4), rule.waits(), "{name}");
+            assert!(IN_WORDS.contains(&format!("{name} is")) || IN_WORDS.contains(&format!("{name} inside")), "{name}");
             numbers.push(rule.number());
         }
         assert_eq!(numbers, (1..=numbers.len() as u32).collect::<Vec<_>>(), "0 is no rule");

@@ -96,27 +96,17 @@ impl<'a> Drawing<'a> {
     }
 
     fn tool(&mut self, tool: &Tool, at: &str) {
-        match tool {
-            Tool::Curve { nodes, .. } => {
-                let points = flattened(nodes);
-                self.add(&CURVE, at, Shape::Line { points, closed: false });
-                for node in nodes.iter() {
-                    self.handles(node, at);
-                }
+        let facts = tool.facts();
+        if let Some(nodes) = facts.path {
+            let points = flattened(nodes);
+            self.add(&CURVE, at, Shape::Line { points, closed: false });
+            for node in nodes.iter() {
+                self.handles(node, at);
             }
-            Tool::Lasso { vertices, .. } => {
-                let points = vertices.iter().map(|v| point(v.from)).collect();
-                self.add(&LASSO, at, Shape::Line { points, closed: true });
-            }
-            // Their anchors say it all, or they have no place.
-            Tool::Point { .. }
-            | Tool::Translate { .. }
-            | Tool::Scale { .. }
-            | Tool::Rotate { .. }
-            | Tool::Shear { .. }
-            | Tool::Affine { .. }
-            | Tool::StillBorder { .. }
-            | Tool::Field { .. } => {}
+        }
+        if let Some(vertices) = facts.dragged {
+            let points = vertices.iter().map(|v| point(v.from)).collect();
+            self.add(&LASSO, at, Shape::Line { points, closed: true });
         }
     }
 

@@ -17,6 +17,7 @@ pub mod looks;
 pub mod marks;
 pub mod model;
 pub mod muted;
+pub mod neat;
 pub mod needs;
 pub mod outline;
 pub mod pick;

@@ -71,7 +71,7 @@ impl Zone {
 
     /// Whether nothing in it can move: no tool gives a jump vector, and it shows no clip.
     pub fn is_still(&self) -> bool {
-        self.motion.iter().all(|tool| matches!(tool, Tool::StillBorder { .. })) && self.clip().is_none()
+        !self.motion.iter().any(|tool| tool.facts().moves) && self.clip().is_none()
     }
 
     /// All its anchors, tools in list order.

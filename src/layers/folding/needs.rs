@@ -21,7 +21,7 @@ pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
             |clip| Use { at: format!("/zones/{i}/sampler/clip"), of: Of::Name(List::Clips, clip), what: What::Clip };
         uses.extend(zone.clip().map(clip));
         for (j, tool) in zone.motion.iter().enumerate() {
-            if let Some(path) = tool.file() {
+            if let Some(path) = tool.facts().file {
                 uses.push(Use { at: format!("/zones/{i}/motion/{j}/path"), of: Of::Path(path), what: What::Vectors });
             }
         }

@@ -3,7 +3,6 @@
 
 use super::model::{PictureLayer, Zone};
 use super::position::{Pieces, Position};
-use super::tools::Tool;
 use crate::base::clip::Clip;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
@@ -57,8 +56,7 @@ fn cut(clip: &Clip, timeline: &Timeline) -> Option<(String, String)> {
 /// there is no jump.
 fn snap(zone: &Zone, wrap: Wrap) -> Option<(f64, (f64, f64))> {
     let clock = zone.clock(wrap);
-    let still = |tool: &Tool| matches!(tool, Tool::StillBorder { .. });
-    if wrap == Wrap::Once || zone.speed == 0.0 || zone.motion.iter().all(still) {
+    if wrap == Wrap::Once || zone.speed == 0.0 || !zone.motion.iter().any(|tool| tool.facts().moves) {
         return None;
     }
     let jump = |time: f64, before: f64, after: f64| {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use super::model::PictureLayer;
 use super::outline::Outline;
-use super::tools::Tool;
 use crate::layers::shapes::joined::joined;
 use crate::layers::shapes::shape::{Part, Shape};
 
@@ -18,9 +17,7 @@ pub fn resolve(layer: &mut PictureLayer, shapes: &BTreeMap<String, Shape>) {
             }
         }
         for tool in &mut zone.motion {
-            if let Tool::Curve { nodes, .. } = tool {
-                nodes.look_up(|name| shapes.get(name).map(|shape| shape.nodes.clone()).unwrap_or_default());
-            }
+            tool.look_up(|name| shapes.get(name).map(|shape| shape.nodes.clone()).unwrap_or_default());
         }
     }
 }
@@ -36,9 +33,8 @@ pub fn uses(layer: &PictureLayer) -> impl Iterator<Item = (String, &str)> {
             let named = parts.iter().enumerate();
             named.map(move |(p, part)| (format!("{at}/parts/{p}/shape"), part.shape.as_str())).collect::<Vec<_>>()
         });
-        let curves = zone.motion.iter().enumerate().filter_map(move |(t, tool)| match tool {
-            Tool::Curve { nodes, .. } => Some((format!("/zones/{i}/motion/{t}/nodes"), nodes.shape.as_deref()?)),
-            _ => None,
+        let curves = zone.motion.iter().enumerate().filter_map(move |(t, tool)| {
+            Some((format!("/zones/{i}/motion/{t}/nodes"), tool.facts().path?.shape.as_deref()?))
         });
         parts.chain(curves)
     })

@@ -1,11 +1,12 @@
 //! The initial values of new things in a picture layer where the schema has no default: an outline where the old one
 //! was, an anchor in the middle of its zone, a keyframe between its neighbors.
 
-use kurbo::{Point, Rect};
+use kurbo::Rect;
 use serde_json::{Value, json};
 
 use super::model::PictureLayer;
-use crate::base::number;
+use super::neat::{corners, middle, neat, neat_pair};
+use super::tools;
 use crate::base::pointer::Pointer;
 use crate::layers::starts::Shown;
 
@@ -27,12 +28,6 @@ pub fn bounds(layer: &PictureLayer, path: &str) -> Rect {
     region.map_or(middle(whole), |region| region.polygon().bounds())
 }
 
-/// The middle half of a rectangle, in whole pixels if it is large enough.
-fn middle(r: Rect) -> Rect {
-    let half = r.inset((-r.width() / 4.0, -r.height() / 4.0));
-    if half.width().min(half.height()) >= 4.0 { half.round() } else { half }
-}
-
 /// The initial value of the field `field` of a new `variant` (a kind of outline, a tool, a method, a function); `None`
 /// if zeros will do.
 pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
@@ -46,19 +41,6 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
         ("ellipse", "radii") => json!([neat(w / 2.0), neat(h / 2.0)]),
         ("polygon", "points") => json!([tl, tr, br, bl]),
         ("path", "nodes") => json!([{ "at": tl }, { "at": tr }, { "at": br }, { "at": bl }]),
-        ("curve", "samples") => json!(9),
-        ("curve", "nodes") => {
-            json!([{ "at": pair(c.x - w / 4.0, c.y) }, { "at": pair(c.x + w / 4.0, c.y) }])
-        }
-        ("curve", "jumps") => json!([{ "along": 0, "jump": [0, 0] }]),
-        ("lasso", "vertices") => {
-            let inner = corners(middle(bounds));
-            Value::from(inner.map(|at| json!({ "from": at, "to": at })).to_vec())
-        }
-        ("scale", "factor") => json!([1, 1]),
-        ("affine", "matrix") => json!([[1, 0, 0], [0, 1, 0]]),
-        ("still-border", "spacing") => json!(8),
-        ("field", "path") => json!("field.flo"),
         ("modified-shepard" | "modified-shepard-random", "radius") => json!(neat((w.max(h) / 2.0).max(1.0))),
         ("modified-shepard-random", "ring") => json!(neat((w.max(h) / 8.0).max(0.25))),
         ("cubic-bezier", "x1" | "x2") => json!(0.25),
@@ -66,8 +48,8 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
         ("cubic-bezier", "y2") => json!(1),
         ("keyframes", "points") => json!([[0, 0], [1, 1]]),
         ("piecewise", "segments") => json!([{ "until": 1, "from": 0, "to": 1 }]),
-        (_, "at" | "center") => pair(c.x, c.y),
-        _ => return None,
+        (_, "at" | "center") => neat_pair(c),
+        _ => return tools::fresh(variant, bounds)?.get(field).cloned(),
     })
 }
 
@@ -147,18 +129,4 @@ fn between(a: &Value, b: &Value) -> Value {
         }
         (a, _) => a.clone(),
     }
-}
-
-fn corners(r: Rect) -> [Value; 4] {
-    let corner = |p: Point| pair(p.x, p.y);
-    [r.origin(), Point::new(r.x1, r.y0), Point::new(r.x1, r.y1), Point::new(r.x0, r.y1)].map(corner)
-}
-
-fn pair(x: f64, y: f64) -> Value {
-    json!([neat(x), neat(y)])
-}
-
-/// A number as a person would write it: at most three decimals, none if it is whole.
-fn neat(x: f64) -> Value {
-    number::json((x * 1000.0).round() / 1000.0)
 }

@@ -190,7 +190,7 @@ impl ready::Prepared for PreparedLayer {
 
 /// Whether the zone's field depends on more than its inputs, namely on the content of a file.
 fn reads_file(zone: &Zone) -> bool {
-    zone.motion.iter().any(|tool| tool.file().is_some())
+    zone.motion.iter().any(|tool| tool.facts().file.is_some())
 }
 
 /// What the samplers of zone `index` read; `own` is the layer's picture.

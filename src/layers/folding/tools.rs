@@ -1,9 +1,14 @@
 //! The tools of a zone's motion: what gives anchors, and what gives a dense field (docs/folding.md, section 4).
 
+use kurbo::{Rect, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
+use super::neat::{corners, middle, neat_pair};
 use crate::base::geometry::Xy;
+use crate::base::problem::Problem;
+use crate::layers::check as rules;
 use crate::layers::shapes::node::Node;
 use crate::layers::shapes::shape::Nodes;
 
@@ -163,6 +168,24 @@ fn one() -> f64 {
     1.0
 }
 
+/// What is to be known of a tool, whichever it is.
+pub struct Facts<'a> {
+    /// What it gives; anchors are counted before any of them is made.
+    pub gives: Gives,
+    /// What tools that are turned into one keep.
+    pub keeps: Keeps,
+    /// Whether anything can move by it.
+    pub moves: bool,
+    /// The center that it turns or stretches the samplers' places about.
+    pub center: Option<Xy>,
+    /// The file that it reads: its field depends on more than the document.
+    pub file: Option<&'a str>,
+    /// The path that its anchors lie on, which may be a shape of the scene.
+    pub path: Option<&'a Nodes>,
+    /// The polygon that it drags.
+    pub dragged: Option<&'a [LassoVertex]>,
+}
+
 /// What a tool gives.
 pub enum Gives {
     /// This many anchors.
@@ -173,50 +196,115 @@ pub enum Gives {
     Field,
 }
 
+/// What is kept when a tool is turned into one of another kind.
+pub enum Keeps {
+    /// Every anchor, as a tool of its own.
+    Points,
+    /// Every anchor, as a vertex.
+    Vertices,
+    /// Every anchor, as a place on a path.
+    Path,
+    /// The map of the samplers' places, as far as the kind can express it.
+    Map,
+    /// Nothing.
+    Nothing,
+}
+
+impl<'a> Facts<'a> {
+    fn new(gives: Gives, keeps: Keeps) -> Facts<'a> {
+        Facts { gives, keeps, moves: true, center: None, file: None, path: None, dragged: None }
+    }
+}
+
 impl Tool {
-    /// What it gives: the anchors are counted before any of them is made.
-    pub fn gives(&self) -> Gives {
+    /// What is to be known of it.
+    pub fn facts(&self) -> Facts<'_> {
         match self {
-            Tool::Point { .. } => Gives::Anchors(1.0),
-            Tool::Curve { samples, .. } => Gives::Anchors(f64::from(*samples)),
-            Tool::Lasso { samples, vertices } => Gives::Anchors(vertices.len() as f64 * (1.0 + f64::from(*samples))),
-            Tool::StillBorder { spacing } => Gives::AnchorsAlong(*spacing),
-            Tool::Translate { .. }
-            | Tool::Scale { .. }
-            | Tool::Rotate { .. }
-            | Tool::Shear { .. }
-            | Tool::Affine { .. }
-            | Tool::Field { .. } => Gives::Field,
+            Tool::Point { .. } => Facts::new(Gives::Anchors(1.0), Keeps::Points),
+            Tool::Curve { samples, nodes, .. } => {
+                Facts { path: Some(nodes), ..Facts::new(Gives::Anchors(f64::from(*samples)), Keeps::Path) }
+            }
+            Tool::Lasso { samples, vertices } => {
+                let count = vertices.len() as f64 * (1.0 + f64::from(*samples));
+                Facts { dragged: Some(vertices), ..Facts::new(Gives::Anchors(count), Keeps::Vertices) }
+            }
+            Tool::Translate { .. } | Tool::Affine { .. } => Facts::new(Gives::Field, Keeps::Map),
+            Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => {
+                Facts { center: Some(*center), ..Facts::new(Gives::Field, Keeps::Map) }
+            }
+            Tool::StillBorder { spacing } => {
+                Facts { moves: false, ..Facts::new(Gives::AnchorsAlong(*spacing), Keeps::Nothing) }
+            }
+            Tool::Field { path, .. } => Facts { file: Some(path), ..Facts::new(Gives::Field, Keeps::Nothing) },
         }
     }
 
-    /// The center that it turns or stretches the samplers' places about, if it does.
-    pub fn center(&self) -> Option<Xy> {
-        match self {
-            Tool::Scale { center, .. } | Tool::Rotate { center, .. } | Tool::Shear { center, .. } => Some(*center),
-            Tool::Point { .. }
-            | Tool::Curve { .. }
-            | Tool::Lasso { .. }
-            | Tool::Translate { .. }
-            | Tool::Affine { .. }
-            | Tool::StillBorder { .. }
-            | Tool::Field { .. } => None,
+    /// Looks up the shape that its path is, if it is one.
+    pub fn look_up(&mut self, find: impl Fn(&str) -> Vec<Node>) {
+        if let Tool::Curve { nodes, .. } = self {
+            nodes.look_up(find);
         }
     }
 
-    /// The file that it reads, if it reads one: its field depends on more than the document.
-    pub fn file(&self) -> Option<&str> {
-        match self {
-            Tool::Field { path, .. } => Some(path),
-            Tool::Point { .. }
-            | Tool::Curve { .. }
-            | Tool::Lasso { .. }
-            | Tool::Translate { .. }
-            | Tool::Scale { .. }
-            | Tool::Rotate { .. }
-            | Tool::Shear { .. }
-            | Tool::Affine { .. }
-            | Tool::StillBorder { .. } => None,
+    /// Checks fields that depend on each other.
+    pub fn check(&self) -> Vec<Problem> {
+        let Tool::Curve { jumps, .. } = self else { return Vec::new() };
+        let along = jumps.iter().map(|jump| jump.along);
+        rules::ascending("places along a curve", along, |j| format!("/jumps/{j}/along"))
+    }
+}
+
+/// A new tool in a zone with this box, as it is written; `None` if there is no such tool.
+pub fn fresh(tool: &str, bounds: Rect) -> Option<Value> {
+    let (c, aside) = (bounds.center(), Vec2::new(bounds.width() / 4.0, 0.0));
+    let center = neat_pair(c);
+    let fields = match tool {
+        "point" => json!({ "at": center }),
+        "curve" => json!({
+            "samples": 9,
+            "nodes": [{ "at": neat_pair(c - aside) }, { "at": neat_pair(c + aside) }],
+            "jumps": [{ "along": 0, "jump": [0, 0] }],
+        }),
+        "lasso" => json!({ "vertices": corners(middle(bounds)).map(|at| json!({ "from": at, "to": at })) }),
+        "translate" => json!({ "by": [0, 0] }),
+        "scale" => json!({ "center": center, "factor": [1, 1] }),
+        "rotate" => json!({ "center": center, "degrees": 0 }),
+        "shear" => json!({ "center": center, "factor": [0, 0] }),
+        "affine" => json!({ "matrix": [[1, 0, 0], [0, 1, 0]] }),
+        "still-border" => json!({ "spacing": 8 }),
+        "field" => json!({ "path": "field.flo" }),
+        _ => return None,
+    };
+    let mut whole = json!({ "tool": tool });
+    fields.as_object()?.iter().for_each(|(name, value)| whole[name] = value.clone());
+    Some(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use kurbo::Affine;
+
+    use super::*;
+    use crate::layers::folding::anchors::{given, nearest, transform};
+    use crate::layers::folding::outline::Outline;
+    use crate::layers::tests::variants;
+
+    #[test]
+    fn every_tool_begins_as_one_and_gives_what_it_says() {
+        let bounds = Rect::new(10.0, 20.0, 70.0, 60.0);
+        let outline = Outline::Rectangle { x: 10.0, y: 20.0, width: 60.0, height: 40.0 };
+        for name in variants::<Tool>("tool") {
+            let tool: Tool = serde_json::from_value(fresh(&name, bounds).unwrap()).unwrap();
+            assert_eq!(serde_json::to_value(&tool).unwrap()["tool"], name);
+            let (facts, count) = (tool.facts(), given(&tool, &outline).len());
+            match facts.gives {
+                Gives::Anchors(most) => assert_eq!(count as f64, most, "{name}"),
+                Gives::AnchorsAlong(_) => assert!(count > 1, "{name}"),
+                Gives::Field => assert!(transform(&tool).is_some() != facts.file.is_some(), "{name}"),
+            }
+            let like = nearest(Affine::IDENTITY, &name, &tool, None, bounds.center());
+            assert_eq!(like.is_some(), matches!(facts.keeps, Keeps::Map), "{name}");
         }
+        assert_eq!(fresh("none", bounds), None);
     }
 }

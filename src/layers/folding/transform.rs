@@ -66,7 +66,7 @@ fn outline(moving: &mut Moving, value: &mut Value, outline: &Outline) -> Result<
 }
 
 fn tool(moving: &mut Moving, value: &mut Value, tool: &Tool) -> Result<Moved, String> {
-    if tool.file().is_some() {
+    if tool.facts().file.is_some() {
         return Err("a field that is read from a file stays where it is".into());
     }
     match tool {
@@ -99,7 +99,7 @@ fn own_frame(moving: &Moving, value: &mut Value) -> Result<Moved, String> {
 /// kind cannot say that, it becomes an affine map.
 fn dense(moving: &mut Moving, value: &mut Value, tool: &Tool, map: Affine) -> Result<Moved, String> {
     let [a, b, c, d, e, f] = (moving.by * map * moving.by.inverse()).as_coeffs();
-    let to = tool.center().map(|center| moving.place(point(center)));
+    let to = tool.facts().center.map(|center| moving.place(point(center)));
     let upright = is_near(b, 0.0) && is_near(c, 0.0);
     let sheared = is_near(a, 1.0) && is_near(d, 1.0);
     let kept = match tool {

@@ -289,10 +289,12 @@ impl Shared {
                     self.outbox(id, |outbox| outbox.shown(revision));
                     self.heard(said);
                 }
-                ToEditor::Report { fps, adapter, notice } => {
-                    let (adapter, notice) = (line(&adapter), line(&notice));
-                    self.change(|state| state.report.take(fps, &adapter, &notice));
-                    self.heard(ToEditor::Report { fps, adapter, notice });
+                ToEditor::Report { .. } => {
+                    let said = said.in_lines();
+                    if let ToEditor::Report { fps, adapter, notice } = &said {
+                        self.change(|state| state.report.take(*fps, adapter, notice));
+                    }
+                    self.heard(said);
                 }
                 ToEditor::Transport(transport) => {
                     self.change(|state| state.say(Some(id), FromEditor::Transport(transport)));
@@ -302,7 +304,7 @@ impl Shared {
                     if views::is_for_all(&name) {
                         self.change(|state| state.view(Some(id), &name));
                     }
-                    self.heard(ToEditor::Command(line(&name)));
+                    self.heard(ToEditor::Command(name));
                 }
                 ToEditor::WantScene => self.outbox(id, Outbox::want_scene),
                 ToEditor::Want { hash, offset } => self.outbox(id, |outbox| outbox.want(hash, offset)),
@@ -310,15 +312,14 @@ impl Shared {
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));
                 }
-                // Numbers alone: there is no text in them to clean.
-                ToEditor::Pointer { .. } | ToEditor::Camera(_) => self.heard(said),
+                said => self.heard(said),
             }
         }
         Ok(())
     }
 
     fn heard(&self, said: ToEditor) {
-        (self.deliver)(Event::Said(said));
+        (self.deliver)(Event::Said(said.in_lines()));
     }
 
     fn forget(&self, id: u64) {
@@ -358,9 +359,4 @@ impl Shared {
         let no_answer = |_| vec![Problem::error("", "the editor does not take the edit")];
         answered.recv_timeout(ANSWER).unwrap_or_else(no_answer)
     }
-}
-
-/// Text from another process as one line of bounded length, without control characters.
-fn line(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(200).collect()
 }

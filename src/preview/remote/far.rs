@@ -216,25 +216,7 @@ fn harmless(said: FromEditor) -> Option<FromEditor> {
         let row = KEYS.iter().find(|row| row.command == name);
         row.is_some_and(|row| [PLAY, VIEW].contains(&row.context)) && name != "view-full-screen"
     };
-    match said {
-        FromEditor::View(name) => is_view(&name).then_some(FromEditor::View(name)),
-        FromEditor::Views(names) => Some(FromEditor::Views(names.into_iter().filter(is_view).collect())),
-        // The document, and what is selected, playing or wrong in it.
-        FromEditor::Hello { .. }
-        | FromEditor::Patch { .. }
-        | FromEditor::Scene { .. }
-        | FromEditor::Selection(_)
-        | FromEditor::Transport(_)
-        | FromEditor::Look { .. }
-        | FromEditor::Notice(_)
-        | FromEditor::Problems(_) => Some(said),
-        // The link and the files that it brings.
-        FromEditor::Images(_)
-        | FromEditor::Piece { .. }
-        | FromEditor::Alive
-        | FromEditor::Edited(_)
-        | FromEditor::Bye(_) => Some(said),
-    }
+    said.obeying(is_view)
 }
 
 impl Drop for Far {

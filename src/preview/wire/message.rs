@@ -11,6 +11,9 @@ use crate::layers::space::camera::Camera;
 use crate::preview::Transport;
 use crate::scene::edit::Edit;
 
+/// The most characters of a text from a window that are shown.
+const MOST_OF_A_LINE: usize = 200;
+
 /// What the editor says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -166,7 +169,40 @@ impl FromEditor {
     }
 }
 
+impl FromEditor {
+    /// The message with only those of its commands that are to be obeyed; `None` if it was nothing else.
+    pub fn obeying(self, obeyed: impl Fn(&String) -> bool) -> Option<FromEditor> {
+        match self {
+            FromEditor::View(name) => obeyed(&name).then_some(FromEditor::View(name)),
+            FromEditor::Views(names) => Some(FromEditor::Views(names.into_iter().filter(obeyed).collect())),
+            // The document, and what is selected, playing or wrong in it.
+            FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. } => Some(self),
+            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => Some(self),
+            FromEditor::Notice(_) | FromEditor::Problems(_) => Some(self),
+            // The link and the files that it brings.
+            FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => Some(self),
+            FromEditor::Edited(_) | FromEditor::Bye(_) => Some(self),
+        }
+    }
+}
+
 impl ToEditor {
+    /// The message with all its text as single lines of bounded length, without control characters.
+    #[must_use]
+    pub fn in_lines(self) -> ToEditor {
+        let line = |text: String| text.chars().filter(|c| !c.is_control()).take(MOST_OF_A_LINE).collect();
+        match self {
+            ToEditor::Report { fps, adapter, notice } => {
+                ToEditor::Report { fps, adapter: line(adapter), notice: line(notice) }
+            }
+            ToEditor::Command(name) => ToEditor::Command(line(name)),
+            // Numbers alone, or what the link answers.
+            ToEditor::Ack { .. } | ToEditor::Pointer { .. } | ToEditor::Camera(_) | ToEditor::Transport(_) => self,
+            ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Want { .. } => self,
+            ToEditor::Alive | ToEditor::Edit { .. } => self,
+        }
+    }
+
     /// Whether JSON can write all numbers of the message: it knows no infinity and no NaN.
     pub fn is_finite(&self) -> bool {
         match self {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::function::Knot;
 use crate::layers::folding::breaks::Break;
+use crate::layers::folding::fold;
 use crate::layers::parts::bundle::{PictureNote, TextureNote};
 use crate::layers::timeline::Wrap;
 
@@ -51,7 +52,7 @@ pub const CONVENTIONS: Conventions = Conventions {
     sampler: "init R, G is where the sampler stands at s = 0, the same as (origin + pixel of the box) / (width, height); it reads init + e * jump, clamped to the texel centres of the zone's piece, bilinear; init A is 0 outside the zone, else (row + 0.5) / rows",
     first_stretch: "without a thresholds texture: where the rule is none or mask every sampler is active with e = s; else it is active, with e = s, where s0 < s <= s1, at s = 0 where s0 = 0 < s1, below 0 as at 0, above 1 as at 1",
     thresholds: "slot 0 is 1 where the pixel itself lies in a fold region; then the crossings with s >= 0, ascending, then those with s <= 0, descending, on which side of 0 s is. Slot n is channel n mod 4 of block n div 4; blocks are as large as the box and stacked downward. Starting from slot 0, each crossing c that s has passed (|s| > |c| + tolerance) changes inside to outside and back",
-    rules: "return is active outside, fly-over inside, with e = s; cover is active outside with e = s, and inside with e = the last crossing passed, or still if none was; a pixel that is not active shows what lies beneath",
+    rules: fold::IN_WORDS,
     compose: "a layer begins as its piece at (0, 0); its zones follow in order, each reading only its own source: lay replace puts the read in place of what lies beneath, lay over puts it over that (Porter and Duff), in linear light",
 };
 
@@ -119,7 +120,7 @@ pub struct Zone {
     /// The pixels of the layer that init and jump cover.
     #[serde(rename = "box")]
     pub bounds: Box,
-    /// Its fold's rule: none, cover, return, fly-over or mask.
+    /// Its fold's rule, as in the document, or none.
     pub rule: &'static str,
     /// How what is read is laid on what is beneath: replace or over.
     pub lay: &'static str,

@@ -3,11 +3,10 @@
 //! scale is not that of a shear), so nothing here goes by names.
 
 use serde::de::DeserializeOwned;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::model::PictureLayer;
 use super::outline::Outline;
-use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::text::short;
 use crate::layers::technique::Turned;
@@ -51,27 +50,6 @@ pub fn outline_as(old: &Outline, to: &str) -> Option<Value> {
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
     T::deserialize(value).ok()
-}
-
-/// A number without floating-point noise: pixels, to a millionth.
-fn px(x: f64) -> Value {
-    rounded(x, 1e6)
-}
-
-/// A factor, an angle or a fraction, to nine decimals.
-fn ratio(x: f64) -> Value {
-    rounded(x, 1e9)
-}
-
-fn rounded(x: f64, per: f64) -> Value {
-    let near = (x * per).round() / per;
-    // Larger numbers have no meaningful decimals that far down.
-    number::json(if near.is_finite() && x.abs() < 1e6 { near } else { x })
-}
-
-fn pair(p: impl Into<(f64, f64)>) -> Value {
-    let (x, y) = p.into();
-    json!([px(x), px(y)])
 }
 
 /// A number for messages.

@@ -4,11 +4,12 @@
 use kurbo::{PathEl, Point, Rect, Shape};
 use serde_json::{Value, json};
 
-use super::{Turned, pair, px, told};
+use super::{Turned, told};
 use crate::base::crossings::self_crossing;
 use crate::base::geometry::{FLATNESS_PX, Polygon, Xy, point};
 use crate::base::maths::{self, TAU};
 use crate::base::number;
+use crate::layers::folding::neat::{pair, px};
 use crate::layers::folding::outline::Outline;
 use crate::layers::shapes::node::{bezier, written};
 

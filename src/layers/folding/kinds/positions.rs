@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::{Turned, ratio};
+use super::Turned;
+use crate::layers::folding::neat::ratio;
 use crate::layers::folding::position::{Position, Segment};
 use crate::layers::keyframes::Between;
 

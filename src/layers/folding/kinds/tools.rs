@@ -2,19 +2,18 @@
 //! on a curve. Tools that give a dense field keep its map, as far as the new kind can express it; between these two
 //! groups, some vectors are kept.
 
+use std::mem::discriminant;
+
 use kurbo::{Affine, Point, Rect, Vec2};
-use serde::Deserialize;
-use serde::de::value::StrDeserializer;
 use serde_json::{Value, json};
 
-use super::{Turned, pair, px, ratio, told};
+use super::{Turned, told};
 use crate::base::geometry::point;
-use crate::base::maths;
-use crate::layers::folding::anchors::{given, transform};
+use crate::layers::folding::anchors::{given, nearest, transform};
 use crate::layers::folding::counts;
 use crate::layers::folding::model::Zone;
-use crate::layers::folding::starts;
-use crate::layers::folding::tools::Tool;
+use crate::layers::folding::neat::{pair, ratio};
+use crate::layers::folding::tools::{Keeps, Tool, fresh};
 
 /// The most points, vertices or places that a tool becomes; if there are more, some are left out, evenly.
 const MOST: usize = 10_000;
@@ -24,53 +23,20 @@ const SAME_PX: f64 = 1e-6;
 
 /// The tool of `zone` turned into the kind `to`; `None` if it is of that kind already, or there is no such kind.
 pub fn turned(zone: &Zone, old: &Tool, to: &str) -> Option<Turned> {
-    let kind = Kind::deserialize(StrDeserializer::<serde::de::value::Error>::new(to)).ok()?;
-    if kind == Kind::of(old) {
+    let bounds = zone.outline.polygon().bounds();
+    let new: Tool = super::read(&fresh(to, bounds)?)?;
+    if discriminant(&new) == discriminant(old) {
         return None;
     }
     let name = serde_json::to_value(old).ok()?.get("tool")?.as_str()?.to_owned();
-    let turning = Turning { zone, old, kind: name, bounds: zone.outline.polygon().bounds() };
-    Some(match kind {
-        Kind::Point => turning.points(),
-        Kind::Lasso => turning.lasso(),
-        Kind::Curve => turning.curve(),
-        Kind::Translate | Kind::Scale | Kind::Rotate | Kind::Shear | Kind::Affine => turning.dense(to),
-        Kind::StillBorder => turning.fresh(to, &["spacing"]),
-        Kind::Field => turning.fresh(to, &["path"]),
+    let turning = Turning { zone, old, kind: name, bounds };
+    Some(match new.facts().keeps {
+        Keeps::Points => turning.points(),
+        Keeps::Vertices => turning.lasso(),
+        Keeps::Path => turning.curve(),
+        Keeps::Map => turning.dense(to, &new),
+        Keeps::Nothing => turning.fresh(to),
     })
-}
-
-/// The kinds of tools, by their names in the document.
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Point,
-    Curve,
-    Lasso,
-    Translate,
-    Scale,
-    Rotate,
-    Shear,
-    Affine,
-    StillBorder,
-    Field,
-}
-
-impl Kind {
-    fn of(tool: &Tool) -> Self {
-        match tool {
-            Tool::Point { .. } => Kind::Point,
-            Tool::Curve { .. } => Kind::Curve,
-            Tool::Lasso { .. } => Kind::Lasso,
-            Tool::Translate { .. } => Kind::Translate,
-            Tool::Scale { .. } => Kind::Scale,
-            Tool::Rotate { .. } => Kind::Rotate,
-            Tool::Shear { .. } => Kind::Shear,
-            Tool::Affine { .. } => Kind::Affine,
-            Tool::StillBorder { .. } => Kind::StillBorder,
-            Tool::Field { .. } => Kind::Field,
-        }
-    }
 }
 
 struct Turning<'a> {
@@ -87,13 +53,12 @@ type Given = (Point, Vec2);
 impl Turning<'_> {
     /// The initial value of a field of a new tool of that kind.
     fn start(&self, kind: &str, field: &str) -> Value {
-        starts::start(kind, field, self.bounds).unwrap_or_default()
+        fresh(kind, self.bounds).and_then(|tool| tool.get(field).cloned()).unwrap_or_default()
     }
 
     /// A new tool that keeps nothing of the old one.
-    fn fresh(&self, to: &str, fields: &[&str]) -> Turned {
-        let mut tool = json!({ "tool": to });
-        fields.iter().for_each(|field| tool[field] = self.start(to, field));
+    fn fresh(&self, to: &str) -> Turned {
+        let tool = fresh(to, self.bounds).unwrap_or_default();
         let lost = match self.old {
             Tool::Point { jump, .. } | Tool::Translate { by: jump } if *jump == [0.0; 2] => None,
             Tool::StillBorder { .. } => Some("its spacing is not kept".to_owned()),
@@ -126,7 +91,7 @@ impl Turning<'_> {
 
     /// The center of the transform, if it has one.
     fn own_center(&self) -> Option<Point> {
-        self.old.center().map(point)
+        self.old.facts().center.map(point)
     }
 
     /// One point per anchor.
@@ -140,7 +105,7 @@ impl Turning<'_> {
             };
             return Turned { items: all.into_iter().map(of).collect(), lost: Some(lost) };
         }
-        let Some(map) = transform(self.old) else { return self.fresh("point", &["at"]) };
+        let Some(map) = transform(self.old) else { return self.fresh("point") };
         let at = self.own_center().unwrap_or(self.bounds.center());
         let lost = (!is_translation(map)).then(|| format!("only the jump of the {} at the point is kept", self.kind));
         Turned::whole(of((at, map * at - at))).but_if(lost)
@@ -175,7 +140,7 @@ impl Turning<'_> {
                     let lost = format!("only the jumps of the {} at the vertices are kept", self.kind);
                     dragged(&all).but_if((!is_translation(map)).then_some(lost))
                 }
-                None => self.fresh("lasso", &["vertices"]),
+                None => self.fresh("lasso"),
             },
         }
     }
@@ -208,7 +173,7 @@ impl Turning<'_> {
                 let moved = is_translation(map);
                 (ends, jumps[..if moved { 1 } else { jumps.len() }].to_vec(), (!moved).then_some(lost))
             }
-            (None, None) => return self.fresh("curve", &["samples", "nodes", "jumps"]),
+            (None, None) => return self.fresh("curve"),
         };
         let nodes: Vec<Value> = ends.into_iter().map(|at| json!({ "at": pair(at) })).collect();
         let last = (jumps.len() - 1).max(1) as f64;
@@ -230,7 +195,7 @@ impl Turning<'_> {
         let steps: Vec<f64> = corners.windows(2).map(|pair| pair[0].0.distance(pair[1].0)).collect();
         let whole: f64 = steps.iter().sum();
         if corners.len() < 3 {
-            return self.fresh("curve", &["samples", "nodes", "jumps"]);
+            return self.fresh("curve");
         }
         let mut gone = 0.0;
         let mut jumps = vec![along(0.0, corners[0].1)];
@@ -256,21 +221,18 @@ impl Turning<'_> {
     }
 
     /// A transform: the nearest to another transform, or the mean motion of anchors.
-    fn dense(&self, to: &str) -> Turned {
+    fn dense(&self, to: &str, new: &Tool) -> Turned {
+        let nearest = |map, own, middle| nearest(map, to, new, own, middle).unwrap_or_default();
         if let Some(map) = transform(self.old) {
-            let tool = nearest(map, to, self.own_center(), self.bounds.center());
-            return self.compared(map, tool);
+            return self.compared(map, nearest(map, self.own_center(), self.bounds.center()));
         }
         let Some((all, _)) = self.anchors() else {
-            let field = match to {
-                "translate" => json!({ "tool": to, "by": [0, 0] }),
-                _ => nearest(Affine::IDENTITY, to, None, self.bounds.center()),
-            };
-            return Turned::whole(field).but("its file is not kept");
+            return Turned::whole(nearest(Affine::IDENTITY, None, self.bounds.center())).but("its file is not kept");
         };
         let (middle, jump, same) = mean(&all);
-        let moves = matches!(to, "translate" | "affine");
-        let tool = nearest(if moves { Affine::translate(jump) } else { Affine::IDENTITY }, to, Some(middle), middle);
+        // What has no center can move all places alike.
+        let moves = new.facts().center.is_none();
+        let tool = nearest(if moves { Affine::translate(jump) } else { Affine::IDENTITY }, Some(middle), middle);
         let still = same && jump.hypot() < SAME_PX;
         Turned::whole(tool).but_if(match (moves, same) {
             _ if still => None,
@@ -291,54 +253,6 @@ impl Turning<'_> {
         // Smaller differences are only rounding: numbers are written with few decimals.
         let told = most > 0.01;
         Turned::whole(tool).but_if(told.then_some(lost))
-    }
-}
-
-/// The tool of the kind `to` that is nearest to a map, about its `own` center if it has one, otherwise about the fixed
-/// point of the map, or about the `middle`.
-fn nearest(map: Affine, to: &str, own: Option<Point>, middle: Point) -> Value {
-    let [a, c, b, d, tx, ty] = map.as_coeffs();
-    let centre = |linear: [f64; 4]| own.unwrap_or_else(|| fixed(linear, Vec2::new(tx, ty), middle));
-    match to {
-        "translate" => json!({ "tool": to, "by": pair(map * middle - middle) }),
-        "affine" => json!({ "tool": to, "matrix": [[ratio(a), ratio(b), px(tx)], [ratio(c), ratio(d), px(ty)]] }),
-        "shear" => {
-            json!({ "tool": to, "center": pair(centre([1.0, b, c, 1.0])), "factor": [ratio(b), ratio(c)] })
-        }
-        "scale" => {
-            let [x, y] = stretch(a, b, c, d);
-            json!({ "tool": to, "center": pair(centre([x, 0.0, 0.0, y])), "factor": [ratio(x), ratio(y)] })
-        }
-        _ => {
-            let angle = maths::atan2(c - b, a + d);
-            let (cos, sin) = (maths::cos(angle), maths::sin(angle));
-            let center = pair(centre([cos, -sin, sin, cos]));
-            json!({ "tool": "rotate", "center": center, "degrees": ratio(angle.to_degrees()) })
-        }
-    }
-}
-
-/// The factors of a linear map along x and y, after its rotation is removed.
-fn stretch(a: f64, b: f64, c: f64, d: f64) -> [f64; 2] {
-    if b == 0.0 && c == 0.0 {
-        return [a, d];
-    }
-    let angle = maths::atan2(c - b, a + d);
-    let (cos, sin) = (maths::cos(angle), maths::sin(angle));
-    [cos * a + sin * c, cos * d - sin * b]
-}
-
-/// The fixed point of x -> L x + t; along directions that are not moved, the coordinate of `near`.
-fn fixed([a, b, c, d]: [f64; 4], t: Vec2, near: Point) -> Point {
-    let (p, q, r, s) = (1.0 - a, -b, -c, 1.0 - d);
-    let det = p * s - q * r;
-    let over = |x: f64, by: f64, other: f64| if by.abs() > 1e-12 { x / by } else { other };
-    if det.abs() > 1e-12 {
-        return Point::new((s * t.x - q * t.y) / det, (p * t.y - r * t.x) / det);
-    }
-    match q == 0.0 && r == 0.0 {
-        true => Point::new(over(t.x, p, near.x), over(t.y, s, near.y)),
-        false => Point::new(over(t.y, r, near.x), over(t.x, q, near.y)),
     }
 }
 
