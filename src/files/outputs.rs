@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::{disk, holder, journal, materials, paths, temporary};
 use crate::base::error::{Error, Result};
+use crate::layers;
 use crate::scene::Scene;
 
 /// A kind of file that is written. Encoders bring theirs; those that several parts of the program write are here.
@@ -66,7 +67,8 @@ pub const EXR: Kind = Kind { name: "OpenEXR picture", is: |found| found.head.sta
 fn is_style(found: &Found) -> bool {
     let text = if found.length <= LONGEST_STYLE { fs::read_to_string(found.path).ok() } else { None };
     let table = text.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
-    table.is_some_and(|table| ["ground", "noises", "marks"].iter().all(|field| table.get(field).is_some()))
+    let styles = || layers::KINDS.iter().filter_map(|kind| kind.styles);
+    table.is_some_and(|table| styles().any(|styles| styles.marks.iter().all(|field| table.get(field).is_some())))
 }
 
 /// The kinds above.

@@ -27,6 +27,8 @@ pub struct Shown<'a> {
     pub frames: Option<usize>,
     /// The image on its surface, if it has one.
     pub image: Option<&'a str>,
+    /// Whether the layer is only to show it as it is, with nothing to edit.
+    pub bare: bool,
 }
 
 /// Settings that change what a layer looks like.
@@ -51,6 +53,8 @@ pub struct Styles {
     pub name: &'static str,
     /// Those that the program brings.
     pub list: &'static [Style],
+    /// The fields of the table of a style by which it is known.
+    pub marks: &'static [&'static str],
     /// What the field is to be for the style of this name, if it is this now.
     pub named: fn(now: Option<&Value>, name: &str) -> Value,
     /// What the field is to be for a table that is no style of the program.

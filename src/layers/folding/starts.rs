@@ -56,6 +56,9 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
 /// A layer that shows an image, with one zone that covers it.
 pub fn template(shown: &Shown) -> Value {
     let (name, (width, height)) = (shown.name, shown.size_px);
+    if shown.bare {
+        return json!({ "kind": "picture", "name": name, "image": name });
+    }
     let outline = json!({ "kind": "rectangle", "x": 0, "y": 0, "width": width, "height": height });
     let zone = json!({ "name": "all", "outline": outline, "position": comes_back() });
     json!({ "kind": "picture", "name": name, "image": name, "zones": [zone] })

@@ -66,8 +66,8 @@ pub static KIND: Kind = Kind {
     ],
     looks: marks::LOOKS,
     template: Some(Template { of: List::Meshes, layer: template, ground: None }),
-    // A new mark needs no noise.
     blank: None,
+    // A new mark needs no noise.
     starts: Starts { beyond: |_, list| (list == "marks").then(|| ("kind", "outline".into())), ..Starts::PLAIN },
     presets: &[],
     styles: Some(&strokes::restyle::STYLES),

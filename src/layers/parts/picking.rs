@@ -31,12 +31,21 @@ pub struct Picking {
     pub side: f64,
 }
 
-/// Where in a layer what is picked from a clip is written; JSON pointers relative to the layer. Items of the list have
-/// `frame`, `at`, `kind` and `track`.
+/// Where in a layer what is picked from a clip is written; JSON pointers relative to the layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Picks {
     /// The node from which one looks at the clip.
     pub node: &'static str,
     /// The list of what is picked.
     pub list: &'static str,
+    /// The field of an item with the frame that it is picked from.
+    pub frame: &'static str,
+    /// That with its place in the frame.
+    pub at: &'static str,
+    /// That which says whether it is followed through the clip; it is, if that is not written.
+    pub track: &'static str,
+    /// That with its kind.
+    pub kind: &'static str,
+    /// The kinds by the words with which they are added, that of most things first.
+    pub kinds: &'static [(&'static str, &'static str)],
 }

@@ -45,6 +45,20 @@ pub fn resampled(nodes: &[Value], closed: bool, count: usize) -> Option<Vec<Valu
     Some(evenly(&node::read(nodes)?, closed, count).iter().map(node::written).collect())
 }
 
+/// Nodes, as they are written, with the handles that the sides beside them have: those of `first` and `last`.
+pub fn ends_kept(mut nodes: Vec<Value>, first: &Value, last: &Value) -> Vec<Value> {
+    let keep = |end: Option<&mut Value>, of: &Value, handle: &str| {
+        let Some(end) = end.and_then(Value::as_object_mut) else { return };
+        match of.get(handle) {
+            Some(kept) => drop(end.insert(handle.to_owned(), kept.clone())),
+            None => drop(end.remove(handle)),
+        }
+    };
+    keep(nodes.first_mut(), first, "in");
+    keep(nodes.last_mut(), last, "out");
+    nodes
+}
+
 /// The path with these nodes' handles made anew.
 fn with_handles(nodes: &[Node], closed: bool, chosen: &BTreeSet<usize>, handles: Handles) -> Vec<Node> {
     let last = nodes.len().saturating_sub(1);

@@ -25,6 +25,13 @@ pub struct Node {
     pub handle_out: Xy,
 }
 
+impl Node {
+    /// A node without handles.
+    pub fn corner(at: Xy) -> Node {
+        Node { at, handle_in: [0.0; 2], handle_out: [0.0; 2] }
+    }
+}
+
 fn is_zero(xy: &Xy) -> bool {
     *xy == [0.0, 0.0]
 }

@@ -4,6 +4,7 @@ use std::ops::Deref;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Value, json};
 
 use super::node::Node;
 
@@ -14,6 +15,16 @@ pub struct Shape {
     /// The nodes from one end to the other, at least two.
     #[schemars(length(min = 2))]
     pub nodes: Vec<Node>,
+}
+
+/// A shape of these nodes, all as they are written.
+pub fn written(nodes: Vec<Value>) -> Value {
+    json!({ "nodes": nodes })
+}
+
+/// A part, as it is written.
+pub fn part(shape: &str, reverse: bool) -> Value {
+    if reverse { json!({ "shape": shape, "reverse": true }) } else { json!({ "shape": shape }) }
 }
 
 /// A shape as a part of an outline.
@@ -86,8 +97,6 @@ impl Serialize for Nodes {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value, json};
-
     use super::*;
 
     #[test]

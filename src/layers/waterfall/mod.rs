@@ -146,7 +146,9 @@ impl Technique for WaterfallLayer {
     }
 
     fn picks(&self) -> Option<Picks> {
-        Some(Picks { node: "/sprites", list: "/sprites/picks" })
+        let kinds = &[("add", "water"), ("foam", "foam")];
+        let (node, list) = ("/sprites", "/sprites/picks");
+        Some(Picks { node, list, frame: "frame", at: "at", track: "track", kind: "kind", kinds })
     }
 
     fn aimed(&self, path: &str, ray: &Ray) -> Result<(String, Value), String> {

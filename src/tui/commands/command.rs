@@ -88,6 +88,8 @@ pub struct Command {
     pub recorded: Recorded,
     /// When it takes a count.
     pub counts: Counts,
+    /// Whether, with this argument, it depends on what is shown being that of the scene as it is.
+    pub awaits: fn(&State, &str) -> bool,
     /// Runs it.
     pub run: fn(&mut State, &Call) -> Done,
 }
@@ -107,6 +109,11 @@ impl Command {
     /// Marks it as one that changes the scene, which `.` repeats.
     pub const fn change(self) -> Command {
         Command { recorded: Recorded::Change, ..self }
+    }
+
+    /// Makes it depend, with some arguments, on what is shown being that of the scene as it is.
+    pub const fn awaiting(self, awaits: fn(&State, &str) -> bool) -> Command {
+        Command { awaits, ..self }
     }
 
     /// Makes it take a count.
@@ -184,7 +191,7 @@ pub const fn command(
     help: &'static str,
     run: fn(&mut State, &Call) -> Done,
 ) -> Command {
-    Command { name, args, help, recorded: Recorded::Line, counts: Counts::Never, run }
+    Command { name, args, help, recorded: Recorded::Line, counts: Counts::Never, awaits: |_, _| false, run }
 }
 
 /// Other names of commands: vim's, and earlier ones.

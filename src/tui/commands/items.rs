@@ -10,11 +10,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::command::{Call, Command, Done, command};
+use crate::base::budget;
 use crate::base::error::Error;
 use crate::base::problem::quoted;
-use crate::base::{budget, number};
 use crate::files::{clips, models, paths, picture, sources, write};
 use crate::layers::parts::materials::List;
+use crate::layers::shapes::node::{self, Node};
+use crate::layers::shapes::shape;
 use crate::ops::new;
 use crate::scene::field::{self, Kind};
 use crate::scene::schema::Place;
@@ -262,9 +264,9 @@ const SHAPES: &str = "/shapes";
 fn add_shape(state: &mut State) -> Done {
     const HALF_PX: f64 = 20.0;
     let at = state.picture.cursor;
-    let node = |by: f64| value!({ "at": [number::json((at.x + by).round()), number::json(at.y.round())] });
-    let entry = [("shape".to_owned(), value!({ "nodes": [node(-HALF_PX), node(HALF_PX)] }))];
-    let added = Edit::insert_entries(state.document(), "/shapes", entry.into_iter().collect());
+    let node = |by: f64| node::written(&Node::corner([(at.x + by).round(), at.y.round()]));
+    let entry = [("shape".to_owned(), shape::written(vec![node(-HALF_PX), node(HALF_PX)]))];
+    let added = Edit::insert_entries(state.document(), SHAPES, entry.into_iter().collect());
     let (edit, pointer) = added.ok_or("nothing can be added here")?;
     state.edit(edit, false)?;
     go_to(state, &pointer);

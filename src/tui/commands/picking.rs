@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
+use crate::layers::parts::picking::Picks;
 use crate::ops::sprites;
 use crate::scene::Edit;
 use crate::scene::field;
@@ -22,6 +23,7 @@ pub const COMMANDS: &[Command] = &[
         "Look at the clip that sprites are picked from",
         clip,
     )
+    .awaiting(|state, _| state.picture.looking.is_none())
     .counted_with(&["previous", "next"]),
     command(
         "pick",
@@ -30,8 +32,10 @@ pub const COMMANDS: &[Command] = &[
         pick,
     )
     .change()
+    .awaiting(|_, _| true)
     .counted_with(&["previous", "next"]),
-    command("sprites", "take|OPTIONS", "Turn the automatic choice into picks; or as `plica sprites`", take),
+    command("sprites", "take|OPTIONS", "Turn the automatic choice into picks; or as `plica sprites`", take)
+        .awaiting(|_, text| text == "take"),
 ];
 
 fn clip(state: &mut State, call: &Call) -> Done {
@@ -76,21 +80,30 @@ fn show(state: &mut State) -> Done {
     Ok(())
 }
 
-fn number(state: &State, way: &str) -> Option<f64> {
-    state.document().json().pointer(&format!("{}{way}", selected(state)?))?.as_f64()
+/// Where the layer that is looked at has its picks.
+fn picks(state: &State) -> Option<Picks> {
+    state.document().scene().layers.get(state.picture.looking?.layer)?.technique().picks()
+}
+
+/// A number of the selected pick.
+fn number(state: &State, field: &str) -> Option<f64> {
+    state.document().json().pointer(&format!("{}/{field}", selected(state)?))?.as_f64()
 }
 
 /// The pick under the cursor of the table.
 fn selected(state: &State) -> Option<String> {
     let row = state.sheet().pointer(state.cursor.row)?;
-    let looking = state.picture.looking?;
-    let picks = state.document().scene().layers.get(looking.layer)?.technique().picks()?;
-    row.starts_with(&format!("/layers/{}{}/", looking.layer, picks.list)).then_some(row)
+    let layer = state.picture.looking?.layer;
+    row.starts_with(&format!("/layers/{layer}{}/", picks(state)?.list)).then_some(row)
 }
 
 /// Shows the frame of the selected pick, with the cursor on it.
 fn go_to_pick(state: &mut State) {
-    let to = || Some((number(state, "/frame")? as usize, Point::new(number(state, "/at/0")?, number(state, "/at/1")?)));
+    let to = || {
+        let picks = picks(state)?;
+        let at = |axis: usize| number(state, &format!("{}/{axis}", picks.at));
+        Some((number(state, picks.frame)? as usize, Point::new(at(0)?, at(1)?)))
+    };
     let (Some((frame, at)), Some(now)) = (to(), state.picture.looking) else { return };
     looking::look(state, Some(Looking { frame, sheet: false, ..now }));
     state.picture.cursor = at;
@@ -104,29 +117,20 @@ fn pick(state: &mut State, call: &Call) -> Done {
         return Err("this is the sheet: z C shows the clip again".into());
     }
     let none = "no pick is selected: w goes to one, a picks one";
+    let picks = picks(state).ok_or(NOT_LOOKING)?;
     if matches!(call.text, "add" | "foam" | "move") {
         move_inside(state, now.side);
     }
+    if let Some((_, kind)) = picks.kinds.iter().find(|(word, _)| *word == call.text) {
+        return add(state, now, picks, kind);
+    }
     match call.text {
-        "add" | "foam" => {
-            let kind = if call.text == "foam" { "foam" } else { "water" };
-            let (edit, pointer) = place::add_here(state)?;
-            let with = state.document().apply(&edit).map_err(|problems| first(&problems))?;
-            let set = |name: &str, value: Value| Edit::set(&with, &format!("{pointer}/{name}"), value);
-            let unfollowed = now.unfollowed();
-            let alone = unfollowed.as_ref().map(|_| set("track", json!(false)));
-            let edits = [set("frame", json!(now.frame)), set("kind", json!(kind))].into_iter().chain(alone);
-            state.edit(Edit::all([edit].into_iter().chain(edits)), false)?;
-            go_to(state, &pointer);
-            tell_alone(state, unfollowed);
-            Ok(())
-        }
         "move" => {
             let pointer = selected(state).ok_or(none)?;
-            let frame = Edit::set(state.document(), &format!("{pointer}/frame"), json!(now.frame));
-            let unfollowed = now.unfollowed().filter(|_| follows(state, &pointer));
-            let alone =
-                unfollowed.as_ref().map(|_| Edit::set(state.document(), &format!("{pointer}/track"), json!(false)));
+            let frame = Edit::set(state.document(), &format!("{pointer}/{}", picks.frame), json!(now.frame));
+            let track = format!("{pointer}/{}", picks.track);
+            let unfollowed = now.unfollowed().filter(|_| follows(state, &track));
+            let alone = unfollowed.as_ref().map(|_| Edit::set(state.document(), &track, json!(false)));
             let edit = Edit::all([place::move_here(state)?, frame].into_iter().chain(alone));
             state.edit(edit, false)?;
             tell_alone(state, unfollowed);
@@ -134,12 +138,13 @@ fn pick(state: &mut State, call: &Call) -> Done {
         }
         "track" => {
             let pointer = selected(state).ok_or(none)?;
-            let follows = follows(state, &pointer);
-            let frame = number(state, "/frame").map_or(now.frame, |frame| frame as usize);
+            let track = format!("{pointer}/{}", picks.track);
+            let follows = follows(state, &track);
+            let frame = number(state, picks.frame).map_or(now.frame, |frame| frame as usize);
             if let (false, Some(why)) = (follows, Looking { frame, ..now }.unfollowed()) {
                 return Err(why);
             }
-            let edit = Edit::set(state.document(), &format!("{pointer}/track"), json!(!follows));
+            let edit = Edit::set(state.document(), &track, json!(!follows));
             state.edit(edit, false)?;
             state.say(if follows { "a single picture" } else { "it follows what moves" });
             Ok(())
@@ -156,9 +161,23 @@ fn pick(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Whether a pick follows what moves.
-fn follows(state: &State, pick: &str) -> bool {
-    let track = field::value(state.document(), &format!("{pick}/track"));
+/// Picks the square at the cursor, as one of this kind.
+fn add(state: &mut State, now: Looking, picks: Picks, kind: &str) -> Done {
+    let (edit, pointer) = place::add_here(state)?;
+    let with = state.document().apply(&edit).map_err(|problems| first(&problems))?;
+    let set = |name: &str, value: Value| Edit::set(&with, &format!("{pointer}/{name}"), value);
+    let unfollowed = now.unfollowed();
+    let alone = unfollowed.as_ref().map(|_| set(picks.track, json!(false)));
+    let edits = [set(picks.frame, json!(now.frame)), set(picks.kind, json!(kind))].into_iter().chain(alone);
+    state.edit(Edit::all([edit].into_iter().chain(edits)), false)?;
+    go_to(state, &pointer);
+    tell_alone(state, unfollowed);
+    Ok(())
+}
+
+/// Whether a pick follows what moves, by the field that says so.
+fn follows(state: &State, track: &str) -> bool {
+    let track = field::value(state.document(), track);
     track.and_then(|value| value.as_bool()).unwrap_or(true)
 }
 

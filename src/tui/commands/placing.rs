@@ -17,6 +17,8 @@ pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor).counted(),
     command("place", "add|move|aim|jump|next|previous", "Place points with the picture's cursor", placed)
         .change()
+        // In space a place is only known in a frame of a known size.
+        .awaiting(|state, _| state.picture.size.is_none())
         .counted_with(&["next", "previous"]),
     command(
         "pointer",

@@ -9,7 +9,7 @@ use super::items::{alike, owned};
 use super::yanking::counted;
 use crate::base::pointer::Pointer;
 use crate::base::{maths, number};
-use crate::layers::shapes::handles::{Handles, handled, resampled};
+use crate::layers::shapes::handles::{Handles, ends_kept, handled, resampled};
 use crate::scene::insert::is_closed;
 use crate::scene::{Edit, field};
 use crate::tui::document::pointers::item_of;
@@ -118,20 +118,6 @@ fn resample(state: &mut State, call: &Call) -> Done {
     replace(state, &list, all, from)?;
     state.say(format!("{} are {} now, evenly spaced", counted(chosen.len(), "row"), counted(count, "row")));
     Ok(())
-}
-
-/// Nodes with the handles that the sides beside them have.
-fn ends_kept(mut nodes: Vec<Value>, first: &Value, last: &Value) -> Vec<Value> {
-    let keep = |end: Option<&mut Value>, of: &Value, handle: &str| {
-        let Some(end) = end.and_then(Value::as_object_mut) else { return };
-        match of.get(handle) {
-            Some(kept) => drop(end.insert(handle.to_owned(), kept.clone())),
-            None => drop(end.remove(handle)),
-        }
-    };
-    keep(nodes.first_mut(), first, "in");
-    keep(nodes.last_mut(), last, "out");
-    nodes
 }
 
 /// So many rows evenly along the straight way through the places of these, with all their numbers between those of the two

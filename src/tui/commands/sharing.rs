@@ -10,7 +10,8 @@ use super::yanking::here;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::materials::List;
-use crate::scene::schema::{Body, Place};
+use crate::layers::shapes::shape;
+use crate::scene::schema::{Body, Place, Shape};
 use crate::scene::{Document, Edit, address};
 use crate::tui::state::{Pane, State, first};
 use crate::tui::text::plain;
@@ -36,28 +37,72 @@ pub const COMMANDS: &[Command] = &[
 
 /// Something that can be made of shapes.
 enum Line {
-    /// An outline or a region.
-    Closed(String),
+    /// Something that is closed: one of several kinds of it is made of shapes.
+    Closed(String, Kinds),
     /// The nodes of a curve.
     Open(String),
 }
 
-/// The word of outlines that are made of shapes.
-const SHAPES: &str = "shapes";
+/// How a closed line is written, by the schema.
+#[derive(Clone, Copy)]
+struct Kinds {
+    /// The field with its kind.
+    tag: &'static str,
+    /// The kind that is made of shapes, and its list of them.
+    shared: (&'static str, &'static str),
+    /// The kind that has nodes of its own, and the list of them.
+    own: (&'static str, &'static str),
+}
+
+impl Kinds {
+    /// Those of a place; `None` if it cannot be made of shapes.
+    fn of(shape: Shape) -> Option<Kinds> {
+        let Body::Tagged(tag) = shape.body() else { return None };
+        let lists = |holds: fn(Shape) -> bool| {
+            let kinds = shape.choices().filter_map(|(kind, _)| Some((kind, shape.variant(kind)?)));
+            let lists = kinds.flat_map(|(kind, variant)| {
+                variant.properties(None).into_iter().map(move |(field, shape)| (kind, field, shape))
+            });
+            let mut lists = lists.filter(|(.., shape)| matches!(shape.body(), Body::List(item, ..) if holds(item)));
+            lists.next().map(|(kind, field, _)| (kind, field))
+        };
+        let shared = lists(|item| item.properties(None).iter().any(|(_, part)| part.reference() == Some(LIST)))?;
+        Some(Kinds { tag, shared, own: lists(|item| Some(item.id()) == node().map(Shape::id))? })
+    }
+}
+
+/// The key of the scene's list of shapes.
+const LIST: &str = "shapes";
+
+/// The list of nodes of a shape.
+const NODES: &str = "nodes";
+
+/// What the nodes of shapes are, by the schema.
+fn node() -> Option<Shape> {
+    let Body::Map(shape) = Shape::root().property(None, LIST)?.body() else { return None };
+    let Body::List(node, ..) = shape.property(None, NODES)?.body() else { return None };
+    Some(node)
+}
 
 /// The innermost place around the cursor that can be made of shapes.
 fn line(state: &State) -> Result<Line, String> {
     let json = state.document().json();
+    let closed = |pointer: &str| Some(Line::Closed(pointer.to_owned(), Kinds::of(Place::of(json, pointer)?.shape)?));
     let around = |pointer: &str| {
+        closed(pointer).or_else(|| {
+            let place = Place::of(json, pointer)?;
+            let mut fields = place.shape.properties(place.value).into_iter();
+            let named = fields.find(|(_, shape)| shape.named() == Some(LIST));
+            named.map(|(field, _)| Line::Open(Pointer(pointer).join(field)))
+        })
+    };
+    let inside = |pointer: &str| {
         let place = Place::of(json, pointer)?;
-        if matches!(place.shape.body(), Body::Tagged(_)) && place.shape.variant(SHAPES).is_some() {
-            return Some(Line::Closed(pointer.to_owned()));
-        }
-        let nodes = place.shape.property(place.value, "nodes")?;
-        nodes.named().is_some().then(|| Line::Open(Pointer(pointer).join("nodes")))
+        let fields = place.shape.properties(place.value);
+        fields.iter().find_map(|(field, _)| closed(&Pointer(pointer).join(field)))
     };
     let found = Pointer(&here(state)).upward().find_map(around);
-    let outline = || Pointer(&here(state)).upward().find_map(|at| around(&Pointer(at).join("outline")));
+    let outline = || Pointer(&here(state)).upward().find_map(inside);
     found.or_else(outline).ok_or_else(|| "go to an outline, a fold region or a curve first".into())
 }
 
@@ -68,9 +113,9 @@ fn nodes(document: &Document, line: &Line) -> Result<Vec<Value>, String> {
     };
     match line {
         Line::Open(pointer) => Ok(of(document, pointer)),
-        Line::Closed(pointer) => {
-            let path = document.apply(&Edit::set(document, &Pointer(pointer).join("kind"), "path".into()));
-            Ok(of(&path.map_err(|problems| first(&problems))?, &Pointer(pointer).join("nodes")))
+        Line::Closed(pointer, kinds) => {
+            let path = document.apply(&Edit::set(document, &Pointer(pointer).join(kinds.tag), kinds.own.0.into()));
+            Ok(of(&path.map_err(|problems| first(&problems))?, &Pointer(pointer).join(kinds.own.1)))
         }
     }
 }
@@ -79,17 +124,23 @@ fn is_shared(document: &Document, line: &Line) -> bool {
     let value = |pointer: &str| document.json().pointer(pointer).and_then(Value::as_str).map(str::to_owned);
     match line {
         Line::Open(pointer) => value(pointer).is_some(),
-        Line::Closed(pointer) => value(&Pointer(pointer).join("kind")).as_deref() == Some(SHAPES),
+        Line::Closed(pointer, kinds) => value(&Pointer(pointer).join(kinds.tag)).as_deref() == Some(kinds.shared.0),
     }
+}
+
+/// A closed line that is made of these parts, as it is written.
+fn of_parts(kinds: &Kinds, parts: Vec<Value>) -> Value {
+    let (kind, list) = kinds.shared;
+    json!({ kinds.tag: kind, list: parts })
 }
 
 /// The edit that makes a line of shapes, one after the other.
 fn made_of(document: &Document, line: &Line, names: &[&str]) -> Edit {
     match line {
         Line::Open(pointer) => Edit::set(document, pointer, names.first().copied().unwrap_or_default().into()),
-        Line::Closed(pointer) => {
-            let parts: Vec<Value> = names.iter().map(|name| json!({ "shape": name })).collect();
-            Edit::set(document, pointer, json!({ "kind": SHAPES, "parts": parts }))
+        Line::Closed(pointer, kinds) => {
+            let parts = names.iter().map(|name| shape::part(name, false)).collect();
+            Edit::set(document, pointer, of_parts(kinds, parts))
         }
     }
 }
@@ -98,7 +149,7 @@ fn made_of(document: &Document, line: &Line, names: &[&str]) -> Edit {
 /// has the first next to the last.
 fn selected(state: &State, line: &Line, count: usize) -> Result<Option<(usize, usize)>, String> {
     let list = match line {
-        Line::Closed(pointer) => Pointer(pointer).join("nodes"),
+        Line::Closed(pointer, kinds) => Pointer(pointer).join(kinds.own.1),
         Line::Open(pointer) => pointer.clone(),
     };
     let sheet = state.sheet();
@@ -136,12 +187,11 @@ fn share(state: &mut State, call: &Call) -> Done {
         return Err("this is made of shapes already: :unshare copies them back".into());
     }
     let nodes = nodes(document, &line)?;
-    let shape = |nodes: Vec<Value>| json!({ "nodes": nodes });
     let (shapes, told) = match selected(state, &line, nodes.len())? {
         None => {
             // A closed path goes back to where it began.
-            let begin = nodes.first().cloned().filter(|_| matches!(line, Line::Closed(_)));
-            (vec![(name.clone(), shape(nodes.into_iter().chain(begin).collect()))], String::new())
+            let begin = nodes.first().cloned().filter(|_| matches!(line, Line::Closed(..)));
+            (vec![(name.clone(), shape::written(nodes.into_iter().chain(begin).collect()))], String::new())
         }
         Some((from, many)) => {
             let around = |range: RangeInclusive<usize>| range.map(|i| nodes[i % nodes.len()].clone()).collect();
@@ -149,13 +199,14 @@ fn share(state: &mut State, call: &Call) -> Done {
             let (own, rest) = (around(from..=from + many - 1), around(from + many - 1..=from + nodes.len()));
             let other = format!("{name} rest");
             let told = format!(", and what is left of the outline, {}", quoted(&other));
-            (vec![(name.clone(), shape(own)), (other, shape(rest))], told)
+            (vec![(name.clone(), shape::written(own)), (other, shape::written(rest))], told)
         }
     };
     let names: Vec<&str> = shapes.iter().map(|(name, _)| name.as_str()).collect();
     let made = made_of(document, &line, &names);
     let entries: Map<String, Value> = shapes.clone().into_iter().collect();
-    let (added, _) = Edit::insert_entries(document, "/shapes", entries).ok_or("there is no list of shapes")?;
+    let (added, _) =
+        Edit::insert_entries(document, &Pointer("").join(LIST), entries).ok_or("there is no list of shapes")?;
     state.edit(Edit::all([added, made]), false)?;
     leave_rows(state, &line);
     let place = address(state, &line);
@@ -165,13 +216,13 @@ fn share(state: &mut State, call: &Call) -> Done {
 
 /// Where a line is, for people.
 fn address(state: &State, line: &Line) -> String {
-    let (Line::Closed(pointer) | Line::Open(pointer)) = line;
+    let (Line::Closed(pointer, _) | Line::Open(pointer)) = line;
     address::address(state.document(), pointer)
 }
 
 /// The list of nodes is not there any more.
 fn leave_rows(state: &mut State, line: &Line) {
-    let (Line::Closed(pointer) | Line::Open(pointer)) = line;
+    let (Line::Closed(pointer, _) | Line::Open(pointer)) = line;
     state.cursor.unselect();
     go_to(state, pointer);
 }
@@ -207,21 +258,18 @@ fn take(state: &mut State, call: &Call) -> Done {
     let used = used(state, &words)?;
     let document = state.document();
     let line = line(state)?;
-    let part = |&(name, reverse): &Used| {
-        if reverse { json!({ "shape": name, "reverse": true }) } else { json!({ "shape": name }) }
-    };
-    let parts: Vec<Value> = used.iter().map(part).collect();
+    let parts: Vec<Value> = used.iter().map(|&(name, reverse)| shape::part(name, reverse)).collect();
     let more = is_shared(document, &line);
     let edit = match (&line, used.as_slice()) {
         (Line::Open(_), [(name, false)]) => made_of(document, &line, &[name]),
         (Line::Open(_), _) => return Err("a curve follows one shape, from its beginning to its end".into()),
-        (Line::Closed(pointer), _) if more => {
-            let list = Pointer(pointer).join("parts");
+        (Line::Closed(pointer, kinds), _) if more => {
+            let list = Pointer(pointer).join(kinds.shared.1);
             let count = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
             let insert = |(i, part): (usize, Value)| Edit::insert(document, &list, count + i, part);
             Edit::all(parts.into_iter().enumerate().map(insert))
         }
-        (Line::Closed(pointer), _) => Edit::set(document, pointer, json!({ "kind": SHAPES, "parts": parts })),
+        (Line::Closed(pointer, kinds), _) => Edit::set(document, pointer, of_parts(kinds, parts)),
     };
     let done = state.edit(edit, false);
     done.map_err(|why| match used.len() {
@@ -231,7 +279,7 @@ fn take(state: &mut State, call: &Call) -> Done {
     leave_rows(state, &line);
     let told = |&(name, reverse): &Used| format!("{}{}", quoted(name), if reverse { " reversed" } else { "" });
     let told = used.iter().map(told).collect::<Vec<_>>().join(", ");
-    let (place, too) = (address(state, &line), if more && matches!(line, Line::Closed(_)) { " too" } else { "" });
+    let (place, too) = (address(state, &line), if more && matches!(line, Line::Closed(..)) { " too" } else { "" });
     state.say(plain(&format!("{place} is made of {told}{too}")));
     Ok(())
 }
@@ -243,10 +291,12 @@ fn unshare(state: &mut State, _: &Call) -> Done {
         return Err("this is not made of shapes: :use makes it of one".into());
     }
     let edit = match &line {
-        Line::Closed(pointer) => Edit::set(document, &Pointer(pointer).join("kind"), "path".into()),
+        Line::Closed(pointer, kinds) => Edit::set(document, &Pointer(pointer).join(kinds.tag), kinds.own.0.into()),
         Line::Open(pointer) => {
             let name = document.json().pointer(pointer).and_then(Value::as_str).unwrap_or_default();
-            let nodes = document.json().pointer(&Pointer(&Pointer("/shapes").join(name)).join("nodes"));
+            let nodes = document
+                .json()
+                .pointer(&[LIST, name, NODES].iter().fold(String::new(), |at, token| Pointer(&at).join(token)));
             Edit::set(document, pointer, nodes.cloned().unwrap_or_default())
         }
     };

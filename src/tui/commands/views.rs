@@ -24,7 +24,9 @@ pub const COMMANDS: &[Command] = &[command(
     "[add|go|take|guide|import|balance ...]",
     "Paint over what is seen of a mesh (add NAME), look from a view (go NAME), move it here (take NAME); as on the shell",
     views,
-)];
+)
+// What is painted over is what is seen.
+.awaiting(|_, text| text.starts_with("add "))];
 
 fn views(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;

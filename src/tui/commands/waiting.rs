@@ -2,24 +2,15 @@
 
 use std::sync::Arc;
 
+use super::TABLE;
 use crate::tui::state::State;
 use crate::tui::text::said::Said;
 
 /// Whether a line depends on pictures that are not read yet.
 pub fn awaits_pictures(state: &State, line: &str) -> bool {
     let Said { name, text, .. } = Said::parse(line, None);
-    let picture = &state.picture;
-    let depends = match name {
-        "clip" => picture.looking.is_none(),
-        "pick" => true,
-        "sprites" => text == "take",
-        // What is painted over is what is seen.
-        "views" => text.starts_with("add "),
-        // In space a place is only known in a frame of a known size.
-        "place" => picture.size.is_none(),
-        _ => false,
-    };
-    let is_made = picture.made.as_ref().is_some_and(|made| Arc::ptr_eq(made, state.document().scene()));
+    let depends = TABLE.find(name).is_some_and(|command| (command.awaits)(state, text));
+    let is_made = state.picture.made.as_ref().is_some_and(|made| Arc::ptr_eq(made, state.document().scene()));
     depends && !is_made
 }
 

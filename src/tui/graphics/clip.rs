@@ -6,9 +6,11 @@ use kurbo::{Point, Rect};
 use serde_json::json;
 
 use crate::base::picture::Picture;
+use crate::layers::KINDS;
 use crate::layers::parts::marks::{Look, Mark, Shape};
-use crate::layers::parts::materials::Materials;
+use crate::layers::parts::materials::{List, Materials};
 use crate::layers::parts::picking::Sight;
+use crate::layers::starts::Shown;
 use crate::render::{self, Synth};
 
 /// What is looked at in place of the scene.
@@ -48,9 +50,10 @@ impl ClipView {
 /// A picture as a scene that shows nothing else.
 pub(super) fn alone(picture: Arc<Picture>) -> Option<Synth> {
     const NAME: &str = "frame";
-    let scene = json!({ "plica": 1, "images": { NAME: { "path": NAME } }, "layers": [
-        { "kind": "picture", "name": NAME, "image": NAME }
-    ]});
+    let templates = KINDS.iter().filter_map(|kind| kind.template);
+    let shows = templates.into_iter().find(|template| template.of == List::Images)?;
+    let layer = (shows.layer)(&Shown { name: NAME, bare: true, ..Shown::default() });
+    let scene = json!({ "plica": 1, "images": { NAME: { "path": NAME } }, "layers": [layer] });
     let materials = Materials { pictures: [(NAME.to_owned(), picture)].into(), ..Materials::default() };
     render::synth(&serde_json::from_value(scene).ok()?, &materials, None).ok()
 }
