@@ -209,9 +209,7 @@ impl Still for Seen<'_> {
 
     fn strokes(&self, which: Which, surfaces: &Surfaces, out: &mut [Rgba]) {
         let Some((ready, given)) = self.synth.strokes.as_deref().zip(self.given(surfaces)) else { return };
-        let own = given.triangle.iter().map(|triangle| *triangle != NONE);
-        let drawn = strokes::draw::pass(ready, &given, which);
-        out.iter_mut().zip(drawn).zip(own).filter(|(_, own)| *own).for_each(|((out, drawn), _)| *out = drawn);
+        strokes::draw::pass(ready, &given, which, out);
     }
 
     fn surface(&self, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {

@@ -4,46 +4,45 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use super::ink::{Sheet, draw};
+use super::ink::{Drawing, Sheet};
 use super::marks::Set;
 use super::model::{Force, Noise as Wanted, ToneOf};
 use super::noise::Scene;
 use super::rim::Pixels;
 use super::sum::Noise;
-use super::tone::Range;
+use super::tone::{Range, brightness};
 use super::{Given, Ready, passes};
 use crate::base::pixels::{Rgba, linear_from_srgb, srgb_from_linear};
+use crate::base::simd::vectorised;
 use crate::layers::parts::pass::{COLOR, Which};
 use crate::layers::space::raster::NONE;
 
-/// What a pass has at every pixel of the frame; transparent where there is nothing.
-pub fn pass(ready: &Ready, given: &Given, which: Which) -> Vec<Rgba> {
+/// Writes what a pass has at every pixel that shows the layer to `out`.
+pub fn pass(ready: &Ready, given: &Given, which: Which, out: &mut [Rgba]) {
     let scene = Scene::new(ready, given);
-    let own = |i: usize| given.triangle[i] != NONE;
     let number = |v: f32| [v, v, v, 1.0];
-    let all = 0..given.triangle.len();
-    let filled = |at: &(dyn Fn(usize) -> Rgba + Sync)| -> Vec<Rgba> {
-        all.clone().into_par_iter().map(|i| if own(i) { at(i) } else { [0.0; 4] }).collect()
-    };
     match which.pass.name {
-        name if name == COLOR.name => drawing(&scene).0,
-        name if name == passes::INK.name => {
-            let ink = drawing(&scene).1;
-            filled(&|i| number(ink[i]))
-        }
+        name if name == COLOR.name => drawn(&scene, |drawing| fill(out, given, |i| drawing.pixel(i).0)),
+        name if name == passes::INK.name => drawn(&scene, |drawing| fill(out, given, |i| number(drawing.pixel(i).1))),
         name if name == passes::TONE.name => {
             let tones = tones(&scene);
-            filled(&|i| number(tones[i]))
+            fill(out, given, |i| number(tones[i]));
         }
         name if name == passes::NOISE.name => match asked(ready, which.of) {
             Some(wanted) => {
                 let noise = scene.noise(wanted);
-                filled(&|i| [noise.value[i], noise.share[i], 0.0, 1.0])
+                fill(out, given, |i| [noise.value[i], noise.share[i], 0.0, 1.0]);
             }
-            None => filled(&|_| number(0.0)),
+            None => fill(out, given, |_| number(0.0)),
         },
-        _ => vec![[0.0; 4]; given.triangle.len()],
+        _ => fill(out, given, |_| [0.0; 4]),
     }
+}
+
+/// Writes the pixels that show the layer.
+fn fill(out: &mut [Rgba], given: &Given, at: impl Fn(usize) -> Rgba + Sync) {
+    let pixels = out.par_iter_mut().zip(&given.triangle).enumerate();
+    pixels.filter(|(_, (_, triangle))| **triangle != NONE).for_each(|(i, (out, _))| *out = at(i));
 }
 
 /// The noise of this name, or that of the first mark that has one.
@@ -66,27 +65,30 @@ pub fn grey(ready: &Ready, given: &Given) -> Vec<f32> {
     let shaded: Vec<Rgba> = given.triangle.iter().map(own).collect();
     let sets: Vec<Set> = ready.strokes.marks.iter().filter_map(Set::of).collect();
     let sets: Vec<Set> = sets.into_iter().filter(|set| !matches!(set, Set::Outline(_))).collect();
-    let drawn = made(&Scene::new(ready, given), &sets, &shaded, &vec![CODE as f32; shaded.len()]).0;
-    let code = |[r, g, b, _]: &Rgba| {
-        let [r, g, b] = [r, g, b].map(|v| f64::from(*v));
+    let code = |[r, g, b, _]: Rgba| {
+        let [r, g, b] = [r, g, b].map(f64::from);
         srgb_from_linear(0.2126 * r + 0.7152 * g + 0.0722 * b) as f32
     };
-    drawn.par_iter().map(code).collect()
+    let mut drawn = vec![[0.0; 4]; shaded.len()];
+    made(&Scene::new(ready, given), &sets, (&shaded, &vec![CODE as f32; shaded.len()]), |drawing| {
+        fill(&mut drawn, given, |i| drawing.pixel(i).0);
+    });
+    drawn.into_par_iter().map(code).collect()
 }
 
-/// The color of every pixel, premultiplied, and how much ink there is.
-fn drawing(scene: &Scene) -> (Vec<Rgba>, Vec<f32>) {
+/// Makes something of the drawing of all marks.
+fn drawn<R>(scene: &Scene, make: impl FnOnce(&Drawing) -> R) -> R {
     let sets: Vec<Set> = scene.ready.strokes.marks.iter().filter_map(Set::of).collect();
-    made(scene, &sets, &scene.given.shaded, &tones(scene))
+    made(scene, &sets, (&scene.given.shaded, &tones(scene)), make)
 }
 
 /// The same of these marks, on a surface of these shaded colors and tones.
-fn made(scene: &Scene, sets: &[Set], shaded: &[Rgba], tone: &[f32]) -> (Vec<Rgba>, Vec<f32>) {
+fn made<R>(scene: &Scene, sets: &[Set], (shaded, tone): (&[Rgba], &[f32]), make: impl FnOnce(&Drawing) -> R) -> R {
     let strokes = &scene.ready.strokes;
     let names: BTreeSet<&str> = sets.iter().flat_map(Set::noises).map(|(_, name)| name).collect();
     let wanted = names.into_iter().filter_map(|name| Some((name.to_owned(), strokes.noises.get(name)?)));
     let noises: BTreeMap<String, Noise> = wanted.map(|(name, wanted)| (name, scene.noise(wanted))).collect();
-    sheet_of(scene, (shaded, tone), &noises, |sheet| draw(strokes, sets, sheet))
+    sheet_of(scene, (shaded, tone), &noises, |sheet| make(&Drawing::new(strokes, sets, sheet)))
 }
 
 /// Makes something of what a drawing is made from: of these shaded colors and tones, and these noises.
@@ -109,18 +111,35 @@ pub fn sheet_of<R>(
     make(&Sheet { pixels: &pixels, shaded, tone, noises, scale: scene.scale })
 }
 
+/// So many tones are made at once.
+const RUN: usize = 1024;
+
 /// The tone of every pixel of the layer.
 pub fn tones(scene: &Scene) -> Vec<f32> {
     let (tone, given) = (&scene.ready.strokes.tone, scene.given);
     let range = Range { dark: tone.dark, light: tone.light, gamma: tone.gamma };
-    let at = |i: usize| match tone.of {
-        _ if given.triangle[i] == NONE => 0.0,
-        ToneOf::Light => range.tone([f64::from(given.light[i]); 3]) as f32,
+    let light = |i: usize| match tone.of {
+        ToneOf::Light => brightness([f64::from(given.light[i]); 3]),
         ToneOf::Color => {
             let [r, g, b, a] = given.shaded[i].map(f64::from);
-            let straight = if a > 0.0 { [r / a, g / a, b / a] } else { [0.0; 3] };
-            range.tone(straight) as f32
+            if a > 0.0 { brightness([r / a, g / a, b / a]) } else { 0.0 }
         }
     };
-    (0..given.triangle.len()).into_par_iter().map(at).collect()
+    let mut tones = vec![0.0; given.triangle.len()];
+    let runs = tones.par_chunks_mut(RUN).zip(given.triangle.par_chunks(RUN)).enumerate();
+    runs.filter(|(_, (_, triangles))| triangles.iter().any(|triangle| *triangle != NONE)).for_each(
+        |(run, (tones, triangles))| {
+            let mut lights = [0.0; RUN];
+            let lights = &mut lights[..tones.len()];
+            lights.iter_mut().enumerate().for_each(|(k, own)| *own = light(run * RUN + k));
+            vectorised(
+                #[inline(always)]
+                || range.tones(lights),
+            );
+            for ((tone, light), triangle) in tones.iter_mut().zip(lights).zip(triangles) {
+                *tone = if *triangle == NONE { 0.0 } else { *light as f32 };
+            }
+        },
+    );
+    tones
 }

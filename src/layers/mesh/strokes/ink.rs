@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::marks::{Ink, Outline, Relief, Set};
 use super::model::{Force, Ground, Side};
-use super::rim::{Pixels, Rules, distances};
+use super::rim::{Pixels, Rules, squares};
 use super::sum::Noise;
 use super::tone::{Thresholds, share, threshold};
 use crate::base::color;
@@ -57,33 +57,40 @@ pub struct Inked {
 /// What is drawn of one mark.
 type Brush<'a> = Box<dyn Fn(&mut Cell) + Sync + 'a>;
 
-/// Draws the marks in order: the color of every pixel of the frame, premultiplied, and how much ink there is.
-pub fn draw<'a>(strokes: &'a Force, marks: &'a [Set], sheet: &'a Sheet) -> (Vec<Rgba>, Vec<f32>) {
-    let brush = |mark: &'a Set| match mark {
-        Set::Ink(ink) => sheet.ink(strokes, ink),
-        Set::Pigment(pigment) => sheet.pigment(&pigment.noise, pigment.strength),
-        Set::Relief(relief) => sheet.relief(strokes, relief),
-        Set::Outline(outline) => Some(sheet.outline(strokes, outline)),
-    };
-    let brushes: Vec<Brush> = marks.iter().filter_map(brush).collect();
-    let paper = linear(&strokes.paper);
-    let pixel = |i: usize| {
-        if sheet.pixels.triangle[i] == NONE {
-            return ([0.0; 4], 0.0);
-        }
-        let [r, g, b, coverage] = sheet.shaded[i].map(f64::from);
+/// Marks, ready to be drawn in any pixel.
+pub struct Drawing<'a> {
+    sheet: &'a Sheet<'a>,
+    strokes: &'a Force,
+    brushes: Vec<Brush<'a>>,
+    paper: DVec3,
+}
+
+impl<'a> Drawing<'a> {
+    /// Draws these marks in order.
+    pub fn new(strokes: &'a Force, marks: &'a [Set], sheet: &'a Sheet) -> Self {
+        let brush = |mark: &'a Set| match mark {
+            Set::Ink(ink) => sheet.ink(strokes, ink),
+            Set::Pigment(pigment) => sheet.pigment(&pigment.noise, pigment.strength),
+            Set::Relief(relief) => sheet.relief(strokes, relief),
+            Set::Outline(outline) => Some(sheet.outline(strokes, outline)),
+        };
+        Drawing { sheet, strokes, brushes: marks.iter().filter_map(brush).collect(), paper: linear(&strokes.paper) }
+    }
+
+    /// The color of a pixel that shows the layer, premultiplied, and how much ink there is.
+    pub fn pixel(&self, i: usize) -> (Rgba, f32) {
+        let [r, g, b, coverage] = self.sheet.shaded[i].map(f64::from);
         let scene = if coverage > 0.0 { DVec3::new(r, g, b) / coverage } else { DVec3::ZERO };
-        let (color, alpha) = match strokes.ground {
-            Ground::Paper => (paper, 1.0),
-            Ground::Scene => (scene.lerp(paper, strokes.fade), 1.0),
+        let (color, alpha) = match self.strokes.ground {
+            Ground::Paper => (self.paper, 1.0),
+            Ground::Scene => (scene.lerp(self.paper, self.strokes.fade), 1.0),
             Ground::Clear => (DVec3::ZERO, 0.0),
         };
         let mut cell = Cell { i, scene, color, alpha, bare: 1.0 };
-        brushes.iter().for_each(|brush| brush(&mut cell));
+        self.brushes.iter().for_each(|brush| brush(&mut cell));
         let [r, g, b] = (cell.color * coverage).to_array().map(|v| v as f32);
         ([r, g, b, (cell.alpha * coverage) as f32], (1.0 - cell.bare) as f32)
-    };
-    (0..sheet.shaded.len()).into_par_iter().map(pixel).unzip()
+    }
 }
 
 /// Linear light of `#rrggbb`; what is no color is black.
@@ -95,53 +102,33 @@ pub fn linear(text: &str) -> DVec3 {
 impl Sheet<'_> {
     /// Ink where a noise is below a threshold that follows the tone.
     fn ink<'a>(&'a self, strokes: &'a Force, ink: &'a Ink) -> Option<Brush<'a>> {
-        let of = self.noises.get(&ink.noise).and(strokes.noises.get(&ink.noise))?;
-        let thresholds = Thresholds::new(of.even);
+        let inking = self.inking(strokes, ink)?;
+        let thresholds = Thresholds::new(inking.even);
         let paint = Paint::new(&ink.color, ink.shade, strokes);
         Some(Box::new(move |cell| {
-            let threshold = |share: f64, x: f64, soft: f64| thresholds.serving(share, x, soft);
-            let inked = self.inked_by(strokes, ink, cell.i, threshold);
-            if let Some(inked) = inked.filter(|inked| inked.share > 0.0) {
-                cell.cover(&paint, inked.covered);
-            }
+            let inked = inking.at(cell.i, |share, x| thresholds.serving(share, x, inking.soft));
+            cell.cover(&paint, inked.covered);
         }))
     }
 
     /// How a pixel is inked; `None` if the noise is not there.
     pub fn inked(&self, strokes: &Force, ink: &Ink, i: usize) -> Option<Inked> {
-        let even = strokes.noises.get(&ink.noise)?.even;
-        self.inked_by(strokes, ink, i, |share, _, _| threshold(share, even))
+        let inking = self.inking(strokes, ink)?;
+        Some(inking.at(i, |share, _| threshold(share, inking.even)))
     }
 
-    /// The same, by thresholds of a share, the noise, and how far edges reach.
-    fn inked_by(
-        &self,
-        strokes: &Force,
-        ink: &Ink,
-        i: usize,
-        threshold: impl Fn(f64, f64, f64) -> f64,
-    ) -> Option<Inked> {
+    fn inking<'a>(&'a self, strokes: &Force, ink: &'a Ink) -> Option<Inking<'a>> {
         let (noise, of) = (self.noises.get(&ink.noise)?, strokes.noises.get(&ink.noise)?);
-        let tone = f64::from(self.tone[i]);
-        let inked = (ink.amount * strokes.amount * share(tone, ink.from, ink.to)).clamp(0.0, 1.0);
-        if inked == 0.0 {
-            return Some(Inked::default());
-        }
-        let mut x = f64::from(noise.value[i]);
-        let grain = ink.grain.as_ref().and_then(|grain| Some((self.noises.get(&grain.noise)?, grain.amount)));
-        if let Some((grain, amount)) = grain {
-            x = (1.0 - amount * amount).sqrt() * x + amount * f64::from(grain.value[i]);
-        }
-        let x = if ink.side == Side::High { -x } else { x };
-        let soft = ink.softness * PI / (of.spacing * strokes.size);
-        let threshold = threshold(inked, x, soft);
-        let below = x - threshold;
-        let covered = match soft > 0.0 {
-            true => 1.0 - smoothstep(-soft, soft, below),
-            false => f64::from(u8::from(below < 0.0)),
-        };
-        let covered = (ink.opacity * (covered + 4.0 * ink.rim * covered * (1.0 - covered))).min(1.0);
-        Some(Inked { share: inked, threshold, covered })
+        let grain = ink.grain.as_ref().and_then(|grain| Some((&*self.noises.get(&grain.noise)?.value, grain.amount)));
+        Some(Inking {
+            ink,
+            tone: self.tone,
+            noise: &noise.value,
+            even: of.even,
+            grain,
+            amount: ink.amount * strokes.amount,
+            soft: ink.softness * PI / (of.spacing * strokes.size),
+        })
     }
 
     /// More or less pigment in the color.
@@ -177,14 +164,16 @@ impl Sheet<'_> {
     pub fn outlined<'a>(&'a self, strokes: &Force, outline: &'a Outline) -> impl Fn(usize) -> f64 + Sync + 'a {
         let crease = outline.creases.map(|degrees| cos(degrees.to_radians()));
         let rim = self.pixels.rim(&Rules { step_px: outline.step * self.scale, crease });
-        let away = distances(self.pixels.size_px, &rim);
-        let noise = outline.noise.as_ref().and_then(|name| self.noises.get(name));
+        let noise = outline.noise.as_ref().and_then(|name| self.noises.get(name)).map(|noise| &*noise.value);
         // A hard edge is the limit of a soft one.
         let soft = (outline.softness * self.scale).max(1e-9);
         let half = outline.width * strokes.size * self.scale / 2.0;
+        let most = noise.map_or(0.0, |values| values.par_iter().copied().reduce(|| 0.0, f32::max));
+        let reach = half * (1.0 + outline.vary * f64::from(most)) + soft / 2.0;
+        let squares = squares(self.pixels.size_px, &rim, reach.ceil() as usize);
         move |i| {
-            let x = noise.map_or(0.0, |noise| f64::from(noise.value[i]));
-            let inside = half * (1.0 + outline.vary * x) - away[i];
+            let x = noise.map_or(0.0, |noise| f64::from(noise[i]));
+            let inside = half * (1.0 + outline.vary * x) - f64::from(squares[i]).sqrt();
             outline.opacity * (inside / soft + 0.5).clamp(0.0, 1.0)
         }
     }
@@ -208,8 +197,50 @@ impl Sheet<'_> {
     }
 }
 
+/// An ink with all that tells where it goes.
+struct Inking<'a> {
+    ink: &'a Ink,
+    tone: &'a [f32],
+    noise: &'a [f32],
+    /// Whether the noise is evened out.
+    even: bool,
+    /// The noise that is mixed into it, and how much.
+    grain: Option<(&'a [f32], f64)>,
+    /// The most that is inked.
+    amount: f64,
+    /// How far edges reach.
+    soft: f64,
+}
+
+impl Inking<'_> {
+    /// How a pixel is inked, by thresholds of a share and the noise.
+    fn at(&self, i: usize, threshold: impl Fn(f64, f64) -> f64) -> Inked {
+        let (ink, soft) = (self.ink, self.soft);
+        let inked = (self.amount * share(f64::from(self.tone[i]), ink.from, ink.to)).clamp(0.0, 1.0);
+        if inked == 0.0 {
+            return Inked::default();
+        }
+        let mut x = f64::from(self.noise[i]);
+        if let Some((grain, amount)) = self.grain {
+            x = (1.0 - amount * amount).sqrt() * x + amount * f64::from(grain[i]);
+        }
+        let x = if ink.side == Side::High { -x } else { x };
+        let threshold = threshold(inked, x);
+        let below = x - threshold;
+        let covered = match soft > 0.0 {
+            true => 1.0 - smoothstep(-soft, soft, below),
+            false => f64::from(u8::from(below < 0.0)),
+        };
+        let covered = (ink.opacity * (covered + 4.0 * ink.rim * covered * (1.0 - covered))).min(1.0);
+        Inked { share: inked, threshold, covered }
+    }
+}
+
 impl Cell {
     fn cover(&mut self, paint: &Paint, covered: f64) {
+        if covered == 0.0 {
+            return;
+        }
         let color = match paint {
             Paint::Scene(shade) => self.scene * *shade,
             Paint::Color(color) => *color,

@@ -3,6 +3,8 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use crate::base::simd::vectorised;
+
 /// What is known of each pixel of a frame.
 pub struct Pixels<'a> {
     /// Width and height.
@@ -32,21 +34,33 @@ impl Pixels<'_> {
     /// Whether each pixel is at a rim of the layer.
     pub fn rim(&self, rules: &Rules) -> Vec<bool> {
         let (width, height) = self.size_px;
-        let at = |i: usize| {
-            let (x, y) = (i % width, i / width);
-            let beside = [
-                (x > 0).then(|| i - 1),
-                (x + 1 < width).then(|| i + 1),
-                (y > 0).then(|| i - width),
-                (y + 1 < height).then(|| i + width),
-            ];
-            self.triangle[i] != u32::MAX && beside.into_iter().flatten().any(|other| self.parts(rules, i, other))
-        };
-        (0..width * height).into_par_iter().map(at).collect()
+        let mut found = vec![false; width * height];
+        found.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+            // Neighbors mostly show the same triangle.
+            let mut last = (u32::MAX, DVec3::ZERO);
+            for (x, found) in row.iter_mut().enumerate() {
+                let i = y * width + x;
+                let own = self.triangle[i];
+                if own == u32::MAX {
+                    continue;
+                }
+                if own != last.0 {
+                    last = (own, (self.plane)(own));
+                }
+                let beside = [
+                    (x > 0).then(|| i - 1),
+                    (x + 1 < width).then(|| i + 1),
+                    (y > 0).then(|| i - width),
+                    (y + 1 < height).then(|| i + width),
+                ];
+                *found = beside.into_iter().flatten().any(|other| self.parts(rules, (i, last.1), other));
+            }
+        });
+        found
     }
 
-    /// Whether a pixel of the layer is at a rim toward its neighbor.
-    fn parts(&self, rules: &Rules, here: usize, other: usize) -> bool {
+    /// Whether a pixel of the layer, whose triangle has this plane, is at a rim toward its neighbor.
+    fn parts(&self, rules: &Rules, (here, plane): (usize, DVec3), other: usize) -> bool {
         let farther = self.inverse[other] < self.inverse[here];
         if self.triangle[other] == u32::MAX {
             return farther;
@@ -55,68 +69,56 @@ impl Pixels<'_> {
         if crease || !farther {
             return crease;
         }
-        let plane = |triangle: u32, at: usize| {
-            let plane = (self.plane)(triangle);
-            let (x, y) = (at % self.size_px.0, at / self.size_px.0);
+        let at = |plane: DVec3, i: usize| {
+            let (x, y) = (i % self.size_px.0, i / self.size_px.0);
             plane.x * (x as f64 + 0.5) + plane.y * (y as f64 + 0.5) + plane.z
         };
-        let from_own = plane(self.triangle[here], other) - self.inverse[other];
-        let from_other = self.inverse[here] - plane(self.triangle[other], here);
-        from_own.min(from_other) * self.focal_px / self.inverse[here] > rules.step_px
+        let is_step = |away: f64| away * self.focal_px / self.inverse[here] > rules.step_px;
+        // Seen from both sides; the other plane is seldom asked for.
+        is_step(at(plane, other) - self.inverse[other])
+            && is_step(self.inverse[here] - at((self.plane)(self.triangle[other]), here))
     }
 }
 
-/// The distance of each pixel to the nearest that is marked, in pixels; infinite if there is none. Exact (Felzenszwalb and
-/// Huttenlocher 2012, "Distance Transforms of Sampled Functions").
-pub fn distances((width, height): (usize, usize), marked: &[bool]) -> Vec<f64> {
-    // Down each column, then along each row.
-    let mut columns = vec![f64::INFINITY; width * height];
-    columns.par_chunks_mut(height.max(1)).enumerate().for_each(|(x, column)| {
-        let own: Vec<f64> = (0..height).map(|y| if marked[y * width + x] { 0.0 } else { f64::INFINITY }).collect();
-        lower_envelope(&own, column);
+/// The square of the distance of each pixel to the nearest that is marked, in pixels; infinite where none is within
+/// `reach` of its row and `reach` of its column.
+pub fn squares((width, height): (usize, usize), marked: &[bool], reach: usize) -> Vec<f32> {
+    let width = width.max(1);
+    // Along each row, then down the columns.
+    let mut rows = vec![0.0; marked.len()];
+    rows.par_chunks_mut(width).zip(marked.par_chunks(width)).for_each(|(row, marked)| in_row(row, marked, reach));
+    let any: Vec<bool> = rows.par_chunks(width).map(|row| row.iter().any(|square| square.is_finite())).collect();
+    let mut out = vec![0.0; marked.len()];
+    out.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+        out.copy_from_slice(&rows[y * width..(y + 1) * width]);
+        let near = y.saturating_sub(reach)..(y + reach + 1).min(height);
+        vectorised(
+            #[inline(always)]
+            || {
+                for other in near.filter(|other| any[*other]) {
+                    let away = y.abs_diff(other) as f32;
+                    for (out, square) in out.iter_mut().zip(&rows[other * width..(other + 1) * width]) {
+                        let square = square + away * away;
+                        *out = if square < *out { square } else { *out };
+                    }
+                }
+            },
+        );
     });
-    let mut rows = vec![f64::INFINITY; width * height];
-    rows.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
-        let own: Vec<f64> = (0..width).map(|x| columns[x * height + y]).collect();
-        lower_envelope(&own, row);
-        row.iter_mut().for_each(|square| *square = square.sqrt());
-    });
-    rows
+    out
 }
 
-/// For each place the least of all values, each plus the square of its distance.
-fn lower_envelope(values: &[f64], out: &mut [f64]) {
-    let (mut places, mut from): (Vec<usize>, Vec<f64>) = (Vec::new(), Vec::new());
-    for (q, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-        let (own, q) = (q as f64, q);
-        loop {
-            let Some(&last) = places.last() else {
-                places.push(q);
-                from.push(f64::NEG_INFINITY);
-                break;
-            };
-            let at = last as f64;
-            let meets = ((value + own * own) - (values[last] + at * at)) / (2.0 * (own - at));
-            if from.last().is_some_and(|from| meets <= *from) {
-                places.pop();
-                from.pop();
-                continue;
-            }
-            places.push(q);
-            from.push(meets);
-            break;
-        }
+/// The same among the pixels of a row.
+fn in_row(row: &mut [f32], marked: &[bool], reach: usize) {
+    let mut away = f32::INFINITY;
+    for (out, marked) in row.iter_mut().zip(marked) {
+        away = if *marked { 0.0 } else { away + 1.0 };
+        *out = away;
     }
-    if places.is_empty() {
-        return out.fill(f64::INFINITY);
-    }
-    let mut k = 0;
-    for (x, out) in out.iter_mut().enumerate() {
-        while k + 1 < places.len() && from[k + 1] < x as f64 {
-            k += 1;
-        }
-        let away = x as f64 - places[k] as f64;
-        *out = values[places[k]] + away * away;
+    away = f32::INFINITY;
+    for out in row.iter_mut().rev() {
+        away = out.min(away + 1.0);
+        *out = if away <= reach as f32 { away * away } else { f32::INFINITY };
     }
 }
 
@@ -128,17 +130,16 @@ mod tests {
     fn distances_are_exact() {
         let (width, height) = (23, 17);
         let marked: Vec<bool> = (0..width * height).map(|i| i * 7919 % 61 == 3).collect();
-        let found = distances((width, height), &marked);
-        for (i, found) in found.iter().enumerate() {
-            let (x, y) = ((i % width) as f64, (i / width) as f64);
-            let all = marked.iter().enumerate().filter(|(_, marked)| **marked);
-            let away = all.map(|(k, _)| {
-                glam::DVec2::new((k % width) as f64, (k / width) as f64).distance(glam::DVec2::new(x, y))
-            });
-            let least = away.fold(f64::INFINITY, f64::min);
-            assert!((found - least).abs() < 1e-12, "{x} {y}: {found} {least}");
+        for reach in [0, 3, 30] {
+            let found = squares((width, height), &marked, reach);
+            for (i, found) in found.iter().enumerate() {
+                let all = marked.iter().enumerate().filter(|(_, marked)| **marked);
+                let away = all.map(|(k, _)| ((k % width).abs_diff(i % width), (k / width).abs_diff(i / width)));
+                let near = away.filter(|(x, y)| *x.max(y) <= reach).map(|(x, y)| (x * x + y * y) as f32);
+                assert_eq!(*found, near.fold(f32::INFINITY, f32::min), "{i}, {reach}");
+            }
         }
-        assert!(distances((4, 3), &[false; 12]).iter().all(|d| *d == f64::INFINITY));
+        assert!(squares((4, 3), &[false; 12], 9).iter().all(|square| *square == f32::INFINITY));
     }
 
     #[test]
