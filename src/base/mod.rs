@@ -29,5 +29,6 @@ pub mod quantise;
 pub mod random;
 pub mod reduce;
 pub mod simd;
+pub mod statistics;
 pub mod system;
 pub mod text;

@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use super::maths::powi;
+
 /// Whole numbers below this have all their digits.
 const MOST_WHOLE: f64 = 1e15;
 
@@ -19,15 +21,28 @@ pub fn text(number: f64) -> String {
     if is_whole(number) { format!("{number:.0}") } else { number.to_string() }
 }
 
+/// The nearest number with so many decimals, as a person would write it.
+pub fn rounded(value: f64, decimals: u32) -> f64 {
+    let parts = powi(10.0, decimals);
+    (value * parts).round() / parts
+}
+
 /// Rounds away the floating-point noise of a computed number.
 pub fn tidy(value: f64) -> f64 {
-    let rounded = (value * 1e9).round() / 1e9;
+    let rounded = rounded(value, 9);
     if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_rounded_to_decimals() {
+        for (value, decimals, expected) in [(0.126, 2, 0.13), (-1.25, 1, -1.3), (2.5, 0, 3.0), (0.1 + 0.2, 9, 0.3)] {
+            assert_eq!(rounded(value, decimals), expected);
+        }
+    }
 
     #[test]
     fn whole_numbers_have_no_point() {

@@ -44,7 +44,7 @@ impl Histogram {
         self
     }
 
-    /// At most `most` colors (up to 256) that represent all, ascending; none if there are none.
+    /// At most `most` colors (up to 256) that represent all, ascending; empty without colors.
     pub fn palette(self, most: usize) -> Vec<[u8; 3]> {
         let mut bins: Vec<_> = self.bins.into_iter().collect();
         bins.sort_unstable();
@@ -100,7 +100,7 @@ impl Group {
     }
 }
 
-/// All points in at most `most` groups; none if there are none.
+/// All points in at most `most` groups; empty without points.
 pub fn cut(points: Vec<Point>, most: usize) -> Vec<Group> {
     if points.is_empty() {
         return Vec::new();

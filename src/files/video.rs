@@ -206,7 +206,7 @@ fn size(head: &[u8]) -> Option<(usize, usize)> {
     Some((width.parse().ok().filter(|n| *n > 0)?, height.parse().ok().filter(|n| *n > 0)?))
 }
 
-/// A running ffmpeg; whatever happens, none keeps running.
+/// A running ffmpeg; it is killed when this is dropped.
 struct Ffmpeg {
     child: Child,
     /// Hears what it says, so that it never waits for that.

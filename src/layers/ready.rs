@@ -91,7 +91,7 @@ pub trait Ready: Any + Debug + Send + Sync {
     }
 
     /// What is seen of its model at a scene time from around, as it is without anything drawn on it, in pictures of so many
-    /// pixels a side: pictures with cameras that show what its surface does. None if it can have none.
+    /// pixels a side: pictures with cameras that show what its surface does. `None` if it has no such pictures.
     fn around(&self, _t: f64, _side_px: usize) -> Vec<Taken> {
         Vec::new()
     }

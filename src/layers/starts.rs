@@ -79,7 +79,7 @@ pub struct Style {
 pub struct Comparison {
     /// What differs: "anchor".
     pub by: &'static str,
-    /// The layer in each way, with its name, from left to right; none if it has no such ways.
+    /// The layer in each way, with its name, from left to right; empty if it has no such ways.
     pub ways: fn(layer: &Value) -> Vec<(&'static str, Value)>,
 }
 

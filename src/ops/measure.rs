@@ -71,8 +71,7 @@ fn wanted(scene: &Scene, name: Option<&str>) -> Result<Vec<usize>> {
 
 /// Six decimals tell more than enough.
 fn told(value: Option<f64>) -> Value {
-    const PARTS: f64 = 1e6;
-    value.map_or(Value::Null, |value| number::json((value * PARTS).round() / PARTS))
+    value.map_or(Value::Null, |value| number::json(number::rounded(value, 6)))
 }
 
 fn object(layer: &str, found: &Measures) -> Value {

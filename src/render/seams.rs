@@ -5,6 +5,7 @@ use std::borrow::Borrow;
 
 use super::stage::Stage;
 use super::{Synth, cpu};
+use crate::base::number::rounded;
 use crate::base::pixels::encode;
 use crate::base::problem::Problem;
 use crate::layers::Layer;
@@ -74,7 +75,7 @@ fn warning(duration: f64, speeds: &[f64], snap: &Snap) -> Problem {
     if snap.needs_time_alone
         && let Some(n) = closing(speeds).filter(|n| *n > 1)
     {
-        let seconds = (duration * f64::from(n) * 1000.0).round() / 1000.0;
+        let seconds = rounded(duration * f64::from(n), 3);
         hint += &format!("; at the same pace a duration of {seconds} s closes it, with every speed times {n}");
     }
     Problem::warning(snap.path.as_str(), message).hint(hint)

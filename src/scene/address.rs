@@ -211,7 +211,7 @@ fn unknown(document: &Document, address: &str, path: &str, place: Place, token: 
         Body::Object | Body::Tagged(_) | Body::Numbers(_) | Body::Row(_) => {
             format!("there is no field {} in {inside}", quoted(token))
         }
-        _ => format!("{inside} has no parts"),
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => format!("{inside} has no parts"),
     };
     let error = Error::at(address, what);
     match nearest(token, names.iter().map(String::as_str)) {
@@ -233,6 +233,9 @@ fn names_below(place: Place) -> Vec<String> {
         Body::Map(_) => {
             place.value.and_then(Value::as_object).into_iter().flat_map(|map| map.keys().cloned()).collect()
         }
-        _ => place.shape.properties(place.value).into_iter().map(|(name, _)| name.to_owned()).collect(),
+        Body::Object | Body::Tagged(_) => {
+            place.shape.properties(place.value).into_iter().map(|(name, _)| name.to_owned()).collect()
+        }
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => Vec::new(),
     }
 }

@@ -271,7 +271,9 @@ impl Shape {
             Body::Tagged(tag) if tag == name => Some(Shape { tag: Some(tag), site: self.body, ..self }),
             Body::Tagged(_) => self.branch(value)?.property(None, name),
             Body::Map(item) => Some(item),
-            _ => Some(Shape::of(self.fields()?.get(name)?, None)),
+            Body::Object => Some(Shape::of(self.fields()?.get(name)?, None)),
+            Body::List(..) | Body::Numbers(_) | Body::Row(_) => None,
+            Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => None,
         }
     }
 
@@ -294,7 +296,10 @@ impl Shape {
                 let branches = self.choices().filter_map(|(name, _)| self.variant(name));
                 branches.filter_map(|branch| branch.property(None, token)).collect()
             }
-            _ => self.property(None, token).into_iter().collect(),
+            Body::Object | Body::Map(_) => self.property(None, token).into_iter().collect(),
+            // Numbers have shapes by their place: [`Place::step`].
+            Body::Numbers(_) => Vec::new(),
+            Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => Vec::new(),
         }
     }
 
@@ -374,7 +379,8 @@ impl<'a> Place<'a> {
                 let (shape, value) = (self.shape.part(index)?, here.and_then(|value| value.get(index)));
                 Some(Place { shape, value, set: self.set, required: true })
             }
-            _ => {
+            Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => None,
+            Body::Object | Body::Tagged(_) | Body::Map(_) => {
                 let shape = self.shape.property(here, token)?;
                 let written = here.and_then(|value| value.get(token));
                 let required = self.shape.branch(here).is_some_and(|branch| branch.required().any(|n| n == token));

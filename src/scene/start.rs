@@ -89,7 +89,7 @@ impl Start {
     /// The scene.
     ///
     /// # Errors
-    /// If what is in it is no scene: a path that none can have, for example.
+    /// If its content is not a valid scene: for example, it names an impossible path.
     pub fn document(self) -> Result<Document, Vec<Problem>> {
         self.document_under(Rules::default())
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rustix::fs::{FileType, Mode};
 use rustix::io::Errno;
 
-/// Settings: `$XDG_CONFIG_HOME/plica`, else `~/.config/plica`. None without a home.
+/// Settings: `$XDG_CONFIG_HOME/plica`, else `~/.config/plica`. `None` without a home.
 pub fn config() -> Option<PathBuf> {
     home_folder("XDG_CONFIG_HOME", ".config")
 }

@@ -13,7 +13,7 @@ pub struct Mark {
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
-    /// The width of the stroke; none fills the inside, even-odd.
+    /// The width of the stroke; `None` fills the inside, even-odd.
     pub stroke: Option<f64>,
     /// sRGB with straight alpha.
     pub color: [u8; 4],

@@ -34,7 +34,7 @@ impl Depth {
         }
     }
 
-    /// The largest code; none for floats.
+    /// The largest code; `None` for floats.
     pub fn largest(self) -> Option<u16> {
         match self {
             Depth::Float => None,

@@ -4,6 +4,7 @@
 use super::model::{PictureLayer, Zone};
 use super::position::{Pieces, Position};
 use crate::base::clip::Clip;
+use crate::base::number::rounded;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::repeat::{BESIDE, Repeat, Snap};
 use crate::layers::timeline::{Timeline, Wrap};
@@ -20,14 +21,13 @@ pub fn repeat(layer: &PictureLayer, timeline: &Timeline, materials: &Materials) 
     let wrap = timeline.wrap;
     let closing = layer.zones.iter().filter(|zone| closes(&zone.position, wrap));
     let speeds = closing.map(|zone| zone.speed).collect();
-    let round = |s: f64| (s * 1000.0).round() / 1000.0;
     let snaps = layer.zones.iter().enumerate().filter_map(|(i, zone)| {
         let (time, (before, after)) = snap(zone, wrap)?;
         Some(Snap {
             path: format!("/zones/{i}"),
             bounds: zone.outline.polygon().bounds(),
             time,
-            what: format!("s jumps from {} to {}", round(before), round(after)),
+            what: format!("s jumps from {} to {}", rounded(before, 3), rounded(after, 3)),
             cure: cure(zone, wrap),
             needs_time_alone: closes(&zone.position, wrap),
         })
@@ -49,7 +49,7 @@ fn cut(clip: &Clip, timeline: &Timeline) -> Option<(String, String)> {
     }
     let what = format!("the clip has come to frame {} of {count}, and begins again", clip.frame_at(timeline.duration));
     let whole = passes.round().max(1.0) * count as f64 / clip.fps;
-    Some((what, format!("let the timeline take {} s, as the clip does", (whole * 1000.0).round() / 1000.0)))
+    Some((what, format!("let the timeline take {} s, as the clip does", rounded(whole, 3))))
 }
 
 /// The first jump of a zone while the timeline is played in a loop: its scene time, and s before and after. `None` if
@@ -128,7 +128,7 @@ mod tests {
             (odd, Wrap::Repeat, 1.0, 0.0, Some(1.0)),
             (back, Wrap::Repeat, 1.0, 0.6, None),
         ] {
-            let found = snap(&zone(position, speed, shift), wrap).map(|(time, _)| (time * 1e9).round() / 1e9);
+            let found = snap(&zone(position, speed, shift), wrap).map(|(time, _)| rounded(time, 9));
             assert_eq!(found, time, "{position} {wrap:?} {speed} {shift}");
         }
     }

@@ -13,7 +13,7 @@ use crate::layers::parts::moment::Moment;
 use crate::layers::ready::{Making, Ready as _};
 use crate::layers::space::fit;
 
-/// The measures of the strokes as the layer is at one time; none without strokes, without a camera, or once `step`, which is
+/// The measures of the strokes as the layer is at one time; `None` without strokes, without a camera, or once `step`, which is
 /// told how many frames are drawn of how many, says that it is cancelled.
 ///
 /// # Errors

@@ -157,7 +157,7 @@ impl Camera {
         Camera { position: position.into(), target: target.into(), up: self.up, fov, ..Camera::default() }
     }
 
-    /// What the keys say about one field at `t`, each number for itself; `own` if none names it.
+    /// What the keys say about one field at `t`, each number for itself; `own` if no key names it.
     fn components<const N: usize>(&self, t: f64, own: [f64; N], of: impl Fn(&Key) -> Option<[f64; N]>) -> [f64; N] {
         let between = match self.between {
             Between::Linear => keyframes::Between::Linear,

@@ -52,7 +52,7 @@ impl Atlas {
         [i % self.across() * width + x, i / self.across() * height + y]
     }
 
-    /// The texture with these pictures; none make a texel.
+    /// The texture with these pictures; without pictures, a single texel.
     pub fn pack<'a, const N: usize>(self, pictures: Vec<&'a Pyramid<N>>) -> Packed<'a> {
         let [_, block] = self.block();
         let size = (WIDTH, (pictures.len().div_ceil(self.across()) * block).max(1));

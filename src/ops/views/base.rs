@@ -27,7 +27,7 @@ pub struct Base {
 }
 
 impl Base {
-    /// Those of a layer at a scene time, for a view of this name; none if pictures can lie on it as it is.
+    /// Those of a layer at a scene time, for a view of this name; `None` if pictures can lie on it as it is.
     ///
     /// # Errors
     /// One cannot be packed.

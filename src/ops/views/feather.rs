@@ -1,5 +1,6 @@
 //! How far a picture fades towards its border, so that no seam is seen where it ends on a surface.
 
+use crate::base::number::rounded;
 use crate::base::picture::Picture;
 
 /// How much of the shorter side that is.
@@ -8,7 +9,7 @@ const SHARE: f64 = 0.05;
 /// The feather of a picture, in pixels; 0 if its own alpha says where it ends.
 pub fn px(picture: &Picture) -> f64 {
     let shorter = picture.width().min(picture.height()) as f64;
-    if ends_by_itself(picture) { 0.0 } else { (SHARE * shorter * 100.0).round() / 100.0 }
+    if ends_by_itself(picture) { 0.0 } else { rounded(SHARE * shorter, 2) }
 }
 
 /// Whether it is not whole everywhere along its border.

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::base::Base;
 use super::beside::{FOLDER, file};
 use crate::base::error::{Error, Result};
+use crate::base::number::rounded;
 use crate::base::problem::Problem;
 use crate::export::still;
 use crate::files::{disk, write};
@@ -64,14 +65,14 @@ impl Sight {
 
 /// A place without decimals that nobody can see.
 fn short(at: DVec3) -> DVec3 {
-    DVec3::from(at.to_array().map(|v| (v * 1e6).round() / 1e6))
+    DVec3::from(at.to_array().map(|v| rounded(v, 6)))
 }
 
 /// Writes what is seen twice beside the scene, to be painted over and to be told apart from, and lays the first on the layer.
 /// Returns the edit and the picture to paint on.
 ///
 /// # Errors
-/// The name is taken or is none for a file, or nothing can be written.
+/// The name is taken or cannot name a file, or nothing can be written.
 pub fn begin(
     (scene, document): (&Path, &Document),
     synth: &Synth,

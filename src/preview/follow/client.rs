@@ -19,7 +19,7 @@ const LOOK: Duration = Duration::from_millis(250);
 
 /// Both ends of the talk with a window.
 pub struct Link {
-    /// What the window shows. The first update is the scene, or says why there is none yet.
+    /// What the window shows. The first update is the scene, or says why there is no scene yet.
     pub updates: Receiver<Update>,
     /// What the window has to say. Dropping it, or `updates`, ends the link.
     pub replies: Sender<ToEditor>,

@@ -8,6 +8,7 @@ use super::state::{BAR_PX, State};
 use super::stroke::Color;
 use super::style::{ACCENT, DIM, MARGIN_PX, RAIL, TEXT, TEXT_PX, WARNING};
 use super::text::Letters;
+use crate::base::number::rounded;
 
 const GROUND: Color = [28, 31, 37, 255];
 /// Width of the sign that plays, with its room, in logical pixels.
@@ -145,7 +146,7 @@ fn times(state: &State) -> Vec<String> {
 /// What stands on the right, as much of it as fits: the least important goes first.
 fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     let percent = state.viewport.zoom * 100.0;
-    let percent = if percent >= 10.0 { percent.round() } else { (percent * 10.0).round() / 10.0 };
+    let percent = if percent >= 10.0 { percent.round() } else { rounded(percent, 1) };
     let mut parts: Vec<(u8, String)> = Vec::new();
     parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));
     parts.extend(state.under.clone().map(|under| (5, under)));

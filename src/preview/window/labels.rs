@@ -111,7 +111,8 @@ fn obstacles(
             Shape::Dot(at) if mark.look.keeps_labels_off => {
                 taken.set(Rect::from_center_size(screen(*at), (7.0 * scale, 7.0 * scale)), MARK);
             }
-            _ => {}
+            Shape::Arrow(..) | Shape::Dot(_) => {}
+            Shape::Line { .. } | Shape::Fill(_) | Shape::Cell(..) | Shape::Label(..) => {}
         }
     }
     vectors

@@ -32,7 +32,7 @@ pub fn apply(state: &mut State, name: &str) -> Done {
     Ok(())
 }
 
-/// The presets for the layer that is shown, or all where none is shown.
+/// The presets for the layer that is shown, or all if no layer is shown.
 pub fn offered(state: &State) -> impl Iterator<Item = Found> {
     let shown = shown(state).map(|(kind, _)| kind);
     presets::all().filter(move |found| shown.is_none_or(|kind| kind == found.kind.name))

@@ -68,7 +68,7 @@ impl Choice {
     }
 }
 
-/// The words that a cell can have; none if its value is typed.
+/// The words that a cell can have; `None` if its value is typed.
 pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
     match kind {
         Kind::Choice(all) | Kind::Tagged { variants: all, .. } => {

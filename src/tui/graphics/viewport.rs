@@ -2,7 +2,9 @@
 
 use kurbo::{Point, Vec2};
 
+use crate::base::number::rounded;
 use crate::render::part::Part;
+use crate::tui::text::numbers;
 
 /// The largest size of a pixel, in dots.
 const LARGEST: f64 = 64.0;
@@ -77,7 +79,7 @@ pub fn pan(viewport: &mut Viewport, cursor: &mut Point, part: &Part, (width, hei
 
 /// The scale in words: dots per pixel, or pixels per dot.
 pub fn words(scale: f64) -> String {
-    let short = |value: f64| crate::tui::text::numbers::short((value * 10.0).round() / 10.0);
+    let short = |value: f64| numbers::short(rounded(value, 1));
     if scale < 1.0 { format!("{}:1", short(1.0 / scale)) } else { format!("1:{}", short(scale)) }
 }
 

@@ -261,7 +261,7 @@ fn sequence(context: &str, written: &str) -> Result<String, String> {
     let keys: Vec<&str> = written.split_whitespace().collect();
     let first = keys.first().ok_or("there is no key between the quotes: the space bar is Space")?;
     for (at, key) in keys.iter().enumerate() {
-        // Alone it binds every letter of its context; only lists have none of their own.
+        // Alone it binds every letter of its context; only lists have no letters of their own.
         if !LETTERS.contains(key) || (at == 0 && context != LIST) || at + 1 < keys.len() {
             check(key)?;
         }

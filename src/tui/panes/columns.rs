@@ -27,7 +27,7 @@ pub struct Placed<'a> {
 
 /// The widths of the columns, for each group of rows with the same cells.
 pub struct Columns<'a> {
-    /// The names above the table: those of its longest row; none above a form.
+    /// The names above the table: those of its longest row; empty above a form.
     pub heads: Vec<&'a str>,
     table: bool,
     room: i32,

@@ -7,6 +7,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
+use crate::base::number::rounded;
 use crate::base::oklab;
 use crate::layers::parts::readout::{VectorField, vector};
 use crate::scene::words::item_of;
@@ -55,8 +56,8 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
 
 /// The legend: how long and how far apart the arrows are.
 fn draw_legend(field: &VectorField, longest: f64, step: f64, area: Rect, buffer: &mut Buffer) {
-    let half = short((longest * LONG * 100.0).round() / 100.0);
-    let step = short((step * 10.0).round() / 10.0);
+    let half = short(rounded(longest * LONG, 2));
+    let step = short(rounded(step, 1));
     let longest = short(longest);
     let text = format!("longest {longest} px  → to {half}  ⇒ more  · none  every {step} px");
     let x = write(buffer, area, 0, 0, &text, color::faint());

@@ -1,7 +1,7 @@
 //! The read-out of one pixel: what it belongs to, its vectors, its path from 0 to 1 with the points on it, and what it reads.
 //! It follows the cursor and the time. Until the worker answers, the previous answer is shown, faint.
 
-use crate::tui::text::plain;
+use kurbo::Vec2;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -14,6 +14,7 @@ use crate::tui::layout::picture;
 use crate::tui::state::State;
 use crate::tui::text::color;
 use crate::tui::text::numbers::{polar, short};
+use crate::tui::text::plain;
 
 /// Draws the read-out.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
@@ -24,92 +25,94 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let style = if picture::probe_at(state) == Some(probed.at) { Style::new() } else { color::faint() };
     let (x, y) = probed.at.pixel;
     let place = write(buffer, area, 0, 0, &format!("pixel {x},{y}   "), style);
-    let entries = probed.read.iter().flat_map(|read| &read.entries);
-    let Some(Some(of)) = entries.clone().find_map(of) else {
-        let outside = entries.map(|entry| format!("in no {}", entry.label)).next();
+    let told = told(probed.read.iter().flat_map(|read| &read.entries));
+    let Some(of) = told.of.first() else {
+        let outside = probed.read.iter().flat_map(|read| &read.entries).next();
+        let outside = outside.map(|entry| format!("in no {}", entry.label));
         write(buffer, area, place, 0, &outside.unwrap_or_default(), style);
         write(buffer, area, 0, 1, &shows(probed), style);
         return;
     };
     let after = write(buffer, area, place, 0, &plain(of), style.patch(color::strong()));
-    write(buffer, area, after, 0, &flags(entries.clone()), style);
+    write(buffer, area, after, 0, &told.flags.concat(), style);
     let axis = probed.read.as_ref().and_then(|read| read.axis.as_ref());
     if let Some(axis) = axis {
         draw_path(axis, Rect { y: area.y + 2, height: area.height.saturating_sub(2).min(2), ..area }, style, buffer);
     }
-    for (row, line) in (1..).zip(places(entries.clone(), usize::from(area.width))) {
+    for (row, line) in (1..).zip(filled(told.places, usize::from(area.width))) {
         write(buffer, area, 0, row, &line, style);
     }
+    let read = [told.read, vec![shows(probed)]].concat();
     let lines = [
-        (1, joined(entries.clone().filter_map(vector))),
-        (4, numbers(entries.clone(), axis, probed.at.time)),
-        (5, joined(entries.clone().filter_map(read).chain([shows(probed)]))),
-        (6, joined(entries.filter_map(list))),
+        (1, told.vectors.join(BETWEEN)),
+        (4, numbers(&told.numbers, axis, probed.at.time)),
+        (5, read.join(BETWEEN)),
+        (6, told.lists.join(BETWEEN)),
     ];
     for (row, line) in lines {
         write(buffer, area, 0, row, &line, style);
     }
 }
 
-fn joined(parts: impl Iterator<Item = String>) -> String {
-    parts.collect::<Vec<_>>().join("   ")
+/// Between the parts of a line.
+const BETWEEN: &str = "   ";
+
+/// The entries in words, by the line that they stand in.
+#[derive(Default)]
+struct Told<'a> {
+    /// What the pixel belongs to.
+    of: Vec<&'a str>,
+    flags: Vec<String>,
+    places: Vec<String>,
+    vectors: Vec<String>,
+    numbers: Vec<(&'static str, f64)>,
+    read: Vec<String>,
+    lists: Vec<String>,
 }
 
-/// What the pixel belongs to, if an entry says so.
-fn of(entry: &Entry) -> Option<Option<&String>> {
-    match &entry.value {
-        Value::Of(name) => Some(name.as_ref()),
-        _ => None,
+fn told<'a>(entries: impl Iterator<Item = &'a Entry>) -> Told<'a> {
+    let mut told = Told::default();
+    for Entry { label, value, .. } in entries {
+        match value {
+            Value::Of(name) => told.of.extend(name.as_deref()),
+            Value::Flag { on: true, .. } => told.flags.push(format!("{BETWEEN}{label}")),
+            Value::Flag { on: false, .. } => told.flags.push(format!("{BETWEEN}not {label}")),
+            Value::Vector(vector) => told.vectors.push(in_words(label, *vector)),
+            Value::Number(number) => told.numbers.push((label, *number)),
+            Value::Place(place) => told.read.push(format!("{label} {}, {}", short(place.x), short(place.y))),
+            Value::List(numbers) if numbers.is_empty() => told.lists.push(format!("no {label}")),
+            Value::List(numbers) => told.lists.push(format!("{label} {}", listed(numbers))),
+            Value::Index(_) if label.is_empty() => {}
+            Value::Index(index) => told.places.push(format!("{label} {index}")),
+            Value::Coordinates(numbers, unit) => {
+                told.places.push(format!("{label} {} {unit}", listed(numbers)).trim_end().to_owned());
+            }
+            // Tables, for which the pane has no room: `plica probe` prints them.
+            Value::Color(_) | Value::Indices(_) | Value::Shares(_) | Value::Group(_) | Value::Items(_) => {}
+        }
     }
+    told
 }
 
-fn flags<'a>(entries: impl Iterator<Item = &'a Entry>) -> String {
-    let flags = entries.filter_map(|entry| match entry.value {
-        Value::Flag { on: true, .. } => Some(format!("   {}", entry.label)),
-        Value::Flag { on: false, .. } => Some(format!("   not {}", entry.label)),
-        _ => None,
-    });
-    flags.collect()
-}
-
-fn vector(entry: &Entry) -> Option<String> {
-    let Value::Vector(vector) = entry.value else { return None };
+fn in_words(label: &str, vector: Vec2) -> String {
     let (length, degrees) = polar(vector);
     let (x, y) = (short(vector.x), short(vector.y));
-    Some(format!("{} {x}, {y} px   length {} px   {}°", entry.label, short(length), short(degrees)))
+    format!("{label} {x}, {y} px   length {} px   {}°", short(length), short(degrees))
 }
 
-fn read(entry: &Entry) -> Option<String> {
-    let Value::Place(place) = entry.value else { return None };
-    Some(format!("{} {}, {}", entry.label, short(place.x), short(place.y)))
+fn listed(numbers: &[f64]) -> String {
+    numbers.iter().map(|&number| short(number)).collect::<Vec<_>>().join(", ")
 }
 
-fn list(entry: &Entry) -> Option<String> {
-    match &entry.value {
-        Value::List(numbers) if numbers.is_empty() => Some(format!("no {}", entry.label)),
-        Value::List(numbers) => {
-            let numbers: Vec<String> = numbers.iter().map(|&number| short(number)).collect();
-            Some(format!("{} {}", entry.label, numbers.join(", ")))
-        }
-        _ => None,
-    }
-}
-
-/// Where the pixel is in space, in at most three lines of this many cells.
-fn places<'a>(entries: impl Iterator<Item = &'a Entry>, cells: usize) -> Vec<String> {
+/// Parts in at most three lines of this many cells.
+fn filled(parts: Vec<String>, cells: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for entry in entries {
-        let part = match &entry.value {
-            Value::Index(index) if !entry.label.is_empty() => format!("{} {index}", entry.label),
-            Value::Coordinates(numbers, unit) => {
-                let numbers: Vec<String> = numbers.iter().map(|&number| short(number)).collect();
-                format!("{} {} {unit}", entry.label, numbers.join(", ")).trim_end().to_owned()
-            }
-            _ => continue,
-        };
+    for part in parts {
         let full = lines.len() == 3;
         match lines.last_mut() {
-            Some(line) if full || line.len() + 3 + part.len() <= cells => *line += &format!("   {part}"),
+            Some(line) if full || line.len() + BETWEEN.len() + part.len() <= cells => {
+                *line += &(BETWEEN.to_owned() + &part)
+            }
             _ => lines.push(part),
         }
     }
@@ -117,15 +120,12 @@ fn places<'a>(entries: impl Iterator<Item = &'a Entry>, cells: usize) -> Vec<Str
 }
 
 /// The numbers, first those that are places on the path, and the time.
-fn numbers<'a>(entries: impl Iterator<Item = &'a Entry>, axis: Option<&Axis>, time: f64) -> String {
+fn numbers(all: &[(&str, f64)], axis: Option<&Axis>, time: f64) -> String {
     let points = axis.map_or(&[] as &[_], |axis| &axis.points);
-    let number = |entry: &Entry| match entry.value {
-        Value::Number(number) => Some((entry.label, number)),
-        _ => None,
-    };
-    let others = entries.filter_map(number).filter(|(label, _)| points.iter().all(|(point, _)| point != label));
-    let all = points.iter().copied().chain(others).chain([("t", time)]);
-    joined(all.map(|(label, number)| format!("{label} {}", short(number))))
+    let others = all.iter().filter(|(label, _)| points.iter().all(|(point, _)| point != label));
+    let now = [("t", time)];
+    let all = points.iter().chain(others).chain(&now);
+    all.map(|(label, number)| format!("{label} {}", short(*number))).collect::<Vec<_>>().join(BETWEEN)
 }
 
 fn shows(probed: &Probed) -> String {
@@ -185,8 +185,9 @@ mod tests {
             entry("depth", Value::Coordinates(vec![2.25], "m")),
         ];
         let wide = ["triangle 7   position 0.5, 1, -2 m   normal 0, 0, 1   depth 2.25 m"];
-        assert_eq!(places(entries.iter(), 80), wide);
+        let filled = |cells| filled(told(entries.iter()).places, cells);
+        assert_eq!(filled(80), wide);
         let narrow = ["triangle 7", "position 0.5, 1, -2 m", "normal 0, 0, 1   depth 2.25 m"];
-        assert_eq!(places(entries.iter(), 24), narrow);
+        assert_eq!(filled(24), narrow);
     }
 }

@@ -76,8 +76,7 @@ pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
 
 /// Every number of a value with six decimals at most: what was pointed at is no more exact.
 pub fn rounded(value: Value) -> Value {
-    const PARTS: f64 = 1e6;
-    mapped(value, |number| (number * PARTS).round() / PARTS)
+    mapped(value, |value| number::rounded(value, 6))
 }
 
 /// A value with all its numbers changed.

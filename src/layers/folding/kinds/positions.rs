@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Turned;
+use crate::base::number::rounded;
 use crate::layers::folding::neat::ratio;
 use crate::layers::folding::position::{Position, Segment};
 use crate::layers::keyframes::Between;
@@ -103,7 +104,7 @@ fn alone(segments: &[Segment], to: &str) -> Option<Turned> {
 fn sampled(old: &Position) -> Turned {
     let cycles = old.cycles().map_or(1.0, |cycles| cycles.abs().max(1.0));
     let n = (cycles * A_CYCLE).ceil().min(MOST);
-    let on = |at: f64| [at, (old.eval(at) * 1e6).round() / 1e6];
+    let on = |at: f64| [at, rounded(old.eval(at), 6)];
     let points: Vec<_> = (0..=n as usize).map(|i| on(i as f64 / n)).collect();
     keyframes(&points, "smooth").but(format!("{} keyframes are on it, smooth between them", points.len()))
 }

@@ -13,7 +13,7 @@ const FLAT: f64 = 0.1;
 /// Which direction strokes follow; vectors are in camera coordinates.
 #[derive(Clone)]
 pub enum Follows<'a> {
-    /// None but the angle.
+    /// Only the angle.
     Screen,
     /// Round the form: the tensor of curvature at each vertex, turned as the mesh is, and half the size of the mesh.
     Curvature(&'a [DMat3], f64),

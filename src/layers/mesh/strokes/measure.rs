@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use super::draw::{grey, main_noise};
 use super::model::ANCHORS;
 use super::noise::Scene;
-use super::statistics::{Sums, correlation, median, percentile};
 use super::{Given, Ready};
 use crate::base::maths::{TAU, cos, pow, sin};
+use crate::base::statistics::{Sums, correlation, median, percentile};
 use crate::layers::parts::measures::{Figures, Moved};
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;
@@ -114,7 +114,7 @@ fn moved(eye: &Eye, middle: DVec3, name: &str, steps: u32) -> Eye {
     }
 }
 
-/// Measures the moves of each anchor. `draw` makes the frame that a camera sees, or none if it is cancelled.
+/// Measures the moves of each anchor. `draw` makes the frame that a camera sees, or `None` if it is cancelled.
 pub fn moves(
     (eye, middle): (&Eye, DVec3),
     steps: u32,

@@ -27,7 +27,6 @@ pub mod pieces;
 pub mod plan;
 pub mod restyle;
 pub mod rim;
-pub mod statistics;
 pub mod styles;
 pub mod sum;
 pub mod surface;

@@ -18,7 +18,7 @@ pub struct Sprites {
     /// Frames of the clip from one key to the next.
     #[schemars(range(min = 1, max = 100), extend("unit" = "frames"))]
     pub step: u32,
-    /// How many windows are chosen, if none are given.
+    /// How many windows are chosen if `picks` is empty.
     pub growth: Growth,
     /// Windows of the clip that are chosen by hand.
     #[schemars(length(max = 1000))]

@@ -3,6 +3,7 @@
 use super::map::Map;
 use crate::base::cholesky::Matrix;
 use crate::base::maths::{exp, ln};
+use crate::base::statistics::median;
 
 /// The least number of cells that two views must have in common.
 const LEAST_CELLS: usize = 50;
@@ -52,9 +53,15 @@ pub fn common(map: &Map) -> Vec<Common> {
         .map(|(pair, ratios)| Common {
             views: [pair / count, pair % count],
             cells: ratios.len(),
-            brighter: std::array::from_fn(|channel| median(ratios.iter().map(|ratio| ratio[channel]).collect())),
+            brighter: std::array::from_fn(|channel| channel_median(&ratios, channel)),
         })
         .collect()
+}
+
+/// The median of one channel; 0 of no ratios.
+fn channel_median(ratios: &[[f64; 3]], channel: usize) -> f64 {
+    let mut all: Vec<f64> = ratios.iter().map(|ratio| ratio[channel]).collect();
+    median(&mut all).unwrap_or(0.0)
 }
 
 /// What each active view's gain should be multiplied with so that photographs agree; 1 for views that are no photographs.
@@ -98,13 +105,8 @@ pub fn factors(map: &Map) -> Vec<[f64; 3]> {
 /// The layer on which views are compared: that of their median depth.
 fn layer(map: &Map) -> Option<usize> {
     let views = map.wanted.views.iter().zip(&map.reports).filter(|(view, _)| view.base);
-    let depths: Vec<f64> = views.filter_map(|(_, report)| report.depth).collect();
+    let mut depths: Vec<f64> = views.filter_map(|(_, report)| report.depth).collect();
     let finest = map.cells.layers.len().checked_sub(1)?;
-    (!depths.is_empty()).then(|| (median(depths).floor().max(0.0) as usize).min(finest))
-}
-
-/// The middle one, or the mean of the two in the middle.
-fn median(mut of: Vec<f64>) -> f64 {
-    of.sort_by(f64::total_cmp);
-    (of[(of.len() - 1) / 2] + of[of.len() / 2]) / 2.0
+    let median = median(&mut depths)?;
+    Some((median.floor().max(0.0) as usize).min(finest))
 }

@@ -54,6 +54,6 @@ fn kind(view: &View) -> &'static str {
 pub fn balanced(map: &Map) -> Vec<(usize, [f64; 3])> {
     let factors = balance::factors(map);
     let changed = map.wanted.views.iter().zip(factors).filter(|(_, factor)| *factor != [1.0; 3]);
-    let short = |gain: f64| (gain * 1e4).round() / 1e4;
-    changed.map(|(view, by)| (view.number, [0, 1, 2].map(|k: usize| short(view.paint.gain[k] * by[k])))).collect()
+    let gain = |view: &View, by: [f64; 3], k: usize| number::rounded(view.paint.gain[k] * by[k], 4);
+    changed.map(|(view, by)| (view.number, [0, 1, 2].map(|k| gain(view, by, k)))).collect()
 }

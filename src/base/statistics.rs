@@ -21,7 +21,7 @@ impl Sums {
         self.products += a * b;
     }
 
-    /// The correlation; none of no pairs, or where one side does not vary.
+    /// The correlation; `None` without pairs, or if one side does not vary.
     pub fn correlation(&self) -> Option<f64> {
         let [a, b] = self.each;
         let count = self.count.max(1) as f64;
@@ -37,7 +37,7 @@ pub fn correlation(pairs: impl Iterator<Item = (f32, f32)>) -> Option<f64> {
     sums.correlation()
 }
 
-/// The value that a share of all values is below, between two of them in proportion; none of none.
+/// The value that a share of all values is below, between two of them in proportion; `None` of no values.
 pub fn percentile(values: &mut [f64], share: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let at = share * (values.len().checked_sub(1)? as f64);
@@ -45,7 +45,7 @@ pub fn percentile(values: &mut [f64], share: f64) -> Option<f64> {
     Some(below + (above - below) * at.fract())
 }
 
-/// The value in the middle; none of none.
+/// The value in the middle; `None` of no values.
 pub fn median(values: &mut [f64]) -> Option<f64> {
     percentile(values, 0.5)
 }
