@@ -12,7 +12,7 @@ const VIDEOS: [&str; 9] = ["mp4", "mov", "m4v", "webm", "mkv", "avi", "mpg", "og
 
 /// The files of a clip.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct ClipFiles {
     /// The folder that they are in.
     pub folder: PathBuf,
     /// What a scene in that folder calls them: the pattern of their names, or the video.
@@ -45,7 +45,7 @@ pub fn called<'a>(name: &'a str, folder: &'a str) -> &'a str {
 ///
 /// # Errors
 /// If there is no such file; if a folder has no numbered pictures, or several clips.
-pub fn find(path: &Path) -> Result<Found> {
+pub fn find(path: &Path) -> Result<ClipFiles> {
     if path.is_dir() {
         return in_folder(path);
     }
@@ -55,7 +55,7 @@ pub fn find(path: &Path) -> Result<Found> {
     })?;
     if !pattern.is_numbered() {
         let (folder, name) = (folder.to_owned(), name.into_owned());
-        return Ok(Found { folder, first: 0, files: vec![name.clone()], name });
+        return Ok(ClipFiles { folder, first: 0, files: vec![name.clone()], name });
     }
     let mut numbers: Vec<u64> = names(folder)?.iter().filter_map(|name| pattern.number(name)).collect();
     numbers.sort_unstable();
@@ -78,7 +78,7 @@ pub fn complete(folder: &Path, typed: &str) -> Vec<String> {
     found.map(|one| format!("{parent}{}", one.pattern)).collect()
 }
 
-fn in_folder(folder: &Path) -> Result<Found> {
+fn in_folder(folder: &Path) -> Result<ClipFiles> {
     let names = names(folder)?;
     let shown = |one: &Series| {
         let first = one.file(0).map(|name| folder.join(name));
@@ -113,11 +113,11 @@ fn no_series(folder: &Path, names: &[String]) -> Error {
 }
 
 /// The frames of a series up to the first number that is missing.
-fn found(folder: &Path, all: Series) -> Found {
+fn found(folder: &Path, all: Series) -> ClipFiles {
     let first = all.numbers.first().copied().unwrap_or(0);
     let together = all.numbers.iter().zip(first..).take_while(|(found, wanted)| **found == *wanted).count();
     let files = (0..together).filter_map(|i| all.file(i)).collect();
-    Found { folder: folder.to_owned(), name: all.pattern, first, files }
+    ClipFiles { folder: folder.to_owned(), name: all.pattern, first, files }
 }
 
 fn names(folder: &Path) -> Result<Vec<String>> {

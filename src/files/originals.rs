@@ -36,11 +36,11 @@ pub struct Original {
 /// All files that one scene names, open.
 #[derive(Debug, Default)]
 pub struct Originals {
-    found: BTreeMap<String, std::result::Result<Arc<Found>, String>>,
+    found: BTreeMap<String, std::result::Result<Arc<Stamped>, String>>,
 }
 
 #[derive(Debug)]
-struct Found {
+struct Stamped {
     stamp: Stamp,
     contents: Contents,
     /// The files that it names itself, as the buffers of a model.
@@ -66,7 +66,7 @@ impl Originals {
 
     /// Every file, in the order of the paths.
     pub fn list(&self) -> Vec<Original> {
-        let file = |found: &std::result::Result<Arc<Found>, String>| match found {
+        let file = |found: &std::result::Result<Arc<Stamped>, String>| match found {
             Ok(found) => Ok(found.contents.clone()),
             Err(why) => Err(why.clone()),
         };
@@ -94,7 +94,7 @@ fn read_full_at(file: &File, bytes: &mut [u8], offset: u64) -> std::io::Result<u
     Ok(read)
 }
 
-fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found>>) -> Result<Arc<Found>> {
+fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Stamped>>) -> Result<Arc<Stamped>> {
     let mut file = paths::open(scene_path, path, options)?;
     let place = |error| Error::at(path, error);
     let stamp = Stamp::of(&file).map_err(place)?;
@@ -108,7 +108,7 @@ fn look(scene_path: &Path, path: &str, options: &Options, old: Option<&Arc<Found
     }
     let contents = contents(&mut file).map_err(place)?;
     let parts = if paths::is_model(path) { parts(&mut file, path, options) } else { Vec::new() };
-    Ok(Arc::new(Found { stamp, contents, parts, file }))
+    Ok(Arc::new(Stamped { stamp, contents, parts, file }))
 }
 
 /// The files that a model names. What is wrong with it shows when it is loaded.

@@ -19,7 +19,7 @@ pub struct Kind {
     /// What messages call it.
     pub name: &'static str,
     /// Whether a file that is there already is of this kind.
-    pub is: fn(&Found) -> bool,
+    pub is: fn(&Existing) -> bool,
 }
 
 impl PartialEq for Kind {
@@ -29,7 +29,7 @@ impl PartialEq for Kind {
 }
 
 /// A file that is there already.
-pub struct Found<'a> {
+pub struct Existing<'a> {
     /// Its path.
     pub path: &'a Path,
     /// Its length in bytes.
@@ -64,7 +64,7 @@ pub const STYLE: Kind =
 pub const EXR: Kind = Kind { name: "OpenEXR picture", is: |found| found.head.starts_with(b"\x76\x2f\x31\x01") };
 
 /// Whether a file holds the table of a style, whole; a scene that has one in it is none.
-fn is_style(found: &Found) -> bool {
+fn is_style(found: &Existing) -> bool {
     let text = if found.length <= LONGEST_STYLE { fs::read_to_string(found.path).ok() } else { None };
     let table = text.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
     let styles = || layers::KINDS.iter().filter_map(|kind| kind.styles);
@@ -79,7 +79,7 @@ impl Kind {
     fn is_of(self, path: &Path, length: u64) -> std::io::Result<bool> {
         let mut head = Vec::new();
         File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
-        Ok((self.is)(&Found { path, length, head: &head }))
+        Ok((self.is)(&Existing { path, length, head: &head }))
     }
 }
 

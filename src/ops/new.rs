@@ -9,7 +9,7 @@ use super::check::made;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
-use crate::files::clips::Found;
+use crate::files::clips::ClipFiles;
 use crate::files::materials::{self, Cache};
 use crate::files::{self, clips, disk, models, paths, picture, sources, write};
 use crate::layers::parts::materials::List;
@@ -184,7 +184,7 @@ impl Making<'_> {
     ///
     /// # Errors
     /// It cannot be read, or no layer fits it.
-    fn measure(&self, source: &Path, found: &Found) -> Result<(((usize, usize), usize), Vec<Problem>)> {
+    fn measure(&self, source: &Path, found: &ClipFiles) -> Result<(((usize, usize), usize), Vec<Problem>)> {
         let refused = |problems| refused(source, problems);
         let called = source.display().to_string();
         let alone = |known| Start::default().clip(&called, &found.name, found.first, known).document();
@@ -237,7 +237,7 @@ pub fn copies(source: &Path, files: Vec<String>) -> Result<Copies> {
 
 /// What a scene of another folder calls a clip, and the copies that it needs: numbered pictures get a folder of their own, with
 /// this name.
-pub fn clip_copies(found: &Found, name: &str) -> (PathBuf, Copies) {
+pub fn clip_copies(found: &ClipFiles, name: &str) -> (PathBuf, Copies) {
     let folder = if found.files == [found.name.clone()] { Path::new("") } else { Path::new(name) };
     let copy = |file: &String| (found.folder.join(file), folder.join(file).to_string_lossy().into_owned());
     (folder.join(&found.name), found.files.iter().map(copy).collect())

@@ -33,7 +33,7 @@ fn lines((synth, sample): (&Synth, usize), (scene_time, wholes): At, columns: Co
     let layers = layers(synth, &moment);
     let mut picture = Linear::filled(width, rows.len(), synth.stage.background);
     for (i, group) in synth.stage.groups.iter().enumerate() {
-        let (shown, width) = (Shown { layers: &layers, group, columns }, width.max(1));
+        let (shown, width) = (GroupAt { layers: &layers, group, columns }, width.max(1));
         let out = picture.cells_mut();
         let whole = wholes.of(i, sample, columns, rows);
         if whole.is_some() || has_sprites(synth, group) {
@@ -58,13 +58,13 @@ fn has_sprites(synth: &Synth, group: &Group) -> bool {
 }
 
 /// A group of layers at one time.
-struct Shown<'a> {
+struct GroupAt<'a> {
     layers: &'a [Box<dyn Still + 'a>],
     group: &'a Group,
     columns: Columns<'a>,
 }
 
-impl Shown<'_> {
+impl GroupAt<'_> {
     /// Lays these rows of what is no sprite over `out`; `own` is memory.
     fn lay(&self, rows: &[usize], own: &mut Vec<Rgba>, out: &mut [Rgba]) {
         own.clear();
@@ -169,7 +169,7 @@ fn finish_strip(
         light.clear();
         light.resize(out.len(), stage.background);
         for group in &stage.groups {
-            Shown { layers, group, columns: Columns::All }.lay(rows, own, light);
+            GroupAt { layers, group, columns: Columns::All }.lay(rows, own, light);
         }
         if i == 0 {
             std::mem::swap(sum, light);

@@ -12,7 +12,7 @@ use crate::layers::technique::{Kind, Technique};
 
 /// A preset, with the technique whose layers it is for.
 #[derive(Clone, Copy, Debug)]
-pub struct Found {
+pub struct Offered {
     /// The technique.
     pub kind: &'static Kind,
     /// The preset.
@@ -29,15 +29,15 @@ pub struct Applied {
 }
 
 /// All presets of all techniques.
-pub fn all() -> impl Iterator<Item = Found> + Clone {
-    KINDS.iter().flat_map(|kind| kind.presets.iter().map(move |preset| Found { kind, preset }))
+pub fn all() -> impl Iterator<Item = Offered> + Clone {
+    KINDS.iter().flat_map(|kind| kind.presets.iter().map(move |preset| Offered { kind, preset }))
 }
 
 /// The preset of this name.
 ///
 /// # Errors
 /// There is none.
-pub fn find(name: &str) -> Result<Found, String> {
+pub fn find(name: &str) -> Result<Offered, String> {
     let unknown = || {
         let hint = problem::nearest(name, all().map(|found| found.preset.name)).unwrap_or_default();
         format!("there is no preset {} ({hint})", problem::quoted(name))
@@ -45,7 +45,7 @@ pub fn find(name: &str) -> Result<Found, String> {
     all().find(|found| found.preset.name == name).ok_or_else(unknown)
 }
 
-impl Found {
+impl Offered {
     /// The preset applied to the layer `name`, or to the first one that it is for.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{Found, Reading, is_there, size};
+use super::{Cameras, Reading, is_there, size};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::Xy;
 use crate::base::problem::quoted;
@@ -32,7 +32,7 @@ struct Camera {
     size_px: [u32; 2],
 }
 
-pub(super) fn read(path: &Path, reading: &Reading) -> Result<Found> {
+pub(super) fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
     let folder = if path.is_dir() { path } else { disk::folder_of(path) };
     let (cameras, images) = (folder.join(CAMERAS), folder.join(IMAGES));
     if !is_there(&images) {
@@ -46,7 +46,7 @@ pub(super) fn read(path: &Path, reading: &Reading) -> Result<Found> {
     let pictures = [beside.join("images"), folder.join("images")].into_iter().find(|one| one.is_dir());
     let pictures = reading.images.map(Path::to_owned).or(pictures).unwrap_or_else(|| beside.join("images"));
     let shots = read_images(&images, &known, &pictures, reading)?;
-    Ok(Found { shots, ..Found::default() })
+    Ok(Cameras { shots, ..Cameras::default() })
 }
 
 fn read_cameras(path: &Path, reading: &Reading) -> Result<HashMap<u64, Camera>> {

@@ -16,7 +16,7 @@ use crate::scene::json;
 
 /// What such a list holds.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct Cameras {
     /// Pictures and their cameras, in the order of the list.
     pub shots: Vec<(PathBuf, Shot)>,
     /// The mesh that they show, if the list tells.
@@ -40,7 +40,7 @@ pub struct Reading<'a> {
 ///
 /// # Errors
 /// If it is none of these, is broken, or its cameras are not pinholes.
-pub fn read(path: &Path, reading: &Reading) -> Result<Found> {
+pub fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
     if path.is_dir() || path.file_name().is_some_and(|name| name == colmap::IMAGES) {
         return colmap::read(path, reading);
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
-use super::{Found, Item, Reading, folder, is_there, numbers, size};
+use super::{Cameras, Item, Reading, folder, is_there, numbers, size};
 use crate::base::error::{Error, Result};
 use crate::base::problem::quoted;
 use crate::files::disk;
@@ -14,8 +14,8 @@ use crate::layers::parts::shots::Shot;
 /// What the pictures are called that are kept for testing.
 const TEST: &str = "test";
 
-pub(super) fn read(path: &Path, list: &Value, reading: &Reading) -> Result<Found> {
-    let mut found = Found::default();
+pub(super) fn read(path: &Path, list: &Value, reading: &Reading) -> Result<Cameras> {
+    let mut found = Cameras::default();
     let mut left_out = 0;
     for (i, view) in list["views"].as_array().into_iter().flatten().enumerate() {
         let fields = view.as_object().ok_or_else(|| Error::at(path.display(), format!("views {i} is no object")))?;

@@ -25,7 +25,7 @@ fn folder(files: &[(&str, &str)]) -> TempDir {
     folder
 }
 
-fn read_in(folder: &TempDir, name: &str, all: bool) -> Result<Found> {
+fn read_in(folder: &TempDir, name: &str, all: bool) -> Result<Cameras> {
     read(&folder.path().join(name), &Reading { images: None, all, limits: &Limits::default() })
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
-use super::{Found, Item, Reading, folder, is_there, size};
+use super::{Cameras, Item, Reading, folder, is_there, size};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::Xy;
 use crate::base::maths;
@@ -20,8 +20,8 @@ const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
 /// How much the columns of a matrix may differ in length, or from a right angle.
 const SKEW: f64 = 1e-3;
 
-pub(super) fn read(path: &Path, list: &Value, reading: &Reading) -> Result<Found> {
-    let mut found = Found::default();
+pub(super) fn read(path: &Path, list: &Value, reading: &Reading) -> Result<Cameras> {
+    let mut found = Cameras::default();
     let Some(whole) = list.as_object() else { return Ok(found) };
     let common = Item { file: path, called: "the list".into(), fields: whole };
     let mut scales: Vec<f64> = Vec::new();

@@ -61,7 +61,7 @@ impl From<io::Error> for Unopened {
 
 /// A journal that was found or created, and locked; what to do with it is not decided yet.
 #[derive(Debug)]
-pub struct Found {
+pub struct Candidate {
     file: File,
     path: PathBuf,
     bytes: Vec<u8>,
@@ -89,7 +89,7 @@ pub fn path_in_state(scene_path: &Path) -> Option<PathBuf> {
 /// # Errors
 /// If another process has locked it, if it can be neither beside the scene nor in the user's state folder, or if a
 /// newer version of the program wrote it.
-pub fn find(scene_path: &Path) -> Result<Found, Unopened> {
+pub fn find(scene_path: &Path) -> Result<Candidate, Unopened> {
     let beside = lock(&path_beside(scene_path));
     let Some(in_state) = path_in_state(scene_path) else { return beside };
     match beside {
@@ -130,7 +130,7 @@ fn look_at(path: &Path) -> Option<Contents> {
     read(&bytes).ok()
 }
 
-fn lock(path: &Path) -> Result<Found, Unopened> {
+fn lock(path: &Path) -> Result<Candidate, Unopened> {
     loop {
         let mut file = disk::open_private(path)?;
         keep_private(&file)?;
@@ -161,7 +161,7 @@ fn lock(path: &Path) -> Result<Found, Unopened> {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, what).into());
             }
         };
-        return Ok(Found { file, path: path.to_owned(), bytes, contents, aside: None });
+        return Ok(Candidate { file, path: path.to_owned(), bytes, contents, aside: None });
     }
 }
 
@@ -182,7 +182,7 @@ fn keep_private(file: &File) -> io::Result<()> {
     Ok(())
 }
 
-impl Found {
+impl Candidate {
     /// Its path.
     pub fn path(&self) -> &Path {
         &self.path

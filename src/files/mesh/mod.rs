@@ -23,7 +23,7 @@ use gltf::With;
 
 /// A kind of file that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum Format {
     Obj,
     Gltf,
 }
@@ -73,8 +73,8 @@ pub fn decode(
     let Options { limits, allow_outside: outside } = options;
     let (kind, bytes, share) = whole(file, place, limits, budget)?;
     let (builder, mut notes, picture) = match kind {
-        Kind::Obj => obj::read(&bytes, place, limits, budget).map(|(builder, notes)| (builder, notes, None))?,
-        Kind::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling, outside: *outside })?,
+        Format::Obj => obj::read(&bytes, place, limits, budget).map(|(builder, notes)| (builder, notes, None))?,
+        Format::Gltf => gltf::read(&bytes, With { place, limits, budget, sibling, outside: *outside })?,
     };
     let (mesh, of_mesh) = builder.finish()?;
     // Not before: once a large piece of memory was freed, the allocator keeps smaller ones, and the mesh would lie among holes.
@@ -94,8 +94,8 @@ pub fn pictures(file: File, place: &str, options: &Options) -> Result<Vec<String
     let budget = &limits.budget();
     let (kind, bytes, _share) = whole(file, place, limits, budget)?;
     match kind {
-        Kind::Obj => Ok(Vec::new()),
-        Kind::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
+        Format::Obj => Ok(Vec::new()),
+        Format::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
 }
 
@@ -108,8 +108,8 @@ pub fn parts(file: File, place: &str, options: &Options) -> Result<Vec<String>> 
     let budget = &limits.budget();
     let (kind, bytes, _share) = whole(file, place, limits, budget)?;
     match kind {
-        Kind::Obj => Ok(Vec::new()),
-        Kind::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
+        Format::Obj => Ok(Vec::new()),
+        Format::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
 }
 
@@ -137,21 +137,21 @@ fn unseen(mesh: &Mesh) -> Option<String> {
 
 /// The kind of an open file, all of it, and the memory that it takes. What is no mesh is not read further than to where
 /// that shows.
-fn whole(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Kind, Vec<u8>, Share)> {
+fn whole(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Format, Vec<u8>, Share)> {
     let kind = kind(&input::start(&file, place)?, place)?;
     let (bytes, share) = input::whole(file, place, limits, budget)?;
     Ok((kind, bytes, share))
 }
 
 /// The kind of a file by how it begins, and by its name if that does not decide.
-fn kind(start: &[u8], place: &str) -> Result<Kind> {
+fn kind(start: &[u8], place: &str) -> Result<Format> {
     const READ: &str = "Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf)";
     if start.is_empty() {
         return Err(Error::at(place, "is empty").cure("copy it again from where it came, or export it again"));
     }
     let name = place.to_ascii_lowercase();
     if start.starts_with(b"glTF") {
-        return Ok(Kind::Gltf);
+        return Ok(Format::Gltf);
     }
     let foreign = |(_, begins, _): &&(_, &[&[u8]], _)| begins.iter().any(|begin| start.starts_with(begin));
     let foreign = FOREIGN.iter().find(foreign);
@@ -163,10 +163,10 @@ fn kind(start: &[u8], place: &str) -> Result<Kind> {
     let is_text = !start.contains(&0);
     let first = text.trim_ascii_start().first();
     if foreign.is_none() && first == Some(&b'{') {
-        return Ok(Kind::Gltf);
+        return Ok(Format::Gltf);
     }
     if foreign.is_none() && is_text && (obj::begins(text) || name.ends_with(".obj") && first != Some(&b'<')) {
-        return Ok(Kind::Obj);
+        return Ok(Format::Obj);
     }
     let foreign = foreign.or_else(|| FOREIGN.iter().find(|(end, ..)| name.ends_with(end)));
     Err(match foreign {

@@ -31,7 +31,7 @@ pub(super) fn read(text: &[u8], place: &str, limits: &Limits, budget: &Budget) -
     if text.contains(&0) {
         return Err(input::not_text(place));
     }
-    let Found { counts, others, known, unknown } = count(text, place)?;
+    let Contents { counts, others, known, unknown } = count(text, place)?;
     within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
     if counts.triangles == 0 {
         let cure =
@@ -53,7 +53,7 @@ pub(super) fn read(text: &[u8], place: &str, limits: &Limits, budget: &Budget) -
 
 /// What a text has.
 #[derive(Default)]
-struct Found {
+struct Contents {
     counts: Counts,
     /// Whether there are points or lines.
     others: bool,
@@ -62,8 +62,8 @@ struct Found {
     unknown: u64,
 }
 
-fn count(text: &[u8], place: &str) -> Result<Found> {
-    let mut found = Found::default();
+fn count(text: &[u8], place: &str) -> Result<Contents> {
+    let mut found = Contents::default();
     let counts = &mut found.counts;
     for line in Lines::of(text, place) {
         found.known += 1;

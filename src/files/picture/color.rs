@@ -7,14 +7,14 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::conversion::{FROM_XYZ, Profile, Table, Transfer, from_lab, multiply};
-use super::{Color, Decoded, Found, Model, Raw, icc};
+use super::{Color, Decoded, Loaded, Model, Raw, icc};
 use crate::base::half::value_of_half;
 use crate::base::picture::{Channels, Picture, SRGB_8, SRGB_16, Samples};
 use crate::base::pixels::srgb_from_linear;
 
 /// The picture, with its declared color applied as far as possible; `None` if its samples do not fit its size and
 /// model.
-pub(super) fn apply(decoded: Decoded) -> Option<Found> {
+pub(super) fn apply(decoded: Decoded) -> Option<Loaded> {
     let Decoded { size: (width, height), model, samples, color, mut notes } = decoded;
     let profile = profile(&color, model, &samples, &mut notes);
     let (channels, samples) = match (profile, samples) {
@@ -37,7 +37,7 @@ pub(super) fn apply(decoded: Decoded) -> Option<Found> {
         Samples::Words(all, _) | Samples::Halves(all) => all.len(),
         Samples::Floats(all) => all.len(),
     } == width * height * channels.count();
-    fits.then(|| Found { picture: Picture::new(width, height, channels, samples), notes })
+    fits.then(|| Loaded { picture: Picture::new(width, height, channels, samples), notes })
 }
 
 /// The profile to apply; `None` for sRGB, and if it cannot be applied, with a note.

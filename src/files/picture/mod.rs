@@ -37,7 +37,7 @@ use kinds::Kind;
 
 /// A picture, and what in its file could not be honoured, in words.
 #[derive(Debug)]
-pub struct Found {
+pub struct Loaded {
     /// The picture, upright.
     pub picture: Picture,
     /// Each completes a message that begins with the file, as "its color profile is broken and was not applied".
@@ -145,7 +145,7 @@ enum Color {
 ///
 /// # Errors
 /// If it cannot be opened, is no picture, is broken, or is larger than the limits allow.
-pub fn read(path: &Path, limits: &Limits) -> Result<Found> {
+pub fn read(path: &Path, limits: &Limits) -> Result<Loaded> {
     decode(paths::open_picture(path)?, &path.display().to_string(), limits, &limits.budget()).map(|(found, _)| found)
 }
 
@@ -169,7 +169,7 @@ pub fn is_one(path: &Path) -> bool {
 ///
 /// # Errors
 /// As [`read`].
-pub fn decode(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Found, Share)> {
+pub fn decode(file: File, place: &str, limits: &Limits, budget: &Budget) -> Result<(Loaded, Share)> {
     decode_if(file, place, limits, budget, |_| Ok(()))
 }
 
@@ -183,7 +183,7 @@ pub fn decode_if(
     limits: &Limits,
     budget: &Budget,
     fits: impl Fn((usize, usize)) -> Result<()>,
-) -> Result<(Found, Share)> {
+) -> Result<(Loaded, Share)> {
     let opened = open(file, place, limits)?;
     fits(opened.upright())?;
     let mut share = budget.take(opened.bytes, place)?;

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::{Kind, Offer, Recovery, Session};
-use crate::files::journal::{self, Found, Header, Journal, Record, Unopened};
+use crate::files::journal::{self, Candidate, Header, Journal, Record, Unopened};
 use crate::files::now_ms;
 use crate::files::recovery::{self, Replayed};
 use crate::scene::history::{Applied, Way};
@@ -28,7 +28,7 @@ pub(super) enum Keeping {
 #[derive(Debug)]
 pub(super) struct Waiting {
     /// The journal, locked; `None` if it could not even be found.
-    found: Option<Found>,
+    found: Option<Candidate>,
     /// The document that its first `records` records lead to.
     leads_to: Document,
     records: usize,
@@ -73,7 +73,7 @@ impl Keeping {
 
 impl Session {
     /// Continues from what is in the journal.
-    pub(super) fn take_up(&mut self, mut found: Found, document: Document) {
+    pub(super) fn take_up(&mut self, mut found: Candidate, document: Document) {
         let replayed = found.contents.as_ref().and_then(recovery::replay);
         if replayed.is_none() {
             found.contents = None;
@@ -90,7 +90,7 @@ impl Session {
     }
 
     /// Opens a journal that was found, or leaves it for later if that fails.
-    fn keep_in(&mut self, mut found: Found, leads_to: Document, (records, revision): (usize, u64)) {
+    fn keep_in(&mut self, mut found: Candidate, leads_to: Document, (records, revision): (usize, u64)) {
         let is_file = self.base.as_ref().is_some_and(|base| json::same(base.json(), leads_to.json()));
         let header = Header { file: self.file.clone(), document: leads_to.json().clone(), is_file };
         self.keeping = match found.open(&header, records, revision) {
@@ -204,7 +204,7 @@ fn offered(history: &History, document: &Document, (changes, time_ms, file_chang
 
 /// Tries again to find a journal; returns it, the document that it leads to, and by how many records. A new journal
 /// starts from `document`.
-fn find_again(path: &std::path::Path, document: Document) -> Result<(Found, Document, usize), String> {
+fn find_again(path: &std::path::Path, document: Document) -> Result<(Candidate, Document, usize), String> {
     let mut found = match journal::find(path) {
         Ok(found) => found,
         Err(Unopened::Locked { .. }) => return Err("another process has it".into()),

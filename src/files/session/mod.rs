@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::holder::{Holder, Sign};
-use super::journal::{self, Found, Kind, Unopened};
+use super::journal::{self, Candidate, Kind, Unopened};
 use super::{Options, disk, hash, now_ms, scene, temporary, through};
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
@@ -330,7 +330,7 @@ impl Session {
 }
 
 /// A journal, or why there is none.
-type Claimed = std::io::Result<Found>;
+type Claimed = std::io::Result<Candidate>;
 
 /// Finds and locks the journal of the scene at `path`; `None` if the session is read-only, then perhaps with who holds
 /// the scene.

@@ -13,11 +13,11 @@ use crate::layers::parts::moment::Columns;
 pub struct Frame<'a> {
     pub(super) synth: &'a Synth,
     /// The zones, as they are then.
-    pub(super) zones: Vec<Shown<'a>>,
+    pub(super) zones: Vec<ZoneAt<'a>>,
 }
 
 /// A zone at one time.
-pub(super) struct Shown<'a> {
+pub(super) struct ZoneAt<'a> {
     pub(super) zone: &'a ZoneSynth,
     /// The place along its jump paths.
     pub(super) s: f64,
@@ -28,12 +28,12 @@ pub(super) struct Shown<'a> {
 impl<'a> Frame<'a> {
     /// The layer at scene time `t`.
     pub fn new(synth: &'a Synth, t: f64) -> Self {
-        let shown = |zone: &'a ZoneSynth| Shown { zone, s: zone.clock.s(t), picture: zone.source.picture_at(t) };
+        let shown = |zone: &'a ZoneSynth| ZoneAt { zone, s: zone.clock.s(t), picture: zone.source.picture_at(t) };
         Frame { synth, zones: synth.zones.iter().map(shown).collect() }
     }
 
     /// The zones that meet row `y`, in order.
-    fn zones(&self, y: usize) -> impl Iterator<Item = &Shown<'_>> {
+    fn zones(&self, y: usize) -> impl Iterator<Item = &ZoneAt<'_>> {
         let meets = move |field: &Field| (field.y0..field.y0 + field.inside.height()).contains(&y);
         self.zones.iter().filter(move |shown| meets(&shown.zone.field))
     }
@@ -77,7 +77,7 @@ impl<'a> Frame<'a> {
 }
 
 /// Draws the pixel in column `column` of the zone's box, row `y` of the picture, over `still`, the color beneath.
-pub(super) fn zone_pixel(zone: &Shown, (column, y): (usize, usize), still: &mut Rgba) {
+pub(super) fn zone_pixel(zone: &ZoneAt, (column, y): (usize, usize), still: &mut Rgba) {
     let field = &*zone.zone.field;
     let i = (y - field.y0) * field.inside.width() + column;
     if field.inside.cells()[i]
@@ -103,7 +103,7 @@ fn jump(field: &Field, i: usize) -> Vec2 {
 }
 
 /// The color of pixel `q` when its sampler has `moved` away from it; `still` is the color beneath.
-fn shown(zone: &Shown, q: Point, moved: Vec2, still: Rgba) -> Rgba {
+fn shown(zone: &ZoneAt, q: Point, moved: Vec2, still: Rgba) -> Rgba {
     let source = &zone.zone.source;
     let x = q + source.offset + moved;
     let moving = zone.picture.read(x.x, x.y, source.beyond);

@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::field::Field;
-use super::frame::{Frame, Shown, effective, zone_pixel};
+use super::frame::{Frame, ZoneAt, effective, zone_pixel};
 use crate::base::picture::Picture;
 use crate::base::pixels::{Beyond, Rgba, encode_all, over};
 use crate::base::simd::vectorised;
@@ -179,7 +179,7 @@ fn draw(frame: &Frame, tile: &Tile, scratch: &mut Scratch) {
 
 /// Finds the pixels of a tile whose samplers are active.
 #[inline(always)]
-fn find_spans(shown: &Shown, tile: &Tile, scratch: &mut Scratch) {
+fn find_spans(shown: &ZoneAt, tile: &Tile, scratch: &mut Scratch) {
     let field = &*shown.zone.field;
     let within = |part: &Range<usize>, first: usize, count: usize| part.start.max(first)..part.end.min(first + count);
     let columns = within(&tile.columns, field.x0, field.inside.width());
@@ -244,7 +244,7 @@ fn all_or_none(field: &Field, pixels: Range<usize>, s: f64) -> Option<bool> {
 
 /// Gives the rows that a zone draws on what lies beneath, unless it covers all of that.
 #[inline(always)]
-fn begin_rows(picture: &Picture, shown: &Shown, tile: &Tile, scratch: &mut Scratch) {
+fn begin_rows(picture: &Picture, shown: &ZoneAt, tile: &Tile, scratch: &mut Scratch) {
     let (width, x) = (tile.columns.len(), tile.columns.start);
     for i in 0..scratch.spans.len() {
         let Span { row, columns } = &scratch.spans[i];
@@ -260,7 +260,7 @@ type Texels = [Range<i64>; 2];
 
 /// Finds which texels the samplers of all spans read.
 #[inline(always)]
-fn find_places(shown: &Shown, tile: &Tile, scratch: &mut Scratch) -> Texels {
+fn find_places(shown: &ZoneAt, tile: &Tile, scratch: &mut Scratch) -> Texels {
     let (field, offset) = (&*shown.zone.field, shown.zone.source.offset);
     let mut across = [0.0; ACROSS];
     for (k, x) in across.iter_mut().enumerate() {
@@ -314,7 +314,7 @@ struct Patch {
 impl Patch {
     /// Turns texels into light; `None` if reading them one by one is less work.
     #[inline(always)]
-    fn new(shown: &Shown, [columns, rows]: Texels, scratch: &mut Scratch) -> Option<Patch> {
+    fn new(shown: &ZoneAt, [columns, rows]: Texels, scratch: &mut Scratch) -> Option<Patch> {
         let (width, height) = ((columns.end - columns.start) as usize, (rows.end - rows.start) as usize);
         let samplers: usize = scratch.spans.iter().map(|span| span.columns.len()).sum();
         if width.saturating_mul(height) > MOST * samplers.max(ACROSS) {
@@ -351,7 +351,7 @@ fn read_row(picture: &Picture, clear: bool, (columns, y): (Range<i64>, i64), out
 
 /// Mixes what all samplers read.
 #[inline(always)]
-fn mix(shown: &Shown, patch: &Patch, scratch: &mut Scratch) {
+fn mix(shown: &ZoneAt, patch: &Patch, scratch: &mut Scratch) {
     let (width, over_it) = (patch.width as usize, shown.zone.source.over);
     let texels = &scratch.patch[..];
     let mut first = [0; ACROSS];
@@ -385,7 +385,7 @@ fn mean(a: Rgba, b: Rgba, share: f32) -> Rgba {
 
 /// Draws each pixel by itself.
 #[cold]
-fn one_by_one(shown: &Shown, tile: &Tile, scratch: &mut Scratch) {
+fn one_by_one(shown: &ZoneAt, tile: &Tile, scratch: &mut Scratch) {
     for Span { row, columns } in &scratch.spans {
         for column in columns.clone() {
             let place = (tile.columns.start + column - shown.zone.field.x0, tile.rows.start + row);

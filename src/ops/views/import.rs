@@ -12,7 +12,7 @@ use super::feather;
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
 use crate::base::problem::{Problem, quoted};
-use crate::files::cameras::{self, Found, Reading};
+use crate::files::cameras::{self, Cameras, Reading};
 use crate::files::{self, disk, models, paths, picture};
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::shots::{SeenFrom, Shot, misshapen};
@@ -85,7 +85,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
 }
 
 /// Leaves out what `--names` and `--every` do not mean.
-fn choose(found: &mut Found, args: &Args) -> Result<()> {
+fn choose(found: &mut Cameras, args: &Args) -> Result<()> {
     if let Some(names) = &args.names {
         let pattern = Pattern::new(names).map_err(|error| Error::at(format!("--names {names}"), error))?;
         let file = |path: &Path| path.file_name().is_some_and(|name| pattern.matches(&name.to_string_lossy()));
@@ -124,7 +124,7 @@ fn taken(path: &Path, shot: &Shot, root: &Path, args: &Args, options: &files::Op
 /// The whole edit, and what is told of it.
 fn edit(
     document: &Document,
-    found: &Found,
+    found: &Cameras,
     pictures: &[(Picture, Beside)],
     args: &Args,
     options: &files::Options,

@@ -33,7 +33,7 @@ struct Used {
     code: usize,
     /// Names and bits of the constants.
     constants: Vec<(&'static str, u64)>,
-    binds: Vec<Kind>,
+    binds: Vec<Resource>,
 }
 
 /// How what is drawn gets to what is there.
@@ -49,7 +49,7 @@ pub struct Way {
 
 /// The kind of resource at a binding.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Kind {
+enum Resource {
     Uniform,
     List,
     Written,
@@ -155,24 +155,24 @@ impl Bound {
         }
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> Resource {
         match self {
-            Bound::Uniform(_) => Kind::Uniform,
-            Bound::List(_) => Kind::List,
-            Bound::Written(_) => Kind::Written,
-            Bound::Depth(_) => Kind::Depth,
-            Bound::Layers(_) => Kind::FloatLayers,
-            Bound::Linear(_) => Kind::Linear,
+            Bound::Uniform(_) => Resource::Uniform,
+            Bound::List(_) => Resource::List,
+            Bound::Written(_) => Resource::Written,
+            Bound::Depth(_) => Resource::Depth,
+            Bound::Layers(_) => Resource::FloatLayers,
+            Bound::Linear(_) => Resource::Linear,
             Bound::Texture(texture) => match texture.format {
-                Format::Rgba16Float => Kind::Filtered,
-                Format::Rgba32Float | Format::R32Float | Format::Rg32Float => Kind::Floats,
-                Format::Rgba32Uint => Kind::Uints,
+                Format::Rgba16Float => Resource::Filtered,
+                Format::Rgba32Float | Format::R32Float | Format::Rg32Float => Resource::Floats,
+                Format::Rgba32Uint => Resource::Uints,
             },
         }
     }
 }
 
-impl Kind {
+impl Resource {
     fn layout(self) -> wgpu::BindingType {
         let textures = |sample_type, view_dimension| wgpu::BindingType::Texture {
             sample_type,
@@ -183,15 +183,15 @@ impl Kind {
         let floats = wgpu::TextureSampleType::Float { filterable: false };
         let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
         match self {
-            Kind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
-            Kind::List => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-            Kind::Written => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Kind::Floats => texture(floats),
-            Kind::FloatLayers => textures(floats, wgpu::TextureViewDimension::D2Array),
-            Kind::Filtered => texture(wgpu::TextureSampleType::Float { filterable: true }),
-            Kind::Uints => texture(wgpu::TextureSampleType::Uint),
-            Kind::Depth => texture(wgpu::TextureSampleType::Depth),
-            Kind::Linear => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            Resource::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+            Resource::List => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+            Resource::Written => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+            Resource::Floats => texture(floats),
+            Resource::FloatLayers => textures(floats, wgpu::TextureViewDimension::D2Array),
+            Resource::Filtered => texture(wgpu::TextureSampleType::Float { filterable: true }),
+            Resource::Uints => texture(wgpu::TextureSampleType::Uint),
+            Resource::Depth => texture(wgpu::TextureSampleType::Depth),
+            Resource::Linear => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         }
     }
 }
@@ -205,10 +205,10 @@ fn module(device: &wgpu::Device, name: &str, text: String) -> wgpu::ShaderModule
 /// What code that runs in these stages is bound to.
 fn layouts(
     device: &wgpu::Device,
-    binds: &[Kind],
+    binds: &[Resource],
     visibility: wgpu::ShaderStages,
 ) -> (wgpu::BindGroupLayout, wgpu::PipelineLayout) {
-    let entry = |(binding, kind): (usize, &Kind)| wgpu::BindGroupLayoutEntry {
+    let entry = |(binding, kind): (usize, &Resource)| wgpu::BindGroupLayoutEntry {
         binding: binding as u32,
         visibility,
         ty: kind.layout(),

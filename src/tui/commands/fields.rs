@@ -19,7 +19,7 @@ const MOST_NAMED: usize = 4;
 
 /// A field, or a column that follows from one.
 #[derive(Clone)]
-pub struct Found {
+pub struct Column {
     /// Its name.
     pub name: String,
     /// Where it is; that of a column is the field that it follows from.
@@ -28,7 +28,7 @@ pub struct Found {
     pub column: Option<&'static Derived>,
 }
 
-impl Found {
+impl Column {
     /// What is known of it.
     pub fn field(&self, document: &Document) -> Option<Field> {
         match self.column {
@@ -39,7 +39,7 @@ impl Found {
 }
 
 /// All fields, those of the layer that is shown first.
-pub fn all(state: &State) -> Vec<Found> {
+pub fn all(state: &State) -> Vec<Column> {
     let document = state.document();
     let mut found = Vec::new();
     walk(document, Place::root(document.json()), "", 0, &mut found);
@@ -48,7 +48,7 @@ pub fn all(state: &State) -> Vec<Found> {
     found
 }
 
-fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &mut Vec<Found>) {
+fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &mut Vec<Column>) {
     if depth > DEEPEST {
         return;
     }
@@ -70,9 +70,9 @@ fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &
         let (Some(below), at) = (place.step(&token), Pointer(pointer).join(&token)) else { continue };
         walk(document, below, &at, depth + 1, found);
         if is_named {
-            found.push(Found { name: token, pointer: at, column: None });
+            found.push(Column { name: token, pointer: at, column: None });
         } else {
-            let column = |of: &'static Derived| Found {
+            let column = |of: &'static Derived| Column {
                 name: of.name.to_owned(),
                 pointer: Pointer(&at).join(of.of),
                 column: Some(of),
@@ -86,29 +86,29 @@ fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &
 ///
 /// # Errors
 /// There is none, or several that differ.
-pub fn called(state: &State, table: &Table, text: &str) -> Result<Found, String> {
+pub fn called(state: &State, table: &Table, text: &str) -> Result<Column, String> {
     let document = state.document();
     let exact = address::resolve(document, text).ok().filter(|pointer| field::field(document, pointer).is_some());
     if let Some(pointer) = exact.filter(|pointer| !pointer.is_empty()) {
         let name = Pointer(&pointer).split().map(|(_, name)| name).unwrap_or_default();
-        return Ok(Found { name, pointer, column: None });
+        return Ok(Column { name, pointer, column: None });
     }
     let all = all(state);
     let name = text.rsplit('.').next().unwrap_or(text);
-    let is_name = |one: &&Found| one.name == name || one.column.is_some() && one.name == name.replace('_', " ");
-    let ends = |one: &&Found| {
+    let is_name = |one: &&Column| one.name == name || one.column.is_some() && one.name == name.replace('_', " ");
+    let ends = |one: &&Column| {
         let address = address::address(document, &one.pointer);
         !text.contains('.') || address.ends_with(&format!(".{text}"))
     };
-    let mut meant: Vec<&Found> = Vec::new();
+    let mut meant: Vec<&Column> = Vec::new();
     for one in all.iter().filter(is_name).filter(ends) {
-        let is_same = |other: &&Found| same(document, one, other);
+        let is_same = |other: &&Column| same(document, one, other);
         if !meant.iter().any(is_same) {
             meant.push(one);
         }
     }
     // A field of the layer itself is meant before one inside another.
-    let depth = |one: &Found| one.pointer.matches('/').count();
+    let depth = |one: &Column| one.pointer.matches('/').count();
     let least = meant.iter().map(|one| depth(one)).min();
     meant.retain(|one| Some(depth(one)) == least);
     match meant.as_slice() {
@@ -130,7 +130,7 @@ pub fn called(state: &State, table: &Table, text: &str) -> Result<Found, String>
 }
 
 /// Whether the same is known of two fields.
-fn same(document: &Document, one: &Found, other: &Found) -> bool {
-    let known = |found: &Found| found.field(document).map(|field| (field.help, field.range, field.unit));
+fn same(document: &Document, one: &Column, other: &Column) -> bool {
+    let known = |found: &Column| found.field(document).map(|field| (field.help, field.range, field.unit));
     known(one) == known(other)
 }

@@ -138,7 +138,7 @@ fn search(state: &mut State, call: &Call) -> Done {
 }
 
 /// A match of a search.
-struct Found {
+struct Match {
     pointer: String,
     address: String,
     part: usize,
@@ -147,7 +147,7 @@ struct Found {
 }
 
 /// The match so many steps from the cursor; if `whole`, of those that are called just so, if there are any.
-fn find(state: &mut State, steps: i64, whole: bool) -> Option<Found> {
+fn find(state: &mut State, steps: i64, whole: bool) -> Option<Match> {
     let document = state.document().clone();
     let listed = state.memory.finding.listed(&document);
     let sought_text = state.memory.finding.sought.clone();
@@ -168,7 +168,7 @@ fn find(state: &mut State, steps: i64, whole: bool) -> Option<Found> {
     let (i, part) = matches[index];
     let one = &listed[i];
     let index = all.partition_point(|(other, _)| *other < i);
-    Some(Found { pointer: one.pointer.clone(), address: one.address.clone(), part, index, count: all.len() })
+    Some(Match { pointer: one.pointer.clone(), address: one.address.clone(), part, index, count: all.len() })
 }
 
 /// What is under the cursor: the cell, else the row, else the node.

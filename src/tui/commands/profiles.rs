@@ -1,7 +1,7 @@
 //! Presets of layers: the list of those for the layer that is shown, and applying one.
 
 use super::command::{Call, Command, Done, command};
-use crate::scene::presets::{self, Found};
+use crate::scene::presets::{self, Offered};
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::tree;
 use crate::tui::state::{Mode, State};
@@ -33,7 +33,7 @@ pub fn apply(state: &mut State, name: &str) -> Done {
 }
 
 /// The presets for the layer that is shown, or all if no layer is shown.
-pub fn offered(state: &State) -> impl Iterator<Item = Found> {
+pub fn offered(state: &State) -> impl Iterator<Item = Offered> {
     let shown = shown(state).map(|(kind, _)| kind);
     presets::all().filter(move |found| shown.is_none_or(|kind| kind == found.kind.name))
 }

@@ -31,7 +31,7 @@ pub const COMMANDS: &[Command] = &[
 const ALL: &str = "all";
 
 /// A place where something is replaced.
-struct Found {
+struct Replacement {
     pointer: String,
     address: String,
     old: String,
@@ -46,7 +46,7 @@ enum New {
     Name(List, String),
 }
 
-impl Found {
+impl Replacement {
     fn told(&self) -> String {
         let (New::Value(_, new) | New::Name(_, new)) = &self.new;
         plain(&format!("{} → {new}", self.old))
@@ -77,12 +77,13 @@ pub fn taken(state: &mut State, call: &Call, asked: &str, word: &str) -> Done {
 fn replace(state: &mut State, call: &Call) -> Done {
     let document = state.document();
     let found = found(state, &words(call.text)?)?;
-    let edit = |one: &Found| match &one.new {
+    let edit = |one: &Replacement| match &one.new {
         New::Value(value, _) => Edit::set(document, &one.pointer, value.clone()),
         New::Name(list, to) => Edit::rename(document, *list, &one.old, to),
     };
     // Entries move when they are renamed, so that comes last.
-    let (values, names): (Vec<&Found>, Vec<&Found>) = found.iter().partition(|one| matches!(one.new, New::Value(..)));
+    let (values, names): (Vec<&Replacement>, Vec<&Replacement>) =
+        found.iter().partition(|one| matches!(one.new, New::Value(..)));
     let edit = Edit::all(values.into_iter().chain(names).map(edit));
     state.edit(edit, false)?;
     state.say(format!("replaced in {}", counted(found.len(), "place")));
@@ -90,7 +91,7 @@ fn replace(state: &mut State, call: &Call) -> Done {
 }
 
 /// The places, in order.
-fn found(state: &State, words: &[String]) -> Result<Vec<Found>, String> {
+fn found(state: &State, words: &[String]) -> Result<Vec<Replacement>, String> {
     let document = state.document();
     let (from, to, within) = match words {
         [from, to] => (from, to, String::new()),
@@ -110,7 +111,7 @@ fn found(state: &State, words: &[String]) -> Result<Vec<Found>, String> {
         let Some(value) = document.json().pointer(&place.pointer) else { continue };
         let (pointer, address) = (&place.pointer, &place.address);
         let mut add = |old: String, new| {
-            all.push(Found { pointer: pointer.clone(), address: address.clone(), old, new });
+            all.push(Replacement { pointer: pointer.clone(), address: address.clone(), old, new });
         };
         if let Some((list, name)) = List::entry(pointer).filter(|(_, name)| name.contains(from.as_str())) {
             let new = name.replace(from.as_str(), to);

@@ -15,7 +15,7 @@ use crate::preview::editor::{self, Asked};
 use crate::preview::wire::message::ToEditor;
 use crate::tui::commands;
 use crate::tui::document::tree;
-use crate::tui::keys::Found;
+use crate::tui::keys::Meaning;
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, Pane, State, looking, painting};
 
@@ -230,13 +230,13 @@ fn press(state: &mut State, key: &str) {
         if state.typing.pressed.is_empty() { key.to_string() } else { format!("{} {key}", state.typing.pressed) };
     state.typing.pressed.clear();
     match state.keymap.find(&contexts(state), &pressed) {
-        Found::Prefix => state.typing.pressed = pressed,
-        Found::Line(line) => {
+        Meaning::Prefix => state.typing.pressed = pressed,
+        Meaning::Line(line) => {
             let count = state.typing.count.take();
             state.begin_key(matches!(line.as_str(), "back" | "leave" | "cancel"));
             commands::run(state, &line, count);
         }
-        Found::Nothing => {
+        Meaning::Nothing => {
             state.typing.count = None;
             match after_escape(key) {
                 Some(after) => {

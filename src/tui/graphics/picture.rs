@@ -7,7 +7,7 @@ use ratatui::buffer::Buffer;
 
 use super::clip::square;
 use super::protocol::Wanted;
-use super::sight::Shown;
+use super::sight::Visible;
 use super::{encode, ink};
 use crate::base::pixels::Frame;
 use crate::layers::parts::marks::Mark;
@@ -52,10 +52,10 @@ impl TerminalPicture {
         }
         let sight = wanted.sight.as_ref().and_then(|sight| sight.of(synth));
         let synth = match sight {
-            Some(Shown { synth, marks: Some(over) }) => {
+            Some(Visible { synth, marks: Some(over) }) => {
                 return TerminalPicture::sent((&synth, None), time, wanted, over, before);
             }
-            Some(Shown { synth, marks: None }) => &synth.clone(),
+            Some(Visible { synth, marks: None }) => &synth.clone(),
             None => synth,
         };
         let over = if wanted.over.shown.is_empty() { Vec::new() } else { overlay(scene, Some(synth), &wanted.over) };

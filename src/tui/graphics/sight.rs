@@ -22,7 +22,7 @@ pub enum Sight {
 }
 
 /// What a sight shows: a scene, and the marks over it where it is not the scene itself.
-pub struct Shown {
+pub struct Visible {
     /// What there is to see.
     pub synth: Synth,
     /// The marks over a picture that stands alone; `None` where the scene is seen.
@@ -31,14 +31,14 @@ pub struct Shown {
 
 impl Sight {
     /// What is to be seen; `None` if there is nothing.
-    pub fn of(&self, synth: &Synth) -> Option<Shown> {
+    pub fn of(&self, synth: &Synth) -> Option<Visible> {
         match self {
-            Sight::From(camera) => Some(Shown { synth: synth.seen_from((**camera).clone()), marks: None }),
+            Sight::From(camera) => Some(Visible { synth: synth.seen_from((**camera).clone()), marks: None }),
             Sight::Painting { layer, picture, share } => {
                 let found = synth.layers.get(*layer)?.painted(*picture, *share)?;
                 let told = |mark: Mark| Mark { path: format!("/layers/{layer}{}", mark.path), ..mark };
                 let marks = found.marks.into_iter().map(told).collect();
-                Some(Shown { synth: alone(found.picture)?, marks: Some(marks) })
+                Some(Visible { synth: alone(found.picture)?, marks: Some(marks) })
             }
         }
     }

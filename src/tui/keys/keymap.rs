@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use toml::de::{DeTable, DeValue};
 
-use super::names::{Found, LETTERS, continues, line_of, stands_for};
+use super::names::{LETTERS, Meaning, continues, line_of, stands_for};
 use super::table::{ENTRY, HELP, KEYS, LINE, LIST, TYPING};
 use crate::base::problem;
 use crate::tui::text::said::Said;
@@ -101,17 +101,17 @@ impl Keymap {
     }
 
     /// What the pressed keys mean in these contexts, the innermost first.
-    pub fn find(&self, contexts: &[&str], pressed: &str) -> Found {
+    pub fn find(&self, contexts: &[&str], pressed: &str) -> Meaning {
         for context in contexts {
             let mut rows = self.rows.iter().filter(|row| row.context == *context);
             if let Some(line) = rows.clone().find_map(|row| line_of(&row.key, &row.command, pressed)) {
-                return Found::Line(line);
+                return Meaning::Line(line);
             }
             if rows.any(|row| continues(&row.key, pressed)) {
-                return Found::Prefix;
+                return Meaning::Prefix;
             }
         }
-        Found::Nothing
+        Meaning::Nothing
     }
 
     /// The key that runs a line in a context; `None` if no key does.
@@ -316,14 +316,14 @@ mod tests {
         );
         assert_eq!(map.mistakes(), [""; 0]);
         for (context, pressed, expected) in [
-            (EVERYWHERE, "U", Found::Line("5 undo".into())),
-            (EVERYWHERE, "Ctrl-s", Found::Line("w".into())),
-            (EVERYWHERE, "u", Found::Nothing),
-            (EVERYWHERE, "F2", Found::Prefix),
-            (EVERYWHERE, "F2 b", Found::Line("play-macro b".into())),
-            (EVERYWHERE, "Ctrl-r", Found::Line("redo".into())),
-            ("form and table", "+", Found::Line("10 step 1".into())),
-            (TREE, "j", Found::Line("move down".into())),
+            (EVERYWHERE, "U", Meaning::Line("5 undo".into())),
+            (EVERYWHERE, "Ctrl-s", Meaning::Line("w".into())),
+            (EVERYWHERE, "u", Meaning::Nothing),
+            (EVERYWHERE, "F2", Meaning::Prefix),
+            (EVERYWHERE, "F2 b", Meaning::Line("play-macro b".into())),
+            (EVERYWHERE, "Ctrl-r", Meaning::Line("redo".into())),
+            ("form and table", "+", Meaning::Line("10 step 1".into())),
+            (TREE, "j", Meaning::Line("move down".into())),
         ] {
             assert_eq!(map.find(&[context], pressed), expected, "{context}: {pressed}");
         }
@@ -358,7 +358,7 @@ mod tests {
             let told = map.mistakes().join("\n");
             assert!(told.starts_with(&format!("keys.toml:{line}: ")) && told.contains(part), "{text}: {told}");
             assert_eq!(map.mistakes().len(), 1, "{text}: {told}");
-            assert_eq!(map.find(&[TREE], "Y"), Found::Line("add".into()), "{text}");
+            assert_eq!(map.find(&[TREE], "Y"), Meaning::Line("add".into()), "{text}");
         }
         let many = read("k", "[tree]\n\"Ctrl-i\" = \"x\"\n\"x\" = \"xx\"\n[no]\n");
         let lines: Vec<_> = many.mistakes().iter().map(|told| told[..4].to_owned()).collect();

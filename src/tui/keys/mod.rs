@@ -4,7 +4,7 @@
 mod keymap;
 mod names;
 pub use keymap::Keymap;
-pub use names::{Found, OWN_FILE, name};
+pub use names::{Meaning, OWN_FILE, name};
 mod table;
 pub use table::{
     AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, MOVING, NUMBER, PAINTING, PALETTE, PICKABLE, PICKING, PICTURE,
@@ -57,10 +57,10 @@ mod tests {
     fn keys_are_found_from_the_inside_out() {
         let contexts = [PICTURE, MOVING, EVERYWHERE];
         let find = |contexts: &[&str], pressed: &str| Keymap::default().find(contexts, pressed);
-        assert_eq!(find(&contexts, "J"), Found::Line("cursor 0 10".into()));
-        assert_eq!(find(&contexts, "u"), Found::Line("undo".into()));
-        assert_eq!(find(&contexts, "g"), Found::Prefix);
-        assert_eq!(find(&contexts, "Q"), Found::Nothing);
+        assert_eq!(find(&contexts, "J"), Meaning::Line("cursor 0 10".into()));
+        assert_eq!(find(&contexts, "u"), Meaning::Line("undo".into()));
+        assert_eq!(find(&contexts, "g"), Meaning::Prefix);
+        assert_eq!(find(&contexts, "Q"), Meaning::Nothing);
         assert!(Keymap::default().continuations(&contexts, "g").any(|row| row.key == "g p"));
     }
 

@@ -10,7 +10,7 @@ pub const LETTERS: [&str; 2] = ["{a-z}", "{A-Z}"];
 
 /// What the keys that were pressed so far mean.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Found {
+pub enum Meaning {
     /// They run this line.
     Line(String),
     /// They begin one or more longer sequences.

@@ -12,7 +12,7 @@ const UNSEEN: f32 = 0.5;
 
 /// The color that a pixel became, and the error that it passes on.
 #[derive(Clone, Copy, Default)]
-struct Shown {
+struct Dithered {
     index: u8,
     error: [f32; 3],
 }
@@ -20,7 +20,7 @@ struct Shown {
 /// Turns frames that follow one another into the colors of one palette.
 #[derive(Default)]
 pub struct Dither {
-    before: Option<(Frame, Vec<Shown>)>,
+    before: Option<(Frame, Vec<Dithered>)>,
 }
 
 impl Dither {
@@ -28,7 +28,7 @@ impl Dither {
     pub fn indices(&mut self, frame: &Frame, palette: &Palette) -> Vec<u8> {
         let (width, n) = (frame.width(), frame.cells().len());
         let (source, mut shown) = self.before.take().unzip();
-        let mut all = shown.take().unwrap_or_else(|| vec![Shown::default(); n]);
+        let mut all = shown.take().unwrap_or_else(|| vec![Dithered::default(); n]);
         // One more column on each side takes the error that falls outside the picture.
         let (mut owed, mut below) = (vec![[0.0f32; 3]; width + 2], vec![[0.0f32; 3]; width + 2]);
         for (y, row) in all.chunks_mut(width.max(1)).enumerate() {
@@ -53,9 +53,9 @@ impl Dither {
 }
 
 /// The color for a pixel, with the error of its neighbors.
-fn choose(palette: &Palette, color: [u8; 4], owed: [f32; 3]) -> Shown {
+fn choose(palette: &Palette, color: [u8; 4], owed: [f32; 3]) -> Dithered {
     if !is_opaque(color) {
-        return Shown { index: palette.transparent(), error: [0.0; 3] };
+        return Dithered { index: palette.transparent(), error: [0.0; 3] };
     }
     let wanted: [f32; 3] = std::array::from_fn(|i| (f32::from(color[i]) + owed[i]).clamp(0.0, 255.0));
     let index = palette.nearest(wanted.map(f64::from));
@@ -64,7 +64,7 @@ fn choose(palette: &Palette, color: [u8; 4], owed: [f32; 3]) -> Shown {
         let error = wanted[i] - f32::from(got[i]);
         error.signum() * (error.abs() - UNSEEN).max(0.0) * STRENGTH
     });
-    Shown { index, error }
+    Dithered { index, error }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use self::ffmpeg::Codec;
 use crate::base::error::Result;
 use crate::export::animation::{Out, Show, Sink};
-use crate::files::outputs::{self, Found, Kind};
+use crate::files::outputs::{self, Existing, Kind};
 
 mod apng;
 mod delta;
@@ -63,7 +63,7 @@ pub struct Format {
 /// Bare pixels have no signature: a file with their extension that begins like nothing else.
 const BARE: Kind = Kind { name: "file of bare pixels", is: is_bare };
 
-fn is_bare(found: &Found) -> bool {
+fn is_bare(found: &Existing) -> bool {
     let named = found.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rgba"));
     let others = FORMATS.iter().map(|format| format.kind).filter(|kind| *kind != BARE);
     named && found.length.is_multiple_of(4) && !others.chain(outputs::KINDS).any(|kind| (kind.is)(found))
@@ -255,9 +255,9 @@ mod tests {
             for kind in FORMATS.iter().map(|format| format.kind).chain(outputs::KINDS) {
                 let (path, bare) = (Path::new("there.rgba"), name.is_none() && length.is_multiple_of(4));
                 let wanted = if kind == BARE { bare } else { name == Some(kind.name) };
-                assert_eq!((kind.is)(&Found { path, length, head }), wanted, "{} over {head:?}", kind.name);
+                assert_eq!((kind.is)(&Existing { path, length, head }), wanted, "{} over {head:?}", kind.name);
             }
-            assert!(!is_bare(&Found { path: Path::new("there.png"), length, head }));
+            assert!(!is_bare(&Existing { path: Path::new("there.png"), length, head }));
         }
     }
 }

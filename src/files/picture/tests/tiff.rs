@@ -56,7 +56,7 @@ fn page(size: (u32, u32), bits: &[u32], photometric: u32) -> Vec<Entry> {
     ]
 }
 
-fn read_bytes(bytes: &[u8]) -> Result<Found> {
+fn read_bytes(bytes: &[u8]) -> Result<Loaded> {
     let folder = folder();
     let path = folder.path().join("a.tif");
     std::fs::write(&path, bytes).unwrap();

@@ -38,20 +38,20 @@ impl Slot for LayerSurface {
 
     fn synth(&self, _mesh: &Arc<Mesh>, making: &Making, _before: Before) -> Result<Arc<dyn ReadySurface>, Problem> {
         let missing = || Problem::error("/layer", format!("the layer \"{}\" is not there", self.layer));
-        Ok(Arc::new(Shown(making.textures.get(&self.layer).cloned().ok_or_else(missing)?)))
+        Ok(Arc::new(LayerTexture(making.textures.get(&self.layer).cloned().ok_or_else(missing)?)))
     }
 }
 
 #[derive(Debug)]
-struct Shown(Texture);
+struct LayerTexture(Texture);
 
-impl Shown {
+impl LayerTexture {
     fn moment(&self, moment: &Moment) -> Moment {
         Moment { size_px: self.0.size_px, ..*moment }
     }
 }
 
-impl ReadySurface for Shown {
+impl ReadySurface for LayerTexture {
     fn at<'a>(&'a self, moment: &'a Moment, _placed: &Placed) -> Box<dyn StillSurface + 'a> {
         let own = self.moment(moment);
         let still = self.0.layer.at(&own);
@@ -69,14 +69,14 @@ impl ReadySurface for Shown {
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface> {
-        Arc::new(Shown(Texture { layer: self.0.layer.clone().unmoved(), size_px: self.0.size_px }))
+        Arc::new(LayerTexture(Texture { layer: self.0.layer.clone().unmoved(), size_px: self.0.size_px }))
     }
 
     fn reduced(self: Arc<Self>, pictures: &mut Reduced) -> Arc<dyn ReadySurface> {
         let by = pictures.by;
         let (width, height) = self.0.size_px;
         let layer = self.0.layer.reduced(pictures);
-        Arc::new(Shown(Texture { layer, size_px: (width.div_ceil(by), height.div_ceil(by)) }))
+        Arc::new(LayerTexture(Texture { layer, size_px: (width.div_ceil(by), height.div_ceil(by)) }))
     }
 
     fn largest_texture(&self) -> usize {

@@ -16,7 +16,7 @@ pub struct Layout {
 }
 
 /// What each texel of a layer shows.
-pub struct Shown {
+pub struct Texels {
     /// Its cell, or one beside it that it repeats, or none.
     pub cells: Vec<u32>,
     /// Whether the cell is its own.
@@ -47,11 +47,11 @@ impl Layout {
     }
 
     /// What each texel of a layer shows, row by row.
-    pub fn shown(&self, number: usize, layer: &Layer) -> Shown {
+    pub fn shown(&self, number: usize, layer: &Layer) -> Texels {
         const BESIDE: [(isize, isize); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
         const ASLANT: [(isize, isize); 4] = [(-1, -1), (1, -1), (-1, 1), (1, 1)];
         let (width, height) = self.size(number);
-        let mut shown = Shown { cells: vec![NONE; width * height], own: vec![false; width * height] };
+        let mut shown = Texels { cells: vec![NONE; width * height], own: vec![false; width * height] };
         for (i, cell) in layer.cells.iter().enumerate() {
             let (x, y) = self.texel(number, cell);
             (shown.cells[y * width + x], shown.own[y * width + x]) = (i as u32, true);

@@ -4,7 +4,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use serde_json::Value;
 
-use self::layout::{Layout, Shown};
+use self::layout::{Layout, Texels};
 use self::manifest::{Blend, CONVENTIONS, Chart, Layer, Manifest, Point};
 use super::arrays;
 use super::blend::Points;
@@ -208,7 +208,7 @@ fn layer(
 }
 
 /// How cells are turned.
-fn turns(shown: &Shown, frames: &[Frame], (width, height): (usize, usize)) -> Texture {
+fn turns(shown: &Texels, frames: &[Frame], (width, height): (usize, usize)) -> Texture {
     let turn = |cell: &u32| match frames.get(*cell as usize) {
         Some(Frame { normal, along, .. }) => {
             DQuat::from_mat3(&DMat3::from_cols(*along, normal.cross(*along), *normal)).to_array()
