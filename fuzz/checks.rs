@@ -8,7 +8,7 @@ use plica::base::budget::Budget;
 use plica::base::error::Error;
 use plica::base::expression::{Variables, evaluate};
 use plica::files::journal::{self, Contents};
-use plica::files::{Limits, Options, fields, mesh, picture, recovery};
+use plica::files::{Limits, Options, cameras, fields, mesh, picture, recovery, styles};
 use plica::preview::wire::frame;
 use plica::preview::wire::message::{FromEditor, Message, ToEditor};
 use plica::scene::Document;
@@ -21,6 +21,9 @@ pub const CHECKS: &[(&str, fn(&[u8]))] = &[
     ("picture", picture),
     ("flo", flo),
     ("mesh", mesh),
+    ("cameras", cameras),
+    ("colmap", colmap),
+    ("style", style),
     ("expression", expression),
     #[cfg(feature = "tui")]
     ("keymap", keymap),
@@ -104,6 +107,42 @@ pub fn mesh(bytes: &[u8]) {
         assert!((vertex.normal.length() - 1.0).abs() < 1e-9, "{vertex:?}");
     }
     assert!((1..=1 << 16).contains(&mesh.triangles.len()) && mesh.bounds().is_some());
+}
+
+/// `cameras.json` and `transforms.json`.
+pub fn cameras(bytes: &[u8]) {
+    shots("cameras.json", &[("cameras.json", bytes)]);
+}
+
+/// Both files of a COLMAP text model; the second begins with a line of `#` of its own.
+pub fn colmap(bytes: &[u8]) {
+    let at = bytes.windows(3).position(|three| three == b"\n#\n").map_or(bytes.len(), |at| at + 1);
+    let (cameras, images) = bytes.split_at(at);
+    shots("images.txt", &[("cameras.txt", cameras), ("images.txt", images)]);
+}
+
+/// Cameras that are read have finite numbers, and their pictures a size.
+fn shots(name: &str, files: &[(&str, &[u8])]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    files.iter().for_each(|(name, bytes)| std::fs::write(folder.path().join(name), bytes).expect("a file"));
+    let limits = Limits { scene: 1 << 20, ..Limits::default() };
+    let reading = cameras::Reading { images: None, all: true, limits: &limits };
+    let Ok(found) = cameras::read(&folder.path().join(name), &reading) else { return };
+    for (_, shot) in found.shots {
+        assert!(shot.turn.is_finite() && shot.shift.is_finite(), "{shot:?}");
+        assert!(shot.focal_px.iter().all(|px| px.is_finite() && *px > 0.0), "{shot:?}");
+        assert!(shot.center_px.iter().flatten().all(|px| px.is_finite()), "{shot:?}");
+        assert!(shot.size_px.iter().flatten().all(|px| *px > 0), "{shot:?}");
+    }
+}
+
+/// A style is a table.
+pub fn style(bytes: &[u8]) {
+    let mut file = tempfile::NamedTempFile::new().expect("a file");
+    file.write_all(bytes).expect("it takes a few bytes");
+    if let Ok(table) = styles::read(file.path(), &Limits::default()) {
+        assert!(table.is_object());
+    }
 }
 
 /// A value is finite, and the same each time.

@@ -26,6 +26,7 @@ use plica::layers::KINDS;
 use plica::layers::folding::fold::Fold;
 use plica::layers::parts::marks::View;
 use plica::layers::parts::materials::{List, Materials, Of, Use, What};
+use plica::layers::parts::plan::{Bind, Compute, Groups, Plan, Step};
 use plica::layers::ready::Making;
 use plica::layers::space::camera::Camera;
 use plica::layers::technique::Kind;
@@ -646,6 +647,51 @@ fn what_is_too_large_is_refused_with_the_way_out() {
     let synth = render::synth(&scene, &materials, None).unwrap();
     let error = gpu.frame(&synth, 0.0).unwrap_err().to_string();
     assert!(error.contains(&side.to_string()) && error.contains("--gpu"), "{error}");
+}
+
+/// What a plan reads of its own before a step of it has written that.
+fn unwritten(plan: &Plan) -> Vec<String> {
+    let (mut written, mut early) = (BTreeSet::new(), Vec::new());
+    for step in &plan.steps {
+        for bind in step.binds() {
+            match bind {
+                Bind::Scratch(number) if !written.contains(number) => early.push(format!("{number} by {step:?}")),
+                Bind::Drawn(drawn) => early.extend(unwritten(&drawn.plan)),
+                // Arrays are all 0 at first, which is what a routine adds to.
+                Bind::Written(number) => drop(written.insert(*number)),
+                Bind::Scratch(_) | Bind::Bytes(_) | Bind::List(_) | Bind::Upload(..) | Bind::Depth | Bind::Linear => {}
+            }
+        }
+        match step {
+            Step::Compute(Compute { groups: Groups::Found(tally), .. }) if !written.contains(tally) => {
+                early.push(format!("tally {tally} by {step:?}"));
+            }
+            Step::Compute(_) => {}
+            Step::Draw(draw) => {
+                let tally = draw.found.filter(|tally| !written.contains(tally));
+                early.extend(tally.map(|tally| format!("tally {tally} by {step:?}")));
+                let into = draw.into.iter();
+                written
+                    .extend(into.flat_map(|into| into.textures.iter().map(|(number, _)| *number).chain(into.depths)));
+            }
+        }
+    }
+    early
+}
+
+#[test]
+fn what_a_plan_reads_of_its_own_was_written_before() {
+    let (plain, mut seen) = (json!({"kind": "plain", "color": "#c8b8a0c0"}), 0);
+    let strokes = all_strokes().into_iter().map(|own| drawn(&own, &plain));
+    let examples = examples_of_all().into_iter().map(|(_, scene, own)| render::synth(&scene, &own, None).unwrap());
+    for synth in examples.chain(strokes) {
+        for layer in &synth.layers {
+            let plan = layer.plan(&synth.moment(0.3));
+            seen += plan.scratch.len();
+            assert_eq!(unwritten(&plan), [""; 0]);
+        }
+    }
+    assert!(seen > 100, "{seen}");
 }
 
 /// The name and the WGSL of all shaders of a kind.

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{Cameras, Reading, is_there, size};
+use super::{Cameras, Reading, is_there, size, text_of};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::Xy;
 use crate::base::problem::quoted;
-use crate::files::{disk, scene};
+use crate::files::disk;
 use crate::layers::parts::shots::Shot;
 
 pub(super) const IMAGES: &str = "images.txt";
@@ -50,7 +50,7 @@ pub(super) fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
 }
 
 fn read_cameras(path: &Path, reading: &Reading) -> Result<HashMap<u64, Camera>> {
-    let text = scene::read_text(path, reading.limits)?;
+    let text = text_of(path, reading, "a COLMAP text model has numbers and names")?;
     let lines =
         text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with('#') && !line.trim().is_empty());
     lines.map(|(i, line)| camera(line).map_err(|why| at(path, i, why))).collect()
@@ -99,7 +99,7 @@ fn read_images(
     pictures: &Path,
     reading: &Reading,
 ) -> Result<Vec<(PathBuf, Shot)>> {
-    let text = scene::read_text(path, reading.limits)?;
+    let text = text_of(path, reading, "a COLMAP text model has numbers and names")?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with('#'));
     let mut shots = Vec::new();
     while let Some((i, line)) = lines.next() {

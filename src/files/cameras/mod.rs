@@ -47,7 +47,7 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
     if path.extension().is_some_and(|end| end == "bin") {
         return Err(colmap::binary(path));
     }
-    let text = scene::read_text(path, reading.limits)?;
+    let text = text_of(path, reading, "a list of cameras is a JSON file")?;
     let unknown = || {
         let error = Error::at(path.display(), "is no list of cameras that is known");
         error.cure("cameras.json, transforms.json, or the folder of a COLMAP text model")
@@ -61,6 +61,11 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
     } else {
         Err(unknown())
     }
+}
+
+/// The text of a file, which is to be `what` it is.
+fn text_of(path: &Path, reading: &Reading, what: &str) -> Result<String> {
+    scene::text_of(&path.display().to_string(), paths::open_named(path)?, reading.limits, what)
 }
 
 /// An item of a list as JSON, and what it is called in messages.
