@@ -23,6 +23,7 @@ use super::parts::plan::{Program, Routine};
 use super::parts::readout::{Curve, Entry, ReadOut};
 use super::parts::repeat::Repeat;
 use super::parts::shots::{Laid, Laying, Lying};
+use super::parts::sketch::Sketch;
 use super::parts::twin::Twin;
 use super::ready::{Making, Prepared, Ready, Whole};
 use super::shapes::shape::Shape;
@@ -231,6 +232,16 @@ pub trait Technique: Any + Send + Sync {
     /// What changes in the layer over the scene time, item by item.
     fn curves(&self, _wrap: Wrap) -> Vec<Curve<'_>> {
         Vec::new()
+    }
+
+    /// What of the layer has a small drawing, in words.
+    fn sketched(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// A small drawing of what is at `path`, if it has one.
+    fn sketch(&self, _path: &str) -> Option<Sketch> {
+        None
     }
 
     /// What the pixel (column, row) of the layer does at one time; `None` if there is nothing to say about

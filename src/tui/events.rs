@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::graphics::TerminalPicture;
+use super::graphics::counts::Counts;
 use super::graphics::probed::Probed;
 use crate::layers::space::camera::Camera;
 use crate::preview::editor;
@@ -37,6 +38,8 @@ pub enum Event {
     Reading(u8),
     /// What a pixel does.
     Probed(Arc<Probed>),
+    /// Which numbers the pixels of a pass have.
+    Counted(Arc<Counts>),
     /// The worker has made a picture; it took so many milliseconds.
     Picture(Arc<TerminalPicture>, f64),
     /// Long work has made progress.

@@ -32,6 +32,7 @@ use super::parts::pass::Pass;
 use super::parts::readout::ReadOut;
 use super::parts::repeat::{self, Repeat};
 use super::parts::shots::{Laid, Laying, Lying};
+use super::parts::sketch::Sketch;
 use super::ready::{Making, Ready};
 use super::starts::{Shown, Starts, Template};
 use super::technique::{Bundle, Checked, Kind, Technique};
@@ -165,6 +166,14 @@ impl Technique for MeshLayer {
 
     fn has_pass(&self, pass: &Pass) -> bool {
         if surface::PASSES.contains(pass) { self.surface.slot().explains() } else { self.strokes.is_some() }
+    }
+
+    fn sketched(&self) -> &'static [&'static str] {
+        if self.strokes.is_some() { strokes::sketch::OF } else { &[] }
+    }
+
+    fn sketch(&self, path: &str) -> Option<Sketch> {
+        strokes::sketch::sketch(self.strokes.as_ref()?, path.strip_prefix("/strokes")?)
     }
 
     fn item_name(&self, path: &str) -> Option<&str> {

@@ -16,4 +16,5 @@ pub mod plan;
 pub mod readout;
 pub mod repeat;
 pub mod shots;
+pub mod sketch;
 pub mod twin;

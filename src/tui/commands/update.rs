@@ -38,6 +38,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Synthesising => state.picture.synthesising = true,
         Event::Reading(percent) => state.picture.read = Some(percent).filter(|percent| *percent < 100),
         Event::Probed(probed) => state.picture.probed = Some(probed),
+        Event::Counted(counts) => state.picture.counts = Some(counts),
         Event::Synthesised(result) => synthesised(state, *result),
         Event::Made(scene) => state.picture.made = Some(scene),
         Event::Picture(shown, ms) => (state.picture.latest, state.picture.frame_ms) = (Some(shown), Some(ms)),

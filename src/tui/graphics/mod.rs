@@ -2,6 +2,7 @@
 //! limit of bytes, so that a slow link stays usable. Everything here runs on the worker thread.
 
 pub mod clip;
+pub mod counts;
 mod diacritics;
 mod encode;
 mod ink;

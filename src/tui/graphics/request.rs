@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::protocol::Wanted;
+use crate::render::passes::Asked;
 use crate::render::shown::Shown;
 use crate::scene::Scene;
 
@@ -24,6 +25,8 @@ pub struct Request {
     pub picture: Option<Wanted>,
     /// The pixel whose read-out is open, if it is.
     pub probe: Option<ProbeAt>,
+    /// The pass whose numbers are counted, if a curve over it is shown.
+    pub counts: Option<CountAt>,
 }
 
 impl PartialEq for Request {
@@ -35,6 +38,7 @@ impl PartialEq for Request {
             && self.time == other.time
             && self.picture == other.picture
             && self.probe == other.probe
+            && self.counts == other.counts
     }
 }
 
@@ -45,6 +49,15 @@ pub struct ProbeAt {
     pub layer: usize,
     /// Column and row.
     pub pixel: (usize, usize),
+    /// Scene time.
+    pub time: f64,
+}
+
+/// A pass of a frame whose numbers are counted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CountAt {
+    /// The pass.
+    pub of: Asked,
     /// Scene time.
     pub time: f64,
 }

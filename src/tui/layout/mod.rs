@@ -22,6 +22,8 @@ pub struct Areas {
     pub detail: Rect,
     /// The vector field and the position functions, if there is room for them and the scene has any.
     pub plots: Option<[Rect; 2]>,
+    /// The small drawing of what is selected, if there is room and the scene has any; in place of the plots if both would be shown.
+    pub sketch: Option<Rect>,
     /// The picture, if there is room for it on the right.
     pub picture: Option<Rect>,
     /// The status line.
@@ -55,7 +57,23 @@ pub fn areas(screen: Rect, state: &State) -> Areas {
     let stacked = right.filter(|_| has_curves(state));
     let stacked = stacked.map(|right| Layout::vertical(stack).spacing(Spacing::Overlap(1)).areas(right));
     let plots = stacked.map(|[field, position, _]| [field, position]);
-    Areas { tree, table, detail, plots, picture: stacked.map(|[.., picture]| picture).or(right), status, line }
+    let Some([field, position]) = plots else {
+        let halves = right.filter(|_| has_sketches(state));
+        let halves = halves.map(|right| Layout::vertical(HALVES).spacing(Spacing::Overlap(1)).areas(right));
+        let (sketch, picture) = halves.map_or((None, right), |[sketch, picture]| (Some(sketch), Some(picture)));
+        return Areas { tree, table, detail, plots: None, sketch, picture, status, line };
+    };
+    let sketch = picture::sketch(state).map(|_| field.union(position));
+    let picture = stacked.map(|[.., picture]| picture);
+    Areas { tree, table, detail, plots: plots.filter(|_| sketch.is_none()), sketch, picture, status, line }
+}
+
+/// A small drawing, and the picture.
+const HALVES: [Constraint; 2] = [Constraint::Fill(2), Constraint::Fill(3)];
+
+/// Whether something in the scene has small drawings, as [`has_curves`].
+fn has_sketches(state: &State) -> bool {
+    state.document().scene().layers.iter().any(|layer| !layer.technique().sketched().is_empty())
 }
 
 /// Whether something in the scene moves along curves, which have vectors too: whatever is shown of it just now, so that panes
@@ -77,11 +95,11 @@ pub fn areas_of(state: &State) -> Areas {
     let body = Rect { height: screen.height.saturating_sub(2), ..screen };
     let none = Rect::ZERO;
     if state.cursor.focus == Pane::Tree && !matches!(state.typing.mode, Mode::Aim) {
-        return Areas { tree: body, table: none, detail: none, plots: None, picture: None, ..all };
+        return Areas { tree: body, table: none, detail: none, plots: None, sketch: None, picture: None, ..all };
     }
     let detail = Constraint::Length(if state.picture.probing { PROBE } else { DETAIL });
     let [table, detail] = Layout::vertical([Constraint::Fill(1), detail]).spacing(Spacing::Overlap(1)).areas(body);
-    Areas { tree: none, table, detail, plots: None, picture: None, ..all }
+    Areas { tree: none, table, detail, plots: None, sketch: None, picture: None, ..all }
 }
 
 /// The screen without the lesson at its bottom.

@@ -1,14 +1,17 @@
 //! What the panes want from the worker, as a function of the state. The worker is asked whenever that changes.
 
-use crate::tui::graphics::request::{ProbeAt, Request};
+use crate::tui::graphics::request::{CountAt, ProbeAt, Request};
 use crate::tui::layout;
 use kurbo::Point;
 
 use std::collections::BTreeSet;
 
+use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Overlay, View, When};
+use crate::layers::parts::sketch::Sketch;
 use crate::render::overlay;
 use crate::render::part::Part;
+use crate::render::passes::Asked;
 use crate::tui::document::tree;
 use crate::tui::graphics::sight::Sight;
 use crate::tui::graphics::{Marks, Protocol, Wanted, viewport};
@@ -20,7 +23,23 @@ pub fn request(state: &State) -> Request {
     let scene = state.document().scene().clone();
     let path = state.scene.path().to_owned();
     let how = state.apart.shown(state.document());
-    Request { scene, how, path, time: state.play.time, fresh: false, picture: wanted(state), probe: probe_at(state) }
+    let (time, picture) = (state.play.time, wanted(state));
+    Request { scene, how, path, time, fresh: false, picture, probe: probe_at(state), counts: count_at(state) }
+}
+
+/// The pass that the curve which is shown is over, if one is.
+pub fn count_at(state: &State) -> Option<CountAt> {
+    layout::areas_of(state).sketch?;
+    let (layer, sketch) = sketch(state)?;
+    let Sketch::Curve(curve) = sketch else { return None };
+    Some(CountAt { of: Asked { pass: curve.over, of: None, layer: Some(layer) }, time: state.play.time })
+}
+
+/// The small drawing of what is selected, and the index of its layer.
+pub fn sketch(state: &State) -> Option<(usize, Sketch)> {
+    let focused = state.focused();
+    let (layer, path) = Pointer(&focused).item_of("/layers")?;
+    Some((layer, state.document().scene().layers.get(layer)?.technique().sketch(path)?))
 }
 
 /// The pixel under the cursor, if its read-out is open.

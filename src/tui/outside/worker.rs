@@ -16,6 +16,7 @@ use crate::render::shown::Shown;
 use crate::scene::Scene;
 use crate::tui::events::{Event, Synthesis};
 use crate::tui::graphics::TerminalPicture;
+use crate::tui::graphics::counts::Counts;
 use crate::tui::graphics::probed::Probed;
 use crate::tui::graphics::request::Request;
 
@@ -151,6 +152,11 @@ impl Studio {
         let probed = request.probe.and_then(|asked| Probed::new(asked, shown, synth, materials));
         let probed = probed.filter(|_| !synth.is_stopped());
         if probed.is_some_and(|probed| events.send(Event::Probed(Arc::new(probed))).is_err()) {
+            return false;
+        }
+        let counts = request.counts.clone().map(|asked| Counts::new(asked, synth));
+        let counts = counts.filter(|_| !synth.is_stopped());
+        if counts.is_some_and(|counts| events.send(Event::Counted(Arc::new(counts))).is_err()) {
             return false;
         }
         let picture = request.picture.clone();

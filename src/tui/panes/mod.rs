@@ -23,6 +23,7 @@ pub mod picture;
 pub mod popup;
 pub mod position;
 pub mod probe;
+pub mod sketch;
 pub mod status;
 pub mod table;
 pub mod tree;

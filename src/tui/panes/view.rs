@@ -51,6 +51,10 @@ pub fn draw(frame: &mut Frame, state: &State) {
         let inner = block(frame, position, "position");
         panes::position::draw(state, inner, frame.buffer_mut());
     }
+    if let Some(sketch) = areas.sketch {
+        let inner = block(frame, sketch, "sketch");
+        panes::sketch::draw(state, inner, frame.buffer_mut());
+    }
     if let Some(picture) = areas.picture {
         let inner = pane(frame, state, picture, Pane::Picture, &panes::picture::title(state));
         cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);

@@ -11,6 +11,7 @@ use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
 use crate::scene::Scene;
+use crate::tui::graphics::counts::Counts;
 use crate::tui::graphics::probed::Probed;
 use crate::tui::graphics::viewport::Viewport;
 use crate::tui::graphics::{Graphics, TerminalPicture};
@@ -44,6 +45,8 @@ pub struct Picture {
     pub probing: bool,
     /// The last answer of the worker about a pixel.
     pub probed: Option<Arc<Probed>>,
+    /// What it counted last.
+    pub counts: Option<Arc<Counts>>,
     /// Whether the worker is synthesising.
     pub synthesising: bool,
     /// How much of the scene's files it has read, in percent, while that is what it waits for.
@@ -75,6 +78,7 @@ impl Picture {
             frame_ms: None,
             probing: false,
             probed: None,
+            counts: None,
             synthesising: false,
             read: None,
             synth: None,

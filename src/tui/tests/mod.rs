@@ -30,6 +30,7 @@ mod rowing;
 mod rows;
 mod screens;
 mod sharing;
+mod sketches;
 mod space;
 pub mod support;
 mod table;

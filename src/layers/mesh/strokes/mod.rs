@@ -27,6 +27,7 @@ pub mod pieces;
 pub mod plan;
 pub mod restyle;
 pub mod rim;
+pub mod sketch;
 pub mod styles;
 pub mod sum;
 pub mod surface;
