@@ -53,5 +53,8 @@ fn what_has_no_drawing_says_what_has_one() {
     }
     let mut narrow = at("layers.m.strokes.marks.ink");
     narrow.size = (80, 24);
-    assert!(layout::areas_of(&narrow).sketch.is_none() && picture::count_at(&narrow).is_none(), "nobody counts in vain");
+    assert!(
+        layout::areas_of(&narrow).sketch.is_none() && picture::count_at(&narrow).is_none(),
+        "nobody counts in vain"
+    );
 }
