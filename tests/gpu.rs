@@ -280,7 +280,8 @@ fn every_overlay_draws_something_over_an_example_of_its_technique() {
         // From elsewhere, so that the scene's camera is seen too.
         let elsewhere = Camera { position: [2.5, -2.0, 2.5], target: [0.0; 3], ..Camera::default() };
         let synth = synth.seen_from(elsewhere);
-        let overlays = KINDS.iter().filter(|row| row.name == kind).flat_map(|row| row.overlays);
+        let overlays =
+            KINDS.iter().filter(|row| row.name == kind).flat_map(|row| row.overlays.iter().copied().flatten());
         // Labels are texts at the marks of others.
         for overlay in overlays.filter(|overlay| overlay.name != "view-labels") {
             let view = View { spacing_px: 8.0, cell_px: 2.0, times: vec![0.4], ..View::of(&[overlay.name]) };
@@ -696,7 +697,7 @@ fn what_a_plan_reads_of_its_own_was_written_before() {
 
 /// The name and the WGSL of all shaders of a kind.
 fn shaders(kind: &Kind) -> impl Iterator<Item = (&'static str, String)> {
-    let programs = kind.programs.iter().map(|program| (program.name, program.text()));
+    let programs = kind.programs.iter().copied().flatten().map(|program| (program.name, program.text()));
     programs.chain(kind.routines.iter().map(|routine| (routine.name, routine.text())))
 }
 

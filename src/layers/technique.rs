@@ -319,7 +319,7 @@ pub struct Kind {
     /// Where its layers are.
     pub space: Space,
     /// All programs that its layers are drawn with.
-    pub programs: &'static [&'static Program],
+    pub programs: &'static [&'static [&'static Program]],
     /// All routines that compute for that.
     pub routines: &'static [&'static Routine],
     /// What these read of structs.
@@ -329,11 +329,11 @@ pub struct Kind {
     /// The things whose number in a scene is limited.
     pub counted: &'static [Counted],
     /// What can be drawn over the picture to explain it.
-    pub overlays: &'static [Overlay],
+    pub overlays: &'static [&'static [Overlay]],
     /// What its frames are made from, besides what all layers in space have.
-    pub passes: &'static [Pass],
+    pub passes: &'static [&'static [Pass]],
     /// How that looks, in ascending order.
-    pub looks: &'static [&'static Look],
+    pub looks: &'static [&'static [&'static Look]],
     /// What makes a new layer, if the technique can start from something. A layer in space brings a camera.
     pub template: Option<Template>,
     /// A layer of this name that shows nothing, if the technique is the one that has such layers.

@@ -22,7 +22,7 @@ const ONION: (u32, f64) = (6, 1.0 / 48.0);
 
 /// Every overlay of every technique; shared ones once.
 pub fn overlays() -> impl Iterator<Item = &'static Overlay> {
-    let all = || KINDS.iter().flat_map(|kind| kind.overlays);
+    let all = || KINDS.iter().flat_map(|kind| kind.overlays.iter().copied().flatten());
     all().enumerate().filter(move |(i, overlay)| all().take(*i).all(|other| other.name != overlay.name)).map(|(_, o)| o)
 }
 
@@ -156,8 +156,9 @@ mod tests {
     #[test]
     fn looks_differ_in_more_than_color_and_in_their_order() {
         for kind in KINDS {
-            for (i, look) in kind.looks.iter().enumerate() {
-                for other in &kind.looks[i + 1..] {
+            let looks = kind.looks.concat();
+            for (i, look) in looks.iter().enumerate() {
+                for other in &looks[i + 1..] {
                     let shape = |look: &Look| (look.width_px, look.dash_px, look.dot, look.dot_px);
                     assert!(shape(look) != shape(other), "{} {}", look.name, other.name);
                     assert!(look.order < other.order, "{} {}", look.name, other.name);

@@ -30,7 +30,7 @@ pub struct Asked {
 
 /// Every pass: those of all layers in space, and those that techniques add.
 pub fn all() -> impl Iterator<Item = &'static Pass> {
-    PASSES.into_iter().chain(KINDS.iter().flat_map(|kind| kind.passes))
+    PASSES.into_iter().chain(KINDS.iter().flat_map(|kind| kind.passes.iter().copied().flatten()))
 }
 
 /// The names of the passes, besides the frame, in which a scene has something.
@@ -151,7 +151,7 @@ fn is_shown(pass: &Pass, layer: Option<usize>, scene: &Scene) -> bool {
     let common = PASSES.contains(&pass);
     let has = |layer: &dyn Technique| match common {
         true => layer.kind().space == Space::World,
-        false => layer.kind().passes.contains(pass) && layer.has_pass(pass),
+        false => layer.kind().passes.iter().any(|passes| passes.contains(pass)) && layer.has_pass(pass),
     };
     *pass == COLOR || layers.any(|(i, layer)| has(layer.technique()) && !textures.contains(&i))
 }

@@ -21,7 +21,7 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "fill",
     space: Space::Plane,
-    programs: &[&synth::PROGRAM],
+    programs: &[&[&synth::PROGRAM]],
     routines: &[],
     twins: &[synth::TWINS],
     bundle: None,

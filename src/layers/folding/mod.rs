@@ -67,7 +67,7 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "picture",
     space: Space::Plane,
-    programs: plan::PROGRAMS,
+    programs: &[plan::PROGRAMS],
     routines: &[],
     twins: &[plan::TWINS],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
@@ -75,9 +75,9 @@ pub static KIND: Kind = Kind {
         Counted { name: "anchors", help: "anchors of a scene", most: 1_000_000 },
         Counted { name: "points", help: "points of a scene's outlines", most: 1_000_000 },
     ],
-    overlays: looks::OVERLAYS,
+    overlays: &[looks::OVERLAYS],
     passes: &[],
-    looks: looks::LOOKS,
+    looks: &[looks::LOOKS],
     template: Some(Template { of: List::Images, layer: starts::template, ground: None }),
     blank: None,
     starts: Starts {

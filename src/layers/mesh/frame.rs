@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 use super::model::Sides;
 use super::pose::Placed;
+use super::slot::{Place, Reader, StillSurface};
 use super::strokes::{self, Given};
-use super::surface::{self, Place, Reader, StillSurface};
+use super::surface;
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
@@ -218,7 +219,7 @@ impl Still for Seen<'_> {
     }
 
     fn pass(&self, pass: &Pass, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
-        if surface::PASSES.contains(pass) || *pass == surface::COLORS {
+        if surface::PASSES.contains(pass) || surface::COLORS.contains(pass) {
             // Other surfaces have nothing there, and hide what is behind them.
             let mut reader = self.surface.pass(pass);
             let mut read = |spot: &Spot| reader.as_mut().map_or([0.0; 4], |reader| reader(&spot.place()));

@@ -6,7 +6,6 @@ use kurbo::Point;
 use rayon::prelude::*;
 
 use super::model::Sides;
-use super::surface;
 use super::synth::Synth;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::{CENTER, Columns, Moment};
@@ -23,14 +22,13 @@ const fn overlay(name: &'static str, key: &'static str, help: &'static str, hidd
     Overlay { hidden, ..Overlay::new(name, key, help, When::EveryFrame) }
 }
 
-/// Every overlay.
+/// Every overlay, but for those of surfaces.
 pub static OVERLAYS: &[Overlay] = &[
     GROUND_OVERLAY,
     CAMERA_OVERLAY,
     overlay(WIRES, "M", "Edges of meshes", true),
     overlay(NORMALS, "N", "Normals at the vertices of meshes", false),
     overlay(BACKS, "B", "Where the back of a mesh is seen", false),
-    surface::OVERLAY,
 ];
 
 /// An edge.
@@ -40,21 +38,8 @@ static BACK: Look = Look::new("back side", 26, [230, 60, 200, 150], 0.0).dots(Do
 /// A normal at a vertex.
 static NORMAL: Look = Look::new("normal", 27, [240, 160, 40, 230], 1.2);
 
-/// Every look, from bottom to top.
-pub static LOOKS: &[&Look] = &[
-    &GRID,
-    &AXES[0],
-    &AXES[1],
-    &AXES[2],
-    &FRUSTUM,
-    &WIRE,
-    &BACK,
-    &NORMAL,
-    surface::LOOKS[0],
-    surface::LOOKS[1],
-    surface::LOOKS[2],
-    surface::LOOKS[3],
-];
+/// Every look, from bottom to top, but for those of surfaces, which lie over them.
+pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &WIRE, &BACK, &NORMAL];
 
 /// At most so many strokes, or cells, of one overlay of one layer.
 const MOST: usize = 60_000;

@@ -13,6 +13,7 @@ pub mod plan;
 pub mod pose;
 pub mod probe;
 pub mod ready;
+pub mod slot;
 pub mod strokes;
 pub mod surface;
 pub mod synth;
@@ -43,29 +44,14 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "mesh",
     space: Space::World,
-    programs: &[
-        &plan::PLAIN,
-        surface::PROGRAMS[0],
-        strokes::plan::PROGRAMS[0],
-        strokes::plan::PROGRAMS[1],
-        strokes::plan::PROGRAMS[2],
-        strokes::plan::PROGRAMS[3],
-        strokes::plan::PROGRAMS[4],
-    ],
+    programs: &[&[&plan::PLAIN], surface::PROGRAMS, strokes::plan::PROGRAMS],
     routines: strokes::emit::ROUTINES,
     twins: &[plan::TWINS, surface::TWINS, strokes::upload::TWINS, strokes::emit::TWINS],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[],
-    overlays: marks::OVERLAYS,
-    passes: &[
-        strokes::passes::NOISE,
-        strokes::passes::TONE,
-        strokes::passes::INK,
-        surface::PASSES[0],
-        surface::PASSES[1],
-        surface::PASSES[2],
-    ],
-    looks: marks::LOOKS,
+    overlays: &[marks::OVERLAYS, surface::OVERLAYS],
+    passes: &[strokes::passes::PASSES, surface::PASSES],
+    looks: &[marks::LOOKS, surface::LOOKS],
     template: Some(Template { of: List::Meshes, layer: template, ground: None }),
     blank: None,
     // A new mark needs no noise.
@@ -191,7 +177,7 @@ impl Technique for MeshLayer {
     }
 
     fn lay(&self, pictures: &[Laid]) -> Option<Laying> {
-        Some(surface::lay(&self.surface, pictures))
+        surface::lay(&self.surface, pictures)
     }
 
     fn model_to_world(&self, t: f64) -> Option<DAffine3> {

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::model::Sides;
 use super::pose::Placed;
+use super::slot::{Look, Own};
 use super::strokes::{self, Given};
-use super::surface::{Look, Own};
 use super::synth::Synth;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::Moment;

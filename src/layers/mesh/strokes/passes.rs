@@ -2,6 +2,9 @@
 
 use crate::layers::parts::pass::{Holds, Pass};
 
+/// All of them.
+pub const PASSES: &[Pass] = &[NOISE, TONE, INK];
+
 /// A noise.
 pub const NOISE: Pass = Pass {
     name: "noise",

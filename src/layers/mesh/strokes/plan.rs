@@ -54,7 +54,7 @@ static INK: Program =
     Program { name: "mesh/strokes/ink.wgsl", source: INK_SOURCE, vertex: "whole_frame", fragment: "drawn" };
 
 /// One of each shader.
-pub static PROGRAMS: [&Program; 5] = [&SPLATS, &FLATS, &PLAIN, &RIMS, &INK];
+pub static PROGRAMS: &[&Program] = &[&SPLATS, &FLATS, &PLAIN, &RIMS, &INK];
 
 const fn noises(fragment: &'static str) -> Program {
     Program { name: "mesh/strokes/noises.wgsl", source: NOISE_SOURCE, vertex: "whole_frame", fragment }

@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::base::mesh::Mesh;
 use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
+use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::plan::{Bind, Drawn};

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Look, Reader, ReadySurface, Slot, StillSurface};
 use crate::base::color;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::{Rgba, decode};
@@ -13,6 +12,7 @@ use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::check;
 use crate::layers::mesh::pose::Placed;
+use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface};
 use crate::layers::parts::moment::Moment;
 use crate::layers::ready::Making;
 

@@ -6,13 +6,13 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
+use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Bind;

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::super::Place;
 use super::arrays::Arrays;
 use super::blend::Points;
 use super::id::{depth_of, share_of};
 use super::map::Map;
 use super::sample::{Reader, Spot};
 use crate::layers::mesh::pose::Placed;
+use crate::layers::mesh::slot::Place;
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;

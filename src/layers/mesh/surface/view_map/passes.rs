@@ -1,8 +1,8 @@
 //! What a view map is made from, as pictures of numbers.
 
-use super::super::Reader;
 use super::looked::Looked;
 use crate::base::pixels::linear_from_srgb;
+use crate::layers::mesh::slot::Reader;
 use crate::layers::parts::pass::{Holds, Pass};
 
 /// The base coat.

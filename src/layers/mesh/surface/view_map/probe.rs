@@ -1,10 +1,10 @@
 //! One place of a view map explained.
 
-use super::super::Place;
 use super::cells::{Cell, NONE};
 use super::frames;
 use super::looked::Looked;
 use crate::base::pixels::encode;
+use crate::layers::mesh::slot::Place;
 use crate::layers::parts::readout::{Entry, Value};
 
 /// The least share of a view that is told.

@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
-use super::super::{Look, Place, Reader, ReadySurface, StillSurface};
 use super::arrays::Arrays;
 use super::blend::Points;
 use super::looked::{Filled, Looked, base};
@@ -17,6 +16,7 @@ use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
+use crate::layers::mesh::slot::{Look, Place, Reader, ReadySurface, StillSurface};
 use crate::layers::parts::bundle::Sink;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::super::{Before, ReadySurface, Slot};
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
 use super::cells::{Cells, Layer};
@@ -16,6 +15,7 @@ use super::{atlas, bundle, check, lay, warnings};
 use crate::base::budget::Share;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
+use crate::layers::mesh::slot::{Before, ReadySurface, Slot};
 use crate::layers::parts::bundle::Form;
 use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::parts::shots::Lying;
