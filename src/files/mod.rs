@@ -18,6 +18,7 @@ pub mod log;
 pub mod materials;
 pub mod mesh;
 pub mod models;
+mod options;
 pub mod originals;
 pub mod outputs;
 pub mod paths;
@@ -35,37 +36,13 @@ pub mod watch;
 pub mod write;
 
 pub use limits::Limits;
+pub use options::Options;
 pub use write::write_atomic;
 
 use std::time::{SystemTime, UNIX_EPOCH};
-
-use crate::scene::check::Rules;
 
 /// The current time, in milliseconds since the epoch.
 pub(crate) fn now_ms() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.map_or(0, |since| since.as_millis().try_into().unwrap_or(u64::MAX))
-}
-
-/// What a person allows a scene to do and to consume.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Options {
-    /// How much a file may take.
-    pub limits: Limits,
-    /// Whether paths in a scene may leave its folder.
-    pub allow_outside: bool,
-}
-
-impl Options {
-    /// The rules for the check of a scene.
-    pub fn rules(&self) -> Rules {
-        let Limits { frames, memory, ref counted, .. } = self.limits;
-        Rules { allow_outside: self.allow_outside, counted: counted.clone(), frames, memory }
-    }
-
-    /// The equivalent command line options, for another process that opens the same scene.
-    pub fn arguments(&self) -> Vec<String> {
-        let limits = self.limits.settings().into_iter().flat_map(|setting| ["--limit".to_owned(), setting]);
-        limits.chain(self.allow_outside.then(|| "--allow-outside".to_owned())).collect()
-    }
 }

@@ -5,15 +5,15 @@ use serde_json::{Map, json};
 
 use super::build::unique_name;
 use super::presets::Applied;
-use super::{Document, Edit, Layer};
+use super::{Document, Edit};
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, quoted};
-use crate::layers::KINDS;
 use crate::layers::parts::materials::{List, Of, What};
 use crate::layers::parts::shots::{Laid, Laying, SeenFrom, Shot};
 use crate::layers::starts::Shown;
 use crate::layers::technique::Kind;
+use crate::layers::{KINDS, Layer};
 
 /// A picture that is to lie on a layer.
 #[derive(Clone, Debug)]

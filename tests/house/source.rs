@@ -86,7 +86,9 @@ pub fn named(text: &str) -> Vec<Named> {
         let mut words =
             code.split_whitespace().skip_while(|word| word.starts_with("pub") || *word == "in" || word.ends_with(')'));
         if words.next() != Some("use") {
-            let spoken = spoken(code).into_iter();
+            // Who may see it is not named by it: `pub(in a::b)`.
+            let seen = code.split_once("pub(in ").and_then(|(_, rest)| rest.split_once(')'));
+            let spoken = spoken(seen.map_or(code, |(_, rest)| rest)).into_iter();
             found.extend(spoken.map(|path| Named { line: at + 1, path, used: false, public: false }));
             continue;
         }
@@ -393,7 +395,7 @@ fn functions_and_circles_are_found() {
 
 #[test]
 fn the_scanner_sees_what_it_should() {
-    let table: [(&str, &[&str]); 12] = [
+    let table: [(&str, &[&str]); 13] = [
         ("use crate::base::error;", &["crate::base::error"]),
         (
             "pub(super) use crate::{base::{error, maths}, scene};",
@@ -415,6 +417,7 @@ fn the_scanner_sees_what_it_should() {
             &["h::i"],
         ),
         ("fn f() {}\n#[cfg(test)]\nmod tests { use crate::tui::x; }", &[]),
+        ("    pub(in crate::files) fn f(a: b::C) {}", &["b::C"]),
     ];
     for (text, expected) in table {
         let found: Vec<String> = paths(text).into_iter().map(|(_, path)| path).collect();

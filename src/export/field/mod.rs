@@ -1,17 +1,18 @@
 //! Vector fields as plots and tables. A plot is a list of strokes and fills that the SVG and the PNG both only draw, so
 //! that they look the same; letters are strokes too, and need no font.
 
-use kurbo::{Point, Rect, Vec2};
+use kurbo::{Point, Rect};
 
 use crate::base::pixels::Frame;
 use crate::layers::parts::marks::{self, InPlots, Shape, View};
-use crate::layers::parts::readout::{VectorField, vector};
+use crate::layers::parts::readout::VectorField;
 use crate::render::overlay::{overlay, overlays};
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
 mod legend;
 mod letters;
+mod model;
 mod raster;
 mod strokes;
 mod svg;
@@ -19,30 +20,13 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use model::{Arrow, FAINT, Plot};
 pub use raster::png;
 pub use strokes::Mark;
 pub use svg::svg;
 pub use table::csv;
 
 use strokes::{dot, draw_arrow, fill};
-
-/// A plot of a vector field.
-#[derive(Clone, Debug)]
-pub struct Plot {
-    /// Width in pixels.
-    pub width: f64,
-    /// Height in pixels.
-    pub height: f64,
-    /// The picture beneath, faint: what it shows and the part of the plot it fills.
-    pub picture: Option<(Frame, Rect)>,
-    /// What is drawn over it, from below to above.
-    pub marks: Vec<Mark>,
-    /// What it shows, in words.
-    pub title: String,
-}
-
-/// How opaque the picture beneath is.
-pub const FAINT: f64 = 0.3;
 
 /// Pixels that a plot is at least long.
 const LONG: f64 = 900.0;
@@ -52,21 +36,6 @@ const ARROWS: f64 = 42.0;
 const MARGIN: f64 = 14.0;
 /// Below the picture, for the legend.
 const LEGEND: f64 = 62.0;
-
-/// A jump vector at the center of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arrow {
-    /// The center of the pixel.
-    pub at: Point,
-    /// Its jump vector, in pixels of the image.
-    pub jump: [f32; 2],
-}
-
-impl Arrow {
-    fn vector(&self) -> Vec2 {
-        vector(self.jump)
-    }
-}
 
 /// The jump vectors of every `step`-th pixel in both directions, zone after zone, row after row.
 pub fn arrows(synth: &Synth, step: usize) -> Vec<Arrow> {

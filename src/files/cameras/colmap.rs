@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{Cameras, Reading, is_there, size, text_of};
+use super::list::{Cameras, Reading, is_there, size, text_of};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::Xy;
 use crate::base::problem::quoted;

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
-use super::{Cameras, Item, Reading, folder, is_there, numbers, size};
+use super::list::{Cameras, Item, Reading, folder, is_there, numbers, size};
 use crate::base::error::{Error, Result};
 use crate::base::problem::quoted;
 use crate::files::disk;

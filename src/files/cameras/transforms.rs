@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
-use super::{Cameras, Item, Reading, folder, is_there, size};
+use super::list::{Cameras, Item, Reading, folder, is_there, size};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::Xy;
 use crate::base::maths;

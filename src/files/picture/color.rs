@@ -7,7 +7,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::conversion::{FROM_XYZ, Profile, Table, Transfer, from_lab, multiply};
-use super::{Color, Decoded, Loaded, Model, Raw, icc};
+use super::decoded::{Color, Decoded, Loaded, Model, Raw};
+use super::icc;
 use crate::base::half::value_of_half;
 use crate::base::picture::{Channels, Picture, SRGB_8, SRGB_16, Samples};
 use crate::base::pixels::srgb_from_linear;

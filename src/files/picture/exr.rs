@@ -10,8 +10,8 @@ use exr::error::Error as ExrError;
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
 
+use super::decoded::{Color, Decoded, Model, Opened, Raw};
 use super::limits::{self, check_size};
-use super::{Color, Decoded, Model, Opened, Raw};
 use crate::base::error::{Error, Result};
 use crate::files::{Limits, paths};
 

@@ -7,8 +7,8 @@ use moxcms::{
 };
 use moxcms::{LutType, ToneReprCurve, Xyzd};
 
-use super::Model;
 use super::conversion::{Curve, D50, MOST, Profile, Shaper, Table, between, from_lab, from_lightness, mix, multiply};
+use super::decoded::Model;
 
 /// Nodes per side of the table made from a profile's table, by the number of samples per pixel.
 const NODES: [usize; MOST] = [256, 65, 33, 17];

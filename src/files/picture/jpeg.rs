@@ -11,8 +11,9 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
+use super::decoded::{Color, Decoded, Model, Opened, Raw};
 use super::limits;
-use super::{Color, Decoded, Model, Opened, Raw, icc, kinds};
+use super::{icc, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 use crate::files::limits::within;

@@ -13,10 +13,10 @@ use std::path::Path;
 use super::{Limits, mesh, paths};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
-use crate::base::picture::Picture;
 
 mod color;
 mod conversion;
+mod decoded;
 mod exr;
 mod icc;
 mod ifd;
@@ -30,116 +30,12 @@ mod tests;
 mod tiff;
 mod upright;
 
+pub use decoded::Loaded;
 pub(super) use exr::vectors;
 pub(super) use png::words;
 
+use decoded::Opened;
 use kinds::Kind;
-
-/// A picture, and what in its file could not be honoured, in words.
-#[derive(Debug)]
-pub struct Loaded {
-    /// The picture, upright.
-    pub picture: Picture,
-    /// Each completes a message that begins with the file, as "its color profile is broken and was not applied".
-    pub notes: Vec<String>,
-}
-
-/// A file whose header has been read and is within the limits.
-struct Opened {
-    /// Width and height as in the file, not turned.
-    size: (usize, usize),
-    /// The orientation by EXIF, 1 to 8.
-    orientation: u8,
-    /// The most bytes that decoding takes.
-    bytes: u64,
-    decode: Box<dyn FnOnce() -> Result<Decoded>>,
-}
-
-impl Opened {
-    fn upright(&self) -> (usize, usize) {
-        upright::size(self.size, self.orientation)
-    }
-}
-
-/// Samples as decoded, and what the file says about their color.
-struct Decoded {
-    size: (usize, usize),
-    model: Model,
-    samples: Raw,
-    color: Color,
-    notes: Vec<String>,
-}
-
-impl Decoded {
-    /// Bytes needed in addition to the samples while they are turned or converted.
-    fn takes_beside(&self, orientation: u8) -> u64 {
-        let turned = if orientation > 1 { self.samples.bytes() } else { 0 };
-        let words = matches!(self.color, Color::Icc(_)) || matches!(self.model, Model::Cmyk | Model::Lab);
-        let pixels = self.size.0 as u64 * self.size.1 as u64;
-        turned.max(if words { pixels * 8 } else { 0 })
-    }
-}
-
-/// What the samples of a pixel are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Model {
-    Grey,
-    GreyAlpha,
-    Rgb,
-    Rgba,
-    /// Inks; 0 is none.
-    Cmyk,
-    /// CIE L*a*b*; zero of a and b is the middle code.
-    Lab,
-}
-
-impl Model {
-    fn count(self) -> usize {
-        match self {
-            Model::Grey => 1,
-            Model::GreyAlpha => 2,
-            Model::Rgb | Model::Lab => 3,
-            Model::Rgba | Model::Cmyk => 4,
-        }
-    }
-
-    /// The index of the alpha sample.
-    fn alpha(self) -> Option<usize> {
-        matches!(self, Model::GreyAlpha | Model::Rgba).then(|| self.count() - 1)
-    }
-
-    fn of(count: usize) -> Option<Model> {
-        [Model::Grey, Model::GreyAlpha, Model::Rgb, Model::Rgba].into_iter().find(|model| model.count() == count)
-    }
-}
-
-/// Samples row by row. Integers have straight alpha; the others are linear and premultiplied.
-#[derive(Clone, Debug)]
-enum Raw {
-    Bytes(Vec<u8>),
-    Words(Vec<u16>),
-    /// Bits of half floats.
-    Halves(Vec<u16>),
-    Floats(Vec<f32>),
-}
-
-impl Raw {
-    fn bytes(&self) -> u64 {
-        match self {
-            Raw::Bytes(all) => all.len() as u64,
-            Raw::Words(all) | Raw::Halves(all) => all.len() as u64 * 2,
-            Raw::Floats(all) => all.len() as u64 * 4,
-        }
-    }
-}
-
-/// What a file says about the color of its integer samples.
-#[derive(Clone, Debug, PartialEq)]
-enum Color {
-    Untagged,
-    Icc(Vec<u8>),
-    Spoken(conversion::Spoken),
-}
 
 /// Reads the picture at `path` (`a.exr#beauty` is a layer of it, `a.glb#0` a picture in it), within the limits.
 ///
@@ -185,7 +81,7 @@ pub fn decode_if(
     fits: impl Fn((usize, usize)) -> Result<()>,
 ) -> Result<(Loaded, Share)> {
     let opened = open(file, place, limits)?;
-    fits(opened.upright())?;
+    fits(upright::size(opened.size, opened.orientation))?;
     let mut share = budget.take(opened.bytes, place)?;
     let orientation = opened.orientation;
     let mut decoded = (opened.decode)()?;
@@ -203,7 +99,7 @@ pub fn decode_if(
 pub fn header(file: File, place: &str, limits: &Limits) -> Result<(usize, usize)> {
     let opened = open(file, place, limits)?;
     let _none_is_kept = limits.budget().take(opened.bytes, place)?;
-    Ok(opened.upright())
+    Ok(upright::size(opened.size, opened.orientation))
 }
 
 fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {

@@ -4,8 +4,9 @@ use std::io::{BufRead, Read, Seek, SeekFrom};
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
 
+use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::kinds;
 use super::limits::{self, BESIDES_PIXELS};
-use super::{Color, Decoded, Model, Opened, Raw, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 

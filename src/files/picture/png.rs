@@ -8,7 +8,8 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use image::ImageFormat;
 
 use super::conversion::{Spoken, Transfer};
-use super::{Color, Decoded, Model, Opened, Raw, limits, plain};
+use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::{limits, plain};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 

@@ -9,12 +9,13 @@ use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
+use super::decoded::{Color, Decoded, Model, Opened, Raw};
 use super::ifd::{
     self, BITS, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, PLANES, PROFILE, Page, SAMPLES, SUBFILE,
     Told,
 };
 use super::limits::{self, check_size};
-use super::{Color, Decoded, Model, Opened, Raw, jpeg, kinds};
+use super::{jpeg, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 

@@ -1,6 +1,6 @@
 //! Turns photographs upright, by the eight orientations of EXIF.
 
-use super::Raw;
+use super::decoded::Raw;
 
 /// Width and height after turning.
 pub(super) fn size((width, height): (usize, usize), orientation: u8) -> (usize, usize) {

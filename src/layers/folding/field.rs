@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use super::anchors::{Dense, anchors, dense};
 use super::fold::{Fold, Rule};
+use super::interpolation::Cell;
 use super::interpolation::area::{Area, Stretch};
-use super::interpolation::cells::Cell;
 use super::interpolation::{Interpolation, Interpolator};
 use super::model::Zone;
 use super::outline::Outline;

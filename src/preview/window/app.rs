@@ -8,8 +8,8 @@ use winit::dpi::PhysicalSize;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::keyboard::ModifiersState;
 
-use super::Manner;
 use super::clock::Clock;
+use super::manner::Manner;
 use super::mouse::Mouse;
 use super::opened::{Opened, first_size};
 use super::own_view::OwnView;

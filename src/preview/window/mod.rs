@@ -28,6 +28,7 @@ mod input;
 mod labels;
 mod legend;
 mod libraries;
+mod manner;
 mod marks;
 mod mouse;
 mod opened;
@@ -52,7 +53,10 @@ mod worker;
 #[cfg_attr(any(not(unix), target_os = "macos"), path = "x11_none.rs")]
 mod x11;
 
+pub use manner::Manner;
 pub use worker::Load;
+
+use manner::PLACE;
 
 /// What a window is opened with.
 pub struct Setup {
@@ -67,20 +71,6 @@ pub struct Setup {
     /// Set by a signal: the window ends, interrupted.
     pub cancel: Arc<AtomicBool>,
 }
-
-/// How a window opens and behaves.
-pub struct Manner {
-    /// What the scene is called.
-    pub name: String,
-    /// The largest side of a picture that is given to the GPU, in pixels.
-    pub most: usize,
-    /// Whether it takes the keyboard when it opens, as a window does that somebody asked for.
-    pub takes_keyboard: bool,
-    /// Whether what is wrong is said on standard error too, as long as there is no picture.
-    pub complains: bool,
-}
-
-const PLACE: &str = "window";
 
 /// Opens the window and runs it until it is closed.
 ///

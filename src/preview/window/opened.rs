@@ -8,6 +8,8 @@ use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorIcon, Fullscreen, Window};
 
+use super::chrome;
+use super::manner::{Manner, PLACE};
 use super::mouse::Shape;
 use super::pass::{self, For};
 use super::screen::{Drawn, Pictures, Screen, Strokes};
@@ -16,7 +18,6 @@ use super::state::{BAR_PX, State};
 use super::text::Letters;
 use super::worker::Event;
 use super::x11::Desk;
-use super::{Manner, PLACE, chrome};
 use crate::base::error::{Error, Result};
 use crate::render::Synth;
 use crate::render::gpu::Gpu;

@@ -1,7 +1,6 @@
 //! Sends the selected rows through a program of the person's, and takes what it gives back.
 
-use super::command::{Call, Command, Done, command};
-use super::obey;
+use super::command::{Call, Command, Done, Table, command};
 use super::yanking::{counted, table};
 use crate::scene::address;
 use crate::tui::document::sheet::Sheet;
@@ -56,10 +55,10 @@ fn pipe(state: &mut State, call: &Call) -> Done {
 }
 
 /// What the program gave back, or why there is nothing.
-pub fn piped(state: &mut State, result: Result<String, String>) {
+pub fn piped(state: &mut State, commands: &'static Table, result: Result<String, String>) {
     state.outside.work = None;
     let Some(begun) = state.outside.piping.take() else { return };
-    let told = match result.and_then(|text| take(state, &begun, &text)) {
+    let told = match result.and_then(|text| take(state, commands, &begun, &text)) {
         Ok(()) => Ok(format!("{} came back from {}", counted(begun.rows.len(), "row"), begun.program)),
         Err(why) => Err(format!("pipe: {why}")),
     };
@@ -67,7 +66,7 @@ pub fn piped(state: &mut State, result: Result<String, String>) {
 }
 
 /// Takes a table into the rows that were sent, wherever the cursor is now.
-fn take(state: &mut State, begun: &Piping, text: &str) -> Done {
+fn take(state: &mut State, commands: &'static Table, begun: &Piping, text: &str) -> Done {
     if state.scene.revision() != begun.revision {
         let sheet = Sheet::of(state.document(), &begun.node).with(begun.columns.clone());
         if rows::write(state.document(), &sheet, &begun.rows) != begun.sent {
@@ -97,7 +96,7 @@ fn take(state: &mut State, begun: &Piping, text: &str) -> Done {
     table.insert(0, header);
     let place = one_word(&address::address(state.document(), &begun.node));
     let line = format!("fill {place} {} {}", rows::ranges(&begun.rows), serde_json::Value::from(table));
-    obey(state, &line, None)
+    commands.obey(state, &line, None)
 }
 
 /// The columns of rows that come back without a header: all of them, or so many from that of the cursor on.

@@ -49,7 +49,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             }
             report(state, result);
         }
-        Event::Piped(result) => piping::piped(state, result),
+        Event::Piped(result) => piping::piped(state, &commands::TABLE, result),
         Event::Saved(result) => {
             if state.scene.is_saved() {
                 state.outside.file = None;

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
@@ -13,20 +13,21 @@ use crate::files::limits::within;
 
 mod accessor;
 mod document;
+mod nodes;
 mod pictures;
 mod source;
 
 pub(super) use pictures::{embedded, named, parts};
 pub(super) use source::With;
 
-use document::{Material, Node, Primitive, TextureInfo};
+use document::{Material, Primitive, TextureInfo};
 use source::Source;
 
 /// The lists and the triangles of a file, what in it is not supported, and the file of its picture, relative to its own.
 pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Option<String>)> {
     let With { place, limits, budget, .. } = with;
     let source = Source::of(bytes, with)?;
-    let nodes = nodes(&source)?;
+    let nodes = nodes::nodes(&source)?;
     let meshes: BTreeSet<usize> = nodes.iter().filter_map(|(node, _)| node.mesh).collect();
     let shapes = meshes.into_iter().map(|mesh| Ok((mesh, Shape::of(&source, mesh)?)));
     let shapes = shapes.collect::<Result<BTreeMap<usize, Shape>>>()?;
@@ -157,55 +158,6 @@ impl<'a> Shape<'a> {
         }
         Ok(shape)
     }
-}
-
-/// The nodes of the default scene, each before its children, and where they are.
-fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>> {
-    let all = &source.document.nodes;
-    let mut ahead: Vec<(usize, DAffine3)> = Vec::new();
-    let queue = |nodes: &[usize], transform, ahead: &mut Vec<_>| {
-        ahead.extend(nodes.iter().rev().map(|&node| (node, transform)));
-    };
-    queue(&roots(source)?, DAffine3::IDENTITY, &mut ahead);
-    let mut seen = vec![false; all.len()];
-    let mut found = Vec::new();
-    while let Some((index, transform)) = ahead.pop() {
-        let node = source.get(all, index, "node")?;
-        // A tree: neither a circle nor a node in two places, which could multiply without end.
-        if std::mem::replace(&mut seen[index], true) {
-            return Err(source.wrong(format!("node {index} is in the scene twice")));
-        }
-        let transform = transform * own_transform(node);
-        found.push((node, transform));
-        queue(&node.children, transform, &mut ahead);
-    }
-    Ok(found)
-}
-
-/// The nodes that the default scene begins with: of a file without scenes those that are nobody's children.
-fn roots(source: &Source) -> Result<Vec<usize>> {
-    let document = &source.document;
-    if document.scenes.is_empty() && document.scene.is_none() {
-        let mut child = vec![false; document.nodes.len()];
-        for &node in document.nodes.iter().flat_map(|node| &node.children) {
-            source.get(&document.nodes, node, "node")?;
-            child[node] = true;
-        }
-        return Ok((0..child.len()).filter(|&node| !child[node]).collect());
-    }
-    Ok(source.get(&document.scenes, document.scene.unwrap_or(0), "scene")?.nodes.clone())
-}
-
-fn own_transform(node: &Node) -> DAffine3 {
-    if let Some(matrix) = &node.matrix {
-        return DAffine3::from_mat4(DMat4::from_cols_array(matrix));
-    }
-    let rotation = node.rotation.map(DQuat::from_array).filter(|rotation| rotation.length_squared() > 0.0);
-    DAffine3::from_scale_rotation_translation(
-        node.scale.map_or(DVec3::ONE, DVec3::from_array),
-        rotation.map_or(DQuat::IDENTITY, DQuat::normalize),
-        node.translation.map_or(DVec3::ZERO, DVec3::from_array),
-    )
 }
 
 impl<'a> Piece<'a> {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::document::Text;
-use super::nodes;
+use super::nodes::nodes;
 use super::source::{Source, With, data};
 use crate::base::budget::Share;
 use crate::base::error::{Error, Result};

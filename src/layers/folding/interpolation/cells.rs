@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::area::{Area, Stretch};
 use super::chebyshev::{Chebyshev, NODES, Nodes, Shares, along, row_of};
 use super::kernel::{Apart, Fate, Kernel, Pair, Source};
-use super::{AT_ANCHOR_PX, Method};
+use super::method::{AT_ANCHOR_PX, Cell, Method};
 use crate::base::simd::vectorised;
 
 /// Pixels along a side of the cells whose pixels are evaluated at once: the larger, and the smaller where many anchors
@@ -27,34 +27,6 @@ const BASES: u32 = 128;
 
 /// With fewer anchors than this all are summed directly.
 const FEW: usize = 16;
-
-/// A cell, and what the anchors add there.
-#[derive(Clone, Debug)]
-pub struct Cell {
-    area: Area,
-    /// Sums over the far anchors, at the nodes.
-    nodes: Vec<Nodes>,
-    /// Indices of the near anchors, ascending.
-    near: Vec<u32>,
-    /// Bounds the error of the sums ([`Kernel::doubt`]).
-    doubt: f64,
-}
-
-impl Cell {
-    /// The pixels in it.
-    pub fn area(&self) -> &Area {
-        &self.area
-    }
-
-    /// How many bytes it takes.
-    pub fn bytes(&self) -> u64 {
-        (size_of::<Self>() + size_of_val(&self.nodes[..]) + size_of_val(&self.near[..])) as u64
-    }
-
-    fn size(&self) -> u32 {
-        self.area.to[0] - self.area.from[0]
-    }
-}
 
 /// Shares of the nodes in the pixels of a leaf, across and down.
 struct Leaf<const S: usize>([Shares<S>; 2]);

@@ -12,9 +12,11 @@ use super::anchor::Anchor;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use area::{Area, Stretch};
-use cells::{Cell, Cells};
+use cells::Cells;
 use inverse_distance::{InverseSquare, Modified, Power, Steep};
 use kernel::{Kernel, Source, sources, spread};
+pub use method::Cell;
+use method::Method;
 use rigid::Rigid;
 use thin_plate::{NoPlate, Plate};
 
@@ -23,6 +25,7 @@ pub mod cells;
 mod chebyshev;
 mod inverse_distance;
 mod kernel;
+mod method;
 mod rigid;
 mod thin_plate;
 
@@ -80,19 +83,6 @@ impl Default for Interpolation {
 
 fn two() -> f64 {
     2.0
-}
-
-/// A pixel closer to an anchor than this, in pixels, takes that anchor's vector.
-const AT_ANCHOR_PX: f64 = 1e-6;
-
-/// A method, prepared for the anchors of a zone.
-trait Method: Send + Sync {
-    /// The cells that `area` touches, from left to right and down; `None` once `stopped`.
-    fn cells(&self, area: &Area, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>>;
-
-    /// Tells the jump vectors of the pixels that are in `area` and in `cell`, which [`Method::cells`] made, without parts
-    /// that are not `wanted`.
-    fn fill(&self, cell: &Cell, area: &Area, wanted: &dyn Fn(&Area) -> bool, tell: &mut dyn FnMut(Stretch));
 }
 
 /// The anchors of a zone, prepared for interpolation.

@@ -8,7 +8,6 @@ use serde_json::Value;
 use super::model::PictureLayer;
 use super::outline::Outline;
 use crate::base::pointer::Pointer;
-use crate::base::text::short;
 use crate::layers::technique::Turned;
 
 mod outlines;
@@ -50,9 +49,4 @@ pub fn outline_as(old: &Outline, to: &str) -> Option<Value> {
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
     T::deserialize(value).ok()
-}
-
-/// A number for messages.
-fn told(x: f64) -> String {
-    short(x, 2)
 }

@@ -4,14 +4,15 @@
 use kurbo::{PathEl, Point, Rect, Shape};
 use serde_json::{Value, json};
 
-use super::{Turned, told};
 use crate::base::crossings::self_crossing;
 use crate::base::geometry::{FLATNESS_PX, Polygon, Xy, point};
 use crate::base::maths::{self, TAU};
 use crate::base::number;
+use crate::base::text::short;
 use crate::layers::folding::neat::{pair, px};
 use crate::layers::folding::outline::Outline;
 use crate::layers::shapes::node::{bezier, written};
+use crate::layers::technique::Turned;
 
 /// How far the straight sides may be from the curve that they replace.
 const WITHIN_PX: f64 = 0.05;
@@ -101,7 +102,7 @@ fn path(nodes: Vec<Value>) -> Turned {
 
 fn straightened(points: &[Point], kind: &str) -> Turned {
     let count = points.len();
-    polygon(points).but(format!("the {kind} is now {count} straight sides, within {} px of it", told(WITHIN_PX)))
+    polygon(points).but(format!("the {kind} is now {count} straight sides, within {} px of it", short(WITHIN_PX, 2)))
 }
 
 /// Points on an ellipse from its rightmost one, clockwise on the screen.
@@ -152,7 +153,7 @@ fn area_lost(old: &Outline, new: f64, kept: &str) -> Option<String> {
         _ => area(&polygon),
     };
     let differs = (new - area).abs() > 1e-6 * area.max(1.0);
-    differs.then(|| format!("only {kept}: {} px² became {}", told(area), told(new)))
+    differs.then(|| format!("only {kept}: {} px² became {}", short(area, 2), short(new, 2)))
 }
 
 fn area(polygon: &Polygon) -> f64 {

@@ -2,11 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::Turned;
 use crate::base::number::rounded;
 use crate::layers::folding::neat::ratio;
 use crate::layers::folding::position::{Position, Segment};
 use crate::layers::keyframes::Between;
+use crate::layers::technique::Turned;
 
 /// Keyframes per cycle of a function.
 const A_CYCLE: f64 = 8.0;

@@ -5,15 +5,17 @@
 use std::mem::discriminant;
 
 use kurbo::{Affine, Point, Rect, Vec2};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::{Turned, told};
 use crate::base::geometry::point;
+use crate::base::text::short;
 use crate::layers::folding::anchors::{given, nearest, transform};
 use crate::layers::folding::counts;
 use crate::layers::folding::model::Zone;
 use crate::layers::folding::neat::{pair, ratio};
 use crate::layers::folding::tools::{Keeps, Tool, fresh};
+use crate::layers::technique::Turned;
 
 /// The most points, vertices or places that a tool becomes; if there are more, some are left out, evenly.
 const MOST: usize = 10_000;
@@ -24,7 +26,7 @@ const SAME_PX: f64 = 1e-6;
 /// The tool of `zone` turned into the kind `to`; `None` if it is of that kind already, or there is no such kind.
 pub fn turned(zone: &Zone, old: &Tool, to: &str) -> Option<Turned> {
     let bounds = zone.outline.polygon().bounds();
-    let new: Tool = super::read(&fresh(to, bounds)?)?;
+    let new: Tool = Tool::deserialize(fresh(to, bounds)?).ok()?;
     if discriminant(&new) == discriminant(old) {
         return None;
     }
@@ -244,12 +246,12 @@ impl Turning<'_> {
 
     /// Adds how far the new transform is from the old one.
     fn compared(&self, old: Affine, tool: Value) -> Turned {
-        let new = super::read(&tool).and_then(|tool| transform(&tool)).unwrap_or_default();
+        let new = Tool::deserialize(&tool).ok().and_then(|tool| transform(&tool)).unwrap_or_default();
         let Rect { x0, y0, x1, y1 } = self.bounds;
         let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from);
         let most = corners.into_iter().map(|q| (old * q - new * q).hypot()).fold(0.0, f64::max);
         let kind = tool["tool"].as_str().unwrap_or_default().to_owned();
-        let lost = format!("no {kind} is that {}: jump vectors differ by up to {} px", self.kind, told(most));
+        let lost = format!("no {kind} is that {}: jump vectors differ by up to {} px", self.kind, short(most, 2));
         // Smaller differences are only rounding: numbers are written with few decimals.
         let told = most > 0.01;
         Turned::whole(tool).but_if(told.then_some(lost))

@@ -1,0 +1,56 @@
+//! The nodes of a scene, and where they are.
+
+use glam::{DAffine3, DMat4, DQuat, DVec3};
+
+use super::document::Node;
+use super::source::Source;
+use crate::base::error::Result;
+
+/// The nodes of the default scene, each before its children, and where they are.
+pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>> {
+    let all = &source.document.nodes;
+    let mut ahead: Vec<(usize, DAffine3)> = Vec::new();
+    let queue = |nodes: &[usize], transform, ahead: &mut Vec<_>| {
+        ahead.extend(nodes.iter().rev().map(|&node| (node, transform)));
+    };
+    queue(&roots(source)?, DAffine3::IDENTITY, &mut ahead);
+    let mut seen = vec![false; all.len()];
+    let mut found = Vec::new();
+    while let Some((index, transform)) = ahead.pop() {
+        let node = source.get(all, index, "node")?;
+        // A tree: neither a circle nor a node in two places, which could multiply without end.
+        if std::mem::replace(&mut seen[index], true) {
+            return Err(source.wrong(format!("node {index} is in the scene twice")));
+        }
+        let transform = transform * own_transform(node);
+        found.push((node, transform));
+        queue(&node.children, transform, &mut ahead);
+    }
+    Ok(found)
+}
+
+/// The nodes that the default scene begins with: of a file without scenes those that are nobody's children.
+fn roots(source: &Source) -> Result<Vec<usize>> {
+    let document = &source.document;
+    if document.scenes.is_empty() && document.scene.is_none() {
+        let mut child = vec![false; document.nodes.len()];
+        for &node in document.nodes.iter().flat_map(|node| &node.children) {
+            source.get(&document.nodes, node, "node")?;
+            child[node] = true;
+        }
+        return Ok((0..child.len()).filter(|&node| !child[node]).collect());
+    }
+    Ok(source.get(&document.scenes, document.scene.unwrap_or(0), "scene")?.nodes.clone())
+}
+
+fn own_transform(node: &Node) -> DAffine3 {
+    if let Some(matrix) = &node.matrix {
+        return DAffine3::from_mat4(DMat4::from_cols_array(matrix));
+    }
+    let rotation = node.rotation.map(DQuat::from_array).filter(|rotation| rotation.length_squared() > 0.0);
+    DAffine3::from_scale_rotation_translation(
+        node.scale.map_or(DVec3::ONE, DVec3::from_array),
+        rotation.map_or(DQuat::IDENTITY, DQuat::normalize),
+        node.translation.map_or(DVec3::ZERO, DVec3::from_array),
+    )
+}

@@ -1,0 +1,16 @@
+//! How a window opens and behaves, and what messages call it.
+
+/// How a window opens and behaves.
+pub struct Manner {
+    /// What the scene is called.
+    pub name: String,
+    /// The largest side of a picture that is given to the GPU, in pixels.
+    pub most: usize,
+    /// Whether it takes the keyboard when it opens, as a window does that somebody asked for.
+    pub takes_keyboard: bool,
+    /// Whether what is wrong is said on standard error too, as long as there is no picture.
+    pub complains: bool,
+}
+
+/// What messages call the window.
+pub const PLACE: &str = "window";
