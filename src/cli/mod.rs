@@ -13,9 +13,8 @@ use clap::{CommandFactory, Parser};
 use crate::base::error::{Error, Result};
 use crate::base::{system, text};
 use crate::files;
-use crate::ops::Context;
-use crate::ops::command_line::CommandLine;
 use crate::ops::demo;
+use crate::ops::{CommandLine, Context};
 #[cfg(feature = "tui")]
 use crate::{ops::Command, tui};
 

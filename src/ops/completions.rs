@@ -3,11 +3,9 @@
 
 use std::path::Path;
 
-use clap::CommandFactory;
 use clap_complete::Shell;
 
 use super::Context;
-use super::command_line::CommandLine;
 use crate::base::error::{Error, Result};
 use crate::files::{self, profiles};
 use crate::scene::{Document, complete};
@@ -23,8 +21,8 @@ pub struct Args {
     of: Option<Vec<String>>,
 }
 
-/// Prints the completions.
-pub fn run(args: Args, context: &mut Context) -> Result<()> {
+/// Prints the completions of the whole command line.
+pub fn run(args: Args, mut whole: clap::Command, context: &mut Context) -> Result<()> {
     if let Some(words) = args.of {
         let words: Vec<String> = words.iter().map(|word| unquoted(word)).collect();
         let names = names(&words).ok_or_else(|| Error::Usage("the shell itself completes this".into()))?;
@@ -32,7 +30,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     }
     let shell = args.shell.unwrap_or(Shell::Bash);
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut CommandLine::command(), "plica", &mut script);
+    clap_complete::generate(shell, &mut whole, "plica", &mut script);
     let script = String::from_utf8_lossy(&script);
     context.print(format_args!("{}{}", script.trim_end(), own(shell)))
 }

@@ -1,13 +1,15 @@
 //! One file per subcommand: its arguments and its function, used by the command line and by the editor's `:`.
-//! [`Command`] is the only list of them.
+//! [`Command`] is the only list of them; [`CommandLine`] is all that clap knows: the top of the program parses it, completions
+//! and the manual print it.
 
-use clap::{FromArgMatches, Subcommand};
+use std::path::PathBuf;
+
+use clap::{CommandFactory, FromArgMatches, Subcommand};
 
 use crate::base::error::{Error, Result};
 
 pub mod attach;
 pub mod check;
-pub mod command_line;
 pub mod completions;
 mod context;
 pub mod demo;
@@ -36,6 +38,24 @@ mod watched;
 mod writing;
 
 pub use context::{Context, Open, Progress, left};
+
+const EXAMPLES: &str = "\
+Examples:
+  plica edit photo.png                       make a scene beside the picture and edit it
+  plica demo                                 open a built-in demo scene
+  plica render scene.plica.json -o eye.gif   write the animation";
+
+/// Animates still pictures from the keyboard.
+#[derive(clap::Parser)]
+#[command(name = "plica", version, about, after_help = EXAMPLES)]
+pub struct CommandLine {
+    /// Write the log here instead of to the state folder
+    #[arg(long, global = true, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// What to do; `None` prints the short help.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
 
 /// What `plica` can be asked to do.
 #[derive(clap::Subcommand)]
@@ -88,8 +108,8 @@ impl Command {
             Command::Synth(args) => synth::run(args, context),
             Command::Field(args) => field::run(args, context),
             Command::Schema(args) => schema::run(args, context),
-            Command::Completions(args) => completions::run(args, context),
-            Command::Man(args) => man::run(args, context),
+            Command::Completions(args) => completions::run(args, CommandLine::command(), context),
+            Command::Man(args) => man::run(args, CommandLine::command(), context),
             Command::Attach(args) => attach::run(args, context),
             #[cfg(feature = "window")]
             Command::View(args) => view::run(args, context),

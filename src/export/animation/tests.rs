@@ -1,13 +1,14 @@
 //! Every format decoded again, by decoders that know nothing of how it was written.
 
 use std::fs;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::sync::{Arc, Mutex};
 
 use image::AnimationDecoder;
 
+use super::rate::Rate;
 use super::*;
-use crate::base::pixels::Grid;
+use crate::base::pixels::{Frame, Grid};
 
 /// A bright square that wanders over a slope, with a transparent corner that comes and goes.
 fn frames(width: usize, height: usize, count: u64) -> Vec<Frame> {

@@ -7,6 +7,8 @@ use serde_json::json;
 use tempfile::{TempDir, tempdir};
 
 use super::*;
+use crate::files::Limits;
+use crate::layers::parts::shots::Shot;
 
 /// The camera that every list here holds: at (1, 2, 3), turned a little.
 fn camera() -> Shot {

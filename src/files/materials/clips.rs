@@ -9,8 +9,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::named::{Named, frames};
+use super::sources::{Allowed, Place, Sources, decode_picture, problem};
 use super::store::{Loaded, Store};
-use super::{Allowed, Place, Sources, decode_picture, problem};
 use crate::base::budget::Share;
 use crate::base::clip::Clip;
 use crate::base::error::{Error, Result};

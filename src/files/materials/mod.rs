@@ -1,19 +1,14 @@
 //! Loads the files that a scene names, pictures, meshes, clips and vector fields, in parallel. A cache keeps what did not change, and
 //! the last good version of what cannot be read just now.
 
-use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
-use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use rayon::prelude::*;
-
-use super::fields::{self, VectorField};
-use super::{Limits, Options, mesh, picture};
-use crate::base::budget::{Budget, Share};
-use crate::base::error::{Error, Result};
+use super::fields::VectorField;
+use super::{Options, picture};
+use crate::base::budget::Budget;
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
@@ -24,18 +19,21 @@ use crate::scene::{Scene, check};
 mod clips;
 mod masks;
 mod named;
+mod sources;
 mod store;
 #[cfg(test)]
 mod tests;
 
 pub use named::Watched;
 pub(super) use named::{ahead, paths};
+pub use sources::Copies;
 pub(super) use store::Stamp;
 
 use clips::Clips;
 use masks::Masked;
 use named::Named;
-use store::{Loaded, Store};
+use sources::{Allowed, Place, Sources, decode_field, decode_mesh, decode_picture, problem};
+use store::Store;
 
 /// What was loaded before, by path, for as long as the scene names it.
 #[derive(Debug, Default)]
@@ -70,7 +68,7 @@ pub fn load(
     scene: &Scene,
     options: &Options,
     cache: &mut Cache,
-) -> std::result::Result<(Materials, Vec<Problem>), Vec<Problem>> {
+) -> Result<(Materials, Vec<Problem>), Vec<Problem>> {
     let (materials, problems) = gather(scene_path, scene, options, cache);
     let failed = problems.iter().any(|problem| problem.severity == Severity::Error);
     if failed { Err(problems) } else { Ok((materials, problems)) }
@@ -81,10 +79,6 @@ pub fn load(
 pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Materials, Vec<Problem>) {
     Sources { place: Place::Beside(scene_path), options }.gather(scene, cache)
 }
-
-/// Copies of the files that a scene on another machine names, by the path as written in the scene; or why there is no
-/// copy.
-pub type Copies = BTreeMap<String, std::result::Result<PathBuf, String>>;
 
 /// As [`gather`], for a scene on another machine.
 pub fn gather_copies(
@@ -118,19 +112,6 @@ pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<S
         problems.extend(opened.err().map(|error| problem(&named, error)));
     }
     (sizes, problems)
-}
-
-/// Where the files are.
-enum Place<'a> {
-    /// Beside the scene, or wherever its paths lead.
-    Beside(&'a Path),
-    /// On this machine, while the scene is on another.
-    Copies(&'a Copies),
-}
-
-struct Sources<'a> {
-    place: Place<'a>,
-    options: &'a Options,
 }
 
 impl Sources<'_> {
@@ -176,153 +157,5 @@ impl Sources<'_> {
                 problems.push(Problem { hint, ..told });
             }
         }
-    }
-
-    /// The key of a file in the cache.
-    fn key(&self, path: &str) -> PathBuf {
-        match self.place {
-            // Layers of one file are separate pictures.
-            Place::Beside(scene_path) => match super::paths::layer_of(path) {
-                None => super::paths::beside(scene_path, path),
-                Some(layer) => super::paths::beside(scene_path, path).join(format!("#{layer}")),
-            },
-            Place::Copies(_) => path.into(),
-        }
-    }
-
-    fn open(&self, path: &str) -> Result<File> {
-        match self.place {
-            Place::Beside(scene_path) => super::paths::open(scene_path, path, self.options),
-            Place::Copies(copies) => match copies.get(path) {
-                Some(Ok(copy)) => super::paths::open_named(copy),
-                Some(Err(why)) => Err(Error::at(path, why)),
-                None => Err(Error::at(path, "is not here yet")),
-            },
-        }
-    }
-
-    fn load<T: Send + Sync>(
-        &self,
-        named: &[Named],
-        allowed: Allowed,
-        decode: Decode<T>,
-        store: &mut Store<T>,
-        problems: &mut Vec<Problem>,
-    ) -> BTreeMap<String, Arc<T>> {
-        // Each file is decoded once, however often it is named.
-        let files: BTreeMap<PathBuf, &str> = named.iter().map(|named| (self.key(named.path), named.path)).collect();
-        allowed.expect(files.len());
-        let loaded: HashMap<PathBuf, Result<Loaded<T>>> = files
-            .into_par_iter()
-            .map(|(file, path)| {
-                let loaded = self.load_one(path, allowed, decode, store.get(&file));
-                allowed.progress.iter().for_each(|progress| progress.done(1));
-                (file, loaded)
-            })
-            .collect();
-        let mut kept = Store::new();
-        let mut materials = BTreeMap::new();
-        for named in named {
-            let file = self.key(named.path);
-            let entry = match &loaded[&file] {
-                Ok(entry) => {
-                    let warning = |note: &String| Problem::warning(&named.at, format!("{}: {note}", named.path));
-                    problems.extend(entry.notes.iter().map(warning));
-                    Some(entry.clone())
-                }
-                Err(error) => {
-                    problems.push(problem(named, error));
-                    store.get(&file).cloned()
-                }
-            };
-            if let Some(entry) = entry {
-                materials.insert(named.key.to_owned(), entry.value.clone());
-                kept.insert(file, entry);
-            }
-        }
-        *store = kept;
-        materials
-    }
-
-    fn load_one<T>(
-        &self,
-        path: &str,
-        allowed: Allowed,
-        decode: Decode<T>,
-        old: Option<&Loaded<T>>,
-    ) -> Result<Loaded<T>> {
-        if allowed.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
-            return Err(Error::Interrupted);
-        }
-        let (file, stamp) = self.open_stamped(path)?;
-        let same = |(path, stamp): &(String, Stamp)| self.open_stamped(path).is_ok_and(|(_, now)| now == *stamp);
-        if let Some(old) = old.filter(|old| old.stamp == stamp && old.beside.iter().all(same)) {
-            return Ok(old.clone());
-        }
-        let beside = RefCell::new(Vec::new());
-        let sibling = |name: &str| {
-            let path = super::paths::sibling(path, name);
-            let (file, stamp) = self.open_stamped(&path)?;
-            beside.borrow_mut().push((path, stamp));
-            Ok(file)
-        };
-        let (value, notes, share) = decode(file, path, allowed, &sibling)?;
-        let (notes, share) = (notes.into(), Arc::new(share));
-        Ok(Loaded { stamp, beside: beside.take().into(), value: Arc::new(value), notes, share })
-    }
-
-    fn open_stamped(&self, path: &str) -> Result<(File, Stamp)> {
-        let file = self.open(path)?;
-        let stamp = Stamp::of(&file).map_err(|error| Error::at(path, error))?;
-        Ok((file, stamp))
-    }
-}
-
-/// What loading may consume, the flag that cancels it, and how far it is.
-#[derive(Clone, Copy)]
-struct Allowed<'a> {
-    options: &'a Options,
-    limits: &'a Limits,
-    budget: &'a Budget,
-    stop: Option<&'a AtomicBool>,
-    progress: Option<&'a Progress>,
-}
-
-impl Allowed<'_> {
-    fn expect(&self, files: usize) {
-        self.progress.iter().for_each(|progress| progress.expect(files as u64));
-    }
-}
-
-/// Reads an open file; the path is its name in messages, and the last is for files that it names. Also returns what in
-/// is not supported in it, and the memory that it takes.
-type Decode<'a, T> = &'a (dyn Fn(File, &str, Allowed, mesh::Opener) -> Result<(T, Vec<String>, Share)> + Sync);
-
-fn decode_mesh(file: File, place: &str, allowed: Allowed, sibling: mesh::Opener) -> Result<(Mesh, Vec<String>, Share)> {
-    mesh::decode(file, place, allowed.options, allowed.budget, sibling)
-}
-
-fn decode_picture(file: File, place: &str, allowed: Allowed, _: mesh::Opener) -> Result<(Picture, Vec<String>, Share)> {
-    let (found, share) = picture::decode(file, place, allowed.limits, allowed.budget)?;
-    Ok((found.picture, found.notes, share))
-}
-
-fn decode_field(
-    file: File,
-    place: &str,
-    allowed: Allowed,
-    _: mesh::Opener,
-) -> Result<(VectorField, Vec<String>, Share)> {
-    let (field, share) = fields::decode(file, place, allowed.limits, allowed.budget)?;
-    Ok((field, Vec::new(), share))
-}
-
-fn problem(named: &Named, error: impl std::borrow::Borrow<Error>) -> Problem {
-    match error.borrow() {
-        Error::Failed { place, what, cure } => {
-            let problem = Problem::error(&named.at, format!("{place}: {what}"));
-            cure.iter().fold(problem, |problem, cure| problem.hint(cure))
-        }
-        other => Problem::error(&named.at, other.to_string()),
     }
 }

@@ -6,11 +6,9 @@ mod scene;
 
 use std::io;
 
-use clap::CommandFactory;
 use clap_mangen::Man;
 
 use super::Context;
-use super::command_line::CommandLine;
 use crate::base::error::{Error, Result};
 
 /// Print the manual
@@ -33,10 +31,10 @@ enum Page {
     Keys,
 }
 
-/// Prints a page in roff, for `man -l -`.
-pub fn run(args: Args, context: &mut Context) -> Result<()> {
+/// Prints a page in roff, for `man -l -`, that of the whole command line first.
+pub fn run(args: Args, whole: clap::Command, context: &mut Context) -> Result<()> {
     let text = match args.page {
-        Page::Plica => page().map_err(|e| Error::at("the manual", e))?,
+        Page::Plica => page(whole).map_err(|e| Error::at("the manual", e))?,
         Page::Scene => scene::page(),
         Page::Keys => keys::page(),
     };
@@ -74,8 +72,7 @@ const FILES: &[(&str, &str)] = &[
     (".NAME.journal", "what was done to it, for undo and recovery; hidden, beside the scene"),
 ];
 
-fn page() -> io::Result<String> {
-    let mut command = CommandLine::command();
+fn page(mut command: clap::Command) -> io::Result<String> {
     command.build();
     let mut page = Vec::new();
     let whole = Man::new(command.clone());
@@ -129,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_manual_has_every_exit_status_and_all_that_counts_of_the_environment() {
-        let page = page().unwrap();
+        let page = page(<crate::ops::CommandLine as clap::CommandFactory>::command()).unwrap();
         for error in [Error::at("a", "b"), Error::Usage(String::new()), Error::Interrupted] {
             assert!(STATUS.iter().any(|(status, _)| *status == error.exit_status().to_string()), "{error:?}");
         }
@@ -140,7 +137,7 @@ mod tests {
 
     #[test]
     fn the_manual_has_the_table_of_outputs() {
-        let page = page().unwrap();
+        let page = page(<crate::ops::CommandLine as clap::CommandFactory>::command()).unwrap();
         let render = page.split(".SH \"PLICA RENDER\"").nth(1).unwrap();
         let table = render.split(".SS OUTPUTS\n.nf\n").nth(1).unwrap().split(".fi").next().unwrap();
         let plain = table.replace("\\&", "").replace("\\-", "-").replace("\\e", "\\");

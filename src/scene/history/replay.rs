@@ -4,7 +4,8 @@
 
 use serde_json::Value;
 
-use super::{History, Stamp, Tree};
+use super::past::History;
+use super::tree::{Stamp, Tree};
 use crate::base::problem::Problem;
 use crate::scene::check::Rules;
 use crate::scene::edit::Copies;

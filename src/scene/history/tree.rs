@@ -1,8 +1,16 @@
 //! The states that a document has been in, as a tree: an edit after an undo begins another branch, and no state is ever
 //! forgotten. States are numbered in the order in which they were created; the first is 0.
 
-use super::Stamp;
 use crate::scene::Edit;
+
+/// When and how an edit was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stamp {
+    /// Milliseconds since the epoch.
+    pub time_ms: u64,
+    /// Whether by a key held down: if it only replaces what the edit before it wrote, the two become one step.
+    pub held: bool,
+}
 
 /// One step: it leads from the state `before` to the state with the step's number.
 #[derive(Clone, Debug)]

@@ -2,53 +2,12 @@
 
 use kurbo::Point;
 
+pub use super::picture::Looking;
 use super::{State, painting};
-use crate::layers::parts::picking::{Picking, Picks, Sight};
+use crate::layers::parts::picking::{Picking, Picks};
 use crate::scene::field;
 use crate::tui::graphics::clip::ClipView;
 use crate::tui::graphics::viewport::Viewport;
-
-/// What is looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Looking {
-    /// The layer whose pictures are picked.
-    pub layer: usize,
-    /// The frame of its clip.
-    pub frame: usize,
-    /// Whether what is cut out of the frame is seen, over black.
-    pub cut: bool,
-    /// Whether the sheet of all that is cut out is seen.
-    pub sheet: bool,
-    /// How many frames there are.
-    pub frames: usize,
-    /// How many of them what is picked is followed through.
-    pub followed: usize,
-    /// The side of the square that is picked, in pixels.
-    pub side: f64,
-}
-
-impl Looking {
-    /// The first frame of a layer's clip.
-    pub fn at(layer: usize) -> Looking {
-        Looking { layer, frame: 0, cut: false, sheet: false, frames: 1, followed: 1, side: 1.0 }
-    }
-
-    /// Why what is picked in the frame that is seen cannot be followed, if it cannot.
-    pub fn unfollowed(self) -> Option<String> {
-        let Looking { frame, frames, followed, .. } = self;
-        (frame + followed > frames)
-            .then(|| format!("a track of {followed} frames would pass the clip's end ({frames})"))
-    }
-
-    /// What is seen.
-    pub fn sight(self) -> Sight {
-        match self {
-            Looking { sheet: true, .. } => Sight::Sheet,
-            Looking { cut: true, frame, .. } => Sight::Cut(frame),
-            Looking { frame, .. } => Sight::Frame(frame),
-        }
-    }
-}
 
 /// Where the layer that the tree's cursor is in has its picks, and whether the cursor is on the node for them.
 pub fn picks(state: &State) -> Option<(usize, Picks, bool)> {

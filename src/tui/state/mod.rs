@@ -6,6 +6,7 @@ pub mod cursor;
 pub mod entry;
 pub mod finding;
 pub mod kept;
+mod locked;
 pub mod looking;
 pub mod memory;
 pub mod outside;

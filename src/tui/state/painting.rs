@@ -5,6 +5,7 @@ use kurbo::Point;
 use serde_json::Value;
 
 use super::State;
+pub use super::picture::{ALL, Painting, Sees};
 use crate::base::geometry::farther;
 use crate::base::maths::{cos, sin};
 use crate::layers::parts::shots::{Put, SeenFrom};
@@ -12,38 +13,6 @@ use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{Ball, fit};
 use crate::tui::graphics::sight::Sight;
 use crate::tui::graphics::viewport::Viewport;
-
-/// The three views.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sees {
-    /// The frame.
-    #[default]
-    Results,
-    /// A picture that lies on the mesh, over what its camera sees.
-    Painting,
-    /// The mesh with the cameras of all of them, from elsewhere.
-    Select,
-}
-
-/// The views, in the order in which one goes from one to the next.
-pub const ALL: [Sees; 3] = [Sees::Results, Sees::Painting, Sees::Select];
-
-/// How one paints.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Painting {
-    /// Which view is shown.
-    pub sees: Sees,
-    /// How much of the picture is shown over what is beneath, from 0 to 1.
-    pub share: f64,
-    /// How far one has gone round what is selected from, in degrees to the right and up.
-    pub around: (f64, f64),
-}
-
-impl Default for Painting {
-    fn default() -> Self {
-        Painting { sees: Sees::default(), share: 0.5, around: (0.0, 0.0) }
-    }
-}
 
 /// How near to the poles one goes, in degrees.
 const HIGHEST: f64 = 85.0;

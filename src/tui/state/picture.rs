@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
 
-use super::looking::Looking;
-use super::painting::Painting;
+use crate::layers::parts::picking::Sight;
 use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
@@ -93,5 +92,79 @@ impl Picture {
         let moved = self.cursor + by;
         let (w, h) = self.size.map_or((1e6, 1e6), |(w, h)| (w as f64, h as f64));
         self.cursor = Point::new(moved.x.clamp(0.5, (w - 0.5).max(0.5)), moved.y.clamp(0.5, (h - 0.5).max(0.5)));
+    }
+}
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Looking {
+    /// The layer whose pictures are picked.
+    pub layer: usize,
+    /// The frame of its clip.
+    pub frame: usize,
+    /// Whether what is cut out of the frame is seen, over black.
+    pub cut: bool,
+    /// Whether the sheet of all that is cut out is seen.
+    pub sheet: bool,
+    /// How many frames there are.
+    pub frames: usize,
+    /// How many of them what is picked is followed through.
+    pub followed: usize,
+    /// The side of the square that is picked, in pixels.
+    pub side: f64,
+}
+
+impl Looking {
+    /// The first frame of a layer's clip.
+    pub fn at(layer: usize) -> Looking {
+        Looking { layer, frame: 0, cut: false, sheet: false, frames: 1, followed: 1, side: 1.0 }
+    }
+
+    /// Why what is picked in the frame that is seen cannot be followed, if it cannot.
+    pub fn unfollowed(self) -> Option<String> {
+        let Looking { frame, frames, followed, .. } = self;
+        (frame + followed > frames)
+            .then(|| format!("a track of {followed} frames would pass the clip's end ({frames})"))
+    }
+
+    /// What is seen.
+    pub fn sight(self) -> Sight {
+        match self {
+            Looking { sheet: true, .. } => Sight::Sheet,
+            Looking { cut: true, frame, .. } => Sight::Cut(frame),
+            Looking { frame, .. } => Sight::Frame(frame),
+        }
+    }
+}
+
+/// The three views.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sees {
+    /// The frame.
+    #[default]
+    Results,
+    /// A picture that lies on the mesh, over what its camera sees.
+    Painting,
+    /// The mesh with the cameras of all of them, from elsewhere.
+    Select,
+}
+
+/// The views, in the order in which one goes from one to the next.
+pub const ALL: [Sees; 3] = [Sees::Results, Sees::Painting, Sees::Select];
+
+/// How one paints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Painting {
+    /// Which view is shown.
+    pub sees: Sees,
+    /// How much of the picture is shown over what is beneath, from 0 to 1.
+    pub share: f64,
+    /// How far one has gone round what is selected from, in degrees to the right and up.
+    pub around: (f64, f64),
+}
+
+impl Default for Painting {
+    fn default() -> Self {
+        Painting { sees: Sees::default(), share: 0.5, around: (0.0, 0.0) }
     }
 }

@@ -1,6 +1,9 @@
 //! Clips: which frames are read, what is kept, and what is wrong with the rest.
 
+use std::path::PathBuf;
+
 use super::*;
+use crate::files::Limits;
 
 /// A folder with the scene's path, and the scene of one clip.
 fn start(clip: serde_json::Value) -> (tempfile::TempDir, PathBuf, Scene) {

@@ -2,6 +2,8 @@
 
 mod clips;
 
+use std::path::PathBuf;
+
 use super::*;
 use crate::base::clip::Clip;
 use image::{DynamicImage, ImageBuffer, Luma};

@@ -1,5 +1,6 @@
 //! Profiles, written here tag by tag, against the results of Little CMS.
 
+use super::super::decoded::{Color, Decoded, Model, Raw};
 use super::super::icc::understand;
 use super::*;
 

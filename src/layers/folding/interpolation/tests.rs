@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use kurbo::{Point, Vec2};
 
+use super::method::AT_ANCHOR_PX;
 use super::*;
 use crate::base::budget::Budget;
 use crate::base::maths;
