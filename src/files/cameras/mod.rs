@@ -13,7 +13,6 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::scene;
 use crate::base::error::{Error, Result};
 use crate::scene::json;
 
