@@ -188,7 +188,9 @@ fn a_check_finds_a_clip_in_which_nothing_moves() {
     let folder = tempfile::tempdir().unwrap();
     clip(&folder.path().join("ice"), 0..12, 0);
     let (_, messages) = plica(folder.path(), &["new", "ice"], true);
-    assert!(messages.contains("ice: nothing moves in the clip \"ice\": pick sprites by hand"), "{messages}");
+    assert!(messages.contains("its layer begins with {\"sprites\":{\"picks\":[{\"frame\":0"), "{messages}");
+    plica(folder.path(), &["check", "ice.plica.json"], true);
+    plica(folder.path(), &["set", "ice.plica.json", "layers.ice.sprites=null"], true);
     let (out, _) = plica(folder.path(), &["check", "ice.plica.json"], false);
     let told = "layers.ice.clip: nothing moves in the clip \"ice\": pick sprites by hand (sprites.picks)";
     assert!(out.contains(told), "{out}");

@@ -187,6 +187,8 @@ fn what_of_a_model_cannot_be_read_is_told() {
     std::fs::write(at("from/out.gltf"), gltf("parts/square.bin", "../cat.png")).unwrap();
     std::fs::write(at("square.bin"), square()).unwrap();
     std::fs::write(at("flat0.obj"), "v 0 0 0\nf 1 1 1\n").unwrap();
+    std::fs::create_dir(at("dir.obj")).unwrap();
+    std::fs::write(at("notes.md"), "# Notes\n").unwrap();
     std::fs::write(at("a.ply"), "ply\nformat ascii 1.0\n").unwrap();
     std::fs::write(at("b.STL"), [0; 84]).unwrap();
     std::fs::write(at("huge.obj"), "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
@@ -218,17 +220,24 @@ fn what_of_a_model_cannot_be_read_is_told() {
         ),
         (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
         (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
-        // A picture by its content, whatever its name.
-        (&["new", "cat.obj"], "", true),
+        (
+            &["new", "cat.obj"],
+            "cat.obj: is a PNG picture, not a mesh (rename it if it is to be shown as a picture;",
+            false,
+        ),
+        (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
+        (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
+        (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),
+        (&["new", "cats.obj"], "cats.obj: there is no such file (put it there, or mend the name)", false),
+        (&["new", "notes.md"], "a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a folder of numbered", false),
     ] {
         let (_, messages) = plica(folder.path(), args, succeeds);
         assert!(messages.contains(told), "{args:?}: {messages}");
     }
     assert_eq!(
         get(&at("from"), "bare.plica.json", "layers.bare"),
-        json!({ "kind": "mesh", "name": "bare", "mesh": "bare" })
+        json!({ "kind": "mesh", "name": "bare", "mesh": "bare", "surface": { "kind": "plain", "color": "#ffffff" } })
     );
-    assert_eq!(get(folder.path(), "cat.plica.json", "/layers/0/kind"), json!("picture"));
     let (told, _) = plica(&at("from"), &["check", "--lenient", "bare.plica.json"], true);
     assert!(
         told.contains("meshes.bare.path: warning: bare.gltf: its picture gone.png: there is no such file"),

@@ -38,6 +38,9 @@ pub struct Problem {
     pub severity: Severity,
     /// JSON pointer into the document (RFC 6901), empty for the whole of it; for people alone, an address.
     pub path: String,
+    /// The same place with the names of what is there, for people, where those are known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub address: Option<String>,
     /// What was found and what was expected, one sentence without a full stop.
     pub message: String,
     /// How to mend it, where that is known.
@@ -51,7 +54,8 @@ pub struct Problem {
 impl Problem {
     /// A problem that stops rendering.
     pub fn error(path: impl Into<String>, message: impl Into<String>) -> Self {
-        Problem { severity: Severity::Error, path: path.into(), message: message.into(), hint: None, kind: Kind::Any }
+        let (path, message) = (path.into(), message.into());
+        Problem { severity: Severity::Error, path, address: None, message, hint: None, kind: Kind::Any }
     }
 
     /// A problem that only deserves a word.
@@ -79,7 +83,7 @@ impl fmt::Display for Problem {
             Severity::Error => "",
         };
         // Keys and names come from files: none of them may steer a terminal.
-        match self.path.as_str() {
+        match self.address.as_deref().unwrap_or(&self.path) {
             "" => {}
             pointer if pointer.starts_with('/') => write!(f, "{}: ", line(&Pointer(pointer).dotted()))?,
             told => write!(f, "{}: ", line(told))?,

@@ -31,9 +31,13 @@ impl Files {
             "exr" => outputs::EXR,
             "png" => outputs::PNG,
             _ => {
+                let number = if numbers.len() > 1 { "-%04d" } else { "" };
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let as_exr = path.with_file_name(format!("{}{number}.exr", stem.split('%').next().unwrap_or_default()));
                 return Err(Error::Usage(format!(
-                    "{}: a pass is written as .exr or, to look at, .png",
-                    path.display()
+                    "{}: a pass is written as .exr or, to look at, .png (as -o {})",
+                    path.display(),
+                    as_exr.display()
                 )));
             }
         };
@@ -50,6 +54,11 @@ impl Files {
         Ok(Files { places: numbers.iter().copied().zip(places).collect(), kind })
     }
 
+    /// Whether the files have the numbers themselves, not a view of them.
+    pub fn are_numbers(&self) -> bool {
+        self.kind == outputs::EXR
+    }
+
     /// Where the files are.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.places.values().map(Place::path)
@@ -64,7 +73,7 @@ impl Files {
             return Err(Error::at(format!("frame {number}"), "has no place"));
         };
         let failed = |error: &(dyn std::error::Error + 'static)| write::failed(place.path().display(), error);
-        let bytes = match self.kind == outputs::EXR {
+        let bytes = match self.are_numbers() {
             true if alpha => floats::rgba(picture).map_err(|e| failed(&e))?,
             true => floats::rgb(picture).map_err(|e| failed(&e))?,
             false => still::frame(&view()).map_err(|e| failed(&e))?,

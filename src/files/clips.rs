@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{disk, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::numbered::{Pattern, Series, series};
-
-/// The extensions of files with videos.
-const VIDEOS: [&str; 9] = ["mp4", "mov", "m4v", "webm", "mkv", "avi", "mpg", "ogv", "y4m"];
+use crate::layers::parts::materials::List;
 
 /// The files of a clip.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,13 +23,17 @@ pub struct ClipFiles {
 
 /// Whether a file of this name is a video, or a pattern of numbered files.
 pub fn is_called(name: &str) -> bool {
-    let video = name.rsplit_once('.').is_some_and(|(_, end)| VIDEOS.contains(&end.to_lowercase().as_str()));
-    video || Pattern::of(name).is_ok_and(|pattern| pattern.is_numbered())
+    is_video(name) || Pattern::of(name).is_ok_and(|pattern| pattern.is_numbered())
+}
+
+fn is_video(name: &str) -> bool {
+    paths::kind_of(name) == Some(List::Clips)
 }
 
 /// Whether a person means a clip by this path.
 pub fn is_one(path: &Path) -> bool {
-    path.is_dir() || !picture::is_one(path) && is_called(&path.file_name().unwrap_or_default().to_string_lossy())
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.is_dir() || is_video(&name) || is_called(&name) && !picture::is_one(path)
 }
 
 /// What a clip is called in a scene, by the name of its files: what is before the number, or the name of their folder.
@@ -108,6 +110,9 @@ fn no_series(folder: &Path, names: &[String]) -> Error {
         Some(alone) => format!("holds no two pictures with one name and different numbers; {alone} alone is no clip"),
         None => "holds no numbered pictures".to_owned(),
     };
+    if paths::kind_of(&folder.to_string_lossy()) == Some(List::Meshes) {
+        return Error::at(folder.display(), "is a folder, not a model").cure("name the model in it");
+    }
     let cure = "name them as 0001.png, 0002.png and so on, or name a picture, a model or a video";
     Error::at(folder.display(), what).cure(cure)
 }

@@ -38,8 +38,9 @@ pub fn read(path: &Path) -> Result<String> {
 /// # Errors
 /// As [`read`].
 pub fn read_piped(path: &Path) -> Result<String> {
-    let is_pipe = path.metadata().is_ok_and(|found| found.file_type().is_fifo());
-    let opened = if is_pipe {
+    let kind = path.metadata().map(|found| found.file_type());
+    // A device too, as /dev/null for no lines.
+    let opened = if kind.is_ok_and(|kind| kind.is_fifo() || kind.is_char_device()) {
         File::open(path).map_err(|error| Error::at(path.display(), error))
     } else {
         paths::open_named(path)
@@ -226,5 +227,7 @@ mod tests {
         let writer = std::thread::spawn(move || std::fs::write(to, "move up\n").unwrap());
         assert_eq!(read_piped(&pipe).unwrap(), "move up\n");
         writer.join().unwrap();
+        assert_eq!(read_piped(Path::new("/dev/null")).unwrap(), "");
+        assert!(read_piped(Path::new("/dev/zero")).unwrap_err().to_string().contains("is longer than"));
     }
 }

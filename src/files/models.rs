@@ -6,9 +6,7 @@ use std::path::Path;
 use super::{Options, mesh, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
-
-/// How the names of models end.
-const ENDS: [&str; 3] = [".obj", ".glb", ".gltf"];
+use crate::layers::parts::materials::List;
 
 /// A model, read completely. Files are named relative to its folder.
 #[derive(Debug)]
@@ -17,6 +15,10 @@ pub struct Model {
     pub mesh: Mesh,
     /// The picture on its surface, if it has one that can be shown: a file, or a part of the model (`cow.glb#0`).
     pub picture: Option<String>,
+    /// The color of its surface, if it says one and no picture is shown.
+    pub color: Option<String>,
+    /// Whether both sides of its triangles are meant to be seen.
+    pub both_sides: bool,
     /// The files that it is in, besides its own.
     pub beside: Vec<String>,
     /// What in it is not supported, in words.
@@ -26,14 +28,13 @@ pub struct Model {
 /// A model whose coordinates go further cannot be seen by any camera: positions in a scene end at 1e9 m.
 const FARTHEST_M: f64 = 1e8;
 
-/// Whether the file at `path` is a model, also of a kind that is not read: by its name, unless it begins as a picture; a
-/// `.glb` by whatever name.
+/// Whether the file at `path` is to be a model, also of a kind that is not read: by its name; a `.glb` by whatever name.
 pub fn is_one(path: &Path) -> bool {
     let name = path.to_string_lossy().to_ascii_lowercase();
-    let is_called = ENDS.iter().any(|end| name.ends_with(end)) || mesh::is_foreign(&name);
+    let is_called = paths::kind_of(&name) == Some(List::Meshes) || mesh::is_foreign(&name);
     let mut magic = [0; 4];
     let read = paths::open_named(path).ok().and_then(|mut file| file.read_exact(&mut magic).ok());
-    read.is_some() && magic == *b"glTF" || is_called && !picture::is_one(path)
+    read.is_some() && magic == *b"glTF" || is_called
 }
 
 /// Reads a model with everything that a scene of it would read. A picture that cannot be shown is left out, which a note
@@ -76,6 +77,19 @@ pub fn read(path: &Path, options: &Options) -> Result<Model> {
     if let (Some(first), 2..) = (&picture, offered.len()) {
         notes.push(format!("of its {} pictures only {first} is shown", offered.len()));
     }
+    let looks = mesh::looks(open()?, &name, options)?;
+    if !looks.left_out.is_empty() {
+        let left_out = looks.left_out.join(", ");
+        notes.push(format!("a layer has one surface, and these materials are left out: {left_out}"));
+    }
+    let color = match (looks.color, &picture) {
+        (Some(color), Some(_)) if color != "#ffffff" => {
+            notes.push(format!("its picture is shown without the color {color} that its material lays over it"));
+            None
+        }
+        (_, Some(_)) => None,
+        (color, None) => color,
+    };
     beside.extend(picture.iter().filter(|picture| paths::image_of(picture).is_none()).cloned());
-    Ok(Model { mesh, picture, beside, notes })
+    Ok(Model { mesh, picture, color, both_sides: looks.both_sides, beside, notes })
 }

@@ -8,6 +8,7 @@ use super::{Options, disk};
 use crate::base::error::{Error, Result};
 use crate::base::problem;
 use crate::base::system::beneath;
+use crate::layers::parts::materials::List;
 
 /// Where a path written in a scene points: relative to the scene's folder.
 pub fn beside(scene_path: &Path, path: &str) -> PathBuf {
@@ -101,7 +102,9 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 }
 
 fn regular(file: File, place: &str) -> Result<File> {
+    let is_folder = file.metadata().is_ok_and(|found| found.is_dir());
     disk::regular(file).map_err(|error| match error.kind() {
+        io::ErrorKind::InvalidInput if is_folder => Error::at(place, error).cure("name a file in it"),
         io::ErrorKind::InvalidInput => Error::at(place, error).cure("name a regular file"),
         _ => Error::at(place, error),
     })
@@ -156,8 +159,7 @@ fn how_to_find(path: &Path) -> String {
         return format!("there is no folder {}: put the file there, or mend the name", folder.display());
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // A model may be what names the file.
-    let meant = |other: &str| extension(other) != "gltf" || extension(&name) == "gltf";
+    let meant = |other: &str| kind_of(other) == kind_of(&name);
     let names = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok());
     let names: Vec<String> = names.filter(|other| meant(other)).collect();
     // Names may differ in their ends.
@@ -169,8 +171,23 @@ fn how_to_find(path: &Path) -> String {
     name.map_or("put it there, or mend the name".to_owned(), |name| format!("did you mean {name}?"))
 }
 
-fn extension(name: &str) -> String {
-    name.rsplit_once('.').map_or_else(String::new, |(_, end)| end.to_lowercase())
+/// How the names of files end that are of one kind: models, videos, and pictures.
+const ENDS: [(List, &[&str]); 3] = [
+    (List::Meshes, &["obj", "glb", "gltf"]),
+    (List::Clips, &["mp4", "mov", "m4v", "webm", "mkv", "avi", "mpg", "ogv", "y4m"]),
+    (
+        List::Images,
+        &[
+            "png", "jpg", "jpeg", "jpe", "tif", "tiff", "webp", "gif", "exr", "hdr", "bmp", "tga", "ppm", "pgm", "pbm",
+            "pnm", "pam", "qoi", "dds", "ico", "heic", "heif", "avif", "jxl", "jp2", "psd", "svg",
+        ],
+    ),
+];
+
+/// The list of a scene that a file is meant for, as far as its name tells.
+pub fn kind_of(name: &str) -> Option<List> {
+    let end = name.rsplit_once('.')?.1.to_lowercase();
+    ENDS.iter().find(|(_, ends)| ends.contains(&end.as_str())).map(|(list, _)| *list)
 }
 
 /// A path as typed by a person: a leading `~` is the home folder, as in a shell.

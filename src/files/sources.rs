@@ -1,12 +1,12 @@
-//! What a person means by a path that a scene is to show: a picture, a model or a clip. The content of the file decides, and its
-//! name where it is not there or does not tell.
+//! What a person means by a path that a scene is to show: a picture, a model or a clip. A name that says it is a model or a video
+//! counts, so that what is in it instead is told; else the content of the file decides.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use super::picture::kinds;
-use super::{clips, mesh, models, paths};
+use super::{Limits, clips, mesh, models, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::numbered;
 use crate::layers::parts::materials::List;
@@ -20,6 +20,22 @@ pub fn list_of(path: &Path) -> List {
         () if models::is_one(path) => List::Meshes,
         () => List::Images,
     }
+}
+
+/// Reads the picture at `path`.
+///
+/// # Errors
+/// As [`picture::read`]; of what is called neither as a picture nor as something else that a scene shows, what that can be.
+pub fn picture(path: &Path, limits: &Limits) -> Result<picture::Found> {
+    let name = path.to_string_lossy();
+    let is_other = || path.is_file() && paths::kind_of(paths::file_of(&name)).is_none() && !picture::is_one(path);
+    picture::read(path, limits).map_err(|error| match is_other() {
+        true => Error::at(path.display(), "is nothing that a scene shows").cure(
+            "name a picture (PNG, JPEG, TIFF, OpenEXR and others), a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a \
+             folder of numbered pictures, a video)",
+        ),
+        false => error,
+    })
 }
 
 /// How many first bytes tell a video from another file: an animated PNG says that it is one before its pixels, perhaps after a
@@ -56,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_content_decides_and_else_the_name() {
+    fn what_is_called_a_model_or_a_video_is_meant_as_one_and_else_the_content_decides() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         image::RgbaImage::new(2, 2).save(at("cat.png")).unwrap();
@@ -67,8 +83,8 @@ mod tests {
         std::fs::write(at("cow.obj"), "v 0 0 0\n").unwrap();
         for (name, expected) in [
             ("cat.png", List::Images),
-            ("cat.obj", List::Images),
-            ("cat.mp4", List::Images),
+            ("cat.obj", List::Meshes),
+            ("cat.mp4", List::Clips),
             ("cow.dat", List::Meshes),
             ("cow.obj", List::Meshes),
             ("cow.glb#0", List::Images),

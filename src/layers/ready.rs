@@ -43,6 +43,8 @@ pub struct Making<'a> {
     pub place: Vec2,
     /// The layers that others show as textures, by name.
     pub textures: &'a Textures,
+    /// Whether frames are drawn with it. Where only data passes are, layers leave out what is only in the picture.
+    pub painted: bool,
 }
 
 impl<'a> Making<'a> {
@@ -50,7 +52,8 @@ impl<'a> Making<'a> {
     pub fn plain(wrap: Wrap, materials: &'a Materials) -> Self {
         static NONE: Textures = Textures::new();
         let duration = Timeline::default().duration;
-        Making { wrap, duration, size_px: (0, 0), px_per_m: 1.0, materials, place: CENTER, textures: &NONE }
+        let (size_px, px_per_m, place, painted) = ((0, 0), 1.0, CENTER, true);
+        Making { wrap, duration, size_px, px_per_m, materials, place, textures: &NONE, painted }
     }
 }
 

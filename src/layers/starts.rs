@@ -25,10 +25,16 @@ pub struct Shown<'a> {
     pub size_px: (usize, usize),
     /// How many frames it has, if it is a clip and that is known.
     pub frames: Option<usize>,
+    /// Whether nothing moves in it.
+    pub is_still: bool,
     /// The image on its surface, if it has one.
     pub image: Option<&'a str>,
     /// Whether the layer is only to show it as it is, with nothing to edit.
     pub bare: bool,
+    /// The color of its surface, if it says one.
+    pub color: Option<&'a str>,
+    /// Whether both of its sides are meant to be seen.
+    pub both_sides: bool,
 }
 
 /// Settings that change what a layer looks like.

@@ -17,7 +17,7 @@ use crate::scene::{Document, Scene, address};
 pub struct Args {
     /// The scene; - is standard input
     scene: PathBuf,
-    /// Print one list of JSON objects: severity, path, message, hint
+    /// Print one list of JSON objects: severity, path, address, message, hint
     #[arg(long)]
     json: bool,
     /// Do not fail if there are only warnings
@@ -35,6 +35,10 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     problems.extend(loops);
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
     if args.json {
+        let problems = match &document {
+            Some(document) => address::named(document.json(), problems.clone()),
+            None => problems.clone(),
+        };
         let list = serde_json::to_value(&problems).map_err(|e| Error::at("the list of problems", e))?;
         context.print(format_args!("{list:#}"))?;
     } else {

@@ -60,28 +60,37 @@ fn print(layer: &dyn Technique, args: &Args, context: &mut Context) -> Result<bo
 
 /// The entries that a table has.
 fn columns(entries: &[Entry]) -> impl Iterator<Item = &Entry> {
-    entries.iter().filter(|entry| !entry.label.is_empty() && !matches!(entry.value, Value::Items(_)))
+    entries.iter().filter(|entry| !matches!(entry.value, Value::Items(_)))
 }
 
-/// The width of a column, and of each of three coordinates: a row fits into the editor on 80 columns.
+/// The width of a column, and of each of three coordinates: a row fits into 80 columns.
 const WIDE: usize = 6;
-const OF_THREE: usize = 6;
+const OF_THREE: usize = 5;
 
 fn header(entries: &[Entry]) -> String {
     let heads = columns(entries).map(|entry| match &entry.value {
-        Value::Coordinates(numbers, _) => format!("{:>1$}", entry.label, numbers.len() * (OF_THREE + 1) - 1),
+        Value::Coordinates(numbers, unit) => {
+            format!("{:>1$}", format!("{}, {unit}", entry.label), numbers.len() * (OF_THREE + 1) - 1)
+        }
+        Value::Index(_) => format!("{:>OF_THREE$}", entry.label),
         _ => format!("{:>WIDE$}", entry.label),
     });
     heads.collect::<Vec<_>>().join(" ")
 }
 
+/// A number with as many decimals as fit, two at most.
+fn fitted(number: f64) -> String {
+    let texts = [2, 1, 0].map(|decimals| short(number, decimals));
+    texts.iter().find(|text| text.len() <= OF_THREE).unwrap_or(&texts[2]).clone()
+}
+
 fn row(entries: &[Entry]) -> String {
     let cells = columns(entries).map(|entry| match &entry.value {
         Value::Coordinates(numbers, _) => {
-            numbers.iter().map(|v| format!("{:>OF_THREE$}", short(*v, 2))).collect::<Vec<_>>().join(" ")
+            numbers.iter().map(|v| format!("{:>OF_THREE$}", fitted(*v))).collect::<Vec<_>>().join(" ")
         }
         Value::Number(number) => format!("{:>WIDE$}", short(*number, 3)),
-        Value::Index(index) => format!("{index:>WIDE$}"),
+        Value::Index(index) => format!("{index:>OF_THREE$}"),
         Value::Of(Some(word)) => format!("{word:>WIDE$}"),
         _ => " ".repeat(WIDE),
     });
@@ -100,14 +109,14 @@ mod tests {
             entry("line", Value::Index(4000)),
             entry("kind", Value::Of(Some("water".into()))),
             entry("start", place()),
-            Entry { key: "velocity", label: "", value: place() },
+            entry("velocity", Value::Coordinates(vec![-1.234, 0.0, 10.25], "m/s")),
             entry("life", Value::Number(0.123_456)),
             entry("end", place()),
             entry("impact", Value::Number(12.5)),
         ];
         let (head, row) = (header(&entries), row(&entries));
-        assert_eq!(head, "  line   kind                start   life                  end impact");
-        assert_eq!(row, "  4000  water -12.35    100    0.5  0.123 -12.35    100    0.5   12.5");
-        assert!(head.len() == row.len() && row.len() <= 71);
+        assert_eq!(head, " line   kind          start, m     velocity, m/s   life            end, m impact");
+        assert_eq!(row, " 4000  water -12.3   100   0.5 -1.23     0 10.25  0.123 -12.3   100   0.5   12.5");
+        assert!(head.len() == row.len() && row.len() <= 80);
     }
 }

@@ -11,9 +11,9 @@ use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
 use crate::files::clips::ClipFiles;
 use crate::files::materials::{self, Cache};
-use crate::files::{self, clips, disk, models, paths, picture, sources, write};
+use crate::files::{self, clips, disk, models, paths, sources, write};
 use crate::layers::parts::materials::List;
-use crate::scene::{Document, Start, address, check};
+use crate::scene::{Document, Known, Looks, Start, address, check};
 
 /// Make a scene from pictures, models and clips
 #[derive(clap::Args)]
@@ -72,8 +72,15 @@ pub fn clip_called(clip: &Path) -> String {
 /// If the scene, or another file with a picture's name, exists already; if a picture cannot be read or copied.
 pub fn create(path: &Path, sources: &[PathBuf], options: &files::Options) -> Result<(Document, Vec<String>)> {
     refuse_taken(path)?;
-    let mut making =
-        Making { path, options, start: Start::default(), named: Vec::new(), copies: Vec::new(), notes: Vec::new() };
+    let mut making = Making {
+        path,
+        options,
+        start: Start::default(),
+        named: Vec::new(),
+        sources: Vec::new(),
+        copies: Vec::new(),
+        notes: Vec::new(),
+    };
     for source in sources {
         making.add(source)?;
     }
@@ -109,6 +116,8 @@ struct Making<'a> {
     start: Start,
     /// The names of its sources as they stand in it.
     named: Vec<String>,
+    /// The sources themselves.
+    sources: Vec<PathBuf>,
     /// Files of other folders, and their names beside the scene.
     copies: Copies,
     notes: Vec<String>,
@@ -129,10 +138,15 @@ impl Making<'_> {
             let model = models::read(source, self.options)?;
             self.notes.extend(model.notes.into_iter().map(note));
             files.splice(0..0, model.beside);
-            let picture = model.picture.as_ref().map(|path| (called(Path::new(path)), path.as_str()));
-            start.mesh(&name, &named, Some(model.mesh), picture.as_ref().map(|(name, path)| (&**name, *path)))
+            let picture = model.picture.as_ref().map(|path| called(Path::new(path)));
+            let looks = Looks {
+                picture: picture.as_deref().zip(model.picture.as_deref()),
+                color: model.color.as_deref(),
+                both_sides: model.both_sides,
+            };
+            start.mesh(&name, &named, Some(model.mesh), looks)
         } else {
-            let found = picture::read(source, &self.options.limits)?;
+            let found = sources::picture(source, &self.options.limits)?;
             self.notes.extend(found.notes.into_iter().map(note));
             start.picture(&name, &named, (found.picture.width(), found.picture.height()))
         };
@@ -172,19 +186,18 @@ impl Making<'_> {
         self.name(source, path.to_owned())?;
         self.start = std::mem::take(&mut self.start).clip(&name, path, found.first, Some(known));
         if let Some(fitted) = self.start.fitted() {
-            let ((width, height), frames) = known;
+            let Known { size_px: (width, height), frames, .. } = known;
             self.notes
                 .push(format!("{place}: has {frames} frames of {width} x {height}: its layer begins with {fitted}"));
         }
         Ok(())
     }
 
-    /// Width and height of a clip that was read completely, how many frames it has, and what a check
-    /// would tell of it.
+    /// What is known of a clip that was read completely, and what a check would tell of it.
     ///
     /// # Errors
     /// It cannot be read, or no layer fits it.
-    fn measure(&self, source: &Path, found: &ClipFiles) -> Result<(((usize, usize), usize), Vec<Problem>)> {
+    fn measure(&self, source: &Path, found: &ClipFiles) -> Result<(Known, Vec<Problem>)> {
         let refused = |problems| refused(source, problems);
         let called = source.display().to_string();
         let alone = |known| Start::default().clip(&called, &found.name, found.first, known).document();
@@ -196,25 +209,39 @@ impl Making<'_> {
         let of_clip = |problem: &Problem| !problem.path.starts_with("/layers");
         let (mut problems, _): (Vec<Problem>, Vec<Problem>) = problems.into_iter().partition(of_clip);
         let Some(clip) = materials.clips.get(&called) else { return Err(refused(problems)) };
-        let known = (clip.size_px(), clip.frames.len());
-        let fitted = alone(Some(known)).map_err(refused)?;
+        let mut known = Known { size_px: clip.size_px(), frames: clip.frames.len(), is_still: false };
+        let mut fitted = alone(Some(known)).map_err(refused)?;
+        let failed = |problem: &Problem| problem.severity == Severity::Error;
+        let mut told = made(fitted.scene(), &materials);
+        if told.iter().any(failed) {
+            known.is_still = true;
+            fitted = alone(Some(known)).map_err(refused)?;
+            told = made(fitted.scene(), &materials);
+        }
         problems.extend(check::check_materials(fitted.scene(), &materials));
-        let failed = problems.iter().any(|problem| problem.severity == Severity::Error);
-        if failed {
+        if problems.iter().any(failed) {
             return Err(refused(problems));
         }
         // What a person has to do by hand is no reason to make no scene.
-        problems.extend(made(fitted.scene(), &materials));
+        problems.extend(told);
         Ok((known, problems))
     }
 
     /// Notes what a source is called in the scene, which no other one may be.
     fn name(&mut self, source: &Path, named: String) -> Result<()> {
         if self.named.contains(&named) {
-            let error = Error::at(source.display(), "has the same file name as another one");
-            return Err(error.cure("rename one"));
+            let other = self.sources.iter().find(|other| {
+                let real = |path: &Path| path.canonicalize().ok();
+                other.as_path() == source || real(other).is_some_and(|other| Some(other) == real(source))
+            });
+            let (what, cure) = match other {
+                Some(_) => ("is named twice", "name it once, and duplicate its layer in the scene"),
+                None => ("has the same file name as another one", "rename one"),
+            };
+            return Err(Error::at(source.display(), what).cure(cure));
         }
         self.named.push(named);
+        self.sources.push(source.to_owned());
         Ok(())
     }
 }

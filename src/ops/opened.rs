@@ -99,6 +99,14 @@ impl Opened {
         render::synth(self.document.scene(), &self.materials, None).map_err(|problem| self.failed(problem))
     }
 
+    /// The same for data passes alone.
+    ///
+    /// # Errors
+    /// As [`render::synth`].
+    pub fn unpainted(&self) -> Result<Synth> {
+        render::unpainted(self.document.scene(), &self.materials).map_err(|problem| self.failed(problem))
+    }
+
     /// The same band by band, for n x n samples per pixel.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let lost = RefCell::default();
     let make = |document: &Document| {
         let set = edit(document, &args.settings, &args.scene)?;
-        lost.replace(set.lost);
+        lost.replace(set.lost.into_iter().chain(set.edit.overruled(document)).collect::<Vec<_>>());
         Ok(set.edit)
     };
     let elsewhere = change(&args.scene, (&args.recovery, &args.reading), make)?;
@@ -207,13 +207,12 @@ fn one(document: &Document, setting: &str, scene: &Path) -> Result<(Document, Se
         for (i, pointer) in some.iter().enumerate() {
             let value = setting.value(&document, pointer, (k * at_once + i, all.places))?;
             let (edit, lost) = Edit::set_told(&document, pointer, value);
-            all.lost.extend(lost.map(|lost| format!("{}: {lost}", setting.path)));
+            all.lost.extend(lost.map(|lost| format!("{}: {lost}", address::address(&document, pointer))));
             edits.push(edit);
         }
         let edit = Edit::all(edits);
         document = document.apply(&edit).map_err(|problems| {
-            let asked = |problem| as_asked(&document, problem, setting.path, some);
-            refused(scene, problems.into_iter().map(asked).collect())
+            refused(scene, problems.iter().map(|problem| address::of_problem(&document, problem)).collect())
         })?;
         all.edit = Edit::all([std::mem::take(&mut all.edit), edit]);
     }
@@ -272,12 +271,6 @@ impl<'a> Setting<'a> {
             _ => Ok(self.value.clone()),
         }
     }
-}
-
-/// The problem with the address of its place, written as in `path` if it is what the person called so.
-fn as_asked(document: &Document, problem: Problem, path: &str, pointers: &[String]) -> Problem {
-    let own = matches!(pointers, [only] if problem.path == *only) && !path.contains('*') && !path.starts_with('/');
-    if own { Problem { path: path.to_owned(), ..problem } } else { address::of_problem(document, &problem) }
 }
 
 /// Splits a line of settings: a space ends a setting if the `PATH=` of another follows. So a text with spaces needs no

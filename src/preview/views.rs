@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 
 use super::keys::{KEYS, VIEW};
 use crate::layers::parts::pass::COLOR;
+use crate::render::overlay::overlays;
 use crate::render::shown::Shown;
 
 /// Switches that are on in a new window.
@@ -38,18 +39,38 @@ impl Steps {
 
 /// Which switches of the view are on, by their commands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Switches(BTreeSet<&'static str>);
+pub struct Switches {
+    on: BTreeSet<&'static str>,
+    /// Overlays that do not lie over the pass that is shown: those that were on when it came. Their keys bring them back.
+    hidden: BTreeSet<&'static str>,
+    is_pass: bool,
+}
 
 impl Default for Switches {
     fn default() -> Self {
-        Switches(ON_AT_FIRST.into())
+        Switches { on: ON_AT_FIRST.into(), hidden: BTreeSet::new(), is_pass: false }
     }
 }
 
 impl Switches {
-    /// Whether a switch is on.
+    /// Whether what a switch is for is shown.
     pub fn is_on(&self, name: &str) -> bool {
-        self.0.contains(name)
+        self.on.contains(name) && !self.hidden.contains(name)
+    }
+
+    /// Takes whether a pass is shown, which comes bare: the overlays that are on go until the frame is shown again.
+    pub fn under_pass(&mut self, is_pass: bool) {
+        if is_pass && !self.is_pass {
+            self.hidden = self.on.iter().copied().filter(|name| is_overlay(name)).collect();
+        } else if !is_pass {
+            self.hidden.clear();
+        }
+        self.is_pass = is_pass;
+    }
+
+    /// Whether a switch was turned on to lie over the pass that is shown.
+    fn is_over_pass(&self, name: &str) -> bool {
+        self.is_pass && is_overlay(name) && self.is_on(name)
     }
 
     /// Takes a command that sets a switch, or turns it over; returns it as it is sent to windows, if it is one.
@@ -63,10 +84,11 @@ impl Switches {
         let name = switch(name)?;
         let on = wanted.unwrap_or(!self.is_on(name));
         if on {
-            self.0.insert(name)
+            self.on.insert(name)
         } else {
-            self.0.remove(name)
+            self.on.remove(name)
         };
+        self.hidden.remove(name);
         Some(on)
     }
 }
@@ -93,6 +115,7 @@ impl Views {
             return told;
         }
         if let Some(pass) = pass_in(command) {
+            self.switches.under_pass(pass.is_some());
             self.pass = pass;
         }
         shows_otherwise(&mut self.shown, command);
@@ -131,14 +154,18 @@ impl Views {
 
     /// The commands that set the switches, and the pass, that are otherwise in `before`.
     fn changes(&self, before: &Views) -> Vec<String> {
-        let rows = KEYS.iter().filter_map(|row| switch(row.command));
-        let differs = |name: &&str| self.switches.is_on(name) != before.switches.is_on(name);
+        let rows = || KEYS.iter().filter_map(|row| switch(row.command));
+        let (own, other) = (&self.switches, &before.switches);
+        let differs = |name: &&str| own.on.contains(name) != other.on.contains(name) && !own.is_over_pass(name);
+        let over = |name: &&str| own.is_over_pass(name) && !other.is_over_pass(name);
         let pass = (self.pass != before.pass).then(|| show_pass(self.pass.as_deref()));
         let Shown { muted, compared } = &self.shown;
         let compared = (*compared != before.shown.compared).then(|| show_compared(compared.as_deref()));
         let muted = (*muted != before.shown.muted).then(|| show_muted(muted));
-        let switches = rows.filter(differs).map(|name| set(name, self.switches.is_on(name)));
-        switches.chain(pass).chain(muted).chain(compared).collect()
+        let switches = rows().filter(differs).map(|name| set(name, own.on.contains(name)));
+        // What came before the pass it would hide.
+        let over = rows().filter(over).map(|name| set(name, true));
+        switches.chain(pass).chain(over).chain(muted).chain(compared).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -214,6 +241,10 @@ pub(super) fn is_for_all(command: &str) -> bool {
     pass_in(command).is_some() || matches!(wanted(command), (name, Some(_)) if switch(name).is_some())
 }
 
+fn is_overlay(name: &str) -> bool {
+    overlays().any(|overlay| overlay.name == name)
+}
+
 /// The switch of that name, which all windows are to show alike; `None` if there is none.
 fn switch(name: &str) -> Option<&'static str> {
     let is_switch = |command: &&str| command.starts_with("view-") && *command != "view-full-screen";
@@ -233,7 +264,9 @@ mod tests {
 
     #[test]
     fn only_what_is_in_force_is_listed() {
-        let table: [(&[&str], &[&str]); 15] = [
+        let table: [(&[&str], &[&str]); 17] = [
+            (&["view-field", "pass depth", "view-paths"], &["view-field on", "pass depth", "view-paths on"]),
+            (&["view-field", "pass depth", "view-field", "pass color"], &["view-field on"]),
             (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),
             (&["pass depth", "pass color"], &[]),
             (&["mute [\"/layers/0\"]", "view-grid"], &["view-grid on", "mute [\"/layers/0\"]"]),
@@ -280,6 +313,28 @@ mod tests {
             ("next-pass", false),
         ] {
             assert_eq!(is_for_all(command), sets, "{command}");
+        }
+    }
+
+    #[test]
+    fn a_pass_is_bare_but_for_what_is_turned_on_over_it() {
+        let mut views = Views::default();
+        for (command, told, shown) in [
+            ("view-field", "view-field on", &["view-field"][..]),
+            ("view-grid", "view-grid on", &["view-field", "view-grid"]),
+            ("pass depth", "pass depth", &["view-grid"]),
+            ("view-paths", "view-paths on", &["view-grid", "view-paths"]),
+            ("pass normal", "pass normal", &["view-grid", "view-paths"]),
+            ("view-field", "view-field on", &["view-field", "view-grid", "view-paths"]),
+            ("view-field", "view-field off", &["view-grid", "view-paths"]),
+            ("pass color", "pass color", &["view-grid", "view-paths"]),
+            ("view-field on", "view-field on", &["view-field", "view-grid", "view-paths"]),
+            ("pass depth", "pass depth", &["view-grid"]),
+            ("pass color", "pass color", &["view-field", "view-grid", "view-paths"]),
+        ] {
+            assert_eq!(views.take(command), told);
+            let on = ["view-field", "view-grid", "view-paths"].into_iter().filter(|name| views.switches.is_on(name));
+            assert_eq!(on.collect::<Vec<_>>(), shown, "{command}");
         }
     }
 

@@ -10,7 +10,7 @@ use crate::base::geometry::farther;
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::moment::{CENTER, Moment};
+use crate::layers::parts::moment::Moment;
 use crate::layers::ready::{Making, Ready, Texture, Textures};
 use crate::layers::space::camera::Camera;
 use crate::layers::timeline::Timeline;
@@ -22,6 +22,8 @@ mod beside;
 pub mod cpu;
 #[cfg(feature = "window")]
 pub mod gpu;
+#[cfg(test)]
+mod inside;
 pub mod overlay;
 pub mod part;
 pub mod passes;
@@ -133,7 +135,16 @@ impl Synth {
 /// If there is no layer, or a picture that a layer names is not among the materials.
 pub fn synth(scene: &Scene, materials: &Materials, previous: Option<&Synth>) -> Result<Synth, Problem> {
     let textures = textures(scene, materials, previous)?;
-    synth_at(scene, (materials, &textures, CENTER), previous)
+    synth_at(scene, Making { textures: &textures, ..making(scene, materials) }, previous)
+}
+
+/// As [`synth`], for data passes alone.
+///
+/// # Errors
+/// As [`synth`].
+pub fn unpainted(scene: &Scene, materials: &Materials) -> Result<Synth, Problem> {
+    let textures = textures(scene, materials, None)?;
+    synth_at(scene, Making { textures: &textures, painted: false, ..making(scene, materials) }, None)
 }
 
 /// As [`synth`], for n x n places spread evenly over each pixel; [`cpu::frames`] averages their frames.
@@ -144,7 +155,8 @@ pub fn samples(scene: &Scene, materials: &Materials, n: u32) -> Result<Vec<Synth
     let textures = textures(scene, materials, None)?;
     let mut made: Vec<Synth> = Vec::new();
     for place in places(n) {
-        made.push(synth_at(scene, (materials, &textures, place), made.first())?);
+        let making = Making { place, textures: &textures, ..making(scene, materials) };
+        made.push(synth_at(scene, making, made.first())?);
     }
     Ok(made)
 }
@@ -167,9 +179,8 @@ pub fn making<'a>(scene: &Scene, materials: &'a Materials) -> Making<'a> {
     Making { duration, size_px, px_per_m, ..Making::plain(wrap, materials) }
 }
 
-fn synth_at(scene: &Scene, with: (&Materials, &Textures, Vec2), previous: Option<&Synth>) -> Result<Synth, Problem> {
-    let (materials, textures, place) = with;
-    let making = Making { place, textures, ..making(scene, materials) };
+fn synth_at(scene: &Scene, making: Making, previous: Option<&Synth>) -> Result<Synth, Problem> {
+    let Making { materials, textures, .. } = making;
     let ready = |(i, layer): (usize, &Layer)| {
         if let Some(texture) = textures.get(layer.technique().name()) {
             return Ok(texture.layer.clone());

@@ -73,7 +73,11 @@ fn spread(
 
 /// The address of a JSON pointer, with names where there are any. A pointer that leads nowhere is returned as it is.
 pub fn address(document: &Document, pointer: &str) -> String {
-    let mut place = Place::root(document.json());
+    address_in(document.json(), pointer)
+}
+
+fn address_in(json: &Value, pointer: &str) -> String {
+    let mut place = Place::root(json);
     let mut address = String::new();
     for token in Pointer(pointer).tokens() {
         let Some(below) = place.step(&token) else { return pointer.to_owned() };
@@ -85,12 +89,16 @@ pub fn address(document: &Document, pointer: &str) -> String {
 
 /// The address of a JSON pointer, even if only its beginning leads anywhere: the rest is then written token by token.
 pub fn told(document: &Document, pointer: &str) -> String {
+    told_in(document.json(), pointer)
+}
+
+fn told_in(json: &Value, pointer: &str) -> String {
     let tokens: Vec<String> = Pointer(pointer).tokens().collect();
     let known = (0..=tokens.len())
         .rev()
         .map(|n| (n, tokens[..n].iter().fold(String::new(), |at, token| Pointer(&at).join(token))));
     let there =
-        known.map(|(n, at)| (n, address(document, &at))).find(|(n, address)| *n == 0 || !address.starts_with('/'));
+        known.map(|(n, at)| (n, address_in(json, &at))).find(|(n, address)| *n == 0 || !address.starts_with('/'));
     let (n, address) = there.unwrap_or_default();
     let rest = tokens[n..].iter().map(|token| spelled(token, false));
     std::iter::once(address).filter(|address| !address.is_empty()).chain(rest).collect::<Vec<_>>().join(".")
@@ -98,7 +106,15 @@ pub fn told(document: &Document, pointer: &str) -> String {
 
 /// A problem with the address of its place, for people.
 pub fn of_problem(document: &Document, problem: &Problem) -> Problem {
-    Problem { path: told(document, &problem.path), ..problem.clone() }
+    Problem { path: told(document, &problem.path), address: None, ..problem.clone() }
+}
+
+/// Problems with their addresses in a document that may have errors, as JSON.
+pub fn named(json: &Value, mut problems: Vec<Problem>) -> Vec<Problem> {
+    for problem in problems.iter_mut().filter(|problem| problem.path.starts_with('/')) {
+        problem.address = Some(told_in(json, &problem.path));
+    }
+    problems
 }
 
 /// The address of `below`, which is `token` below the place with that address and shape.

@@ -200,11 +200,17 @@ fn counts(scene: &Scene, rules: &Rules) -> Vec<Problem> {
         problems.extend(budget.try_take(frame).err().map(|short| short.problem("/size".to_owned())));
     }
     if scene.timeline.frames() > rules.frames {
-        problems.push(too_many("/timeline".into(), "frames", rules.frames));
+        problems.push(too_long("/timeline".into(), scene.timeline.frames(), rules.frames));
     }
-    let long = scene.clips.iter().filter(|(_, clip)| clip.count.is_some_and(|count| u64::from(count) > rules.frames));
-    problems.extend(long.map(|(name, _)| too_many(Pointer("/clips").join(name) + "/count", "frames", rules.frames)));
+    let counted = scene.clips.iter().filter_map(|(name, clip)| Some((name, u64::from(clip.count?))));
+    let long = counted.filter(|(_, count)| *count > rules.frames);
+    problems.extend(long.map(|(name, count)| too_long(Pointer("/clips").join(name) + "/count", count, rules.frames)));
     problems
+}
+
+fn too_long(path: String, frames: u64, most: u64) -> Problem {
+    let message = format!("that is {frames} frames, and at most {most} are allowed");
+    Problem::error(path, message).hint(format!("make it shorter, or give --limit frames={frames}"))
 }
 
 fn too_many(path: String, what: &str, most: u64) -> Problem {

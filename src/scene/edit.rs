@@ -54,6 +54,16 @@ impl Edit {
         Edit(Patch(vec![operation]))
     }
 
+    /// What of this is not seen since keys of the camera say it at every time, in words with a cure; `document` is what it
+    /// changes.
+    pub fn overruled(&self, document: &Document) -> Option<String> {
+        let camera = document.scene().camera.as_ref()?;
+        let named = |path: &'_ str| path.strip_prefix("/camera/")?.split('/').next().map(str::to_owned);
+        let ruled = |field: &String| camera.is_ruled(field);
+        let field = self.0.iter().find_map(|one| named(one.path().as_str()).filter(ruled))?;
+        Some(format!("the camera's keys rule its {field}, so this is not seen (:camera key in the editor sets them)"))
+    }
+
     /// Merges the next edit into this one if it only replaces what this one wrote; otherwise gives it back as the
     /// error.
     pub fn absorb(&mut self, next: Edit) -> Result<(), Edit> {

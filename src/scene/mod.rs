@@ -36,7 +36,7 @@ pub use edit::Edit;
 pub use history::History;
 pub use model::{FRAME, Image, Mesh, Scene, VERSION};
 pub use shape::expected;
-pub use start::Start;
+pub use start::{Known, Looks, Start};
 
 #[cfg(test)]
 mod tests;

@@ -7,12 +7,14 @@ use std::sync::Arc;
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 
-use super::build::unique_name;
+use super::build::{unique_name, write};
 use super::check::Rules;
+use super::edit::Edit;
 use super::{Document, FRAME, VERSION};
 use crate::base::geometry::farther;
 use crate::base::mesh::Mesh;
 use crate::base::number;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::layers::KINDS;
 use crate::layers::parts::materials::{List, Materials};
@@ -25,12 +27,36 @@ use crate::layers::technique::Kind;
 /// Where a new camera sees meshes from.
 const BACK: DVec3 = DVec3::new(0.0, 0.3, 1.0);
 
-/// A scene in the making.
+/// What a layer of a mesh takes over from its file.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Looks<'a> {
+    /// The picture on its surface, by name and path.
+    pub picture: Option<(&'a str, &'a str)>,
+    /// The color of its surface, where there is no picture.
+    pub color: Option<&'a str>,
+    /// Whether both sides of its triangles are meant to be seen.
+    pub both_sides: bool,
+}
+
+/// What is known of a clip.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Width and height of its frames.
+    pub size_px: (usize, usize),
+    /// How many there are.
+    pub frames: usize,
+    /// Whether all of them are alike.
+    pub is_still: bool,
+}
+
+/// A scene in the making, or what comes into one that is there.
 #[derive(Debug, Default)]
 pub struct Start {
     /// The lists of the scene, by name.
     lists: Map<String, Value>,
     layers: Vec<Value>,
+    /// Names of the layers that are there already.
+    taken: Vec<String>,
     frame: Option<(usize, usize)>,
     /// What is to be seen.
     meshes: BTreeMap<String, Arc<Mesh>>,
@@ -43,6 +69,43 @@ pub struct Start {
 }
 
 impl Start {
+    /// Begins with what is in a scene.
+    pub fn within(document: &Document) -> Start {
+        let list = |list: &List| Some((list.words().0.to_owned(), document.json().get(list.words().0)?.clone()));
+        let scene = document.scene();
+        Start {
+            lists: List::NAMED.iter().filter_map(list).collect(),
+            taken: scene.layers.iter().map(|layer| layer.technique().name().to_owned()).collect(),
+            frame: scene.size.map(|[width, height]| (width as usize, height as usize)),
+            ..Start::default()
+        }
+    }
+
+    /// The edit that brings what was added into the scene that this began with, over its layers, and a camera if it needs one
+    /// and there is none; and where the first new entry of a list and the first new layer are then.
+    pub fn edit(self, document: &Document) -> (Edit, Vec<String>) {
+        let (json, mut edits, mut places) = (document.json(), Vec::new(), Vec::new());
+        if self.in_space && document.scene().camera.is_none() {
+            edits.push(write(document, "/camera", camera(&self.meshes, self.frame.unwrap_or(FRAME))));
+        }
+        let written = |list: &str| json.get(list).and_then(Value::as_object);
+        for (list, all) in &self.lists {
+            let is_new = |name: &&String| written(list).is_none_or(|there| !there.contains_key(*name));
+            let Some(name) = all.as_object().into_iter().flat_map(Map::keys).find(is_new) else { continue };
+            places.push(Pointer(&format!("/{list}")).join(name));
+            edits.push(write(document, &format!("/{list}"), all.clone()));
+        }
+        let count = json.get("layers").and_then(Value::as_array).map_or(0, Vec::len);
+        places.extend((!self.layers.is_empty()).then(|| Pointer("/layers").join(count)));
+        edits.extend(self.layers.into_iter().map(|layer| Edit::insert(document, "/layers", count, layer)));
+        (Edit::all(edits), places)
+    }
+
+    /// The same without the layers.
+    pub fn without_layers(self) -> Start {
+        Start { layers: Vec::new(), in_space: false, ..self }
+    }
+
     /// Adds a picture of this width and height, in a file, with a layer that shows it. If another image has its name
     /// already, it gets a similar one.
     pub fn picture(mut self, name: &str, path: &str, size_px: (usize, usize)) -> Start {
@@ -52,26 +115,27 @@ impl Start {
         self
     }
 
-    /// Adds a mesh in a file, with a layer that shows it; on its surface an image, by name and path. What is known of it the
-    /// camera will see.
-    pub fn mesh(mut self, name: &str, path: &str, known: Option<Mesh>, surface: Option<(&str, &str)>) -> Start {
+    /// Adds a mesh in a file, with a layer that shows it, which looks like that. What is known of it the camera will see.
+    pub fn mesh(mut self, name: &str, path: &str, known: Option<Mesh>, looks: Looks) -> Start {
+        let Looks { picture, color, both_sides } = looks;
         let mesh = self.put(List::Meshes, name, json!({ "path": path }));
-        let image = surface.map(|(name, path)| self.image(name, path));
+        let image = picture.map(|(name, path)| self.image(name, path));
         self.meshes.extend(known.map(|known| (mesh.clone(), Arc::new(known))));
-        self.layer(List::Meshes, &Shown { name: &mesh, image: image.as_deref(), ..Shown::default() });
+        let shown = Shown { name: &mesh, image: image.as_deref(), color, both_sides, ..Shown::default() };
+        self.layer(List::Meshes, &shown);
         self
     }
 
-    /// Adds a clip whose frames are numbered from `first`, with a layer that shows it, which fits what is `known` of it: width
-    /// and height, and how many frames there are.
-    pub fn clip(mut self, name: &str, path: &str, first: u64, known: Option<((usize, usize), usize)>) -> Start {
+    /// Adds a clip whose frames are numbered from `first`, with a layer that shows it, which fits what is known of it.
+    pub fn clip(mut self, name: &str, path: &str, first: u64, known: Option<Known>) -> Start {
         let mut clip = json!({ "path": path });
         if first > 0 {
             clip["first"] = first.into();
         }
         let clip = self.put(List::Clips, name, clip);
         let plain = Shown { name: &clip, ..Shown::default() };
-        let shown = known.map_or(plain, |(size_px, frames)| Shown { size_px, frames: Some(frames), ..plain });
+        let fitted = |Known { size_px, frames, is_still }| Shown { size_px, frames: Some(frames), is_still, ..plain };
+        let shown = known.map_or(plain, fitted);
         self.layer(List::Clips, &shown);
         self
     }
@@ -131,12 +195,14 @@ impl Start {
             return;
         };
         let mut layer = (template.layer)(shown);
-        let plain = (template.layer)(&Shown { size_px: (0, 0), frames: None, ..*shown });
+        let plain = (template.layer)(&Shown { size_px: (0, 0), frames: None, is_still: false, ..*shown });
         let fields = layer.as_object().into_iter().flatten().filter(|(name, value)| plain.get(name) != Some(*value));
         let fields: Map<String, Value> = fields.map(|(name, value)| (name.clone(), value.clone())).collect();
         self.fitted = (!fields.is_empty()).then(|| Value::Object(fields).to_string());
         self.ground = template.ground.filter(|_| self.layers.is_empty());
-        let name = unique_name(shown.name, |name| self.layers.iter().any(|other| other["name"] == name));
+        let name = unique_name(shown.name, |name| {
+            self.taken.iter().any(|taken| taken == name) || self.layers.iter().any(|other| other["name"] == name)
+        });
         layer["name"] = name.into();
         self.layers.push(layer);
         self.in_space |= kind.space == Space::World;
@@ -168,7 +234,9 @@ mod tests {
             };
             let meshes = bounds.map(pair);
             let start = Start::default().picture("cat", "cat.png", size);
-            let start = meshes.iter().fold(start, |start, mesh| start.mesh("box", "box.obj", Some(mesh.clone()), None));
+            let start = meshes
+                .iter()
+                .fold(start, |start, mesh| start.mesh("box", "box.obj", Some(mesh.clone()), Looks::default()));
             let document = start.document().unwrap();
             let eye = document.scene().camera.as_ref().unwrap().at(0.0, size);
             let Eye { middle_px, .. } = eye;
@@ -185,11 +253,14 @@ mod tests {
         }
     }
 
+    fn of<'a>(name: &'a str, path: &'a str) -> Looks<'a> {
+        Looks { picture: Some((name, path)), ..Looks::default() }
+    }
+
     #[test]
     fn names_are_unique_in_each_list() {
-        let start =
-            Start::default().picture("cat", "cat.png", (8, 6)).mesh("cat", "cat.obj", None, Some(("cat", "a.png")));
-        let document = start.mesh("cat", "b/cat.obj", None, Some(("skin", "cat.png"))).document().unwrap();
+        let start = Start::default().picture("cat", "cat.png", (8, 6)).mesh("cat", "cat.obj", None, of("cat", "a.png"));
+        let document = start.mesh("cat", "b/cat.obj", None, of("skin", "cat.png")).document().unwrap();
         let json = document.json();
         assert_eq!(json["images"], json!({ "cat": { "path": "cat.png" }, "cat 2": { "path": "a.png" } }));
         assert_eq!(json["meshes"], json!({ "cat": { "path": "cat.obj" }, "cat 2": { "path": "b/cat.obj" } }));

@@ -5,11 +5,12 @@
 use std::fs::File;
 
 use super::picture::kinds;
-use super::{Limits, Options};
+use super::{Limits, Options, paths};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
 use crate::base::system;
+use crate::layers::parts::materials::List;
 
 mod gltf;
 mod input;
@@ -99,6 +100,31 @@ pub fn pictures(file: File, place: &str, options: &Options) -> Result<Vec<String
     }
 }
 
+/// What the materials of a model say of its looks, as far as a layer can have it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Looks {
+    /// The color of the material that is shown: sRGB, with straight alpha where it is blended.
+    pub color: Option<String>,
+    /// Whether both sides of triangles are meant to be seen.
+    pub both_sides: bool,
+    /// The materials that are not shown, in words.
+    pub left_out: Vec<String>,
+}
+
+/// The looks of the model in an open file. An OBJ names its materials in another file, which is not read.
+///
+/// # Errors
+/// As [`pictures`].
+pub fn looks(file: File, place: &str, options: &Options) -> Result<Looks> {
+    let Options { limits, allow_outside: outside } = options;
+    let budget = &limits.budget();
+    let (kind, bytes, _share) = whole(file, place, limits, budget)?;
+    match kind {
+        Kind::Obj => Ok(Looks::default()),
+        Kind::Gltf => gltf::looks(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
+    }
+}
+
 /// The files that a model is made from besides its own, as a scene names them that names the model by `place`.
 ///
 /// # Errors
@@ -157,7 +183,11 @@ fn kind(start: &[u8], place: &str) -> Result<Format> {
     let foreign = FOREIGN.iter().find(foreign);
     let picture = kinds::name(&start[..start.len().min(kinds::LOOKED_AT as usize)]).filter(|_| foreign.is_none());
     if let Some(picture) = picture {
-        return Err(Error::at(place, format!("is {picture}, not a mesh")).cure(READ));
+        let cure = match paths::kind_of(&name) == Some(List::Meshes) {
+            true => format!("rename it if it is to be shown as a picture; {READ}"),
+            false => READ.to_owned(),
+        };
+        return Err(Error::at(place, format!("is {picture}, not a mesh")).cure(cure));
     }
     let text = input::text(start);
     let is_text = !start.contains(&0);

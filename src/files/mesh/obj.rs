@@ -34,8 +34,12 @@ pub(super) fn read(text: &[u8], place: &str, limits: &Limits, budget: &Budget) -
     let Contents { counts, others, known, unknown } = count(text, place)?;
     within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
     if counts.triangles == 0 {
-        let cure =
-            if unknown > known { "it may not be an OBJ: name a mesh with faces" } else { "name a mesh with faces" };
+        let cure = match () {
+            () if unknown > known => "it may not be an OBJ: name a mesh with faces",
+            () if others => "its points and lines are not drawn: export it with its faces",
+            () if counts.positions > 0 => "it has vertices alone: export it with its faces",
+            () => "name a mesh with faces",
+        };
         return Err(Error::at(place, "has no triangles").cure(cure));
     }
     let mut builder = Builder::new(counts, place, budget)?;

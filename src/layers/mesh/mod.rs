@@ -62,11 +62,16 @@ pub static KIND: Kind = Kind {
     example: include_str!("example.json"),
 };
 
-/// A layer that shows a mesh, with an image on its surface.
+/// A layer that shows a mesh, with an image or a color on its surface.
 fn template(shown: &Shown) -> Value {
     let mut layer = json!({ "kind": "mesh", "name": shown.name, "mesh": shown.name });
+    if shown.both_sides {
+        layer["sides"] = "both".into();
+    }
     if let Some(image) = shown.image {
         layer["surface"] = json!({ "kind": "texture", "image": image });
+    } else if let Some(color) = shown.color {
+        layer["surface"] = json!({ "kind": "plain", "color": color });
     }
     layer
 }

@@ -145,6 +145,16 @@ impl Camera {
         }
     }
 
+    /// Whether keys say this field at every time, so that its own value is not seen.
+    pub fn is_ruled(&self, field: &str) -> bool {
+        self.keys.iter().any(|key| match field {
+            "position" => key.position.is_some(),
+            "target" => key.target.is_some(),
+            "fov" => key.fov.is_some(),
+            _ => false,
+        })
+    }
+
     /// How many pixels of a frame of this size a meter at its target is, at the beginning.
     pub fn px_per_m(&self, size: (usize, usize)) -> f64 {
         let ([position, target, _], _) = self.view(0.0);

@@ -28,13 +28,12 @@ fn entries(values: &Values, line: &Line, samples: usize) -> Vec<Entry> {
             entry("speed", Value::Number(velocity.length())),
         ]
     };
-    // People see it in the start and the end.
     let velocity = Value::Coordinates(line.path.velocity.to_array().to_vec(), "m/s");
     vec![
         entry("line", Value::Index(line.number as usize)),
         entry("kind", Value::Of(Some(kind.to_owned()))),
         entry("start", place(line.path.start)),
-        Entry { key: "velocity", label: "", value: velocity },
+        entry("velocity", velocity),
         entry("life", Value::Number(line.life)),
         entry("end", place(end)),
         entry("impact", Value::Number(last.length())),

@@ -190,7 +190,12 @@ const GROUND: &str = "#15191c";
 /// A fall of water from a clip; what is cut out of it fits into it, as far as that can be.
 fn template(shown: &Shown) -> Value {
     let mut layer = json!({ "kind": "waterfall", "name": shown.name, "clip": shown.name });
-    let fitting = shown.frames.map(|frames| sprites::fitting(shown.size_px, frames)).unwrap_or_default();
+    let mut fitting = shown.frames.map(|frames| sprites::fitting(shown.size_px, frames)).unwrap_or_default();
+    // Where nothing moves, no window chooses itself.
+    if shown.is_still {
+        let (width, height) = shown.size_px;
+        fitting.insert("picks".into(), json!([{ "frame": 0, "at": [width / 2, height / 2], "track": false }]));
+    }
     if !fitting.is_empty() {
         layer["sprites"] = fitting.into();
     }

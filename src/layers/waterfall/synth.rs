@@ -75,6 +75,8 @@ impl Synth {
         let kept = previous.filter(|before| before.made_of.0 == made_of.0 && before.made_of.1.is(&made_of.1));
         let (pictures, share) = match kept {
             Some(before) => (before.pictures.clone(), before.share.clone()),
+            // Where sprites are does not depend on what they show.
+            None if !making.painted => (Arc::new(Pictures::blank(layer.sprites.size)), Arc::default()),
             None => cut(layer, &made_of, making)?,
         };
         let [(water, of_water), (foam, of_foam)] = [false, true].map(|foam| keys(&pictures, foam));

@@ -46,7 +46,13 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let each_way = if *asked.pass == COLOR { args.samples } else { 1 };
     let band = size.0 * size.1;
     let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
-    let samples = if each_way == 1 { vec![opened.synth()?] } else { opened.samples(each_way)? };
+    // A PNG of lines shows the frame beneath.
+    let painted = *asked.pass == COLOR || !files.are_numbers();
+    let samples = match each_way {
+        1 if !painted => vec![opened.unpainted()?],
+        1 => vec![opened.synth()?],
+        _ => opened.samples(each_way)?,
+    };
     let strokes = samples.first().map_or(0, |synth| synth.stroke_bytes(each_way));
     let _strokes = opened.materials.budget.take(strokes, "frames")?;
     let samples: Vec<Synth> = samples.iter().map(|synth| asked.only(synth)).collect();

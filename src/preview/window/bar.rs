@@ -86,7 +86,7 @@ fn said(state: &State) -> (String, Color) {
         Some(words.progress.clone().unwrap_or_else(|| state.waits_for()))
     } else if let Some(work) = state.work.filter(|work| work.percent.is_some()) {
         Some(work.to_string())
-    } else if state.drawing {
+    } else if state.drawing && !state.transport.playing {
         Some("drawing the frame".to_owned())
     } else if let Some(why) = &state.no_pass {
         Some(why.clone())
@@ -153,8 +153,7 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     parts.extend(state.jump.map(|jump| (2, format!("jump {:.2}, {:.2}", jump.x, jump.y))));
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
-    let shown = [(1, "every second sprite"), (3, "every fourth sprite")];
-    parts.extend(shown.iter().find(|(left_out, _)| *left_out == state.thin.left_out()).map(|of| (5, of.1.to_owned())));
+    parts.extend(state.thin.words().map(|words| (5, words.to_owned())));
     parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
     parts.extend(state.own.map(|_| (6, "own view, 0 ends it".to_owned())));
     parts.push((1, "? keys".to_owned()));

@@ -29,7 +29,8 @@ impl App {
                 Err(error) => return Err(error),
             }
             self.clock.drawn += 1;
-            self.took(began.elapsed());
+            let took = self.opened.as_mut().and_then(|opened| opened.took(began.elapsed()));
+            self.took(took);
         } else if !was_hidden {
             self.report();
         }
@@ -55,12 +56,16 @@ impl App {
         }
     }
 
-    /// A drawing took so long: sprites are left out if it is too long to play.
-    fn took(&mut self, time: Duration) {
+    /// A new picture took so long: sprites are left out if it is too long to play.
+    fn took(&mut self, time: Option<Duration>) {
         let sprites = self.shown.as_ref().is_some_and(Show::has_sprites);
+        let before = self.state.thin.left_out();
         match self.state.transport.playing && sprites {
-            true => self.state.thin.took(time.as_secs_f64()),
+            true => time.into_iter().for_each(|time| self.state.thin.took(time.as_secs_f64())),
             false => self.state.thin = Thin::default(),
+        }
+        if self.state.thin.left_out() != before {
+            self.report();
         }
     }
 
@@ -68,7 +73,9 @@ impl App {
     fn advance(&mut self) {
         let (passed, fps) = self.clock.tick();
         if !self.state.transport.playing {
-            self.state.thin = Thin::default();
+            if std::mem::take(&mut self.state.thin).left_out() > 0 {
+                self.report();
+            }
             return;
         }
         if let Some(fps) = fps {

@@ -48,6 +48,8 @@ pub struct Opened {
     looked: Option<Instant>,
     shape: Shape,
     passes: pass::Kept,
+    /// Whether the CPU makes the picture.
+    by_cpu: bool,
 }
 
 impl Opened {
@@ -71,8 +73,8 @@ impl Opened {
             window.set_visible(true);
         }
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        let (shape, passes) = Default::default();
-        Ok(Opened { window, gpu, screen, hidden: false, covered: false, desk, looked: None, shape, passes })
+        let (shape, passes, by_cpu) = Default::default();
+        Ok(Opened { window, gpu, screen, hidden: false, covered: false, desk, looked: None, shape, passes, by_cpu })
     }
 
     /// The same window on a new device.
@@ -81,8 +83,8 @@ impl Opened {
         let instance = gpu.instance().clone();
         drop((gpu, screen)); // a window has one surface at a time
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        let passes = pass::Kept::default();
-        Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape, passes })
+        let (passes, by_cpu) = Default::default();
+        Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape, passes, by_cpu })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
@@ -157,6 +159,11 @@ impl Opened {
         drawn
     }
 
+    /// How long a new picture took, if there is one: a drawing that took `drawing`, or what was made beside it.
+    pub fn took(&mut self, drawing: Duration) -> Option<Duration> {
+        if self.by_cpu { self.passes.took() } else { Some(drawing) }
+    }
+
     /// A picture with nothing in it.
     fn nothing(&mut self) -> Result<Pictures> {
         let frame = self.gpu.texture(&Synth { size: (1, 1), ..Synth::default() }, 0.0)?;
@@ -188,6 +195,7 @@ impl Opened {
         let much = show.has_sprites() || show.frames.takes_long();
         let by_cpu = self.gpu.by_cpu(&show.frames).is_some() || much && self.gpu.device().is_software();
         let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));
+        self.by_cpu = asked.is_some();
         let left_out = state.thin.left_out();
         let frame = (&*thinned(frame.0, left_out), frame.1);
         if let Some(asked) = asked {

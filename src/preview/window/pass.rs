@@ -22,9 +22,9 @@ use crate::render::passes::{self, Asked};
 /// At most so many pixels are computed; larger frames are thinned out.
 const MOST: usize = 1 << 22;
 
-/// What is not made within this time is made beside the event loop, which shows what was there before.
-const SHORT: Duration = Duration::from_millis(100);
-/// What has taken this long is given up where the window looks from elsewhere by then.
+/// What is not made within this time is not waited for: overlays are drawn over what was there before.
+const SHORT: Duration = Duration::from_millis(50);
+/// What has taken this long is given up where the scene is another, or is seen from elsewhere, by then.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The textures of a pass, and what they were made for.
@@ -35,6 +35,8 @@ pub struct Kept {
     /// Pixels of the frame a pixel of the textures.
     pub each: usize,
     making: Option<Making>,
+    /// How long the newest took, until that is asked for.
+    took: Option<Duration>,
 }
 
 /// Of the frame, and of the one that it is shown beside or compared with.
@@ -71,20 +73,18 @@ impl Kept {
     ) -> Result<Option<Textures>> {
         if self.made_for.as_ref() == Some(wanted) {
             self.making = None;
-        } else if frame.0.takes_long() {
+        } else {
             self.making.take_if(|making| making.gives_way_to(wanted));
             let other = || other.as_ref().map(|(synth, time)| (&**synth, *time));
             let making = self.making.get_or_insert_with(|| Making::start(wanted, (frame, other()), wake));
-            if let Some((made_for, pictures)) = making.ended() {
+            if let Some((made_for, (pictures, took))) = making.ended() {
                 self.making = None;
+                self.took = Some(took);
                 self.take(gpu, made_for, &pictures?)?;
             }
             if self.making.is_none() && self.made_for.as_ref() != Some(wanted) {
                 self.making = Some(Making::start(wanted, (frame, other()), wake));
             }
-        } else {
-            let other = other.as_ref().map(|(synth, time)| (&**synth, *time));
-            self.take(gpu, wanted.clone(), &pictures(&wanted.asked, frame, other))?;
         }
         Ok(self.textures.clone())
     }
@@ -92,6 +92,11 @@ impl Kept {
     /// Whether something is being made.
     pub fn is_making(&self) -> bool {
         self.making.is_some()
+    }
+
+    /// How long what was made since this was asked last took, if something was.
+    pub fn took(&mut self) -> Option<Duration> {
+        self.took.take()
     }
 
     fn take(&mut self, gpu: &Gpu, made_for: For, (frame, other, each): &Pictures) -> Result<()> {
@@ -127,7 +132,7 @@ struct Making {
     made_for: For,
     begun: Instant,
     stop: Arc<AtomicBool>,
-    made: Receiver<Result<Pictures>>,
+    made: Receiver<(Result<Pictures>, Duration)>,
 }
 
 impl Making {
@@ -136,10 +141,11 @@ impl Making {
         let own = |(synth, time): At| (synth.stoppable(&stop), time);
         let (frame, other, asked, wake) = (own(frame), other.map(own), wanted.asked.clone(), wake.clone());
         std::thread::spawn(move || {
+            let begun = Instant::now();
             let other = other.as_ref().map(|(synth, time)| (synth, *time));
             let made = fault::caught(|| beside(|| pictures(&asked, (&frame.0, frame.1), other)));
             // Nobody listens where something else is wanted by now, or once the window is gone.
-            let _ = sender.send(made.map_err(|fault| Error::at("window", fault)));
+            let _ = sender.send((made.map_err(|fault| Error::at("window", fault)), begun.elapsed()));
             let _ = wake.send_event(Event::Drawn);
         });
         Making { made_for: wanted.clone(), begun: Instant::now(), stop, made }
@@ -148,13 +154,12 @@ impl Making {
     /// Whether it is given up for something else. While only the time runs on, it is not.
     fn gives_way_to(&self, wanted: &For) -> bool {
         let own = &self.made_for;
-        own.revision != wanted.revision
-            || own.asked != wanted.asked
-            || own.own != wanted.own && self.begun.elapsed() > PATIENCE
+        let is_old = own.revision != wanted.revision || own.own != wanted.own;
+        own.asked != wanted.asked || is_old && self.begun.elapsed() > PATIENCE
     }
 
-    /// What was made, once it is.
-    fn ended(&self) -> Option<(For, Result<Pictures>)> {
+    /// What was made, once it is, and how long that took.
+    fn ended(&self) -> Option<(For, (Result<Pictures>, Duration))> {
         let rest = SHORT.saturating_sub(self.begun.elapsed());
         self.made.recv_timeout(rest).ok().map(|made| (self.made_for.clone(), made))
     }

@@ -109,6 +109,7 @@ impl State {
     fn show_pass(&mut self, pass: Option<String>) {
         let how = |pass| format!("pass {pass}, D shows the next, Backspace the one before");
         self.words.told = pass.as_ref().map(how);
+        self.switches.under_pass(pass.is_some());
         self.pass = pass;
     }
 

@@ -8,6 +8,8 @@ const SHORT: f64 = 0.015;
 const FRAMES: u32 = 4;
 /// How many births are left out after each that is shown.
 const STEPS: [u32; 3] = [0, 1, 3];
+/// Those in words.
+const WORDS: [Option<&str>; 3] = [None, Some("every second sprite"), Some("every fourth sprite")];
 
 /// How many sprites are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +25,11 @@ impl Thin {
     /// How many births are left out after each that is shown.
     pub fn left_out(&self) -> u32 {
         STEPS[self.step]
+    }
+
+    /// The same in words, if any are left out.
+    pub fn words(&self) -> Option<&'static str> {
+        WORDS[self.step]
     }
 
     /// A frame took so many seconds while it played.

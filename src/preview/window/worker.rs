@@ -23,7 +23,7 @@ use crate::preview::wire::message::FromEditor;
 use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::shown::Shown;
 use crate::render::{self, Synth};
-use crate::scene::Scene;
+use crate::scene::{Scene, address};
 
 /// How long after its beginning, and how often from then on, progress is told.
 const BETWEEN: Duration = Duration::from_millis(500);
@@ -227,14 +227,27 @@ fn synthesise(
                 previous = Some(synth.clone());
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
                 problems.extend(synth.lacks());
+                let problems = named(&scene, problems);
                 let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
                 send(Event::Ready(Ready { scene, synth, around, revision, synth_ms, problems }))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
-            Err(problem) => send(Event::Problems(if problems.is_empty() { vec![problem] } else { problems }))?,
+            Err(problem) => {
+                let problems = if problems.is_empty() { vec![problem] } else { problems };
+                send(Event::Problems(named(&scene, problems)))?;
+            }
         }
     }
     Ok(())
+}
+
+/// Problems of a scene with the names of what they are in.
+fn named(scene: &Scene, problems: Vec<Problem>) -> Vec<Problem> {
+    let json = if problems.is_empty() { None } else { serde_json::to_value(scene).ok() };
+    match json {
+        Some(json) => address::named(&json, problems),
+        None => problems,
+    }
 }
 
 #[cfg(test)]

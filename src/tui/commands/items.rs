@@ -7,17 +7,13 @@ use crate::tui::text::plain;
 use serde_json::{Map, Value, json as value};
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::budget;
-use crate::base::error::Error;
 use crate::base::problem::quoted;
-use crate::files::{clips, models, paths, picture, sources, write};
 use crate::layers::parts::materials::List;
 use crate::layers::shapes::node::{self, Node};
 use crate::layers::shapes::shape;
-use crate::ops::new;
 use crate::scene::field::{self, Kind};
 use crate::scene::schema::Place;
 use crate::scene::{Edit, json};
@@ -28,12 +24,8 @@ use crate::tui::state::recorder::WorkLimit;
 use crate::tui::state::{Mode, Pane, State, first};
 use crate::tui::text::line::Line;
 
-pub const COMMANDS: &[Command] = &[
-    command("add", "[PATH]", "Add an item to the list, an optional node, or the picture, mesh or clip of a file", add)
-        .change()
-        .counted_with(&[""]),
-    command("delete", "", "Delete the row, the selection or the node", delete).change().counted(),
-];
+pub const COMMANDS: &[Command] =
+    &[command("delete", "", "Delete the row, the selection or the node", delete).change().counted()];
 
 /// The pointer of the node or the row under the cursor.
 pub fn target(state: &State) -> Result<String, String> {
@@ -91,122 +83,6 @@ pub fn alike(state: &State) -> Option<(usize, usize)> {
     let first = (0..=state.cursor.row).rev().take_while(like).last()?;
     let last = (state.cursor.row..sheet.len()).take_while(like).last()?;
     Some((first, last))
-}
-
-fn add(state: &mut State, call: &Call) -> Done {
-    match call.path()? {
-        None => add_here(state, call.times_of("add")?),
-        Some(_) if call.text.starts_with(['{', '[']) => {
-            Err("add takes the path of a file; a value is added by :set PATH.-=VALUE, as layers.-".into())
-        }
-        Some(path) => add_file(state, &path.to_string_lossy()),
-    }
-}
-
-/// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name. What is there is read first, so
-/// that nothing broken is added; a picture or a mesh may come later. What the scene may not read where it is is copied beside it.
-fn add_file(state: &mut State, path: &str) -> Done {
-    let place = beside(state, path);
-    let (list, options) = (sources::list_of(&place), state.scene.options());
-    let outside = |file: &Path| paths::folder_beside(state.scene.path(), file).filter(|_| !options.allow_outside);
-    let mut entry = value!({ "path": path });
-    let (mut notes, mut copies) = (Vec::new(), None);
-    let refused = |error: Error| error.to_string();
-    let name = match list {
-        List::Clips => {
-            let found = clips::find(&place).map_err(refused)?;
-            let folder = if place.is_dir() { path.trim_end_matches('/') } else { folder_of(path) };
-            if found.first > 0 {
-                entry["first"] = found.first.into();
-            }
-            entry["path"] =
-                if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) }.into();
-            let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
-            let name = clips::called(&found.name, last).to_owned();
-            if let Some(folder) = outside(&found.folder.join(&found.name)) {
-                let name = new::clip_called(&place);
-                let (path, files) = new::clip_copies(&found, &name);
-                entry["path"] = path.to_string_lossy().into();
-                copies = Some((folder, files));
-            }
-            name
-        }
-        List::Meshes if place.exists() => {
-            let model = models::read(&place, options).map_err(refused)?;
-            copies = bring(&place, outside(&place), model.beside, &mut entry)?;
-            notes = model.notes;
-            stem(path).to_owned()
-        }
-        List::Images if files_of(&place).exists() => {
-            notes = picture::read(&place, &options.limits).map_err(refused)?.notes;
-            copies = bring(&place, outside(&place), Vec::new(), &mut entry)?;
-            stem(path).to_owned()
-        }
-        _ => stem(path).to_owned(),
-    };
-    let path = entry["path"].as_str().unwrap_or(path).to_owned();
-    if let Some((folder, files)) = copies {
-        if state.scene.read_only() {
-            return Err(format!(
-                "{path} is not in the scene's folder, and nothing is copied there in a read-only session"
-            ));
-        }
-        files.iter().try_for_each(|(file, name)| write::copy_into(file, &folder, name)).map_err(refused)?;
-        notes.push("copied beside the scene".to_owned());
-    }
-    let map = format!("/{}", list.words().0);
-    let added = Edit::insert_entries(state.document(), &map, [(name.clone(), entry)].into_iter().collect());
-    let (edit, pointer) = added.ok_or("there is no list for it")?;
-    state.edit(edit, false)?;
-    go_to(state, &pointer);
-    tell_added(state, list, (&name, &path), &notes);
-    Ok(())
-}
-
-/// What is copied into a folder, if there is one: a picture or a model with the files that it names; `entry` then names the copy.
-fn bring(
-    place: &Path,
-    folder: Option<PathBuf>,
-    named: Vec<String>,
-    entry: &mut Value,
-) -> Result<Option<(PathBuf, new::Copies)>, String> {
-    let Some(folder) = folder else { return Ok(None) };
-    let copied = || {
-        let own = new::file_name(place)?;
-        entry["path"] = own.as_str().into();
-        new::copies(place, [paths::file_of(&own).to_owned()].into_iter().chain(named).collect())
-    };
-    Ok(Some((folder, copied().map_err(|error: Error| error.to_string())?)))
-}
-
-/// Where a path as typed is, as a picture, a model or a clip is named: with the part of the file that it means.
-fn beside(state: &State, path: &str) -> PathBuf {
-    let file = paths::beside(state.scene.path(), path);
-    match path.strip_prefix(paths::file_of(path)).filter(|part| !part.is_empty()) {
-        Some(part) => file.with_file_name(format!("{}{part}", file.file_name().unwrap_or_default().to_string_lossy())),
-        None => file,
-    }
-}
-
-/// The file of a path that may mean a part of it.
-fn files_of(place: &Path) -> &Path {
-    place.to_str().map_or(place, |place| Path::new(paths::file_of(place)))
-}
-
-/// Says what was added, what of it is not supported, and whether its file is missing: a clip was found before.
-fn tell_added(state: &mut State, list: List, (name, path): (&str, &str), notes: &[String]) {
-    let (map, one) = list.words();
-    let place = paths::beside(state.scene.path(), path);
-    // Of a clip of numbered files, some are there.
-    let found = place.exists() || list == List::Clips && name_of(path).contains('%');
-    if !found {
-        let missing = format!("{path} is among the {map}; there is no file {} yet", place.display());
-        return state.say(plain(&missing));
-    }
-    let unseen = state.document().scene().layers.is_empty();
-    let next = if unseen { ": now add a layer that shows it (o on layers)" } else { "" };
-    let notes: String = notes.iter().map(|note| format!("; {note}")).collect();
-    state.say(plain(&format!("the {one} {} is among the {map}{next}{notes}", quoted(name))));
 }
 
 /// Adds so many items at the cursor. If a path or a kind is needed, it is typed or chosen next.
@@ -423,22 +299,6 @@ fn unused(document: &Document, path: &str, deleted: &[String]) -> Done {
             Err(plain(&format!("{name} is used by {first}{more}: choose another {} there first", list.words().1)))
         }
     }
-}
-
-/// The name in a path, without the folder.
-fn name_of(path: &str) -> &str {
-    path.rsplit('/').next().unwrap_or(path)
-}
-
-/// The folder in a path, without the slash.
-fn folder_of(path: &str) -> &str {
-    path.rsplit_once('/').map_or("", |(folder, _)| folder)
-}
-
-/// The name of a file without folder and extension.
-pub fn stem(path: &str) -> &str {
-    let file = name_of(path);
-    file.split_once('.').map_or(file, |(stem, _)| stem)
 }
 
 /// The list and the index of an item, by themselves.

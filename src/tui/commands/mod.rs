@@ -3,6 +3,7 @@
 use super::state::State;
 use command::{Command, Done, Table};
 
+mod adding;
 mod apart;
 mod camera;
 mod cells;
@@ -55,6 +56,7 @@ mod yanking;
 pub static TABLE: Table = Table(&[
     files::COMMANDS,
     cells::COMMANDS,
+    adding::COMMANDS,
     items::COMMANDS,
     ordering::COMMANDS,
     rowing::COMMANDS,

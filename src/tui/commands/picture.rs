@@ -148,6 +148,7 @@ pub fn follow_window(state: &mut State, command: &str) {
 
 fn take_pass(state: &mut State, asked: Option<Asked>) {
     state.picture.pass = asked.filter(|asked| *asked.pass != COLOR || asked.layer.is_some());
+    state.picture.switches.under_pass(state.picture.pass.is_some());
 }
 
 /// Opens the read-out of the pixel under the cursor, or of X,Y; closes it if it is open.

@@ -32,11 +32,17 @@ fn set(state: &mut State, call: &Call) -> Done {
             Error::Scene { problems, .. } => first(&problems),
             other => other.to_string(),
         })?;
+    let overruled = edit.overruled(state.document());
+    let lost: Vec<String> = lost.into_iter().chain(overruled).collect();
     state.edit(edit, false)?;
-    let paths: Vec<&str> = settings
+    let paths: Vec<String> = settings
         .iter()
         .filter_map(|one| set::parse(one).ok())
         .map(|(path, _)| path.trim_end_matches(['*', '/', '+']))
+        .map(|path| match address::resolve(state.document(), path) {
+            Ok(pointer) => address::address(state.document(), &pointer),
+            Err(_) => path.to_owned(),
+        })
         .collect();
     state.say(match lost.as_slice() {
         [] if places > paths.len() => format!("{places} places are set: {}", paths.join(", ")),

@@ -1,7 +1,7 @@
 //! Yanks a node or rows as JSON, or rows as CSV, and pastes them where they fit.
 
 use crate::base::pointer::Pointer;
-use crate::tui::commands::items::stem;
+use crate::tui::commands::adding::stem;
 use crate::tui::document::pointers::{is_item, item_of};
 use crate::tui::text::plain;
 use serde_json::{Map, Value};

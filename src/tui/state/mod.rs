@@ -185,8 +185,10 @@ impl State {
             return Ok(());
         }
         self.unlocked(&edit)?;
+        let overruled = edit.overruled(self.document());
         if let Some(change) = self.scene.apply(edit, held).map_err(|problems| self.refusal(problems))? {
             self.changed(change);
+            overruled.into_iter().for_each(|why| self.say(why));
         }
         Ok(())
     }

@@ -22,7 +22,7 @@ pub fn pictures_and_names_come_and_go() {
         (": \"add late/%04d.jpg\" Enter", "/clips/late/first", json!(7)),
         (": \"add nosuch/%04d.jpg\" Enter", "/clips", Value::Null),
         (": \"add b/fire-%d.png\" Enter", "/clips/fire/path", json!("b/fire-%d.png")),
-        (": \"add a.%d.png\" Enter R Ctrl-w \"c\" Enter", "/clips/c/path", json!("a.%d.png")),
+        (": \"add a.%d.png\" Enter R Ctrl-w \"c\" Enter", "/layers/1/name", json!("c")),
         (": \"add b/fire.MP4\" Enter", "/clips/fire/path", json!("b/fire.MP4")),
         (": \"add 100%.png\" Enter", "/images/100%/path", json!("100%.png")),
         (&format!("{images} o \"dog.png\" Enter d"), "/images/dog", Value::Null),
@@ -74,9 +74,11 @@ fn what_is_broken_is_not_added_and_what_a_file_is_its_content_tells() {
         ("no.mp4", false, "no.mp4 is among the clips; there is no file", "/clips/no"),
         ("no.obj", false, "there is no file", "/meshes/no"),
         ("[1]", true, ":set PATH.-=VALUE", ""),
-        ("cat.obj", false, "the image \"cat\" is among the images", "/images/cat"),
+        ("cat.obj", true, "is a PNG picture, not a mesh", ""),
+        ("cat.png", false, "the image \"cat\" is among the images, and the layer \"cat\" shows it", "/images/cat"),
+        ("cat.png", false, "and the layer \"cat 2\" shows it", "/layers/1/image"),
         ("tri.obj", false, "its points and lines are not drawn", "/meshes/tri"),
-        ("falls", false, "the clip \"falls\" is among the clips", "/clips/falls"),
+        ("falls", false, "the clip \"falls\" is among the clips, and the layer \"falls\" shows it", "/clips/falls"),
     ] {
         let before = state.document().json().clone();
         press(&mut state, &format!(": \"add {path}\" Enter"));

@@ -221,27 +221,27 @@ pub fn what_was_said_and_what_is_wrong_can_be_read_again() {
 #[test]
 fn settings_are_answered_with_addresses() {
     for (line, answer) in [
-        ("set layers.0.zones.0.feather=-3", "layers.0.zones.0.feather: -3 is too small: 0 to 1000000 px"),
+        ("set layers.0.zones.0.feather=-3", "layers.face.zones.\"left eye\".feather: -3 is too small: 0 to 1000000 px"),
         (
             "set /layers/0/zones/0/feather=-3",
             "layers.face.zones.\"left eye\".feather: -3 is too small: 0 to 1000000 px",
         ),
         (
             "set layers.0.zones.0.feather=3 layers.0.zones.1.speed=2",
-            "layers.0.zones.0.feather, layers.0.zones.1.speed are set",
+            "layers.face.zones.\"left eye\".feather, layers.face.zones.mouth.speed are set",
         ),
         ("set title=two words", "title is set"),
-        ("set layers.face.zones.left eye.feather=3", "layers.face.zones.left eye.feather is set"),
+        ("set layers.face.zones.left eye.feather=3", "layers.face.zones.\"left eye\".feather is set"),
         (
             "set layers.0.zones.left eye.feather=3 layers.0.zones.1.speed=2",
-            "layers.0.zones.left eye.feather, layers.0.zones.1.speed are set",
+            "layers.face.zones.\"left eye\".feather, layers.face.zones.mouth.speed are set",
         ),
         ("set layers.face", "layers.face: write it as PATH=VALUE, a name with a space in quotes"),
         ("get layers.0.zones.-.name", "layers.0.zones.-.name is not set, and has no default"),
         ("get layers.0.zones.1.name", "\"mouth\""),
         (
             "set layers.0.zones.1.outline.kind=ellipse",
-            "layers.0.zones.1.outline.kind: only the ellipse inside its box is kept: 300 px² became 235.62",
+            "layers.face.zones.mouth.outline.kind: only the ellipse inside its box is kept: 300 px² became 235.62",
         ),
     ] {
         let mut state = state();

@@ -103,15 +103,15 @@ impl Source<'_> {
             within(place, &what, "elements that are not stored", "triangles", count, most)?;
         }
         let part = |buffer_view| Part { buffer_view, byte_offset, component_type };
-        let all = buffer_view.map(|view| self.elements::<N>(&part(view), count, normalized)).transpose()?;
+        let all = buffer_view.map(|view| self.elements::<N>(index, &part(view), count, normalized)).transpose()?;
         let Some(Sparse { count: differ, indices, values }) = sparse else {
             return Ok(Stored { count, all, differ: None });
         };
         if *differ > count {
             return Err(self.wrong(format!("accessor {index}: {differ} of {count} elements differ")));
         }
-        let indices = self.elements::<1>(indices, *differ, false)?;
-        let values = self.elements::<N>(&Part { component_type, ..*values }, *differ, normalized)?;
+        let indices = self.elements::<1>(index, indices, *differ, false)?;
+        let values = self.elements::<N>(index, &Part { component_type, ..*values }, *differ, normalized)?;
         Ok(Stored { count, all, differ: Some((*differ, indices, values)) })
     }
 
@@ -151,11 +151,18 @@ impl Source<'_> {
         }
     }
 
-    /// Where `count` elements are, all of them within their view.
-    fn elements<const N: usize>(&self, part: &Part, count: u64, normalized: bool) -> Result<Elements<'_>> {
+    /// Where `count` elements of the accessor with this index are, all of them within their view.
+    fn elements<const N: usize>(
+        &self,
+        index: usize,
+        part: &Part,
+        count: u64,
+        normalized: bool,
+    ) -> Result<Elements<'_>> {
         let known = COMPONENTS.iter().find(|(number, _)| *number == part.component_type);
-        let &(_, component) =
-            known.ok_or_else(|| self.wrong(format!("there is no type of numbers {}", part.component_type)))?;
+        let &(_, component) = known.ok_or_else(|| {
+            self.wrong(format!("accessor {index}: there is no type of numbers {}", part.component_type))
+        })?;
         let view = self.get(&self.document.buffer_views, part.buffer_view, "buffer view")?;
         let size = N * component.size();
         let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(size as u64);
@@ -168,8 +175,8 @@ impl Source<'_> {
                 Ok(Elements { bytes, stride: stride as usize, component, normalized })
             }
             _ => {
-                let what = format!("buffer view {} is too short for {count} elements", part.buffer_view);
-                Err(self.wrong(what))
+                let view = part.buffer_view;
+                Err(self.wrong(format!("accessor {index} has {count} elements: its buffer view {view} is too short")))
             }
         }
     }

@@ -49,6 +49,7 @@ pub(super) struct Scene {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
+    pub(super) name: Option<String>,
     pub(super) children: Vec<usize>,
     pub(super) mesh: Option<usize>,
     pub(super) skin: Option<usize>,
@@ -75,6 +76,13 @@ pub(super) struct Primitive {
     /// Points, lines, a loop and a strip of them, triangles, a strip and a fan of them; from 0.
     pub(super) mode: Option<u32>,
     pub(super) targets: Vec<serde::de::IgnoredAny>,
+}
+
+impl Primitive {
+    /// Whether its corners make triangles.
+    pub(super) fn has_faces(&self) -> bool {
+        self.attributes.position.is_some() && matches!(self.mode, None | Some(4..=6))
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -138,8 +146,10 @@ pub(super) struct Buffer<'a> {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Material {
+    pub(super) name: Option<String>,
     pub(super) pbr_metallic_roughness: Option<Surface>,
     pub(super) double_sided: bool,
+    pub(super) alpha_mode: Option<String>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -169,11 +179,15 @@ pub(super) struct InfoExtensions {
 }
 
 impl Material {
-    /// Its base color if it is not white, which leaves a texture as it is: sRGB, #rrggbb.
-    pub(super) fn tint(&self) -> Option<String> {
-        let [r, g, b, _] = self.pbr_metallic_roughness.as_ref()?.base_color_factor?;
+    /// Its base color, which a texture is multiplied by: sRGB, #rrggbb, and #rrggbbaa where it is blended. White unless it
+    /// is written.
+    pub(super) fn color(&self) -> String {
+        let surface = self.pbr_metallic_roughness.as_ref();
+        let [r, g, b, a] = surface.and_then(|surface| surface.base_color_factor).unwrap_or([1.0; 4]);
         let [r, g, b, _] = encode([r, g, b, 1.0]);
-        ([r, g, b] != [255; 3]).then(|| format!("#{}", hex(&[r, g, b])))
+        let alpha = (a.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let is_blended = self.alpha_mode.as_deref() == Some("BLEND") && alpha < 255;
+        format!("#{}", if is_blended { hex(&[r, g, b, alpha]) } else { hex(&[r, g, b]) })
     }
 
     /// The texture of its base color.

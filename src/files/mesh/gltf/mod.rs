@@ -13,10 +13,12 @@ use crate::files::limits::within;
 
 mod accessor;
 mod document;
+mod looks;
 mod nodes;
 mod pictures;
 mod source;
 
+pub(super) use looks::looks;
 pub(super) use pictures::{embedded, named, parts};
 pub(super) use source::With;
 
@@ -36,13 +38,19 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
     let counts = shown().fold(Counts::default(), |sum, (shape, _)| sum.and(shape.counts));
     within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
     if counts.triangles == 0 {
-        return Err(Error::at(place, "has no triangles").cure("name a mesh with faces"));
+        return Err(match shapes.values().any(|shape| shape.others) {
+            true => Error::at(place, "has only points and lines, which are not drawn").cure("export it with its faces"),
+            false => Error::at(place, "has no triangles").cure("name a mesh with faces"),
+        });
     }
+    let flattened = nodes::flattened(&source, &nodes)?;
     let mut builder = Builder::new(counts, place, budget)?;
     for (shape, transform) in shown() {
         shape.pieces.iter().try_for_each(|piece| piece.put(&source, &transform, &mut builder))?;
     }
     let skinned = nodes.iter().any(|(node, _)| node.mesh.is_some() && node.skin.is_some());
+    let mut pieces = shapes.values().flat_map(|shape| &shape.pieces);
+    let colored = pieces.any(|piece| piece.primitive.attributes.color_0.is_some());
     let notes = [
         (shapes.values().any(|shape| shape.others), "its points and lines are not drawn"),
         (
@@ -53,31 +61,11 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
             skinned || shapes.values().any(|shape| shape.posed),
             "its bones and morph targets are not applied: it is shown as it is stored",
         ),
+        (colored, "the colors of its vertices are not shown"),
     ];
     let notes = notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned());
-    let pieces: Vec<&Piece> = shapes.values().flat_map(|shape| &shape.pieces).collect();
-    let notes = notes.chain(looks(&source, &pieces)).collect();
+    let notes = flattened.into_iter().chain(notes).collect();
     Ok((builder, notes, pictures::first_file(&source)))
-}
-
-/// What of the materials a layer has to be told, since its surface is one for all triangles.
-fn looks(source: &Source, pieces: &[&Piece]) -> Vec<String> {
-    let used: BTreeSet<Option<usize>> = pieces.iter().map(|piece| piece.primitive.material).collect();
-    let materials = || used.iter().filter_map(|own| source.document.materials.get((*own)?));
-    let mut notes = Vec::new();
-    if used.len() > 1 {
-        notes.push(format!("of its {} materials one is shown on all of it", used.len()));
-    }
-    if let Some(tint) = materials().find_map(Material::tint) {
-        notes.push(format!("its color {tint} is not taken over: a plain surface has a \"color\""));
-    }
-    if materials().any(|material| material.double_sided) {
-        notes.push("both its sides are meant to be seen: \"sides\": \"both\"".to_owned());
-    }
-    if pieces.iter().any(|piece| piece.primitive.attributes.color_0.is_some()) {
-        notes.push("the colors of its vertices are not shown".to_owned());
-    }
-    notes
 }
 
 /// How corners make triangles.

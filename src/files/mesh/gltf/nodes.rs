@@ -1,10 +1,11 @@
 //! The nodes of a scene, and where they are.
 
-use glam::{DAffine3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
 use super::document::Node;
 use super::source::Source;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
+use crate::base::problem::quoted;
 
 /// The nodes of the default scene, each before its children, and where they are.
 pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>> {
@@ -27,6 +28,27 @@ pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>>
         queue(&node.children, transform, &mut ahead);
     }
     Ok(found)
+}
+
+/// What is said of nodes that leave nothing of the meshes that they show.
+///
+/// # Errors
+/// They are all of them.
+pub(super) fn flattened(source: &Source, nodes: &[(&Node, DAffine3)]) -> Result<Option<String>> {
+    let mut shown = nodes.iter().filter(|(node, _)| node.mesh.is_some()).peekable();
+    // All areas are zero where all cofactors are.
+    let is_gone = |(_, DAffine3 { matrix3: DMat3 { x_axis: x, y_axis: y, z_axis: z }, .. }): &&(&Node, DAffine3)| {
+        [x.cross(*y), y.cross(*z), z.cross(*x)].iter().all(|area| *area == DVec3::ZERO)
+    };
+    let all = shown.clone().all(|one| is_gone(&one));
+    let Some((node, _)) = shown.find(is_gone) else { return Ok(None) };
+    let index = source.document.nodes.iter().position(|other| std::ptr::eq(other, *node)).unwrap_or_default();
+    let name = node.name.as_ref().map(|name| format!(" {}", quoted(name))).unwrap_or_default();
+    let what = format!("node {index}{name} is scaled to nothing, itself or by one that it is in");
+    match all {
+        true => Err(Error::at(source.with.place, what).cure("mend its scale, and export it again")),
+        false => Ok(Some(what)),
+    }
 }
 
 /// The nodes that the default scene begins with: of a file without scenes those that are nobody's children.

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use super::document::Text;
+use super::document::{Primitive, Text};
 use super::nodes::nodes;
 use super::source::{Source, With, data};
 use crate::base::budget::Share;
@@ -34,12 +34,19 @@ pub(super) fn first_file(source: &Source) -> Option<String> {
 
 /// The images of the base colors of the default scene, each once.
 fn shown(source: &Source) -> Result<Vec<usize>> {
-    let (mut meshes, mut images, mut found) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
+    let (mut images, mut found) = (BTreeSet::new(), Vec::new());
+    for primitive in primitives(source)? {
+        found.extend(base_color(source, primitive.material)?.filter(|&image| images.insert(image)));
+    }
+    Ok(found)
+}
+
+/// The parts of the meshes of the default scene, each once, in the order in which its nodes show them.
+pub(super) fn primitives<'a>(source: &'a Source) -> Result<Vec<&'a Primitive>> {
+    let (mut meshes, mut found) = (BTreeSet::new(), Vec::new());
     for (node, _) in nodes(source)? {
         let Some(mesh) = node.mesh.filter(|&mesh| meshes.insert(mesh)) else { continue };
-        for primitive in &source.get(&source.document.meshes, mesh, "mesh")?.primitives {
-            found.extend(base_color(source, primitive.material)?.filter(|&image| images.insert(image)));
-        }
+        found.extend(&source.get(&source.document.meshes, mesh, "mesh")?.primitives);
     }
     Ok(found)
 }
@@ -57,7 +64,7 @@ fn outside<'a>(uri: &'a Option<Text>) -> Option<&'a str> {
 }
 
 /// The image of a material's base color, if it is one that can be read.
-fn base_color(source: &Source, material: Option<usize>) -> Result<Option<usize>> {
+pub(super) fn base_color(source: &Source, material: Option<usize>) -> Result<Option<usize>> {
     let Some(material) = material else { return Ok(None) };
     let material = source.get(&source.document.materials, material, "material")?;
     let Some(info) = material.base_color() else { return Ok(None) };

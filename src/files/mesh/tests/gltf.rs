@@ -132,19 +132,12 @@ fn triangles_come_as_lists_strips_and_fans() {
         let of = ("/meshes/0/primitives/0/material", json!(0));
         assert_eq!(changed(&[("/materials", laid(info)), of]).unwrap().1.len(), told);
     }
-    let tinted = json!([{ "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1] }, "doubleSided": true },
-        { "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 1] } }]);
-    let colored = json!({ "attributes": { "POSITION": 0, "COLOR_0": 0 }, "material": 1 });
-    let all = [("/materials", tinted), ("/meshes/0/primitives/0/material", json!(0)), add(colored)];
-    assert_eq!(
-        changed(&all).unwrap().1,
-        [
-            "of its 2 materials one is shown on all of it",
-            "its color #ff0000 is not taken over: a plain surface has a \"color\"",
-            "both its sides are meant to be seen: \"sides\": \"both\"",
-            "the colors of its vertices are not shown"
-        ]
-    );
+    let colored = json!({ "attributes": { "POSITION": 0, "COLOR_0": 0 } });
+    assert_eq!(changed(&[add(colored)]).unwrap().1, ["the colors of its vertices are not shown"]);
+    let gone = json!({ "name": "hat", "mesh": 0, "scale": [1, 0, 0] });
+    let more = [("/nodes/-", gone.clone()), ("/scenes/0/nodes", json!([0, 1]))];
+    let told = "node 1 \"hat\" is scaled to nothing, itself or by one that it is in";
+    assert_eq!(changed(&more).unwrap().1, [told, "2 of 4 triangles have no area and are never seen"]);
     let (mesh, notes) = changed(&[add(lines), add(posed), add(bare), ("/nodes/0/skin", json!(0))]).unwrap();
     assert_eq!((mesh.triangles.len(), mesh.without_uv), (3, Some(2)));
     assert_eq!(
@@ -274,6 +267,17 @@ fn what_is_wrong_is_told_by_its_number() {
     for (pointer, value, expected) in [
         ("/meshes", json!([]), format!("there is no mesh 0: there are 0 {AGAIN}")),
         ("/nodes", json!([{}]), "has no triangles (name a mesh with faces)".to_owned()),
+        (
+            "/nodes/0/scale",
+            json!([0, 0, 0]),
+            "node 0 is scaled to nothing, itself or by one that it is in (mend its scale, and export it again)"
+                .to_owned(),
+        ),
+        (
+            "/meshes/0/primitives/0/mode",
+            json!(1),
+            "has only points and lines, which are not drawn (export it with its faces)".to_owned(),
+        ),
         ("/scene", json!(7), format!("there is no scene 7: there are 1 {AGAIN}")),
         ("/scenes/0/nodes", json!([1]), format!("there is no node 1: there are 1 {AGAIN}")),
         ("/scenes/0/nodes", json!([0, 0]), format!("node 0 is in the scene twice {AGAIN}")),
@@ -285,19 +289,27 @@ fn what_is_wrong_is_told_by_its_number() {
         ),
         ("/accessors/0/bufferView", json!(9), format!("there is no buffer view 9: there are 4 {AGAIN}")),
         ("/accessors/0/type", json!("VEC4"), format!("accessor 0 is VEC4, and VEC3 was expected {AGAIN}")),
-        ("/accessors/0/componentType", json!(5124), format!("there is no type of numbers 5124 {AGAIN}")),
+        ("/accessors/0/componentType", json!(5124), format!("accessor 0: there is no type of numbers 5124 {AGAIN}")),
         ("/accessors/0/count", json!(3), format!("accessor 1 has 4 elements for 3 positions {AGAIN}")),
-        ("/accessors/1/byteOffset", json!(4), format!("buffer view 1 is too short for 4 elements {AGAIN}")),
-        ("/accessors/1/byteOffset", json!(u64::MAX), format!("buffer view 1 is too short for 4 elements {AGAIN}")),
+        (
+            "/accessors/1/byteOffset",
+            json!(4),
+            format!("accessor 1 has 4 elements: its buffer view 1 is too short {AGAIN}"),
+        ),
+        (
+            "/accessors/1/byteOffset",
+            json!(u64::MAX),
+            format!("accessor 1 has 4 elements: its buffer view 1 is too short {AGAIN}"),
+        ),
         (
             "/accessors/3/count",
             json!(u64::MAX),
-            format!("buffer view 3 is too short for {} elements {AGAIN}", u64::MAX),
+            format!("accessor 3 has {} elements: its buffer view 3 is too short {AGAIN}", u64::MAX),
         ),
         (
             "/accessors/0/count",
             json!(1_u64 << 40),
-            format!("buffer view 0 is too short for {} elements {AGAIN}", 1_u64 << 40),
+            format!("accessor 0 has {} elements: its buffer view 0 is too short {AGAIN}", 1_u64 << 40),
         ),
         (
             "/accessors/0",
@@ -316,10 +328,14 @@ fn what_is_wrong_is_told_by_its_number() {
              (make it smaller, or give --limit triangles=10000001)"
                 .to_owned(),
         ),
-        ("/accessors/3/count", json!(7), format!("buffer view 3 is too short for 7 elements {AGAIN}")),
+        ("/accessors/3/count", json!(7), format!("accessor 3 has 7 elements: its buffer view 3 is too short {AGAIN}")),
         ("/accessors/3/componentType", json!(5120), format!("accessor 3 is not of whole numbers {AGAIN}")),
         ("/accessors/3/componentType", json!(5126), format!("accessor 3 is not of whole numbers {AGAIN}")),
-        ("/bufferViews/3/byteStride", json!(u64::MAX), format!("buffer view 3 is too short for 6 elements {AGAIN}")),
+        (
+            "/bufferViews/3/byteStride",
+            json!(u64::MAX),
+            format!("accessor 3 has 6 elements: its buffer view 3 is too short {AGAIN}"),
+        ),
         ("/bufferViews/3/byteOffset", json!(u64::MAX), format!("buffer view 3 reaches beyond its buffer {AGAIN}")),
         ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there are 1 {AGAIN}")),
         ("/buffers/0/byteLength", json!(200), "is cut short (copy it again from where it came)".to_owned()),

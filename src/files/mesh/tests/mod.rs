@@ -49,11 +49,13 @@ fn file(bytes: &[u8]) -> File {
 fn what_is_no_mesh_says_what_it_is() {
     const READ: &str = "(Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf))";
     const EXPORT: &str = "(export it as .glb or .obj, with Blender for example)";
+    const RENAME: &str = "(rename it if it is to be shown as a picture; \
+        Plica reads Wavefront OBJ (.obj) and glTF 2.0 (.glb, .gltf))";
     const COPY: &str = "(copy it again from where it came, or export it again)";
     for (name, bytes, expected) in [
-        ("a.obj", &b"\x89PNG\r\n\x1a\n"[..], format!("is a PNG picture, not a mesh {READ}")),
-        ("a.glb", b"\xff\xd8\xff\xe0", format!("is a JPEG picture, not a mesh {READ}")),
-        ("a.obj", b"\0\0\0\x20ftypavif\0\0\0\0", format!("is an AVIF picture, not a mesh {READ}")),
+        ("a.obj", &b"\x89PNG\r\n\x1a\n"[..], format!("is a PNG picture, not a mesh {RENAME}")),
+        ("a.glb", b"\xff\xd8\xff\xe0", format!("is a JPEG picture, not a mesh {RENAME}")),
+        ("a.obj", b"\0\0\0\x20ftypavif\0\0\0\0", format!("is an AVIF picture, not a mesh {RENAME}")),
         ("a.obj", b"ply\nformat ascii 1.0\n", format!("is a PLY mesh, which Plica does not read {EXPORT}")),
         ("a.stl", b"\0\0\0\0", format!("is an STL mesh, which Plica does not read {EXPORT}")),
         ("a.fbx", b"Kaydara FBX Binary  \0", format!("is an FBX scene, which Plica does not read {EXPORT}")),

@@ -87,9 +87,12 @@ fn what_is_wrong_is_told_with_its_line() {
         ("v 0 0 0\nf 1 1 1/1/1/1\n", "line 2: \"1/1/1/1\" is not a corner: write it as 1, 1/2, 1//3 or 1/2/3"),
         ("v 0 0 0\nf 1 1 /1\n", "line 2: \"/1\" is not a corner: write it as 1, 1/2, 1//3 or 1/2/3"),
         ("v 0 0 0\nf 1 1 -99999999999999999999\n", "line 2: \"-99999999999999999999\" is out of range: there are 1"),
-        ("v 0 0 0\n", "has no triangles (name a mesh with faces)"),
+        ("v 0 0 0\n", "has no triangles (it has vertices alone: export it with its faces)"),
         ("o nothing\n", "has no triangles (name a mesh with faces)"),
-        ("hello world\nv 0 0 0\nl 1 1\n", "has no triangles (name a mesh with faces)"),
+        (
+            "hello world\nv 0 0 0\nl 1 1\n",
+            "has no triangles (its points and lines are not drawn: export it with its faces)",
+        ),
         ("hello world\n", "has no triangles (it may not be an OBJ: name a mesh with faces)"),
         (
             "f 1 1 1\nv 0 0 0\n\0\0",

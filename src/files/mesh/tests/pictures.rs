@@ -69,3 +69,36 @@ fn a_picture_in_a_model_is_read_by_its_number() {
         assert_eq!(read(place).unwrap_err(), format!("{place}: {expected}"));
     }
 }
+
+#[test]
+fn a_layer_takes_over_what_the_first_material_with_a_picture_says_and_else_the_first() {
+    let color = |color: [f32; 4]| json!({ "baseColorFactor": color });
+    let of = |material: usize| json!({ "attributes": { "POSITION": 0 }, "material": material });
+    let bare = json!({ "attributes": { "POSITION": 0 } });
+    let line = json!({ "attributes": { "POSITION": 0 }, "material": 1, "mode": 1 });
+    let red = json!({ "name": "red", "pbrMetallicRoughness": color([1.0, 0.0, 0.0, 0.5]) });
+    let skin = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } }, "doubleSided": true });
+    let glass = json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": color([0.2158605, 1.0, 0.0, 0.5]) });
+    for (materials, primitives, expected, both_sides, left_out) in [
+        (json!([]), json!([bare]), None, false, &[][..]),
+        (json!([{}]), json!([of(0)]), Some("#ffffff"), false, &[]),
+        (json!([red, skin]), json!([of(0), of(0), line]), Some("#ff0000"), false, &[]),
+        (json!([glass]), json!([of(0)]), Some("#80ff0080"), false, &[]),
+        (
+            json!([red, skin]),
+            json!([of(0), of(1), bare]),
+            Some("#ffffff"),
+            true,
+            &["\"red\"", "that of parts without one"],
+        ),
+        (json!([skin, red, glass]), json!([of(1), of(2)]), Some("#ff0000"), false, &["2"]),
+    ] {
+        let (mut json, binary) = square();
+        json["materials"] = materials;
+        json["textures"] = json!([{ "source": 0 }]);
+        json["meshes"] = json!([{ "primitives": primitives }]);
+        let found = looks(file(&glb(&json, &binary)), "a.glb", &Options::default()).unwrap();
+        let left_out = left_out.iter().map(|name| (*name).to_owned()).collect();
+        assert_eq!(found, Looks { color: expected.map(str::to_owned), both_sides, left_out });
+    }
+}

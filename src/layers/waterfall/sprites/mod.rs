@@ -70,6 +70,13 @@ pub struct Pictures {
 pub type Place = (usize, usize);
 
 impl Pictures {
+    /// One track of a single key that shows nothing.
+    pub fn blank(side: u32) -> Pictures {
+        let side = side as usize;
+        let keys = vec![key(side, vec![[0.0; 4]; side * side], None)];
+        Pictures { side, tracks: vec![Track { kind: Shows::Water, source: Source::Auto, keys }] }
+    }
+
     /// The tracks that sprites of a kind show; foam without its own shows water.
     pub fn of(&self, foam: bool) -> Vec<usize> {
         let all = |kind: Shows| (0..self.tracks.len()).filter(move |&i| self.tracks[i].kind == kind).collect();

@@ -1,0 +1,183 @@
+//! `:add`: an item at the cursor, or the picture, the mesh or the clip of a file.
+
+use std::path::{Path, PathBuf};
+
+use super::command::{Call, Command, Done, command};
+use super::items::{add_here, go_to, target};
+use crate::base::error::Error;
+use crate::base::pointer::Pointer;
+use crate::base::problem::quoted;
+use crate::files::{clips, models, paths, picture, sources, write};
+use crate::layers::parts::materials::List;
+use crate::ops::new;
+use crate::scene::{Known, Looks, Start};
+use crate::tui::state::State;
+use crate::tui::text::plain;
+
+pub const COMMANDS: &[Command] = &[command(
+    "add",
+    "[PATH]",
+    "Add an item to the list, an optional node, or the picture, mesh or clip of a file with a layer that shows it",
+    add,
+)
+.change()
+.counted_with(&[""])];
+
+fn add(state: &mut State, call: &Call) -> Done {
+    match call.path()? {
+        None => add_here(state, call.times_of("add")?),
+        Some(_) if call.text.starts_with(['{', '[']) => {
+            Err("add takes the path of a file; a value is added by :set PATH.-=VALUE, as layers.-".into())
+        }
+        Some(path) => add_file(state, &path.to_string_lossy()),
+    }
+}
+
+/// Adds a picture, a mesh or a clip from a file (relative to the scene), under the file's name, with a layer that shows it as
+/// `plica new` makes one, unless the cursor is in the list of such files. What is there is read first, so that nothing broken is added; a
+/// file may come later, and then has no layer. What the scene may not read where it is is copied beside it.
+fn add_file(state: &mut State, path: &str) -> Done {
+    let place = beside(state, path);
+    let (list, options) = (sources::list_of(&place), state.scene.options());
+    let outside = |file: &Path| paths::folder_beside(state.scene.path(), file).filter(|_| !options.allow_outside);
+    let (mut notes, mut copies, mut path) = (Vec::new(), None, path.to_owned());
+    let start = Start::within(state.document());
+    let (start, is_there) = match list {
+        List::Clips => {
+            let found = clips::find(&place).map_err(refused)?;
+            let folder = if place.is_dir() { path.trim_end_matches('/') } else { folder_of(&path) };
+            let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
+            let name = clips::called(&found.name, last).to_owned();
+            path = if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) };
+            if let Some(folder) = outside(&found.folder.join(&found.name)) {
+                let (copy, files) = new::clip_copies(&found, &new::clip_called(&place));
+                path = copy.to_string_lossy().into_owned();
+                copies = Some((folder, files));
+            }
+            // A video tells nothing before it is decoded.
+            let size =
+                found.files.first().and_then(|file| picture::size(&found.folder.join(file), &options.limits).ok());
+            let frames = found.files.len();
+            let known = size.map(|size_px| Known { size_px, frames, is_still: false });
+            (start.clip(&name, &path, found.first, known), found.folder.join(&found.files[0]).exists())
+        }
+        List::Meshes if place.exists() => {
+            let model = models::read(&place, options).map_err(refused)?;
+            let beside_scene = Path::new(&path).parent().unwrap_or(Path::new("")).to_owned();
+            let copied = bring(&place, outside(&place), model.beside, &mut path)?;
+            let folder = if copied.is_some() { PathBuf::new() } else { beside_scene };
+            let picture = model.picture.map(|picture| folder.join(picture).to_string_lossy().into_owned());
+            let called = picture.as_deref().map(|picture| new::called(Path::new(picture)));
+            (copies, notes) = (copied, model.notes);
+            let looks = Looks {
+                picture: called.as_deref().zip(picture.as_deref()),
+                color: model.color.as_deref(),
+                both_sides: model.both_sides,
+            };
+            (start.mesh(stem(&path), &path, Some(model.mesh), looks), true)
+        }
+        List::Images if files_of(&place).exists() => {
+            let found = sources::picture(&place, &options.limits).map_err(refused)?;
+            let size = (found.picture.width(), found.picture.height());
+            copies = bring(&place, outside(&place), Vec::new(), &mut path)?;
+            notes = found.notes;
+            (start.picture(stem(&path), &path, size), true)
+        }
+        List::Meshes => (start.mesh(stem(&path), &path, None, Looks::default()), false),
+        _ => (start.picture(stem(&path), &path, (0, 0)), false),
+    };
+    let own = format!("/{}", list.words().0);
+    let in_list = target(state).is_ok_and(|at| Pointer(&at).is_within(&own));
+    let start = if is_there && !in_list { start } else { start.without_layers() };
+    if let Some((folder, files)) = copies {
+        if state.scene.read_only() {
+            return Err(format!(
+                "{path} is not in the scene's folder, and nothing is copied there in a read-only session"
+            ));
+        }
+        files.iter().try_for_each(|(file, name)| write::copy_into(file, &folder, name)).map_err(refused)?;
+        notes.push("copied beside the scene".to_owned());
+    }
+    let (edit, places) = start.edit(state.document());
+    state.edit(edit, false)?;
+    let pointer = places.last().ok_or("it is in the scene already")?;
+    go_to(state, pointer);
+    tell_added(state, list, (&places, &path), &notes);
+    Ok(())
+}
+
+fn refused(error: Error) -> String {
+    error.to_string()
+}
+
+/// What is copied into a folder, if there is one: a picture or a model with the files that it names; `path` is then that of the
+/// copy.
+fn bring(
+    place: &Path,
+    folder: Option<PathBuf>,
+    named: Vec<String>,
+    path: &mut String,
+) -> Result<Option<(PathBuf, new::Copies)>, String> {
+    let Some(folder) = folder else { return Ok(None) };
+    let copied = || {
+        let own = new::file_name(place)?;
+        *path = own.clone();
+        new::copies(place, [paths::file_of(&own).to_owned()].into_iter().chain(named).collect())
+    };
+    Ok(Some((folder, copied().map_err(refused)?)))
+}
+
+/// Where a path as typed is, as a picture, a model or a clip is named: with the part of the file that it means.
+fn beside(state: &State, path: &str) -> PathBuf {
+    let file = paths::beside(state.scene.path(), path);
+    match path.strip_prefix(paths::file_of(path)).filter(|part| !part.is_empty()) {
+        Some(part) => file.with_file_name(format!("{}{part}", file.file_name().unwrap_or_default().to_string_lossy())),
+        None => file,
+    }
+}
+
+/// The file of a path that may mean a part of it.
+fn files_of(place: &Path) -> &Path {
+    place.to_str().map_or(place, |place| Path::new(paths::file_of(place)))
+}
+
+/// Says what was added, what of it is not supported, and whether its file is missing: a clip was found before.
+fn tell_added(state: &mut State, list: List, (places, path): (&[String], &str), notes: &[String]) {
+    let (map, one) = list.words();
+    let place = paths::beside(state.scene.path(), path);
+    // Of a clip of numbered files, some are there.
+    let found = place.exists() || list == List::Clips && name_of(path).contains('%');
+    if !found {
+        let missing = format!("{path} is among the {map}; there is no file {} yet", place.display());
+        return state.say(plain(&missing));
+    }
+    let layer = places.last().filter(|place| Pointer(place).is_within("/layers"));
+    let layer = layer.and_then(|place| state.document().json().pointer(place)?.get("name")?.as_str());
+    let entry = places.iter().find_map(|place| List::entry(place).filter(|(of, _)| *of == list));
+    let name = entry.map_or_else(|| stem(path).to_owned(), |(_, name)| name);
+    let next = match layer {
+        Some(layer) => format!(", and the layer {} shows it", quoted(layer)),
+        None if state.document().scene().layers.is_empty() => {
+            ": now add a layer that shows it (o on layers)".to_owned()
+        }
+        None => String::new(),
+    };
+    let notes: String = notes.iter().map(|note| format!("; {note}")).collect();
+    state.say(plain(&format!("the {one} {} is among the {map}{next}{notes}", quoted(&name))));
+}
+
+/// The name in a path, without the folder.
+fn name_of(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// The folder in a path, without the slash.
+fn folder_of(path: &str) -> &str {
+    path.rsplit_once('/').map_or("", |(folder, _)| folder)
+}
+
+/// The name of a file without folder and extension.
+pub fn stem(path: &str) -> &str {
+    let file = name_of(path);
+    file.split_once('.').map_or(file, |(stem, _)| stem)
+}
